@@ -1,14 +1,15 @@
-//! The renderer inside another wgpu program, which has the picture in a texture of its own; pixels stay on the GPU.
+//! Example of the renderer inside another wgpu program, whose own texture receives the picture; pixels stay on the
+//! GPU.
 //! `cargo run --example embedded`
 #![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 
 use chiaroscuro::data::{Dataset, synthetic};
-use chiaroscuro::gpu::{Context, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look};
+use chiaroscuro::gpu::{GpuContext, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // The other program opens its device as it likes, with the features and limits of `device_descriptor` or more.
+    // The other program opens its device itself, with at least the features and limits of `device_descriptor`.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let options = wgpu::RequestAdapterOptions::default();
     let adapter = pollster::block_on(instance.request_adapter(&options))?;
@@ -25,15 +26,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let view = target.create_view(&wgpu::TextureViewDescriptor::default());
 
-    // Once: a renderer on that device, and what paints its pictures into targets of that format.
-    let context = Context::new(&adapter, device.clone(), queue.clone())?;
+    // Once: a renderer on that device, and a painter for targets of that format.
+    let context = GpuContext::new(&adapter, device.clone(), queue.clone())?;
     let mut renderer = Renderer::new(&context)?;
     let painter = PicturePainter::new(&context, target.format())?;
     let dataset = Dataset::new(synthetic::builtin("chair", Some(32))?);
     let settings = first_look(&mut renderer, &dataset)?;
 
-    // For every picture: draw it, and paint it in a pass of the program, here into a part of its texture. Programs
-    // that must not wait take the renderer's work step by step (`Renderer::begin`).
+    // For every picture: draw it, and paint it in a render pass of the program, here into a part of its texture.
+    // Programs that must not block run the renderer's work step by step (`Renderer::new`).
     let size = [200, 150];
     renderer.draw(&dataset, &settings, size, &RenderOptions::default())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

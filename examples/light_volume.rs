@@ -1,14 +1,15 @@
-//! The light that reaches every voxel of an array, as an array: `cargo run --example light_volume`
+//! Example that computes the light at every voxel of an array, as an array: `cargo run --example light_volume`
 #![expect(clippy::print_stdout, reason = "it says what it made")]
 
 use std::error::Error;
 
 use chiaroscuro::data::{Dataset, Samples, Volume};
-use chiaroscuro::gpu::{Context, RenderOptions, Renderer};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer};
 use chiaroscuro::model::{
-    ControlPoint, Interpolation, Length, Light, LightStorage, Settings, TransferFunction,
+    ControlPoint, LightSettings, LightStorage, OpacityInterpolation, OpacityLength, Settings,
+    TransferFunction,
 };
-use chiaroscuro::plan::Request;
+use chiaroscuro::plan::RenderRequest;
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Voxels of 1 mm, x fastest: a full block of 12³ in the middle of 32³ empty ones.
@@ -18,29 +19,30 @@ fn main() -> Result<(), Box<dyn Error>> {
     let volume = Volume::with_spacing("block", [n; 3], glam::DVec3::ONE, Samples::F32(voxels))?;
     let dataset = Dataset::new(volume);
 
-    // Light from above (+z); a full voxel takes a tenth of it on each millimetre.
+    // Light from above (+z); a full voxel absorbs a tenth of it per millimetre.
     let opacity = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
-        lights: vec![Light { position: [0.0, 0.0, 3.0], ..Light::default() }],
+        lights: vec![LightSettings { position: [0.0, 0.0, 3.0], ..LightSettings::default() }],
         transfer: TransferFunction {
             points: vec![opacity(0.0, 0.0), opacity(1.0, 0.1)],
-            interpolation: Interpolation::Extinction,
+            interpolation: OpacityInterpolation::Extinction,
             ..TransferFunction::default()
         },
-        opacity_unit: Length::Mm(1.0),
+        opacity_unit: OpacityLength::Mm(1.0),
         ..Settings::default()
     };
-    // A volume for each light, which is not combined with those of others.
+    // One volume per light, not combined with others.
     settings.shadows.storage = LightStorage::PerLight;
 
-    // Light volumes are filled on the way to a picture, here of a few pixels, and here not only where it looks.
-    let mut renderer = Renderer::new(&Context::headless()?)?;
-    let (size, options) = ([8, 8], RenderOptions { fill_everything: true, ..RenderOptions::default() });
+    // Light volumes are filled while a picture is drawn, here of a few pixels, and here everywhere, not only where it
+    // needs them.
+    let mut renderer = Renderer::new(&GpuContext::headless()?)?;
+    let (size, options) = ([8, 8], RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() });
     renderer.draw(&dataset, &settings, size, &options)?;
-    let request = Request { volume: dataset.volume().id(), settings, size, coarse: None };
+    let request = RenderRequest { volume: dataset.volume().id(), settings, size, preview_resolution: None };
     let light = renderer.attenuation(&request, 0)?.ok_or("the light casts no shadows")?;
 
-    // 0 is dark, 1 fully lit, x fastest. Every `divisor` voxels of the array along an axis share one.
+    // 0 is dark, 1 fully lit, x fastest. Each value covers `divisor` voxels of the array along an axis.
     let [nx, ny, nz] = light.dims;
     println!("{nx} × {ny} × {nz} values; from above, through the middle of the block:");
     for z in (0..nz).rev().step_by(3) {

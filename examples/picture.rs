@@ -1,4 +1,4 @@
-//! A picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
+//! Example that renders a picture without a window: `cargo run --example picture -- [VOLUME [OUT.png]]`
 //!
 //! VOLUME is a file (RAW, NRRD), or a built-in volume such as `builtin:cloud:64`.
 #![expect(clippy::print_stdout, reason = "it says what it made")]
@@ -10,7 +10,7 @@ use chiaroscuro::data::Dataset;
 use chiaroscuro::data::load::{LoadControl, LoadOptions};
 use chiaroscuro::data::open;
 use chiaroscuro::export::export_png;
-use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -18,21 +18,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path =
         arguments.next().map_or_else(|| std::env::temp_dir().join("chiaroscuro-picture.png"), PathBuf::from);
 
-    // A volume, with what follows from its voxels.
+    // A volume, with data derived from its voxels.
     let dataset = Dataset::new(open(&source, &LoadOptions::default(), &LoadControl::new())?);
 
     // A device without a window: the fastest, or the one that WGPU_ADAPTER_NAME names.
-    let context = Context::headless()?;
+    let context = GpuContext::headless()?;
     let mut renderer = Renderer::new(&context)?;
 
-    // Settings are the whole look. These are found from the voxels; every field may be changed.
+    // The settings are the whole look. These are derived from the voxels; every field may be changed.
     let mut settings = first_look(&mut renderer, &dataset)?;
     settings.camera.azimuth_deg += 20.0;
     settings.floor.on = true;
 
-    // Bytes in sRGB, RGBA, row by row from the top left.
+    // RGBA bytes in sRGB, row by row from the top left.
     let size = [320, 240];
-    let shown = renderer.render_shown(&dataset, &settings, size, &RenderOptions::default())?;
+    let shown = renderer.render_display(&dataset, &settings, size, &RenderOptions::default())?;
     export_png(size, &shown, false, None, &path)?;
     println!("{}: {source}, on {}", path.display(), context.description());
     Ok(())

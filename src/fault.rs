@@ -1,50 +1,50 @@
-//! Faults on purpose: what the hidden option `--fault` asks for, so that tests see what the ordinary program does when
-//! memory, disk, device or a thread fails it.
+//! Fault injection: the hidden option `--fault` makes memory, disk, device or a thread fail, so that tests see how
+//! the ordinary program reacts.
 //!
-//! Places that can fail ask here. Without the option, each asks one atomic number.
+//! Code that can fail queries this module. Without the option, each query reads one atomic flag.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{PoisonError, RwLock};
 use std::time::Duration;
 
-/// What can be told to panic.
+/// Thread that can be made to panic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// The thread that opens volumes.
+pub(crate) enum FaultThread {
+    /// Thread that opens volumes.
     Loader,
-    /// The thread that renders the window's pictures.
+    /// Thread that renders the window's pictures.
     Worker,
-    /// The window's own thread.
+    /// Main thread of the window.
     Window,
-    /// The thread that exports.
+    /// Thread that exports pictures.
     Export,
 }
 
-/// A fault.
+/// Fault to be injected, as given by `--fault`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fault {
-    /// The window's device and that of its pictures are lost in its N-th frame.
-    Lost(u64),
-    /// The device of the pictures alone is lost then.
-    PicturesLost(u64),
-    /// The adapter refuses memory for the K-th texture or buffer.
+pub(crate) enum InjectedFault {
+    /// Loss of the window's and the renderer's devices in the window's N-th frame.
+    DeviceLost(u64),
+    /// Loss of the renderer's device alone in the window's N-th frame.
+    RendererDeviceLost(u64),
+    /// Allocation failure of the adapter for the K-th texture or buffer.
     OutOfMemory(u64),
-    /// A thread panics at its next work.
-    Panic(Place),
-    /// No shader can be translated.
+    /// Panic of a thread at its next task.
+    Panic(FaultThread),
+    /// Failure to compile any shader.
     Shader,
-    /// Every wait for the adapter takes so much longer.
+    /// Additional delay of every wait for the adapter.
     Slow(Duration),
-    /// Every frame of the window takes so much longer.
+    /// Additional delay of every frame of the window.
     SlowFrames(Duration),
-    /// Nothing can be written.
+    /// Failure of every write to a file.
     FullDisk,
-    /// The N-th block that is read of a volume cannot be.
+    /// Failure to read the N-th block of a volume.
     ReadError(u64),
 }
 
-impl FromStr for Fault {
+impl FromStr for InjectedFault {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -55,8 +55,8 @@ impl FromStr for Fault {
         if let Some((what, count)) = text.split_once('@') {
             let count = number(count)?;
             return match what {
-                "lost" => Ok(Self::Lost(count)),
-                "pictures-lost" => Ok(Self::PicturesLost(count)),
+                "lost" => Ok(Self::DeviceLost(count)),
+                "pictures-lost" => Ok(Self::RendererDeviceLost(count)),
                 "oom" => Ok(Self::OutOfMemory(count)),
                 "read-error" => Ok(Self::ReadError(count)),
                 _ => Err(unknown()),
@@ -65,10 +65,10 @@ impl FromStr for Fault {
         match text {
             "shader" => Ok(Self::Shader),
             "full-disk" => Ok(Self::FullDisk),
-            "panic:loader" => Ok(Self::Panic(Place::Loader)),
-            "panic:worker" => Ok(Self::Panic(Place::Worker)),
-            "panic:ui" => Ok(Self::Panic(Place::Window)),
-            "panic:export" => Ok(Self::Panic(Place::Export)),
+            "panic:loader" => Ok(Self::Panic(FaultThread::Loader)),
+            "panic:worker" => Ok(Self::Panic(FaultThread::Worker)),
+            "panic:ui" => Ok(Self::Panic(FaultThread::Window)),
+            "panic:export" => Ok(Self::Panic(FaultThread::Export)),
             _ => {
                 let (what, millis) = text.split_once(':').ok_or_else(unknown)?;
                 let longer = || number(millis).map(Duration::from_millis);
@@ -82,62 +82,63 @@ impl FromStr for Fault {
     }
 }
 
-/// The faults of this process, and whether there are any.
-static FAULTS: RwLock<Vec<Fault>> = RwLock::new(Vec::new());
-static ANY: AtomicBool = AtomicBool::new(false);
+/// Injected faults of this process, and a flag that is set if there are any.
+static FAULTS: RwLock<Vec<InjectedFault>> = RwLock::new(Vec::new());
+static HAS_FAULTS: AtomicBool = AtomicBool::new(false);
 
-/// How often something has happened that a fault counts.
+/// Counter of events that a fault refers to.
 #[derive(Debug, Default)]
-pub(crate) struct Count(AtomicU64);
+pub(crate) struct FaultCounter(AtomicU64);
 
-impl Count {
-    /// None yet.
+impl FaultCounter {
+    /// Creates a counter at zero.
     pub(crate) const fn new() -> Self {
         Self(AtomicU64::new(0))
     }
 
-    /// One more, and how many that makes.
+    /// Counts one event and returns the total, this one included.
     pub(crate) fn next(&self) -> u64 {
         self.0.fetch_add(1, Ordering::Relaxed) + 1
     }
 
-    /// How many so far, since faults were chosen first.
+    /// Returns the events counted since faults were first chosen.
     #[cfg(test)]
     pub(crate) fn so_far(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// Chooses the faults of this process.
+/// Sets the faults to be injected into this process.
 #[cfg(any(feature = "cli", test))]
-pub(crate) fn choose(faults: Vec<Fault>) {
-    ANY.store(!faults.is_empty(), Ordering::Relaxed);
+pub(crate) fn set_faults(faults: Vec<InjectedFault>) {
+    HAS_FAULTS.store(!faults.is_empty(), Ordering::Relaxed);
     *FAULTS.write().unwrap_or_else(PoisonError::into_inner) = faults;
 }
 
-/// Whether one of the faults that were chosen is such a one.
-fn any(is_it: impl FnMut(&Fault) -> bool) -> bool {
-    ANY.load(Ordering::Relaxed) && FAULTS.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
+/// Returns true if one of the chosen faults satisfies a condition.
+fn any(is_it: impl FnMut(&InjectedFault) -> bool) -> bool {
+    HAS_FAULTS.load(Ordering::Relaxed)
+        && FAULTS.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
 }
 
-/// Whether a fault was chosen.
-pub(crate) fn is_on(fault: Fault) -> bool {
+/// Returns true if a fault was chosen.
+pub(crate) fn is_on(fault: InjectedFault) -> bool {
     any(|chosen| *chosen == fault)
 }
 
-/// Counts one, and says whether that is the one that a fault names. Nothing is counted unless faults were chosen.
-pub(crate) fn is_due(count: &Count, fault: impl Fn(u64) -> Fault) -> bool {
-    ANY.load(Ordering::Relaxed) && is_on(fault(count.next()))
+/// Counts one event and returns true if a fault is due at it. Nothing is counted unless faults were chosen.
+pub(crate) fn is_due(count: &FaultCounter, fault: impl Fn(u64) -> InjectedFault) -> bool {
+    HAS_FAULTS.load(Ordering::Relaxed) && is_on(fault(count.next()))
 }
 
-/// Panics where that was chosen.
+/// Panics if that was chosen for this thread.
 #[cfg(any(feature = "window", test))]
-pub(crate) fn may_panic(place: Place) {
-    assert!(!is_on(Fault::Panic(place)), "a fault was asked for: panic in {place:?}");
+pub(crate) fn panic_if_injected(place: FaultThread) {
+    assert!(!is_on(InjectedFault::Panic(place)), "a fault was asked for: panic in {place:?}");
 }
 
-/// Sum of the durations that `of` gives for the chosen faults.
-fn sum(of: impl Fn(&Fault) -> Option<Duration>) -> Duration {
+/// Sums the durations that `of` returns for the chosen faults.
+fn sum(of: impl Fn(&InjectedFault) -> Option<Duration>) -> Duration {
     let mut by = Duration::ZERO;
     any(|chosen| {
         by += of(chosen).unwrap_or_default();
@@ -146,15 +147,15 @@ fn sum(of: impl Fn(&Fault) -> Option<Duration>) -> Duration {
     by
 }
 
-/// How much longer waits for the adapter take.
-pub(crate) fn slowness() -> Duration {
-    sum(|chosen| if let Fault::Slow(longer) = chosen { Some(*longer) } else { None })
+/// Returns the additional delay of waits for the adapter.
+pub(crate) fn adapter_delay() -> Duration {
+    sum(|chosen| if let InjectedFault::Slow(longer) = chosen { Some(*longer) } else { None })
 }
 
-/// How much longer frames of the window take.
+/// Returns the additional delay of the window's frames.
 #[cfg(any(feature = "window", test))]
 pub(crate) fn frame_delay() -> Duration {
-    sum(|chosen| if let Fault::SlowFrames(longer) = chosen { Some(*longer) } else { None })
+    sum(|chosen| if let InjectedFault::SlowFrames(longer) = chosen { Some(*longer) } else { None })
 }
 
 #[cfg(test)]
@@ -163,12 +164,12 @@ mod tests {
 
     #[test]
     fn faults_are_read_and_what_is_none_is_refused() {
-        let read = |text: &str| text.parse::<Fault>();
-        assert_eq!(read("lost@10"), Ok(Fault::Lost(10)));
-        assert_eq!(read("oom@3"), Ok(Fault::OutOfMemory(3)));
-        assert_eq!(read("panic:ui"), Ok(Fault::Panic(Place::Window)));
-        assert_eq!(read("slow:250"), Ok(Fault::Slow(Duration::from_millis(250))));
-        assert_eq!(read("slow-frames:300"), Ok(Fault::SlowFrames(Duration::from_millis(300))));
+        let read = |text: &str| text.parse::<InjectedFault>();
+        assert_eq!(read("lost@10"), Ok(InjectedFault::DeviceLost(10)));
+        assert_eq!(read("oom@3"), Ok(InjectedFault::OutOfMemory(3)));
+        assert_eq!(read("panic:ui"), Ok(InjectedFault::Panic(FaultThread::Window)));
+        assert_eq!(read("slow:250"), Ok(InjectedFault::Slow(Duration::from_millis(250))));
+        assert_eq!(read("slow-frames:300"), Ok(InjectedFault::SlowFrames(Duration::from_millis(300))));
         for wrong in [
             "slow-frames",
             "slowly:3",
@@ -188,10 +189,10 @@ mod tests {
 
     #[test]
     fn nothing_fails_unless_it_is_asked_for() {
-        let count = Count::new();
-        assert!(!is_due(&count, Fault::OutOfMemory) && !is_on(Fault::FullDisk));
+        let count = FaultCounter::new();
+        assert!(!is_due(&count, InjectedFault::OutOfMemory) && !is_on(InjectedFault::FullDisk));
         assert_eq!(count.0.load(Ordering::Relaxed), 0, "nor is anything counted");
-        may_panic(Place::Loader);
-        assert_eq!((slowness(), frame_delay()), (Duration::ZERO, Duration::ZERO));
+        panic_if_injected(FaultThread::Loader);
+        assert_eq!((adapter_delay(), frame_delay()), (Duration::ZERO, Duration::ZERO));
     }
 }

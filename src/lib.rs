@@ -1,38 +1,38 @@
-//! Chiaroscuro: see the shape of volume data.
+//! Chiaroscuro: a viewer for volume data with volumetric shadows.
 //!
 //! ```
 //! use chiaroscuro::data::load::{LoadControl, LoadOptions};
 //! use chiaroscuro::data::{Dataset, open};
-//! use chiaroscuro::gpu::{Context, RenderOptions, Renderer, first_look};
+//! use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
 //!
 //! // A built-in volume of 24³ voxels; the name of a RAW or NRRD file does as well.
 //! let volume = open("builtin:chair:24", &LoadOptions::default(), &LoadControl::new())?;
 //! let dataset = Dataset::new(volume);
-//! let mut renderer = Renderer::new(&Context::headless()?)?;
+//! let mut renderer = Renderer::new(&GpuContext::headless()?)?;
 //! let settings = first_look(&mut renderer, &dataset)?;
-//! let bytes = renderer.render_shown(&dataset, &settings, [64, 48], &RenderOptions::default())?;
+//! let bytes = renderer.render_display(&dataset, &settings, [64, 48], &RenderOptions::default())?;
 //! let middle = &bytes[4 * (24 * 64 + 32)..][..3];
 //! assert!(bytes.len() == 64 * 48 * 4 && middle != &bytes[..3], "the chair stands before the background");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! `examples/` writes such a picture to a file and shows a light volume as an array, a turntable, and the renderer
-//! inside another wgpu program. [`gpu::Renderer`] is the way to everything else.
+//! inside another wgpu program. [`gpu::Renderer`] is the entry point to everything else.
 //!
-//! True volumetric shadows after *Splatting With Shadows* (Nulkar & Mueller, 2001), below cited as
-//! P: light is attenuated on its way to the material and again on its way to the eye, and both
-//! passes are image-aligned sheet-buffer splatting.
+//! Volumetric shadows follow *Splatting With Shadows* (Nulkar & Mueller, 2001), cited below as P: light is attenuated
+//! on its way to the material and again on its way to the eye, and both passes are image-aligned sheet-buffer
+//! splatting.
 //!
 //! Modules import downwards only, in this order:
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
-//! | `fault` | faults on purpose, for tests |
+//! | `fault` | fault injection for tests |
 //! | [`math`] | spaces and boxes |
 //! | [`data`] | volumes: readers, built-ins, histograms, bricks |
-//! | [`model`] | `Settings`, the one value that is the whole look |
-//! | [`plan`] | the keys of what a picture needs; the geometry of the passes |
-//! | [`export`] | files that go out: pictures, pictures that move |
+//! | [`model`] | `Settings`, the single value that describes the whole look |
+//! | [`plan`] | cache keys of a picture's products; geometry of the passes |
+//! | [`export`] | writing files: pictures, animations, volumes |
 //! | `reference` | the paper in f64, literal and slow; with the feature `testing` |
 //! | [`gpu`] | the renderer |
 //! | `app` | the window; with the feature `window` |

@@ -1,4 +1,4 @@
-//! The program: the command line, and the window when no command is given.
+//! Executable `chiaroscuro`: the command line, and the window if no command is given.
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -7,14 +7,14 @@ use chiaroscuro::cli::{self, CliError, ViewerRequest};
 use chiaroscuro::data::one_line;
 
 fn main() -> ExitCode {
-    name_runtime_folder();
+    set_runtime_dir();
     let quiet = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error,naga=error,rfd=off");
-    // Drivers and files have their words in it.
+    // Log messages may quote untrusted text of drivers and files.
     env_logger::Builder::from_env(quiet)
         .format(|out, record| {
             let text = one_line(&record.args().to_string());
             let level = record.level().as_str().to_lowercase();
-            // Whoever reads what this program says need not know where in it that was written.
+            // Users do not need to know the module that wrote a message.
             match record.target().split("::").next() {
                 Some(env!("CARGO_PKG_NAME")) | None => writeln!(out, "{level}: {text}"),
                 Some(other) => writeln!(out, "{level}: {text} ({other})"),
@@ -24,29 +24,29 @@ fn main() -> ExitCode {
     ExitCode::from(cli::main(open_window))
 }
 
-/// Says where the session's own folder would be, if the environment does not: in containers, on clusters and after `su`.
-/// Graphics drivers look for a desktop there whether a window is wanted or not, and without it print lines that begin with
-/// *error* into good runs. A folder that is not there only has nothing in it.
+/// Sets the session's runtime directory if the environment does not, as in containers, on clusters and after `su`.
+/// Graphics drivers look for a desktop there whether a window is needed or not, and without the variable they print
+/// lines that begin with *error* in successful runs. A directory that does not exist is treated as empty.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "the environment is changed before anything else runs")]
-fn name_runtime_folder() {
+fn set_runtime_dir() {
     use std::os::unix::fs::MetadataExt as _;
 
     const NAME: &str = "XDG_RUNTIME_DIR";
     if std::env::var_os(NAME).is_some_and(|folder| std::path::Path::new(&folder).is_absolute()) {
         return;
     }
-    // Every process of a user's belongs to that user.
+    // The owner of a process is its user.
     let Ok(process) = std::fs::metadata("/proc/self") else { return };
-    // SAFETY: `main` begins with it, when no other thread is there that could read the environment.
+    // SAFETY: called first in `main`, while no other thread exists that could read the environment.
     unsafe { std::env::set_var(NAME, format!("/run/user/{}", process.uid())) };
 }
 
 #[cfg(not(target_os = "linux"))]
-fn name_runtime_folder() {}
+fn set_runtime_dir() {}
 
-/// A look at standard output before Rust's runtime, which opens /dev/null in its place where it is closed (`>&-`): what is
-/// written would be lost without an error.
+/// Check of standard output before Rust's runtime opens /dev/null in place of a closed one (`>&-`), after which
+/// output would be lost without an error.
 #[cfg(target_os = "linux")]
 #[expect(
     unsafe_code,
@@ -54,25 +54,25 @@ fn name_runtime_folder() {}
 )]
 mod before_main {
     extern "C" fn look_at_output() {
-        // SAFETY: asks for the flags of a descriptor, whatever that is, and changes nothing.
+        // SAFETY: only queries the flags of a file descriptor, which may be invalid, and changes nothing.
         if unsafe { libc::fcntl(libc::STDOUT_FILENO, libc::F_GETFD) } == -1 {
             chiaroscuro::cli::note_closed_output();
         }
     }
 
-    // SAFETY: the loader calls each function of this section once, before `main` and on its thread; this one needs nothing
-    // of the runtime.
+    // SAFETY: the loader calls each function of this section once, before `main` and on its thread; this one does not
+    // use the runtime.
     #[used]
     #[unsafe(link_section = ".init_array")]
-    static LOOK: extern "C" fn() = look_at_output;
+    static CHECK_OUTPUT: extern "C" fn() = look_at_output;
 }
 
 #[cfg(feature = "window")]
 fn open_window(request: ViewerRequest) -> Result<(), CliError> {
-    use chiaroscuro::app::{self, Options};
-    use chiaroscuro::gpu::Context;
+    use chiaroscuro::app::{self, WindowOptions};
+    use chiaroscuro::gpu::GpuContext;
 
-    let options = Options {
+    let options = WindowOptions {
         source: request.source,
         load: request.load,
         session: request.session,
@@ -81,8 +81,8 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         adjust: None,
         storage: app::storage_folder(),
     };
-    app::run(options).map_err(|err| match Context::headless() {
-        // Without an adapter no window opens, and the window system's own words do not say so.
+    app::run(options).map_err(|err| match GpuContext::headless() {
+        // Without an adapter no window opens, and the window system's own message does not say so.
         Err(no_adapter) => {
             app::show_on_desktop(&no_adapter.to_string());
             CliError::Gpu(no_adapter)

@@ -1,17 +1,17 @@
-//! What the window says is in `src/app/text/`: no other file of the window holds words for people.
+//! Localisation check: all texts of the window are in `src/app/text/`, no other file of the window contains any.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Right in front of words that people do not see in the window: names of things for the library of the window
-/// and of what the system sets and answers, what developers read, and errors, which their types word.
+/// Code before string literals that users do not see: ids and names for the UI library and the operating system, log
+/// messages for developers, and errors, whose types contain the text.
 const NOT_SHOWN: [&str; 15] = [
     "var_os(",
     "Id::unique(",
     "id_salt(",
     "Grid::new(",
     "load_texture(",
-    "advanced(ui,",
+    "advanced_group(ui,",
     "log::debug!(",
     "log::info!(",
     "log::warn!(",
@@ -20,19 +20,19 @@ const NOT_SHOWN: [&str; 15] = [
     "reason =",
     "debug_struct(",
     "write!(f,",
-    "const METHOD: &str =",
+    "const GET_PROPERTY: &str =",
 ];
 
-/// A string and what stands before it in its statement.
+/// String literal, with the code before it in its statement.
 #[derive(Debug, PartialEq)]
-struct Literal {
+struct StringLiteral {
     line: usize,
     before: String,
     text: String,
 }
 
-/// All strings of a source text that are neither in comments nor in its tests.
-fn literals(source: &str) -> Vec<Literal> {
+/// Returns all string literals of a source text, except those in comments and in its tests.
+fn literals(source: &str) -> Vec<StringLiteral> {
     let source = source.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let mut found = Vec::new();
     let mut before = String::new();
@@ -64,7 +64,7 @@ fn literals(source: &str) -> Vec<Literal> {
                         c => text.push(c),
                     }
                 }
-                found.push(Literal { line: first_line, before: before.clone(), text });
+                found.push(StringLiteral { line: first_line, before: before.clone(), text });
             }
             ';' | '{' | '}' => before.clear(),
             c => before.push(c),
@@ -73,9 +73,9 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Whether a text has words as sentences and labels have them: two in a row, or one with a capital. What stands
-/// in braces is filled in.
-fn is_for_people(text: &str) -> bool {
+/// Returns true if a text reads like a sentence or label: two words in a row, or one with a capital. Placeholders in
+/// braces are ignored.
+fn reads_like_text(text: &str) -> bool {
     let mut depth = 0;
     let shown: String = text
         .chars()
@@ -86,15 +86,15 @@ fn is_for_people(text: &str) -> bool {
         .collect();
     let letters = |word: &str| word.chars().filter(|c| c.is_alphabetic()).count();
     let words: Vec<&str> = shown.split_whitespace().filter(|word| letters(word) > 0).collect();
-    // Names of variables have lines in them.
+    // Names of environment variables contain underscores.
     let capital =
         |word: &&str| letters(word) > 1 && word.starts_with(char::is_uppercase) && !word.contains('_');
     words.len() > 1 || words.iter().any(capital)
 }
 
-fn is_shown(literal: &Literal) -> bool {
+fn is_user_visible(literal: &StringLiteral) -> bool {
     let before = literal.before.trim_end().trim_end_matches("format!(").trim_end();
-    is_for_people(&literal.text) && !NOT_SHOWN.iter().any(|name| before.ends_with(name))
+    reads_like_text(&literal.text) && !NOT_SHOWN.iter().any(|name| before.ends_with(name))
 }
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -110,11 +110,11 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn the_window_takes_its_words_from_one_module() {
+fn window_texts_are_in_one_module() {
     let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
     let mut found = Vec::new();
     files(&app, &mut found);
-    // Nobody sees what tests say.
+    // Messages of tests are not shown to users.
     found.retain(|path| {
         !path.ends_with("tests.rs") && !path.components().any(|part| part.as_os_str() == "tests")
     });
@@ -126,16 +126,16 @@ fn the_window_takes_its_words_from_one_module() {
     let strays: Vec<String> = others
         .iter()
         .flat_map(|path| {
-            let strays = words(path).into_iter().filter(is_shown);
-            strays.map(|Literal { line, text, .. }| format!("{}:{line}: {text}", path.display()))
+            let strays = words(path).into_iter().filter(is_user_visible);
+            strays.map(|StringLiteral { line, text, .. }| format!("{}:{line}: {text}", path.display()))
         })
         .collect();
     assert!(strays.is_empty(), "these belong into src/app/text:\n{}", strays.join("\n"));
 }
 
 #[test]
-fn words_that_stray_are_noticed() {
-    let shown = |source: &str| literals(source).iter().filter(|literal| is_shown(literal)).count();
+fn texts_outside_are_detected() {
+    let shown = |source: &str| literals(source).iter().filter(|literal| is_user_visible(literal)).count();
     for source in [
         "ui.label(\"Width\");",
         "ui.label(format!(\"{count} of {total} parts\"));",

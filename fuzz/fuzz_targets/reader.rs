@@ -1,5 +1,5 @@
-//! A reader of the program on bytes that libFuzzer makes. `CHIAROSCURO_READER` says which, by the name of its sample
-//! (`tests/faults/samples.rs`); without it, the names are printed. A valid file is put into the corpus first.
+//! Fuzz target: a reader of the program on bytes from libFuzzer. `CHIAROSCURO_READER` selects the reader by the name of
+//! its sample (`tests/faults/samples.rs`); without it, the names are printed. A valid file is added to the corpus first.
 
 #![no_main]
 
@@ -7,23 +7,23 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use libfuzzer_sys::fuzz_target;
-use samples::{Sample, samples};
+use samples::{SampleFile, samples};
 
 #[path = "../../tests/faults/samples.rs"]
 mod samples;
 
-/// What is tried.
+/// Reader under test.
 struct Reader {
-    /// The file that an input becomes.
+    /// Path of the file into which each input is written.
     path: PathBuf,
     read: fn(&Path) -> bool,
-    /// Removed when the process ends well.
+    /// Temporary folder, removed when the process ends normally.
     _folder: tempfile::TempDir,
 }
 
 static READER: OnceLock<Reader> = OnceLock::new();
 
-/// In memory where the system has such a place: a disk would be the slowest part.
+/// Creates a temporary folder, in memory if possible: a disk would be the slowest part.
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a folder")
 }
@@ -32,7 +32,7 @@ fn begin() {
     let folder = folder();
     let samples = samples(folder.path());
     let wanted = std::env::var("CHIAROSCURO_READER").unwrap_or_default();
-    let Some(Sample { name, bytes, read }) = samples.iter().find(|sample| sample.name == wanted) else {
+    let Some(SampleFile { name, bytes, read }) = samples.iter().find(|sample| sample.name == wanted) else {
         samples.iter().for_each(|sample| println!("{}", sample.name));
         std::process::exit(i32::from(!wanted.is_empty()));
     };

@@ -1,11 +1,11 @@
 # shellcheck shell=bash
-# What the scripts share: messages, and finding and installing what the machine lacks.
-# Sourced by bash 3.2 (macOS) as well, hence no arrays that may be empty.
+# Functions shared by the scripts: messages, and detection and installation of dependencies.
+# Also sourced by bash 3.2 (macOS), hence without arrays that may be empty.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 me=${0##*/}
 
-# Messages go to standard error: standard output belongs to the programs.
+# Messages go to standard error; standard output is for the programs.
 say() { printf '%s: %s\n' "$me" "$*" >&2; }
 warn() { printf '%s: warning: %s\n' "$me" "$*" >&2; }
 die() {
@@ -18,9 +18,9 @@ has() { command -v "$1" >/dev/null 2>&1; }
 
 # --- Packages -----------------------------------------------------------------------------------
 
-# Names of packages to be installed, collected by want_package.
+# Names of the packages to be installed, collected by want_package.
 wanted_packages=
-# Whether this run has fetched the list of packages.
+# Set once this run has refreshed the list of packages.
 packages_refreshed=
 
 package_manager() {
@@ -33,7 +33,7 @@ package_manager() {
     fi
 }
 
-# want_package DEBIAN-NAME FEDORA-NAME REASON
+# want_package DEBIAN-NAME FEDORA-NAME REASON: notes a package for installation.
 want_package() {
     local name=$1
     case $(package_manager) in
@@ -47,12 +47,12 @@ want_package() {
     wanted_packages="$wanted_packages $name"
 }
 
-# want_command COMMAND DEBIAN-NAME FEDORA-NAME REASON
+# want_command COMMAND DEBIAN-NAME FEDORA-NAME REASON: notes a package if the command is missing.
 want_command() {
     has "$1" || want_package "$2" "$3" "$4"
 }
 
-# want_library SONAME DEBIAN-NAME FEDORA-NAME REASON
+# want_library SONAME DEBIAN-NAME FEDORA-NAME REASON: notes a package if the shared library is missing.
 want_library() {
     has_library "$1" || want_package "$2" "$3" "$4"
 }
@@ -63,15 +63,15 @@ has_library() {
     for dir in ${LD_LIBRARY_PATH:-}; do
         [ -e "$dir/$1" ] && return 0
     done
-    # ldconfig lies outside the search path of ordinary users on Debian. No grep -q here: it would
-    # leave early, and ldconfig would die of the closed pipe.
+    # On Debian, ldconfig is not in the search path of ordinary users. No grep -q here: it would exit early, and the
+    # closed pipe would end ldconfig with an error.
     PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -F "$1 " >/dev/null
 }
 
-# Installs what was wanted, at once.
+# Installs all packages that were noted, in one command.
 install_wanted() {
     [ -n "$wanted_packages" ] || return 0
-    # Word splitting is meant: package names hold no spaces.
+    # Word splitting is intended: package names contain no spaces.
     # shellcheck disable=SC2086
     set -- $wanted_packages
     wanted_packages=
@@ -90,10 +90,10 @@ install_wanted() {
     esac
 }
 
-# apt ARGS: waits while another apt-get is at work, and asks nothing.
+# apt ARGS: runs apt-get without prompts; waits while another apt-get is running.
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
-# need_root COMMAND: stops if this user cannot become root, and names what somebody who can should do.
+# need_root COMMAND: stops if this user cannot become root, and prints the command to be run as root.
 need_root() {
     [ "$(id -u)" -ne 0 ] || return 0
     has sudo || die "installing needs root, and there is no sudo; run as root: $1"
@@ -112,7 +112,7 @@ as_root() {
 
 # --- What the project needs ----------------------------------------------------------------------
 
-# Rust and a linker.
+# Checks for Rust, and installs a linker if there is none.
 need_rust() {
     has cargo || PATH="${HOME:-}/.cargo/bin:$PATH"
     local version
@@ -128,7 +128,7 @@ need_rust() {
     fi
 }
 
-# The Vulkan loader and a driver. macOS has Metal instead.
+# Installs the Vulkan loader and a driver if they are missing. macOS has Metal instead.
 need_vulkan() {
     is_linux || return 0
     want_library libvulkan.so.1 libvulkan1 vulkan-loader "the Vulkan loader, through which pictures are computed"
@@ -137,7 +137,7 @@ need_vulkan() {
     install_wanted
 }
 
-# A loader without a driver is of no use: drivers register themselves by a file.
+# Succeeds if a Vulkan driver is registered by a file, or chosen by the environment; the loader alone is not enough.
 has_vulkan_driver() {
     [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
     local file
@@ -147,18 +147,18 @@ has_vulkan_driver() {
     return 1
 }
 
-# For windows on a virtual X server: a hardware driver can often not show pictures there, the software one always
-# can. What the caller has chosen stays.
+# Selects the software driver for windows on a virtual X server, where hardware drivers often cannot present pictures. A
+# driver that the environment selects is kept.
 prefer_software_driver() {
     [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
     local drivers
     drivers=$(printf '%s:' /usr/share/vulkan/icd.d/lvp_icd*.json)
     [ "$drivers" != '/usr/share/vulkan/icd.d/lvp_icd*.json:' ] || return 0
-    # The second name is the one that older loaders know.
+    # The second variable is for older loaders.
     export VK_DRIVER_FILES=${drivers%:} VK_ICD_FILENAMES=${drivers%:}
 }
 
-# What the window's library loads at run time, for X11 and for Wayland.
+# Installs the libraries that the window loads at run time, for X11 and for Wayland.
 need_window_libraries() {
     is_linux || return 0
     want_library libX11.so.6 libx11-6 libX11 "windows on X11"
@@ -173,7 +173,7 @@ need_window_libraries() {
 
 # --- Cargo ----------------------------------------------------------------------------------------
 
-# The folder that cargo builds into, wherever its settings put it.
+# Prints the folder into which cargo builds, as its settings define it.
 target_folder() {
     (cd "$root" && cargo metadata --locked --no-deps --format-version 1) |
         sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p'

@@ -1,4 +1,4 @@
-"""Files of common formats, and how long this program and others take to read and decode them: see script/load-speed.
+"""Benchmark of reading and decoding files of common formats, by this program and by others: see script/load-speed.
 
 python load_speed.py FOLDER PROGRAM [ROUNDS]
 """
@@ -28,7 +28,7 @@ LOSSLESS = pydicom.uid.JPEGLosslessSV1
 
 
 def field(depth, bits):
-    """A ball of material in air, smooth with noise in its low bits, as scanners measure it: slices, one by one."""
+    """Yields slices of a ball of material in air, smooth with noise in the low bits, as in measured scans."""
     random = np.random.default_rng(1)
     axis = np.linspace(-1, 1, EDGE, dtype=np.float32)
     x, y = axis[None, :], axis[:, None]
@@ -37,13 +37,13 @@ def field(depth, bits):
         waves = np.sin(5 * x + 3 * z) * np.cos(4 * y - 2 * z) + np.sin(9 * x * y + 4 * z)
         inside = x * x + y * y + z * z < 0.8
         smooth = np.where(inside, 0.5 + 0.17 * waves, 0.02)
-        # An eighth of a byte in air, a fiftieth of the range in material.
+        # Standard deviation of the noise as a fraction of the range: 0.01 in material, 0.004 in air.
         noise = random.standard_normal((EDGE, EDGE), dtype=np.float32) * np.where(inside, 0.01, 0.004)
         yield np.clip((smooth + noise) * most, 0, most).astype(np.uint8 if bits == 8 else np.uint16)
 
 
 def make_raw(folder):
-    """Bytes, and the same compressed as gzip does it by default, in NRRD as well."""
+    """Writes bytes, the same compressed by gzip at its default level, also as NRRD, and big-endian 16-bit words."""
     raw = folder / f"field_{EDGE}x{EDGE}x{EDGE}_uint8.raw"
     with raw.open("wb") as out:
         for part in field(EDGE, 8):
@@ -60,7 +60,7 @@ def make_raw(folder):
 
 
 def make_dicom(folder, syntax):
-    """A series as a CT scanner writes it, of 12 bits; values are lifted by 1024."""
+    """Writes a series of 12 bits as a CT scanner does, with an intercept of −1024."""
     folder.mkdir()
     series, study, frame = (pydicom.uid.generate_uid() for _ in range(3))
     for number, pixels in enumerate(field(SLICES, 12)):
@@ -89,7 +89,7 @@ def make_dicom(folder, syntax):
 
 
 def make_tiff(path, predictor):
-    """Pages of strips of 64 rows, as most programs write them."""
+    """Writes pages in strips of 64 rows, as most programs do."""
     pages = np.stack(list(field(PAGES, 16)))
     tifffile.imwrite(
         path, pages, compression="zlib", predictor=predictor, rowsperstrip=64, photometric="minisblack", metadata=None
@@ -97,7 +97,7 @@ def make_tiff(path, predictor):
 
 
 def make(folder):
-    """All that is not there yet. Each comes with its name last, so that what was broken off is made anew."""
+    """Creates the files that are missing. Folders are renamed when complete, so that interrupted ones are redone."""
     folder.mkdir(parents=True, exist_ok=True)
     kinds = {
         "raw": make_raw,
@@ -116,12 +116,12 @@ def make(folder):
 
 
 def piped(*command):
-    """A program that writes to nowhere."""
+    """Runs a program and discards its output."""
     subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
 
 
 def with_pydicom(folder):
-    """The pixels of a series in their order."""
+    """Reads and decodes a series with pydicom, in the order of its slices."""
     slices = [pydicom.dcmread(path) for path in folder.iterdir()]
     slices.sort(key=lambda slice_: slice_.ImagePositionPatient[2])
     voxels = np.empty((len(slices), EDGE, EDGE), np.uint16)
@@ -130,7 +130,7 @@ def with_pydicom(folder):
 
 
 def cases(folder):
-    """Name, file, options of ours, the other program, its call, and how much longer ours may take."""
+    """Yields name, file, options of this program, name and call of the other one, and the maximum ratio of times."""
     raw = folder / "raw" / f"field_{EDGE}x{EDGE}x{EDGE}_uint8.raw"
     big = folder / "raw" / f"words_{EDGE}x{EDGE}x{PAGES}_uint16.raw"
     packed = folder / "raw" / f"packed_{EDGE}x{EDGE}x{EDGE}_uint8.raw.gz"
@@ -139,7 +139,7 @@ def cases(folder):
     swapped = ["--endian", "big"]
     yield "raw, 512² x 256 words, big-endian", big, swapped, "cat", lambda: piped("cat", big), 1.5
     yield "raw.gz, 512³ bytes", packed, [], "gzip -dc", lambda: piped("gzip", "-dc", packed), 1.2
-    # gzip does not read NRRD: the same data in a file of their own.
+    # gzip does not read NRRD, so it decodes the same data in a separate file.
     yield "NRRD with gzip, 512³ bytes", nrrd, [], "gzip -dc", lambda: piped("gzip", "-dc", packed), 1.2
     for name, what in [("dicom", "DICOM, 400 x 512²"), ("jpeg", "DICOM, JPEG lossless, 400 x 512²")]:
         series = folder / name / "series"
@@ -150,21 +150,21 @@ def cases(folder):
 
 
 def ours(program, path, options):
-    """Milliseconds that this program takes until all voxels are there, after a first time."""
+    """Returns the milliseconds in which this program reads all voxels, after an untimed first run."""
     command = [program, "bench", "--only", "read", "--frames", "1", "--json", "--volume", path, *options]
     found = subprocess.run(command, stdout=subprocess.PIPE, check=True)
     return json.loads(found.stdout)["cases"][0]["load_ms"]["read"]["median"]
 
 
 def theirs(call):
-    """Milliseconds of a call."""
+    """Returns the milliseconds of a call."""
     start = time.perf_counter()
     call()
     return (time.perf_counter() - start) * 1000
 
 
 def main():
-    """Makes the files and prints a line for each."""
+    """Creates the files and prints a line for each."""
     folder, program = Path(sys.argv[1]), sys.argv[2]
     rounds = int(sys.argv[3]) if len(sys.argv) > 3 else 5
     make(folder)

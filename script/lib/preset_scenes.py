@@ -1,7 +1,7 @@
-"""Volumes on which presets are shown in the menu, as NRRD: made from formulas, so that nobody's scans are needed.
+"""Volumes for the thumbnails of presets, as NRRD: computed from formulas, so that no scans are needed.
 
 python preset_scenes.py FOLDER
-python preset_scenes.py strip PICTURE…      leaves a PNG what is needed to show it, and nothing else
+python preset_scenes.py strip PICTURE…      removes metadata from PNG pictures
 
 Lengths are in millimetres, x to a body's right, y to its front, z to its head. See script/preset-pictures.
 """
@@ -15,25 +15,25 @@ SEED = 7
 
 
 def grid(shape, spacing):
-    """Coordinates of voxel centres around the middle, x fastest in the file."""
+    """Coordinates of voxel centres relative to the centre of the grid, x fastest in the file."""
     axes = [(np.arange(n) - (n - 1) / 2) * spacing for n in shape]
     z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
     return x, y, z
 
 
 def inside(distance, blur):
-    """1 where a distance to a surface is negative, 0 where it is positive, and a ramp of that width between."""
+    """Coverage from the signed distance to a surface: 1 inside, 0 outside, with a ramp of width `blur` between."""
     return np.clip(0.5 - distance / blur, 0.0, 1.0)
 
 
 def ellipsoid(point, middle, radii):
-    """Rough distance to an ellipsoid: exact in direction of its axes."""
+    """Approximate signed distance to an ellipsoid, exact for a sphere."""
     scaled = [(p - m) / r for p, m, r in zip(point, middle, radii)]
     return (np.sqrt(sum(s * s for s in scaled)) - 1.0) * min(radii)
 
 
 def segment(point, start, end, radii):
-    """Distance to a cone with round ends."""
+    """Approximate signed distance to a cone with rounded ends."""
     start, end = np.asarray(start, float), np.asarray(end, float)
     along = end - start
     offset = [p - s for p, s in zip(point, start)]
@@ -44,13 +44,13 @@ def segment(point, start, end, radii):
 
 
 def path(point, places, radii):
-    """Distance to segments one after another."""
+    """Signed distance to a chain of segments."""
     parts = zip(places, places[1:], radii, radii[1:])
     return np.minimum.reduce([segment(point, a, b, (r, s)) for a, b, r, s in parts])
 
 
 def tree(random, start, towards, length, radius, depth):
-    """Segments of a tree that branches in two: (start, end, first radius, last radius)."""
+    """Yields the segments of a tree with binary branching: (start, end, first radius, last radius)."""
     end = start + towards * length
     yield start, end, radius, radius * 0.8
     if depth == 0:
@@ -68,7 +68,7 @@ def of_tree(point, segments):
 
 
 def noise(random, shape, cells):
-    """Smooth noise of some cells along each axis, about from −1 to 1."""
+    """Smooth value noise with a number of cells along each axis, between −1 and 1."""
     from_cells = random.uniform(-1.0, 1.0, size=(cells + 1,) * 3)
     result = from_cells
     for axis, n in enumerate(reversed(shape)):
@@ -103,10 +103,10 @@ def write(folder, name, values, spacing, is_body=False, unit=None):
 
 
 def thorax(random):
-    """Chest in Hounsfield units: skin, fat, muscle, ribs, spine, lungs with vessels, a heart and an aorta with agent."""
+    """Chest in Hounsfield units: skin, fat, muscle, ribs, spine, lungs with vessels, heart, contrast-filled aorta."""
     shape, spacing = (136, 96, 120), 2.4
     point = x, y, z = grid(shape, spacing)
-    # A trunk with rounded shoulders, and a neck.
+    # Trunk with rounded shoulders, and a neck.
     taper = np.sqrt(np.clip(1.0 - (np.clip(z - 30.0, 0.0, 104.0) / 105.0) ** 2.6, 0.0, 1.0)) + 1e-3
     wide, deep = 149.0 * taper, 100.0 * np.sqrt(taper)
     body = (np.sqrt((x / wide) ** 2 + (y / deep) ** 2) - 1.0) * np.minimum(wide, deep)
@@ -137,7 +137,7 @@ def thorax(random):
         agent = np.minimum(agent, path(point, places, [7, 6, 5]))
     agent = np.minimum(agent, ellipsoid(point, (-20.0, 30.0, -44.0), (28.0, 22.0, 30.0)))
     hu = np.maximum(hu, -1000.0 + inside(agent, blur) * 1330.0)
-    # Vertebrae with discs between them, processes behind.
+    # Vertebrae with discs between them, and processes behind them.
     column = np.sqrt(x**2 + ((y + 62.0) * 1.15) ** 2) - 17.0 + 1.5 * np.cos(2 * np.pi * z / 24.0)
     disc = inside(4.0 - np.abs(((z + 12.0) % 24.0) - 12.0), blur)
     bone = np.where(column < 4.0, inside(column, blur) * (0.25 + 0.75 * disc), 0.0)
@@ -146,7 +146,7 @@ def thorax(random):
         for side in (-1, 1):
             wing = segment(point, (0, -70, level), (side * 30, -80, level + 2), (4.5, 3.5))
             bone = np.maximum(bone, inside(wing, blur))
-    # Ribs follow the wall, lower towards the front.
+    # Ribs follow the chest wall, and are lower towards the front.
     for level in np.arange(-112.0, 92.0, 24.0):
         angles = np.linspace(-0.47 * np.pi, 0.42 * np.pi, 15)
         open_at = 0.84
@@ -165,7 +165,7 @@ def thorax(random):
 
 
 def head(random):
-    """Head as in a T1-weighted picture: skin and fat bright, skull dark, a brain with folds."""
+    """Head as in a T1-weighted image: bright skin and fat, dark skull, and a brain with folds."""
     shape, spacing = (104, 124, 124), 1.9
     point = x, y, z = grid(shape, spacing)
     blur = 1.6 * spacing
@@ -181,7 +181,7 @@ def head(random):
         0.22 * z + 1.6 * np.sin(0.1 * y)
     )
     brain = radius + 5.0 * np.abs(folds) ** 0.5 - 1.5
-    # Between the halves.
+    # Fissure between the hemispheres.
     brain = np.maximum(brain, 3.0 - np.abs(x) - np.clip((20.0 - z) / 4.0, 0, 9))
     value = 30.0 * inside(skin, blur) + 170.0 * inside(skin, blur) * inside(-(radius - 16.0), blur)
     value *= 1.0 - 0.25 * inside(np.abs(skin + 12.0) - 6.0, blur)
@@ -194,7 +194,7 @@ def head(random):
 
 
 def vessels(random):
-    """Arteries of a brain, brighter than all else."""
+    """Arteries of a brain, brighter than its tissue."""
     shape, spacing = (104, 104, 104), 1.0
     point = grid(shape, spacing)
     segments = []
@@ -207,7 +207,7 @@ def vessels(random):
 
 
 def cells(random):
-    """Cells with one dye: bright nuclei and threads around them."""
+    """Cells with one dye: bright nuclei, and fibres around them."""
     shape, spacing = (136, 104, 64), 0.001
     point = x, y, z = grid(shape, 1.0)
     value = np.zeros(x.shape)
@@ -226,7 +226,7 @@ def cells(random):
 
 
 def tissue(random):
-    """Stained tissue: tubes whose walls are full of nuclei."""
+    """Stained tissue: tubes with nuclei in their walls."""
     shape, spacing = (112, 112, 96), 0.001
     point = x, y, z = grid(shape, 1.0)
     value = 40.0 * (1.0 + 0.5 * noise(random, shape, 10)) * inside(ellipsoid(point, (0, 0, 0), (54, 54, 46)), 3.0)
@@ -259,7 +259,7 @@ def spray(random):
 
 
 def orbital(_):
-    """Field of both signs: the clover of a d orbital."""
+    """Signed field: the clover shape of a d orbital."""
     shape, spacing = (96, 96, 96), 1.0
     x, y, z = (c / 9.0 for c in grid(shape, 1.0))
     value = x * z * np.exp(-np.sqrt(x * x + y * y + z * z) * 1.2)
@@ -267,7 +267,7 @@ def orbital(_):
 
 
 def shell(random):
-    """Snail with ribs on its shell, and dim flesh within."""
+    """Snail with a ribbed shell and dim flesh inside."""
     shape, spacing = (112, 96, 112), 1.0
     point = x, y, z = grid(shape, 1.0)
     distance = np.full(x.shape, 1e9)
@@ -302,7 +302,7 @@ def main(folder):
 
 
 def strip(picture):
-    """Takes all chunks from a PNG that say more than its pixels, as that which holds the settings."""
+    """Removes all chunks from a PNG that are not needed for its pixels, such as the settings of the program."""
     data = picture.read_bytes()
     kept, at = data[:8], 8
     while at < len(data):

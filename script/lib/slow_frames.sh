@@ -1,20 +1,20 @@
-# shellcheck shell=bash disable=SC2034,SC2154 # what is set here is used by scripts, and the other way round
-# What hands do while a slow frame is drawn, in a real window: flicks of handles, paths and numbers that are typed, and
-# drawings that lead to sections. For script/faults, which counts what was tried and what went well.
+# shellcheck shell=bash disable=SC2034,SC2154 # scripts and this file share variables
+# Tests of user input during slow frames in a real window: flicked handles, typed paths and numbers, and diagrams that
+# lead to sections of the panel. For script/faults, which counts trials and successes.
 
-# go KEYS…: what xdotool does in one go, quicker than the window draws a frame.
+# go ARGS…: performs several actions with one call of xdotool, faster than the window draws a frame.
 go() {
     xdotool windowfocus "$window"
     xdotool "$@"
 }
 
-# place NAME: sets x, y, across and down (in the window) to where a thing of the side panel is.
+# place NAME: sets x, y, across and down to the position and size in the window of a control of the side panel.
 place() {
     x=0 y=0 across=0 down=0
     read -r x y across down < <(look ".places[\"$1\"] // empty | [.x, .y, .width, .height] | join(\" \")") || true
 }
 
-# must_rest NAME: waits until that place is there, and the same for two seconds; then as `place`.
+# must_rest NAME: waits until the control exists and has not moved for two seconds, then calls `place`.
 must_rest() {
     local deadline=$((SECONDS + 30)) quiet=0 before='' now
     while [ "$quiet" -lt 8 ]; do
@@ -32,7 +32,7 @@ has_kept() { [ "$(kept "$1")" = "$2" ]; }
 has_changed() { [ "$(kept "$1")" != "$2" ]; }
 is_written() { jq -e . "$1" >/dev/null 2>&1; }
 
-# A light's handle that is grabbed and thrown within a frame; the camera stays where it is.
+# Drags a light's handle within a single frame; the camera must stay unchanged.
 slow_flicks() {
     local by handle camera lights
     for by in '-40 25' '35 -20' '-25 -30'; do
@@ -55,17 +55,17 @@ slow_flicks() {
     done
 }
 
-# Three numbers with Tab between them, as quick as a keyboard can be.
+# Types three numbers separated by Tab, as fast as a keyboard can send them.
 slow_typing() {
     local camera
     tried=$((tried + 1))
     camera=$(kept '[.camera.azimuth_deg, .camera.elevation_deg, .camera.projection]')
     go key ctrl+p type --delay 4 Spacing
     xdotool key Return
-    # Another row is called like that, above those that correct the file.
+    # Another row has the same name, above the rows that correct the file.
     must_rest Data/Unit
     place Data/Spacing
-    # Fields stand behind the label, which is 106 points wide.
+    # Fields are to the right of the label, which is 106 points wide.
     go mousemove $((window_x + x + 106 + 25)) $((window_y + y + down / 2)) click 1 \
         type --delay 4 0.957
     xdotool key Tab type --delay 4 0.957
@@ -80,7 +80,7 @@ slow_typing() {
     must_settle "after the spacing was typed"
 }
 
-# There is no desktop portal here, and a path can be typed each time.
+# Opens dialogs that ask for a path, since there is no desktop portal here, and types a path.
 slow_dialogs() {
     local at key title saved=$out/slow.json
     for at in 1 2 3 4 5; do
@@ -100,7 +100,7 @@ slow_dialogs() {
     if await 20 is_written "$saved"; then well=$((well + 1)); else say "a session was not saved"; fi
 }
 
-# The drawings above the panel lead to the titles of sections: to the top, or as far as the panel goes.
+# Clicks the diagrams above the panel, which scroll to the titles of sections: to the top, or to the panel's end.
 slow_sections() {
     local title below end
     for title in Data Shading Lights Camera 'Sky and scattering' Clipping Shadows Floor; do
@@ -120,11 +120,11 @@ slow_sections() {
     done
 }
 
-# What hands do within a frame of 300 ms, as software drivers and remote desktops have them, is not lost.
+# Input within a frame of 300 ms, as occurs with software drivers and remote desktops, must not be lost.
 slow_frames() {
     local well=0 tried=0 x y across down
     rm -rf "$XDG_DATA_HOME/chiaroscuro"
-    # A program that shows dialogs where no portal does would show one: it is there, and cannot.
+    # Where there is no portal, zenity would show dialogs; this replacement fails instead.
     mkdir -p "$out/no-dialog"
     printf '#!/bin/sh\nexit 1\n' >"$out/no-dialog/zenity"
     chmod +x "$out/no-dialog/zenity"

@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# Programs that check the project, and how they come to this machine. Sourced after common.sh.
+# Installation of programs that check the project. Sourced after common.sh.
 
-# need_component COMPONENT COMMAND…: adds a part of the Rust toolchain if COMMAND does not work.
+# need_component COMPONENT COMMAND…: adds a component of the Rust toolchain if COMMAND fails.
 need_component() {
     local component=$1
     shift
@@ -17,8 +17,8 @@ need_shellcheck() {
     has shellcheck || die "shellcheck was not found; install it (macOS: brew install shellcheck)"
 }
 
-# need_tools: puts the programs of tools.txt first in PATH, and installs them into the target folder if that list
-# is another than the one they were installed from.
+# need_tools: puts the programs of tools.txt first in PATH. Installs them into the target folder if the list has changed
+# since the last installation.
 need_tools() {
     local list folder
     list=$(dirname "${BASH_SOURCE[0]}")/tools.txt

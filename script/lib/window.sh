@@ -1,8 +1,8 @@
-# shellcheck shell=bash disable=SC2034,SC2154 # what is set here is used by scripts, and the other way round
-# A window on a virtual X server: what it reports, where things are in it, and what the mouse does there. For scripts
-# that have read common.sh and set `out`, the folder for what is seen.
+# shellcheck shell=bash disable=SC2034,SC2154 # scripts and this file share variables
+# Control of the viewer's window on a virtual X server: its reported status, positions in it, and mouse input. For
+# scripts that have sourced common.sh and set `out`, the folder for logs and screenshots.
 
-# The program writes its state here, whenever that changes.
+# File to which the program writes its status whenever it changes.
 status=$out/status.json
 
 passed=0 failed=0 closed=
@@ -20,14 +20,14 @@ fail() {
     printf '  FAIL  %s\n' "$1"
 }
 
-# check DESCRIPTION COMMAND…
+# check DESCRIPTION COMMAND…: counts a pass if the command succeeds, otherwise a failure.
 check() {
     local description=$1
     shift
     if "$@"; then pass "$description"; else fail "$description"; fi
 }
 
-# A failure after which nothing more can be tried.
+# abort DESCRIPTION: counts a failure after which no further check is possible, prints the log, and exits.
 abort() {
     fail "$1"
     if [ -s "$out/app.log" ]; then
@@ -56,12 +56,12 @@ finish() {
 
 # --- Looking ---------------------------------------------------------------------------------------
 
-# look FILTER: a value of the status that the program reports; empty while there is none.
+# look FILTER: prints a value of the status that the program reports; nothing if there is no status yet.
 look() { jq -r "$1" "$status" 2>/dev/null || true; }
 
 running() { kill -0 "$app_pid" 2>/dev/null; }
 
-# wait_for SECONDS COMMAND…: until the command succeeds.
+# wait_for SECONDS COMMAND…: waits until the command succeeds; fails after this time.
 wait_for() {
     local deadline=$((SECONDS + $1))
     shift
@@ -72,7 +72,7 @@ wait_for() {
     done
 }
 
-# settled: waits until the program has been idle, and its status the same, for a second.
+# settled: waits until the program has been idle with an unchanged status for a second; fails after 120 s.
 settled() {
     local deadline=$((SECONDS + 120)) quiet=0 before='' now
     while [ "$quiet" -lt 5 ]; do
@@ -100,7 +100,7 @@ find_window() {
     [ -n "$window" ]
 }
 
-# geometry: sets where the window is on the screen, and its size.
+# geometry: sets the position of the window on the screen, and its size.
 geometry() {
     local line
     for line in $(xdotool getwindowgeometry --shell "$window"); do
@@ -113,10 +113,10 @@ geometry() {
     done
 }
 
-# viewport: sets left, top (on the screen), width and height of the picture.
+# viewport: sets left, top (on the screen), width and height of the picture area.
 viewport() {
     geometry
-    # The numbers are whole, but JSON may write them as 12.0.
+    # The numbers are integers, but JSON may contain them as 12.0.
     read -r left top width height < <(look \
         '.viewport // empty | [.x, .y, .width, .height] | map(. + 0.5 | floor | tostring) | join(" ")') ||
         abort "the status tells where the picture is"
@@ -125,7 +125,7 @@ viewport() {
 
 # --- Doing -----------------------------------------------------------------------------------------
 
-# drag X Y DX DY: presses the left button at a point of the screen and moves in ten steps.
+# drag X Y DX DY: presses the left button at a point of the screen, moves in ten steps, and releases it.
 drag() {
     local before i
     before=$(cat "$status")
@@ -139,13 +139,13 @@ drag() {
     done
     sleep 0.3
     xdotool mouseup 1
-    # A handle moves or a light is rebuilt; if nothing changes at all, the checks will say so.
+    # A handle moves or a light volume is filled again; if nothing changes, later checks will report it.
     wait_for 10 status_differs_from "$before" || true
 }
 
 # --- Machine ---------------------------------------------------------------------------------------
 
-# Ends the script, successfully, where there can be no virtual X server.
+# Ends the script successfully on systems without a virtual X server.
 need_linux() {
     is_linux && return
     say "needs a virtual X server, which only Linux has; skipped"
@@ -163,19 +163,21 @@ need_window_tools() {
     install_wanted
 }
 
-# need_program PROGRAM: sets `program` to that one or, if none is named, to the one that the tests run.
+# need_program PROGRAM: sets `program` to this program or, if it is empty, to the one that the tests build.
 need_program() {
     if [ -n "$1" ]; then
         program=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
     else
-        # Not `cargo build`: the tests ask for more of the GPU and window libraries, which it would compile once more.
+        # Not `cargo build`: the tests enable more features of the GPU and window libraries, which would be compiled
+        # again.
         (cd "$root" && cargo test --locked --no-run --test cli)
         program=$(target_folder)/debug/chiaroscuro
     fi
     [ -x "$program" ] || die "there is no program $program"
 }
 
-# open_screen: a screen, and in front of it a user whom the program has never met. Closed when the script ends.
+# open_screen: starts a virtual X server, with empty settings and state as at the first start. Closed when the script
+# ends.
 open_screen() {
     rm -rf "$out"
     mkdir -p "$out"

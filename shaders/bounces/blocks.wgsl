@@ -1,22 +1,23 @@
-// What light meets that is scattered, in listed blocks of voxels: the mean extinction of eight places in each, as optical
-// depth per shortest edge of a voxel, and what of it scatters light, for each colour: extinction × albedo × colour.
+// Scattering and extinction of listed blocks of voxels: mean extinction of eight sample points in each, as optical
+// depth per shortest edge of a voxel, and for each colour the scattering coefficient, extinction × albedo × colour.
 #import "sky/places.wgsl"
 #import "common/listed_cells.wgsl"
 
-// The look of the eye, whose colours are those of what light bounces off.
+// Transfer function of the eye, whose colours are those of the scattering material.
 @group(0) @binding(4) var<storage, read> look_table: TransferTable;
-// What the eye makes of voxels that are classified before they are spread.
+// Pyramid of voxels pre-classified by the eye's transfer function.
 @group(0) @binding(5) var look_pyramid: texture_3d<f32>;
 // Scattering in rgb, extinction in a.
 @group(0) @binding(6) var<storage, read_write> scattering: array<vec4f>;
-// The same for rays, which find no light yet: what blocks give off per shortest edge in rgb, extinction in a; of light that
-// has one colour all through in r and g.
+// Medium of the sweeps, without emission yet: emission of blocks per shortest edge in rgb, extinction in a; in r and
+// g if all light has one colour.
 @group(0) @binding(7) var medium: texture_storage_3d<TARGET_FORMAT, write>;
 
-// More would be no darker: half of it ends all light within a voxel, and 16 bits hold it.
-const MOST_EXTINCTION = 1024.0;
+// Limit of extinction. Larger values would be no darker: half of it absorbs all light within a voxel, and it fits in
+// 16 bits.
+const MAX_EXTINCTION = 1024.0;
 
-// Linear colour at an index-space point.
+// Linear colour of the material at an index-space point.
 fn color_at(p: vec3f) -> vec3f {
 #if PRECLASSIFY
     let found = textureSampleLevel(look_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, blocks.level);
@@ -41,14 +42,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     var sum = vec4f(0.0);
     for (var corner = 0u; corner < 8u; corner += 1u) {
-        let p = place_in(id, corner);
+        let p = block_sample_point(id, corner);
         let extinction = extinction_at(p);
         if (extinction > 0.0) {
             sum += extinction * vec4f(color_at(p) * blocks.albedo, 1.0);
         }
     }
     sum *= blocks.edge / 8.0;
-    sum *= min(MOST_EXTINCTION / max(sum.a, 1e-9), 1.0);
+    sum *= min(MAX_EXTINCTION / max(sum.a, 1e-9), 1.0);
 #if ONE_COLOR
     textureStore(medium, id + 1u, vec4f(0.0, sum.a, 0.0, 0.0));
 #else

@@ -1,23 +1,23 @@
-// What passes of scattered light share: blocks, and what scatters light in them.
+// Declarations shared by the passes of scattered light: blocks and their scattering.
 #import "common/most_light.wgsl"
 
-struct Bounce {
-    // Blocks.
+struct BounceUniform {
+    // Number of blocks along x, y and z.
     dims: vec3u,
     // One over the number of directions.
     share: f32,
-    // That of light which has one colour all through, whose amount is then the first of three.
+    // Common colour of all light, if there is one; its amount is then stored in the first component.
     color: vec3f,
-    // Blocks of less extinction are left out.
-    least: f32,
+    // Minimum extinction of the blocks that are processed.
+    min_extinction: f32,
 }
 
-@group(0) @binding(3) var<uniform> bound_bounce: Bounce;
-var<private> bounce: Bounce;
+@group(0) @binding(3) var<uniform> bound_bounce: BounceUniform;
+var<private> bounce: BounceUniform;
 // Scattering in rgb, extinction in a: optical depths per shortest edge of a voxel.
 @group(0) @binding(4) var<storage, read> scattering: array<vec4f>;
 
-// The place of a block in lists.
-fn number_of(id: vec3u) -> u32 {
+// Index of a block in the lists.
+fn block_index(id: vec3u) -> u32 {
     return (id.z * bounce.dims.y + id.y) * bounce.dims.x + id.x;
 }

@@ -1,45 +1,44 @@
-// The light that reaches blocks without having been scattered, of the lights and of the sky, and what blocks give off of it
-// and by themselves.
+// Single scattering: direct light of lights and sky at each block, and the light that the block scatters or emits.
 //
-// Of a light whose brightness is that of a white surface which faces it, E/π, the mean over all directions is a quarter:
-// E / 4π.
+// A light that gives a white surface facing it the radiance E/π has a mean radiance over all directions of a quarter
+// of that: E / 4π.
 #import "bounces/bounce.wgsl"
 #import "common/slab_mean.wgsl"
 #import "common/space.wgsl"
 #import "shading/lights.wgsl"
 
-struct First {
-    space: Space,
-    // Of the texture of blocks, with those around the grid: one over its size.
+struct SingleScatteringUniform {
+    space: SpaceUniform,
+    // One over the size of the block texture, including the border.
     block_scale: vec3f,
-    // Voxels along the edge of a block.
+    // Number of voxels along the edge of a block.
     voxel_step: f32,
-    // Lights that are on …
+    // Number of lights that are on.
     count: u32,
-    // … of which so many come first that material attenuates.
+    // Number of lights, at the front of the list, that cast shadows.
     shadowed: u32,
-    // Smallest edge of a voxel, in scene units.
+    // Shortest edge of a voxel, in scene units.
     edge: f32,
-    // What blocks give off of their colour by themselves, over the albedo.
+    // Emission relative to the block's colour, divided by the albedo.
     emission: f32,
-    // Slices of this dispatch.
+    // Range of slices of this dispatch.
     slice: u32,
     end: u32,
     pad0: f32,
-    // 1 where the sums are the sky's light.
+    // 1 if `sums` hold the light of the sky, else 0.
     has_sky: f32,
-    lights: array<Light, MAX_LIGHTS>,
+    lights: array<LightUniform, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_scene: First;
-var<private> scene: First;
+@group(0) @binding(0) var<uniform> bound_scene: SingleScatteringUniform;
+var<private> scene: SingleScatteringUniform;
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
-// What blocks give off per shortest edge before light bounces.
+// Source term: light that blocks scatter or emit per shortest edge before the first bounce.
 @group(0) @binding(6) var<storage, read_write> first: array<vec4f>;
 
-// The extinction there.
+// Extinction of the medium at texture coordinates.
 fn medium_at(place: vec3f) -> f32 {
     let found = textureSampleLevel(medium, clamped, place, 0.0);
 #if ONE_COLOR
@@ -49,17 +48,17 @@ fn medium_at(place: vec3f) -> f32 {
 #endif
 }
 
-// What is left of a light in a block of some extinction, on the mean over it as sheets have it, along a ray whose steps are a
-// block long.
-fn left_of(light: Light, block: vec3f, extinction: f32, towards: Towards) -> f32 {
-    let along = to_index(scene.space, towards.direction) / scene.voxel_step;
+// Transmittance of a light to a block with this extinction: the mean over the block, as for slabs, along a ray with
+// steps of one block.
+fn transmittance_to_light(light: LightUniform, block: vec3f, extinction: f32, towards: LightDirection) -> f32 {
+    let along = index_from_scene_vector(scene.space, towards.direction) / scene.voxel_step;
     let step = 1.0 / max(max(abs(along.x), abs(along.y)), abs(along.z));
     let scale = light.extinction_scale / scene.edge;
-    let own = slab_mean(extinction * min(step, towards.distance) * scale);
+    let own = slab_mean_transmittance(extinction * min(step, towards.distance) * scale);
     var depth = 0.0;
     var way = 0.5 * step;
     loop {
-        // A block of nothing lies around the grid.
+        // The grid has a border of empty blocks; rays end beyond it.
         let length = min(step, towards.distance - way);
         let place = block + along * (way + 0.5 * length);
         if (length <= 0.0 || any(place < vec3f(-1.0)) || any(place > vec3f(bounce.dims))) {
@@ -82,24 +81,24 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
     if (any(id >= vec3u(bounce.dims.xy, min(bounce.dims.z, scene.end)))) {
         return;
     }
-    let at = number_of(id);
+    let at = block_index(id);
     let found = scattering[at];
     if (found.a <= 0.0) {
         return;
     }
     let block = vec3f(id);
-    let position = place_of(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
+    let position = scene_from_index(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
     var light = sums[at].rgb * (bounce.share * scene.has_sky) + scene.emission;
     for (var i = 0u; i < scene.count; i += 1u) {
-        // Not from a copy: an index that varies would keep that as an array in memory.
+        // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let whole = bound_scene.lights[i];
         var arriving = 0.0;
         for (var number = 0u; number < whole.points; number += 1u) {
-            let one = point_of(whole, number);
+            let one = area_light_point(whole, number);
             let towards = to_light(one, position);
-            var left = hood_share(one, towards.direction);
+            var left = cone_attenuation(one, towards.direction);
             if (i < scene.shadowed && left > 0.0) {
-                left *= left_of(one, block, found.a, towards);
+                left *= transmittance_to_light(one, block, found.a, towards);
             }
             arriving += left;
         }

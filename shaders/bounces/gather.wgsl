@@ -1,5 +1,5 @@
-// The light that listed blocks receive from all around: its sum over the directions of a batch, gathered from the rays around
-// their middles and added to those of the batches before.
+// Gathering of swept light at listed blocks: the sum over the directions of a batch, interpolated between the rays
+// around each block's centre and added to the sums of earlier batches.
 #import "sky/rays.wgsl"
 #import "bounces/bounce.wgsl"
 #import "common/listed_cells.wgsl"
@@ -9,7 +9,7 @@
 @group(0) @binding(5) var<storage, read_write> sums: array<vec4f>;
 @group(0) @binding(6) var<storage, read> cells: array<u32>;
 
-// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+// Number of directions in a batch. A constant rather than a uniform, because drivers unroll loops with a known end.
 override DIRECTIONS: u32 = 4u;
 
 @compute @workgroup_size(64)
@@ -24,14 +24,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     if (any(id >= sweep.dims)) {
         return;
     }
-    let at = number_of(id);
-    if (scattering[at].a < bounce.least) {
+    let at = block_index(id);
+    if (scattering[at].a < bounce.min_extinction) {
         return;
     }
     var sum = sums[at].rgb * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = place_among(rays, vec3f(id));
+        let ray = ray_coordinates(rays, vec3f(id));
         let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
         sum += rays.weight * textureSampleLevel(sheets, clamped, place, 0.0).rgb;
     }

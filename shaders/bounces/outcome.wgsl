@@ -1,4 +1,4 @@
-// The light that listed blocks receive that has been scattered: what the last bounce brings.
+// Result of the bounces: stores the light that listed blocks receive with the last one.
 #import "bounces/bounce.wgsl"
 #import "common/listed_cells.wgsl"
 
@@ -17,11 +17,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     if (any(id >= bounce.dims)) {
         return;
     }
-    let sum = sums[number_of(id)] * bounce.share;
+    let sum = sums[block_index(id)] * bounce.share;
 #if ONE_COLOR
     let light = sum.r * bounce.color;
 #else
     let light = sum.rgb;
 #endif
-    textureStore(bounced, id, vec4f(min(light, vec3f(MOST_LIGHT)), 1.0));
+    textureStore(bounced, id, vec4f(min(light, vec3f(MAX_HALF_FLOAT)), 1.0));
 }

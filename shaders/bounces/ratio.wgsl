@@ -1,5 +1,5 @@
-// How much the last bounce brought of what the one before did, for each colour: ρ = ⟨dₙ, dₙ₋₁⟩ / ⟨dₙ₋₁, dₙ₋₁⟩ over all
-// blocks that scatter light. Further bounces bring ρ of that each, in all ρ / (1 − ρ) of it.
+// Ratio of successive bounces for each colour, ρ = ⟨dₙ, dₙ₋₁⟩ / ⟨dₙ₋₁, dₙ₋₁⟩ over all blocks that scatter light. Each
+// further bounce brings ρ times the previous one, in total ρ / (1 − ρ) times the last.
 #import "bounces/bounce.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
@@ -7,11 +7,12 @@
 @group(0) @binding(8) var<storage, read> change: array<vec4f>;
 @group(0) @binding(9) var<storage, read_write> ratio: array<vec4f>;
 
-// In one group, whose threads take every so many blocks: the order of the sums is always the same.
+// A single workgroup whose threads stride over the blocks, so that the order of summation is always the same.
 const THREADS = 256u;
 
-// So slow a decay is mistaken for none at all: bounces that bring as much as those before say little of the end.
-const MOST_RATIO = 0.98;
+// Limit of the ratio. Slower decay cannot be distinguished from none: bounces that bring as much as those before say
+// little about the limit.
+const MAX_RATIO = 0.98;
 
 var<workgroup> products: array<vec3f, THREADS>;
 var<workgroup> squares: array<vec3f, THREADS>;
@@ -41,6 +42,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     }
     if (thread == 0u) {
         let found = products[0] / max(squares[0], vec3f(1e-20));
-        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MOST_RATIO)), 0.0);
+        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MAX_RATIO)), 0.0);
     }
 }

@@ -1,21 +1,21 @@
-// What blocks give off for the next bounce: that of unscattered light, and of the light that the last one has brought. How
-// much more that is than the bounce before brought is kept. Every other time what all further bounces would bring is told
-// from the last two (bounces/ratio.wgsl), and light goes on bouncing from there: the end is reached in fewer.
+// Emission of blocks for the next bounce: scattered direct light, and scattered light of the last bounce. Stores the
+// increase over the bounce before. Every other time the limit of the series is extrapolated from the last two bounces
+// (bounces/ratio.wgsl), and bouncing continues from there, which converges in fewer bounces.
 #import "bounces/bounce.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(6) var<storage, read> first: array<vec4f>;
-// What the bounce before had brought, and how much more that was than the one before that.
+// Light of the previous bounce, and its increase over the one before that.
 @group(0) @binding(7) var<storage, read_write> last: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> change: array<vec4f>;
 @group(0) @binding(9) var medium: texture_storage_3d<TARGET_FORMAT, write>;
 
 @group(0) @binding(10) var<storage, read> ratio: array<vec4f>;
 
-// Whether any bounce was.
+// Set from the first bounce on.
 override HAS_BOUNCED: bool = true;
-// Whether the end is told.
-override LEAPS: bool = false;
+// Set if the series is extrapolated.
+override EXTRAPOLATES: bool = false;
 
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -23,9 +23,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id >= bounce.dims)) {
         return;
     }
-    let at = number_of(id);
+    let at = block_index(id);
     let found = scattering[at];
-    if (found.a < bounce.least) {
+    if (found.a < bounce.min_extinction) {
         return;
     }
     var light = vec3f(0.0);
@@ -33,7 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let before = last[at].rgb;
         let brought = sums[at].rgb * bounce.share - before;
         light = before + brought;
-        if (LEAPS) {
+        if (EXTRAPOLATES) {
             light = max(before + brought / (1.0 - ratio[0].rgb), vec3f(0.0));
         }
         change[at] = vec4f(brought, 0.0);
@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     last[at] = vec4f(light, 0.0);
     if (found.a > 0.0) {
-        let given = min(first[at].rgb + found.rgb * light, vec3f(MOST_LIGHT));
+        let given = min(first[at].rgb + found.rgb * light, vec3f(MAX_HALF_FLOAT));
 #if ONE_COLOR
         textureStore(medium, id + 1u, vec4f(given.r, found.a, 0.0, 0.0));
 #else

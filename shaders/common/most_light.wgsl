@@ -1,2 +1,2 @@
-// The largest number that 16 bits hold: more would be infinite, and nothing of it no number.
-const MOST_LIGHT = 65504.0;
+// Largest number in 16-bit floats: larger ones become infinite, and products of infinity and zero NaN.
+const MAX_HALF_FLOAT = 65504.0;

@@ -1,5 +1,5 @@
-// How the grid lies in scene space (src/math/scene.rs).
-struct Space {
+// Transforms between index space and scene space (src/math/scene.rs).
+struct SpaceUniform {
     // Index space to scene space: three rows of an affine map.
     scene_from_index_x: vec4f,
     scene_from_index_y: vec4f,
@@ -10,8 +10,8 @@ struct Space {
     index_from_scene_z: vec4f,
 }
 
-// The place of an index-space point.
-fn place_of(space: Space, p: vec3f) -> vec3f {
+// Scene-space position of an index-space point.
+fn scene_from_index(space: SpaceUniform, p: vec3f) -> vec3f {
     let point = vec4f(p, 1.0);
     return vec3f(
         dot(space.scene_from_index_x, point),
@@ -20,8 +20,8 @@ fn place_of(space: Space, p: vec3f) -> vec3f {
     );
 }
 
-// A vector of scene space, in index space.
-fn to_index(space: Space, v: vec3f) -> vec3f {
+// Index-space vector of a scene-space vector.
+fn index_from_scene_vector(space: SpaceUniform, v: vec3f) -> vec3f {
     return vec3f(
         dot(space.index_from_scene_x.xyz, v),
         dot(space.index_from_scene_y.xyz, v),
@@ -29,8 +29,8 @@ fn to_index(space: Space, v: vec3f) -> vec3f {
     );
 }
 
-// A gradient over index space, per scene unit: it transforms with (index ← scene)ᵀ.
-fn gradient_to_scene(space: Space, gradient: vec3f) -> vec3f {
+// Scene-space gradient of an index-space gradient: it transforms with (index ← scene)ᵀ.
+fn gradient_to_scene(space: SpaceUniform, gradient: vec3f) -> vec3f {
     return space.index_from_scene_x.xyz * gradient.x + space.index_from_scene_y.xyz * gradient.y
         + space.index_from_scene_z.xyz * gradient.z;
 }

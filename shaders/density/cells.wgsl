@@ -1,39 +1,39 @@
-// Leaping over cells of 2³ voxels in which nothing can be seen (src/data/cells.rs).
+// Empty-space skipping over cells of 2³ voxels in which nothing is visible (src/data/cells.rs).
 #import "common/sizes.wgsl"
 #import "density/volume.wgsl"
 
-// A ray in cells: where it crosses slab 0, and how far it comes from slab to slab.
-struct Walk {
+// Ray in cell coordinates: position at slab 0, and step from slab to slab.
+struct CellRay {
     origin: vec3f,
     step: vec3f,
-    // Slabs per cell.
+    // Slabs per cell along each axis.
     inverse: vec3f,
 }
 
-fn walk_along(frame: SheetFrame, ray: Ray) -> Walk {
+fn cell_ray(frame: SheetFrameUniform, ray: Ray) -> CellRay {
     let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / CELL_EDGE;
     let step = ray.direction * frame.slab / CELL_EDGE;
     let parallel_to = abs(step) < vec3f(1e-9);
-    return Walk(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
+    return CellRay(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
 }
 
-// The cell that slab k crosses, which may lie beyond the grid.
-fn cell_at(walk: Walk, k: i32) -> vec3f {
+// Cell that contains the middle of slab k; it may lie outside the grid.
+fn cell_at(walk: CellRay, k: i32) -> vec3f {
     return floor(walk.origin + walk.step * f32(k));
 }
 
-// Distances of a cell to others. What lies beyond the grid belongs to the cells at its border: where these
-// are far from others, so is everything that far around it.
-fn near(distances: texture_3d<f32>, cell: vec3f) -> vec2i {
+// Distances of a cell to the nearest visible ones. Cells outside the grid take the values at its border: if the
+// border is that far from any visible cell, so is everything outside it.
+fn cell_distances(distances: texture_3d<f32>, cell: vec3f) -> vec2i {
     let stored = textureSampleLevel(distances, nearest, (cell + 0.5) * grid.cell_scale, 0.0).rg;
     return vec2i(stored * 255.0 + 0.5);
 }
 
-// The first slab beyond the cube of cells around `cell` that is known to be empty. `empty` counts the
-// layers of that cube: 1 is the cell alone. Never steps over a slab outside the cube.
-fn leap(walk: Walk, k: i32, cell: vec3f, empty: i32) -> i32 {
+// First slab beyond the cube of empty cells around `cell`. `empty` is the number of layers of that cube: 1 is the
+// cell alone. Never skips a slab outside the cube.
+fn skip_empty_cells(walk: CellRay, k: i32, cell: vec3f, empty: i32) -> i32 {
     let middle = (cell + 0.5 - walk.origin) * walk.inverse;
     let exits = middle + abs(walk.inverse) * (f32(empty) - 0.5);
-    // A thousandth of a slab early: visiting one more slab of the cube is harmless.
+    // Rounded down by a thousandth of a slab: visiting one more slab of the cube is harmless.
     return max(k + 1, i32(ceil(min(min(exits.x, exits.y), min(exits.z, 1e6)) - 1e-3)));
 }

@@ -1,48 +1,47 @@
-// From densities to materials, before or after the kernel spreads them. Materials are linear colour and
-// extinction.
+// Classification: from density to material (linear colour and extinction), after or before reconstruction.
 //
-// PRECLASSIFY: voxels are classified, and then spread: what the pyramid holds is what they mean (volume/materials.wgsl),
-// its first channel is the density, and the table says how much extinction that is.
+// PRECLASSIFY: voxels are classified before reconstruction. The pyramid then holds materials (volume/materials.wgsl),
+// its first channel takes the place of density, and the table converts it to extinction.
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
 #if PRECLASSIFY
-// What stands at a point when voxels are classified before they are spread.
-fn spread(p: vec3f, level: f32) -> vec4f {
+// Pre-classified material at a point, from the pyramid.
+fn preclassified_at(p: vec3f, level: f32) -> vec4f {
     return textureSampleLevel(pyramid_texture, clamped, (p + 4.5) * grid.pyramid_scale, level);
 }
 
-// The same of slab k where the ray crosses it.
-fn slab_spread(frame: SheetFrame, ray: Ray, k: f32) -> vec4f {
+// Pre-classified material averaged over slab k, where the ray crosses it.
+fn preclassified_in_slab(frame: SheetFrameUniform, ray: Ray, k: f32) -> vec4f {
     let depth = depth_of(frame, k);
     if (QUADRATURE == 2u) {
         let near = depth - TWO_POINT_OFFSET * frame.slab;
         let far = depth + TWO_POINT_OFFSET * frame.slab;
-        return 0.5 * (spread(ray.origin + ray.direction * near, kernel_level(frame, near))
-            + spread(ray.origin + ray.direction * far, kernel_level(frame, far)));
+        return 0.5 * (preclassified_at(ray.origin + ray.direction * near, kernel_level(frame, near))
+            + preclassified_at(ray.origin + ray.direction * far, kernel_level(frame, far)));
     }
-    return spread(ray.origin + ray.direction * depth, kernel_level(frame, depth));
+    return preclassified_at(ray.origin + ray.direction * depth, kernel_level(frame, depth));
 }
 #endif
 
-// What a slab holds where a ray crosses it.
+// Sample of a slab where a ray crosses it.
 struct SlabSample {
     material: vec4f,
     density: f32,
-    // The share that is there, which is in the material's extinction; 1 where there was no need to ask.
+    // Presence, already included in the material's extinction; 1 where it was not evaluated.
     there: f32,
 }
 
-fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
+fn slab_sample(frame: SheetFrameUniform, ray: Ray, k: f32) -> SlabSample {
 #if PRECLASSIFY
-    let found = slab_spread(frame, ray, k);
+    let found = preclassified_in_slab(frame, ray, k);
     return SlabSample(vec4f(found.gba / max(found.r, 1e-20), classified_extinction(found.r)), found.r, 1.0);
 #else
     let density = slab_density(frame, ray, k);
     let material = classify(density);
     var there = 1.0;
 #if MISSING
-    // Most of what is sampled is empty, and to know how much of nothing is there takes fetches.
+    // Most samples are empty; presence is only fetched for the others.
     if (material.a > 0.0) {
         there = slab_presence(frame, ray, k);
     }
@@ -53,7 +52,7 @@ fn slab_sample(frame: SheetFrame, ray: Ray, k: f32) -> SlabSample {
 #endif
 }
 
-// Its extinction alone.
-fn slab_extinction(frame: SheetFrame, ray: Ray, k: f32) -> f32 {
+// Extinction of slab k, without colour.
+fn slab_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
     return classified_extinction(slab_density(frame, ray, k)) * slab_presence(frame, ray, k);
 }

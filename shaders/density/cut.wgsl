@@ -1,12 +1,12 @@
-// What is left of the volume after the crop box and the clip plane (src/math/region.rs): of every slab a
-// ray meets, the part that lies within.
+// Crop box and clip plane (src/math/clip_region.rs): region of the volume that remains, and the part of each slab of
+// a ray inside it.
 #import "sheets/sheet_frame.wgsl"
 
-// Whether anything is cut at all.
+// Set if the crop box or the clip plane removes anything.
 override CUT: bool = false;
 
-// In index space.
-struct Cut {
+// Region that remains, in index space.
+struct CutUniform {
     low: vec3f,
     pad0: f32,
     high: vec3f,
@@ -15,8 +15,8 @@ struct Cut {
     plane: vec4f,
 }
 
-// Depths at which a ray enters what remains, and leaves it; if it never does, the first is larger.
-fn span_within(cut: Cut, ray: Ray) -> vec2f {
+// Depths at which a ray enters and leaves the region; if it misses the region, the first is larger.
+fn span_within(cut: CutUniform, ray: Ray) -> vec2f {
     let along = abs(ray.direction) < vec3f(1e-12);
     let direction = select(ray.direction, vec3f(1e-12), along);
     let a = (cut.low - ray.origin) / direction;
@@ -25,7 +25,7 @@ fn span_within(cut: Cut, ray: Ray) -> vec2f {
     let far = max(a, b);
     let enter = max(max(near.x, near.y), near.z);
     let leave = min(min(far.x, far.y), far.z);
-    // The plane: how deep within it the ray begins, and how fast it gets out.
+    // Clip plane: depth of the ray's origin behind it, and speed towards it.
     let depth = cut.plane.w - dot(cut.plane.xyz, ray.origin);
     let speed = dot(cut.plane.xyz, ray.direction);
     let is_along = abs(speed) < 1e-12;
@@ -34,8 +34,8 @@ fn span_within(cut: Cut, ray: Ray) -> vec2f {
     return vec2f(select(enter, max(enter, met), enters), select(min(leave, met), leave, enters));
 }
 
-// The share of a slab around `depth` that lies within; exactly 1 where nothing is cut.
-fn share_within(span: vec2f, depth: f32, slab: f32) -> f32 {
+// Fraction of a slab around `depth` inside the span; exactly 1 where nothing is cut.
+fn slab_fraction_inside(span: vec2f, depth: f32, slab: f32) -> f32 {
     if (!CUT) {
         return 1.0;
     }
@@ -44,22 +44,22 @@ fn share_within(span: vec2f, depth: f32, slab: f32) -> f32 {
     return max(1.0 - before - behind, 0.0);
 }
 
-// How far below a face, in voxels, material begins to attenuate light, and where it does so fully: a light
-// volume cannot hold a step within a voxel, which would show as a pattern on the face.
-const SKIN = 2.0;
+// Depth below a face, in voxels, over which extinction for light fades in: a light volume cannot represent a step
+// within a voxel, which would show as a pattern on the face.
+const FADE_DEPTH_VOXELS = 2.0;
 
-// The share of the material at a point that attenuates light: softly from nothing at the faces to all.
-fn share_that_shades(cut: Cut, p: vec3f) -> f32 {
+// Fraction of the material at a point that attenuates light: smoothly from 0 at the faces to 1.
+fn shading_fraction(cut: CutUniform, p: vec3f) -> f32 {
     if (!CUT) {
         return 1.0;
     }
-    let inside = smoothstep(vec3f(0.0), vec3f(SKIN), p - cut.low) * smoothstep(vec3f(0.0), vec3f(SKIN), cut.high - p);
-    let behind = smoothstep(0.0, SKIN, cut.plane.w - dot(cut.plane.xyz, p));
+    let inside = smoothstep(vec3f(0.0), vec3f(FADE_DEPTH_VOXELS), p - cut.low) * smoothstep(vec3f(0.0), vec3f(FADE_DEPTH_VOXELS), cut.high - p);
+    let behind = smoothstep(0.0, FADE_DEPTH_VOXELS, cut.plane.w - dot(cut.plane.xyz, p));
     return inside.x * inside.y * inside.z * behind;
 }
 
-// Those of some slabs, first and last, of which any part can lie within.
-fn slabs_within(frame: SheetFrame, span: vec2f, slabs: vec2i) -> vec2i {
+// Restricts a range of slabs (first and last) to those that can overlap the span.
+fn slabs_within(frame: SheetFrameUniform, span: vec2f, slabs: vec2i) -> vec2i {
     if (!CUT) {
         return slabs;
     }
@@ -69,12 +69,12 @@ fn slabs_within(frame: SheetFrame, span: vec2f, slabs: vec2i) -> vec2i {
     return vec2i(max(slabs.x, within.x), min(slabs.y, within.y));
 }
 
-// Whether a point lies within.
-fn is_within(cut: Cut, p: vec3f) -> bool {
+// Whether a point lies inside the region.
+fn is_inside_cut(cut: CutUniform, p: vec3f) -> bool {
     return !CUT || (all(p >= cut.low) && all(p <= cut.high) && dot(cut.plane.xyz, p) <= cut.plane.w);
 }
 
-// The cubic B-spline, so far from its middle.
+// Cubic B-spline at a distance from its centre, in voxels.
 fn blurred_edge(distance: f32) -> f32 {
     let d = abs(distance);
     let near = 2.0 / 3.0 - d * d * (1.0 - 0.5 * d);
@@ -82,10 +82,10 @@ fn blurred_edge(distance: f32) -> f32 {
     return select(select(0.0, far, d < 2.0), near, d < 1.0);
 }
 
-// The gradient, in index space, that faces have of their own where data end or are cut: that of something solid which
-// ends there, reconstructed with a B-spline stretched 2^level times. Data behind the face would only give it the
-// direction of their noise, and there are none beyond the grid.
-fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
+// Gradient, in index space, of the faces at which data end or are cut: that of a solid that ends there, reconstructed
+// with a B-spline stretched 2^level times. Data behind the face would only add noise to its direction, and there are
+// none outside the grid.
+fn face_gradient(cut: CutUniform, p: vec3f, level: f32) -> vec3f {
 #if FACES
 #else
     if (!CUT) {
@@ -95,7 +95,7 @@ fn face_gradient(cut: Cut, p: vec3f, level: f32) -> vec3f {
     let width = exp2(level);
     let nearest = min(p - cut.low, cut.high - p);
     let behind = select(1e9, cut.plane.w - dot(cut.plane.xyz, p), CUT);
-    // Nearly everywhere no face is near.
+    // Almost everywhere no face is near.
     if (min(min(nearest.x, nearest.y), min(nearest.z, behind)) >= 2.0 * width) {
         return vec3f(0.0);
     }

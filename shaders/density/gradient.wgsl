@@ -1,25 +1,25 @@
-// Normals from the volume.
+// Gradients of the prefiltered density, for normals.
 #import "density/volume.wgsl"
 
-// How steeply the density that the B-spline reconstructs rises, in index space: differences of the prefiltered density
-// at ± one and ± two voxels of a level of the pyramid, weighed so that they are right for curves up to the fourth order.
-// What blurs then is the prefilter and linear interpolation, which together are as wide as the B-spline; plain central
-// differences are twice as wide.
+// Gradient, in index space, of the density as the B-spline reconstructs it: differences of the prefiltered density at
+// ± one and ± two voxels of a pyramid level, weighted to be exact for polynomials up to the fourth order. The
+// remaining blur is that of the prefilter and of linear interpolation, together as wide as the B-spline; plain
+// central differences are twice as wide.
 //
-// Between two levels the steps are between theirs, where the texture of gradients interpolates between what both say:
+// Between two levels the step is interpolated, while the gradient texture interpolates the results of both levels:
 // nearly the same, at half the fetches.
 fn index_gradient(p: vec3f, level: f32) -> vec3f {
     let h = exp2(level);
     return vec3f(
-        slope_along(p, vec3f(h, 0.0, 0.0), level),
-        slope_along(p, vec3f(0.0, h, 0.0), level),
-        slope_along(p, vec3f(0.0, 0.0, h), level),
+        derivative_along(p, vec3f(h, 0.0, 0.0), level),
+        derivative_along(p, vec3f(0.0, h, 0.0), level),
+        derivative_along(p, vec3f(0.0, 0.0, h), level),
     ) / h;
 }
 
-// The level of the pyramid from which normals are taken where kernels are stretched to a level. PRECLASSIFY: labels are
-// there or not from one voxel to the next, and look like stairs from close by; twice as wide a kernel sees their slope.
-fn level_of_normals(level: f32) -> f32 {
+// Pyramid level of the normals for kernels stretched to `level`. PRECLASSIFY: labels change abruptly between voxels,
+// and look like stairs from nearby; a kernel twice as wide smooths their slope.
+fn normal_level(level: f32) -> f32 {
 #if PRECLASSIFY
     return min(level + 1.0, MAX_STRETCH_LEVEL);
 #else
@@ -27,8 +27,8 @@ fn level_of_normals(level: f32) -> f32 {
 #endif
 }
 
-// Change of the density per step.
-fn slope_along(p: vec3f, step: vec3f, level: f32) -> f32 {
+// Derivative of the density along `step`, per step.
+fn derivative_along(p: vec3f, step: vec3f, level: f32) -> f32 {
     let near = pyramid(p + step, level) - pyramid(p - step, level);
     let far = pyramid(p + 2.0 * step, level) - pyramid(p - 2.0 * step, level);
     return (8.0 * near - far) / 12.0;

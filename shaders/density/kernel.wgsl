@@ -1,4 +1,4 @@
-// The reconstruction kernels: weights of four neighbours, and of any distance.
+// Reconstruction kernels: weights of the four neighbours along an axis, and values at any distance.
 const KERNEL_BSPLINE = 0u;
 const KERNEL_GAUSSIAN = 1u;
 const KERNEL_PREFILTERED = 2u;
@@ -7,34 +7,34 @@ override KERNEL: u32 = 0u;
 // Standard deviation of the Gaussian, in voxels.
 override SIGMA: f32 = 0.6;
 
-// Points per slab at which it is evaluated: 1 at the middle, or 2 by Gauss–Legendre, whose mean is the paper's h̄.
+// Quadrature points per slab: 1 in the middle, or 2 by Gauss–Legendre, whose mean is the paper's h̄.
 override QUADRATURE: u32 = 1u;
-// Whether voxels are missing (density/volume.wgsl).
+// Set if voxels are missing (density/volume.wgsl).
 #if MISSING
 const MISSING = true;
 #else
 const MISSING = false;
 #endif
 
-// Weights of the neighbours at −1, 0, 1, 2 of a point at fraction f in [0, 1); their sum is 1.
+// Weights of the neighbours at −1, 0, 1, 2 for a point at fraction f in [0, 1); they sum to 1.
 fn kernel_weights(f: f32) -> vec4f {
     if (KERNEL == KERNEL_GAUSSIAN) {
         let distance = vec4f(f + 1.0, f, 1.0 - f, 2.0 - f);
         let weights = exp(distance * distance * (-0.5 / (SIGMA * SIGMA)));
         return weights / dot(weights, vec4f(1.0));
     }
-    // Cubic B-spline: (1−f)³/6, 2/3 − f²(2−f)/2, the mirror image of both.
+    // Cubic B-spline: (1−f)³/6, 2/3 − f²(2−f)/2, and their mirror images.
     let g = 1.0 - f;
     let sixths = vec4f(g * g * g, 4.0 - 3.0 * f * f * (2.0 - f), 4.0 - 3.0 * g * g * (2.0 - g), f * f * f);
     return sixths * (1.0 / 6.0);
 }
 
-// Kernel radius in units of its width.
+// Radius of the kernel, in units of its width.
 fn kernel_radius() -> f32 {
     return select(2.0, 1.0, KERNEL == KERNEL_PREFILTERED);
 }
 
-// Kernel value at a distance in units of its width; up to a factor, since sums are normalised.
+// Kernel value at a distance in units of its width; unnormalised, since sums are normalised.
 fn kernel_at(distance: f32) -> f32 {
     let d = abs(distance);
     if (KERNEL == KERNEL_PREFILTERED) {

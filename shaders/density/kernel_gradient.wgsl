@@ -1,13 +1,13 @@
-// Normals from the volume: the slope of the kernel itself, or what is stored of it.
+// Gradients for normals: analytic gradient of the kernel, or the stored one.
 #import "density/stored_gradient.wgsl"
 
-// Derivatives of the cubic B-spline's weights by f (kernel.wgsl); their sum is 0.
-fn kernel_slopes(f: f32) -> vec4f {
+// Derivatives of the cubic B-spline's weights with respect to f (kernel.wgsl); they sum to 0.
+fn kernel_derivatives(f: f32) -> vec4f {
     let g = 1.0 - f;
     return vec4f(-0.5 * g * g, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f * f);
 }
 
-// The gradient, in index space, of what the B-spline reconstructs.
+// Gradient, in index space, of the B-spline reconstruction.
 fn gradient_by_kernel(p: vec3f) -> vec3f {
     let cell = floor(p);
     let f = p - cell;
@@ -15,29 +15,29 @@ fn gradient_by_kernel(p: vec3f) -> vec3f {
     let wy = kernel_weights(f.y);
     let wz = kernel_weights(f.z);
     return vec3f(
-        weighed(cell, kernel_slopes(f.x), wy, wz),
-        weighed(cell, wx, kernel_slopes(f.y), wz),
-        weighed(cell, wx, wy, kernel_slopes(f.z)),
+        weighted_sum(cell, kernel_derivatives(f.x), wy, wz),
+        weighted_sum(cell, wx, kernel_derivatives(f.y), wz),
+        weighted_sum(cell, wx, wy, kernel_derivatives(f.z)),
     );
 }
 
-// The same with the kernel stretched to pyramid level `level`, as densities are.
+// Gradient of the reconstruction with the kernel stretched to a pyramid level, as for densities.
 fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
     if (!STRETCH) {
         return gradient_by_kernel(p);
     }
-    let blurred = volume_slope(p, max(level, 1.0));
+    let blurred = volume_gradient(p, max(level, 1.0));
     if (level >= 1.0) {
         return blurred;
     }
     return mix(gradient_by_kernel(p), blurred, level);
 }
 
-// The gradient of the volume in index space. KERNEL_GRADIENTS: take it from the kernel.
-fn slope_at(p: vec3f, level: f32) -> vec3f {
+// Gradient of the volume in index space. KERNEL_GRADIENTS: analytic gradient of the kernel.
+fn gradient_at(p: vec3f, level: f32) -> vec3f {
 #if KERNEL_GRADIENTS
     return stretched_gradient(p, level);
 #else
-    return volume_slope(p, level);
+    return volume_gradient(p, level);
 #endif
 }

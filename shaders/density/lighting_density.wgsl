@@ -1,22 +1,22 @@
-// What of the volume attenuates light where rays to lights are short: a fetch from the pyramid. PRECLASSIFY: from that of
-// what voxels mean for light, in which nothing is where no voxel is.
-#import "common/left.wgsl"
+// Extinction for near-field rays towards lights: one fetch from the pyramid. PRECLASSIFY: from the pyramid
+// pre-classified for light, which is 0 where no voxel is.
+#import "common/transmittance.wgsl"
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
-// The lighting transfer function.
+// Transfer function of light.
 @group(0) @binding(4) var<storage, read> lighting_table: TransferTable;
 
 #if PRECLASSIFY
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
 
-// A share of the largest extinction, or of each colour one.
-alias Met = Left;
+// Extinction relative to the maximum, for each colour of light if shadows are coloured.
+alias LightingValue = Transmittance;
 #else
-alias Met = f32;
+alias LightingValue = f32;
 #endif
 
-fn lighting_density(p: vec3f, level: f32) -> Met {
+fn lighting_density(p: vec3f, level: f32) -> LightingValue {
 #if PRECLASSIFY
     let texel = textureSampleLevel(lighting_pyramid, clamped, (p + 4.5) * grid.pyramid_scale, level);
 #if COLORED
@@ -37,29 +37,29 @@ fn lighting_presence(p: vec3f, level: f32) -> f32 {
 #endif
 }
 
-// How much extinction one of the shares is, or the density.
-fn extinction_between(density: f32) -> Left {
+// Extinction for a density or a relative extinction, interpolated in the table.
+fn interpolated_extinction(density: f32) -> Transmittance {
     let at = table_entry(density);
-    return mix(extinction_of(lighting_table.entries[at.low]), extinction_of(lighting_table.entries[at.low + 1u]), Left(at.fraction));
+    return mix(entry_extinction(lighting_table.entries[at.low]), entry_extinction(lighting_table.entries[at.low + 1u]), Transmittance(at.fraction));
 }
 
-fn met_extinction(met: Met) -> Left {
+fn lighting_extinction(met: LightingValue) -> Transmittance {
 #if PRECLASSIFY
 #if COLORED
-    return vec3f(extinction_between(met.r).r, extinction_between(met.g).r, extinction_between(met.b).r);
+    return vec3f(interpolated_extinction(met.r).r, interpolated_extinction(met.g).r, interpolated_extinction(met.b).r);
 #else
-    return extinction_between(met);
+    return interpolated_extinction(met);
 #endif
 #else
-    return extinction_between(met);
+    return interpolated_extinction(met);
 #endif
 }
 
-// The same by the nearest entry alone.
-fn met_nearly(met: Met) -> Left {
+// Extinction from the nearest table entry, without interpolation.
+fn nearest_lighting_extinction(met: LightingValue) -> Transmittance {
 #if PRECLASSIFY
 #if COLORED
-    // Of shares entries have no colours of their own.
+    // Tables of relative extinction have no colours.
     return vec3f(
         lighting_table.entries[nearest_entry(met.r)].a,
         lighting_table.entries[nearest_entry(met.g)].a,
@@ -69,6 +69,6 @@ fn met_nearly(met: Met) -> Left {
     return lighting_table.entries[nearest_entry(met)].a;
 #endif
 #else
-    return extinction_of(lighting_table.entries[nearest_entry(met)]);
+    return entry_extinction(lighting_table.entries[nearest_entry(met)]);
 #endif
 }

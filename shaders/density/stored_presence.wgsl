@@ -1,6 +1,6 @@
-// Presence as it is stored where voxels are missing: signed bytes, so that a change may be exactly none.
+// Decoding of stored presence: signed bytes, so that a difference of exactly 0 can be represented.
 
-// The share of kernels on voxels that are there, from a texel that has it from −1 for none to 1.
-fn share_stored(texel: vec4f) -> f32 {
+// Presence, 0 … 1, from a texel that stores it as −1 … 1.
+fn decode_presence(texel: vec4f) -> f32 {
     return 0.5 * texel.r + 0.5;
 }

@@ -1,37 +1,38 @@
-// Slabs in two steps, through which opacity is integrated from the densities at both ends (Engel, Kraus and Ertl,
-// "High-quality pre-integrated volume rendering using hardware-accelerated pixel shading", 2001), and which are shaded in
-// layers: several steps once, where along the ray their opacity lies. What a thin part shows hardly depends on where
-// samples meet it. The slabs of the frame are as thick as steps, which reach from the middle of one to that of the next.
+// Pre-integrated slabs: opacity is integrated through steps from the densities at both ends (Engel, Kraus and Ertl,
+// "High-quality pre-integrated volume rendering using hardware-accelerated pixel shading", 2001), and steps are
+// shaded in layers: several together, where along the ray their opacity lies. So the look of thin structures hardly
+// depends on where samples hit them. The frame's slabs are as thick as steps; a step reaches from the middle of one
+// slab to that of the next.
 #import "density/cells.wgsl"
 #import "density/classify.wgsl"
 
-// Steps of a layer behind which it ends: two slabs. A step costs little beside shading.
+// Maximum number of steps in a layer: two slabs. A step is cheap compared with shading.
 const LAYER_STEPS = 4;
 
-// It ends a step earlier where material is softer than this, in optical depth of its last step: light changes little
-// within a surface that is opaque after a voxel, and more within what is not.
-const SOFT = 0.5;
+// Optical depth of the last step below which a layer ends one step earlier: light varies little within a surface that
+// is opaque after a voxel, and more within softer material.
+const SOFT_OPTICAL_DEPTH = 0.5;
 
-// Steps count from where a layer shows more than this share of the ray: 16 of 255, too little to be shaded by itself.
-const FAINT = 0.0625;
+// Share of the ray from which the steps of a layer are counted: 16 of 255, too little to be shaded separately.
+const MIN_COUNTED_SHARE = 0.0625;
 
-// Optical depth of a step that shows nothing: a thousandth of what 8 bits can.
-const EMPTY = 4e-6;
+// Optical depth of an empty step: a thousandth of the smallest that 8 bits can show.
+const EMPTY_OPTICAL_DEPTH = 4e-6;
 
-// The integral of extinction over densities up to one, as a position in the table.
+// Integral of extinction over densities from 0 to a position in the table.
 fn extinction_integral(at: f32) -> f32 {
     let low = min(u32(at), TABLE_SIZE - 2u);
     return mix(table.integrals[low], table.integrals[low + 1u], at - f32(low));
 }
 
-// An end of a step.
+// End point of a step.
 struct StepEnd {
     density: f32,
-    // As a position in the table …
+    // Position of the density in the table.
     entry: f32,
-    // … and extinction integrated up to there.
+    // Integral of extinction up to that position.
     integral: f32,
-    // The share of the material that is there.
+    // Presence at the point.
     there: f32,
 }
 
@@ -44,33 +45,33 @@ fn step_end(ray: Ray, k: i32) -> StepEnd {
     return StepEnd(found, entry, extinction_integral(entry), presence_at(p, level));
 }
 
-// Steps that are shaded at once.
+// Steps that are shaded together.
 struct Layer {
-    // Share of the ray's light that the layer gives: its opacity behind all layers before it.
+    // Contribution of the layer to the ray: its opacity behind all previous layers.
     share: f32,
-    // Sums of shares times places, in slabs of the frame, …
+    // Sum of contributions times positions, in slabs of the frame.
     places: f32,
-    // … and of shares times densities.
+    // Sum of contributions times densities.
     densities: f32,
-    // Transmittance of the ray behind it.
+    // Transmittance of the ray behind the layer.
     left: f32,
-    // Optical depth of its last step.
+    // Optical depth of the last step.
     last_depth: f32,
 }
 
-// Opacity-weighted mean depth in homogeneous material of optical depth τ, from its front, as a share of its thickness:
-// 1/τ − 1/(e^τ − 1), within 0.011.
-fn mean_place(tau: f32) -> f32 {
+// Opacity-weighted mean depth in homogeneous material of optical depth τ, relative to its thickness: 1/τ − 1/(e^τ −
+// 1), within 0.011.
+fn mean_depth_fraction(tau: f32) -> f32 {
     return (6.0 + tau) / (12.0 + tau * (4.0 + tau));
 }
 
-// A layer with one more step, from k to the next, along which density is linear; `length`: of the ray within it.
+// Adds a step from k to the next to a layer; density is linear along it, and `length` is the length of the ray in it.
 fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer {
     let middle = 0.5 * (a.density + b.density);
     let entry = 0.5 * (a.entry + b.entry);
     let integral = extinction_integral(entry);
     let half = entry - a.entry;
-    // Integrals are linear between entries, and differences of close ones are rounding.
+    // Integrals are linear between entries, and differences of nearby ones are dominated by rounding.
     let is_even = abs(half) < 1.0;
     let per_half = 1.0 / select(half, 1.0, is_even);
     let alike = table.entries[nearest_entry(middle)].a;
@@ -84,24 +85,24 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     let place = f32(k);
     return Layer(
         layer.share + by_front + by_back,
-        layer.places + by_front * (place + 0.5 * mean_place(front)) + by_back * (place + 0.5 + 0.5 * mean_place(back)),
+        layer.places + by_front * (place + 0.5 * mean_depth_fraction(front)) + by_back * (place + 0.5 + 0.5 * mean_depth_fraction(back)),
         layer.densities + by_front * 0.5 * (a.density + middle) + by_back * 0.5 * (middle + b.density),
         behind_back,
         front + back,
     );
 }
 
-// Color and transmittance of a ray between two slabs of the frame, the first and the last inside.
-fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
-    let walk = walk_along(eye.frame, ray);
+// Colour and transmittance of a ray between two slabs of the frame, `inside.x` to `inside.y`.
+fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
+    let walk = cell_ray(eye.frame, ray);
     // A cut volume may end behind the middle of the last slab.
     let last = inside.y + select(0, 1, CUT);
     let step_length = eye.frame.slab * ray.obliquity;
-    // Steps begin at the slab before one that may show something.
-    var k = next_seen(walk, inside.x, last) - 1;
+    // Steps begin at the slab before the first that may be visible.
+    var k = next_visible_slab(walk, inside.x, last) - 1;
     var before = StepEnd(0.0, 0.0, 0.0, 0.0);
-    // Whether the density of slab k is not known yet.
-    var has_leapt = true;
+    // Set while the density of slab k is unknown.
+    var has_skipped = true;
     var color = vec3f(0.0);
     var t = 1.0;
     loop {
@@ -112,22 +113,22 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
         var steps = 0;
         // All lanes of a vector wait for the slowest, but shading takes as long as several steps.
         loop {
-            let at = select(k + 1, k, has_leapt);
+            let at = select(k + 1, k, has_skipped);
             let end = step_end(ray, at);
             let slab = eye.frame.slab;
             let depth = depth_of(eye.frame, f32(at) - 0.5);
-            let length = select(step_length, 0.0, has_leapt) * share_within(span, depth, slab);
+            let length = select(step_length, 0.0, has_skipped) * slab_fraction_inside(span, depth, slab);
             layer = with_step(layer, before, end, at - 1, length);
-            let is_empty = layer.last_depth < EMPTY;
-            steps += select(0, 1, layer.share > FAINT);
+            let is_empty = layer.last_depth < EMPTY_OPTICAL_DEPTH;
+            steps += select(0, 1, layer.share > MIN_COUNTED_SHARE);
             k = at;
             before = end;
-            let seen = next_seen(walk, k + 1, last);
-            has_leapt = is_empty && seen > k + 1;
-            k = select(k, seen - 1, has_leapt);
-            // Material behind a gap is shaded by itself.
-            let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT);
-            if (is_whole || layer.left < eye.dark || k >= last || (is_empty && layer.share > 0.0)) {
+            let seen = next_visible_slab(walk, k + 1, last);
+            has_skipped = is_empty && seen > k + 1;
+            k = select(k, seen - 1, has_skipped);
+            // Material behind a gap is shaded separately.
+            let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT_OPTICAL_DEPTH);
+            if (is_whole || layer.left < eye.min_transmittance || k >= last || (is_empty && layer.share > 0.0)) {
                 break;
             }
         }
@@ -137,13 +138,13 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> Seen {
             let dense = layer.densities / layer.share;
             let p = ray.origin + ray.direction * depth;
             let level = kernel_level(eye.frame, depth);
-            let slope = gradient_to_scene(eye.space, slope_at(p, level));
+            let slope = gradient_to_scene(eye.space, gradient_at(p, level));
             let found = SlabSample(classify(dense), dense, 1.0);
-            color += layer.share * lit_material(p, level, slope, presence_slope(p, level), found);
+            color += layer.share * shade_material(p, level, slope, presence_gradient(p, level), found);
         }
-        if (t < eye.dark) {
+        if (t < eye.min_transmittance) {
             break;
         }
     }
-    return Seen(color, t);
+    return RayResult(color, t);
 }

@@ -1,33 +1,33 @@
-// A light that has a size is the mean of point lights on it: adds the volumes of some of them to those before, and after the
-// last stores what the mean leaves of the light. One thread per voxel.
+// Average of the attenuation volumes of points on an area light: adds the volumes of a batch of points to the partial
+// sum, and after the last batch stores the mean. One thread per voxel.
 #import "common/listed_bricks.wgsl"
 
-struct Average {
+struct AverageUniform {
     dims: vec3u,
-    // Bricks listed for this dispatch.
+    // Number of bricks listed for this dispatch.
     bricks: u32,
-    // One over the points up to these.
+    // One over the number of points added so far.
     share: f32,
     pad0: u32,
     pad1: u32,
     pad2: u32,
 }
 
-@group(0) @binding(0) var<uniform> bound_average: Average;
-var<private> average: Average;
+@group(0) @binding(0) var<uniform> bound_average: AverageUniform;
+var<private> average: AverageUniform;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
-// What is left of each point's light.
+// Attenuation volumes of the points in the batch.
 @group(0) @binding(2) var point_0: texture_3d<f32>;
 @group(0) @binding(3) var point_1: texture_3d<f32>;
 @group(0) @binding(4) var point_2: texture_3d<f32>;
 @group(0) @binding(5) var point_3: texture_3d<f32>;
-// Of the points before, and with these.
+// Partial sum before and after this batch.
 @group(0) @binding(6) var before: texture_3d<f32>;
 @group(0) @binding(7) var after: texture_storage_3d<r32float, write>;
 @group(0) @binding(8) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
-// Points that are added, up to four; whether they are the first and the last.
-override ADDED: u32 = 1u;
+// Number of points in the batch, up to four; flags for the first and the last batch.
+override BATCH_SIZE: u32 = 1u;
 override IS_FIRST: bool = true;
 override IS_LAST: bool = true;
 
@@ -43,13 +43,13 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     var sum = textureLoad(point_0, voxel, 0).r;
-    if (ADDED > 1u) {
+    if (BATCH_SIZE > 1u) {
         sum += textureLoad(point_1, voxel, 0).r;
     }
-    if (ADDED > 2u) {
+    if (BATCH_SIZE > 2u) {
         sum += textureLoad(point_2, voxel, 0).r;
     }
-    if (ADDED > 3u) {
+    if (BATCH_SIZE > 3u) {
         sum += textureLoad(point_3, voxel, 0).r;
     }
     if (!IS_FIRST) {

@@ -1,76 +1,77 @@
-// Reverse half of the light pass (P §3.5, eq. 10): the sheets are splatted back into the grid. In
-// gather form, one thread per voxel sums deposit × kernel over the sheet pixels under its footprint
-// and divides by the sum of kernel weights.
+// Back-projection, the second half of the light pass (P §3.5, eq. 10): splats the sheets back into the grid. In
+// gather form, one thread per voxel sums deposit × kernel over the sheet pixels under its footprint and divides by
+// the sum of kernel weights.
 //
-// A voxel is written when the last sheet that it needs has been marched (the paper's rolling
-// normalisation); voxels of other chunks leave at once.
+// A voxel is written when the last sheet that it needs has been marched (the paper's rolling normalisation); voxels
+// of other chunks are skipped.
 #import "common/sizes.wgsl"
 #import "density/kernel.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "common/listed_bricks.wgsl"
 
-struct Backprojection {
-    frame: SheetFrame,
-    // Index space to the light's axes at the anchor, x and y in pixels of the anchor plane, z in
-    // scene units: three rows of an affine map.
+struct BackprojectionUniform {
+    frame: SheetFrameUniform,
+    // Index space to light axes at the anchor, x and y in pixels of the anchor plane, z in scene units: three rows of
+    // an affine map.
     light_from_index_x: vec4f,
     light_from_index_y: vec4f,
     light_from_index_z: vec4f,
     first_pixel: vec2f,
-    // Width of the reverse kernel along the axis: one voxel of the light volume.
+    // Width of the reverse kernel along the axis: one voxel of the light volume, in scene units.
     kernel_edge: f32,
-    // Data voxels per voxel of the light volume.
+    // Number of data voxels per voxel of the light volume, along an axis.
     voxel_step: f32,
     dims: vec3u,
-    // 1 when the view owns only the quarter-space around its axis.
+    // 1 if the view is a cube face, which covers only the quarter-space around its axis.
     cube_face: u32,
     begin: u32,
     end: u32,
-    // Of the ring.
+    // Number of layers in the ring.
     layers: u32,
-    // Bricks listed for this chunk.
+    // Number of bricks listed for this chunk.
     bricks: u32,
-    // One over the ring's columns and rows, which may be more than the sheets'.
+    // One over the ring's columns and rows, which may exceed those of the sheets.
     ring_scale: vec2f,
     pad0: f32,
     pad1: f32,
 }
 
-@group(0) @binding(0) var<uniform> bound_view: Backprojection;
-var<private> view: Backprojection;
+@group(0) @binding(0) var<uniform> bound_view: BackprojectionUniform;
+var<private> view: BackprojectionUniform;
 @group(0) @binding(1) var<storage, read> bricks: array<vec4u>;
-// Four slabs to a texel.
+// Ring with four slabs per texel.
 @group(0) @binding(2) var ring: texture_2d_array<f32>;
 @group(0) @binding(3) var ring_sampler: sampler;
 @group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
-// The first sheet that touches a voxel alone decides (the paper's mode without weight volume).
+// Takes the deposit of the first sheet that touches a voxel (the paper's mode without weight volume).
 override FIRST_TOUCH: bool = false;
-// Whether the kernel is anywhere wider than a pixel or a slab, or the light inside of a cube of views.
+// Set if the kernel is wider than a pixel or a slab anywhere, or for cube faces.
 override WIDE: bool = false;
 
-// Of the kernel across the sheets: least width in voxels, and largest in pixels (src/plan/geometry/light_frame.rs).
+// Width of the kernel across the sheets: minimum in voxels, maximum in pixels (src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 
-// What the four slabs 4·layer … 4·layer + 3 deposit.
+// Deposits of the four slabs 4·layer … 4·layer + 3.
 fn four_sheets(pixel: vec2f, layer: i32) -> vec4f {
-    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, in_ring(layer, view.layers), 0.0);
+    return textureSampleLevel(ring, ring_sampler, (pixel + 0.5) * view.ring_scale, ring_layer(layer, view.layers), 0.0);
 }
 
-// Weights of four slabs from some place of a texel on: those in the texel, and those in the next.
-fn in_texel(weights: vec4f, place: i32) -> vec4f {
+// Weights of four consecutive slabs, the first at `place` in its texel: split into those of this texel and of the
+// next.
+fn weights_in_texel(weights: vec4f, place: i32) -> vec4f {
     let moved = select(vec4f(0.0, weights.xyz), vec4f(0.0, 0.0, weights.xy), place == 2);
     return select(select(moved, vec4f(0.0, 0.0, 0.0, weights.x), place == 3), weights, place == 0);
 }
 
-fn in_next_texel(weights: vec4f, place: i32) -> vec4f {
+fn weights_in_next_texel(weights: vec4f, place: i32) -> vec4f {
     let moved = select(vec4f(weights.w, 0.0, 0.0, 0.0), vec4f(weights.zw, 0.0, 0.0), place == 2);
     return select(select(moved, vec4f(weights.yzw, 0.0), place == 3), vec4f(0.0), place == 0);
 }
 
-// A pixel wide and a slab deep: four pixels and four slabs. Across, two linear fetches per axis (as in
-// density/volume.wgsl), or one where the kernel is a tent.
+// Sums a kernel one pixel wide and one slab deep: four pixels and four slabs. Across, two linear fetches per axis (as
+// in density/volume.wgsl), or one if the kernel is a tent.
 fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let cell = vec3f(floor(pixel), floor(slab));
     let f = vec3f(pixel, slab) - cell;
@@ -79,8 +80,8 @@ fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let layer = first >> 2u;
     if (KERNEL == KERNEL_PREFILTERED) {
         let wz = vec4f(0.0, 1.0 - f.z, f.z, 0.0);
-        return dot(in_texel(wz, place), four_sheets(pixel, layer))
-            + dot(in_next_texel(wz, place), four_sheets(pixel, layer + 1));
+        return dot(weights_in_texel(wz, place), four_sheets(pixel, layer))
+            + dot(weights_in_next_texel(wz, place), four_sheets(pixel, layer + 1));
     }
     let wx = kernel_weights(f.x);
     let wy = kernel_weights(f.y);
@@ -94,17 +95,17 @@ fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let next = layer + 1;
     let far = low.y * (low.x * four_sheets(vec2f(a.x, a.y), next) + high.x * four_sheets(vec2f(b.x, a.y), next))
         + high.y * (low.x * four_sheets(vec2f(a.x, b.y), next) + high.x * four_sheets(vec2f(b.x, b.y), next));
-    return dot(in_texel(wz, place), near) + dot(in_next_texel(wz, place), far);
+    return dot(weights_in_texel(wz, place), near) + dot(weights_in_next_texel(wz, place), far);
 }
 
-// Two neighbouring pixels as one linear fetch: x where between them, y their weight.
-fn pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
+// Two neighbouring pixels as one linear fetch: x is the position between them, y the sum of their weights.
+fn pixel_pair(first: i32, count: i32, at: f32, width: f32) -> vec2f {
     let a = select(0.0, kernel_at((f32(first) - at) / width), first >= 0 && first < count);
     let b = select(0.0, kernel_at((f32(first + 1) - at) / width), first + 1 >= 0 && first + 1 < count);
     return vec2f(b / max(a + b, 1e-20), a + b);
 }
 
-// Distance of the quadrature points from a slab's middle, in slabs.
+// Distance of the quadrature points from the middle of a slab, in slabs.
 fn point_offset() -> f32 {
     return select(0.0, 0.28867513, QUADRATURE == 2u);
 }
@@ -128,8 +129,8 @@ fn slab_weights(first: i32, count: i32, at: f32, slabs: f32) -> vec4f {
     return select(vec4f(0.0), weights, k >= vec4i(0) & k < vec4i(count));
 }
 
-// Any width: pairs of pixels and fours of slabs over the whole footprint, divided by the sum of their
-// weights. The kernel is a product: its weights along the projection are the same for every pixel, and
+// Sums a kernel of any width: pairs of pixels and groups of four slabs over the whole footprint, divided by the sum
+// of their weights. The kernel is separable: its weights along the projection are the same for every pixel, and
 // twelve of them, which suffice unless slabs are thin, are kept while pixels are visited.
 fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     let reach = kernel_radius() * vec3f(pixels, pixels, slabs) + vec3f(0.0, 0.0, point_offset());
@@ -144,9 +145,9 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
         let z2 = slab_weights(k + 8, size.z, slab, slabs);
         let along = dot(z0 + z1 + z2, vec4f(1.0));
         for (var i = first.x; i <= last.x; i += 2) {
-            let x = pair(i, size.x, pixel.x, pixels);
+            let x = pixel_pair(i, size.x, pixel.x, pixels);
             for (var j = first.y; j <= last.y; j += 2) {
-                let y = pair(j, size.y, pixel.y, pixels);
+                let y = pixel_pair(j, size.y, pixel.y, pixels);
                 let at = vec2f(f32(i) + x.x, f32(j) + y.x);
                 let weight = x.y * y.y;
                 weights += weight * along;
@@ -160,17 +161,17 @@ fn gather_wide(pixel: vec2f, slab: f32, pixels: f32, slabs: f32) -> f32 {
     return select(1.0, sum / weights, weights > 1e-12);
 }
 
-// Where a light voxel's footprint lies in the sheets.
+// Footprint of a light voxel in the sheets.
 struct Footprint {
     pixel: vec2f,
     slab: f32,
     // Radius-one widths of the kernel.
     pixels: f32,
     slabs: f32,
-    // The last sheet under the kernel: the voxel's chunk is the one that marches it. Of radius 2,
-    // whichever the kernel, so that the choice of chunk does not depend on it.
+    // Last sheet under the kernel: the chunk that marches it completes the voxel. Assumes radius 2 for every kernel,
+    // so that the chunk does not depend on it.
     final_slab: i32,
-    // The view owns it, and it is not in the plane of the light.
+    // Set if the voxel belongs to this view, and does not lie in the plane of the light.
     is_seen: bool,
 }
 
@@ -181,9 +182,9 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     let spread = 1.0 + depth * view.frame.inverse_distance;
     let limit = spread / max(view.frame.inverse_distance * view.frame.pitch, 1e-20);
     let owned = (spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001))) | (view.cube_face == 0u);
-    // No variant asks in vain: all lanes wait for the store.
+    // Tested in WIDE variants only, which include all cube faces, because all lanes wait for the store.
     if (WIDE && (owned & !(spread > 1e-3) & (view.begin == 0u)) && all(voxel < view.dims)) {
-        // In the plane of the light, and of this view: at the light itself, which is inside of a cube.
+        // In the plane of the light and part of this view: at the light itself, inside the cube.
         textureStore(attenuation, voxel, vec4f(1.0));
     }
     let pitch = view.frame.pitch * spread;
@@ -196,18 +197,18 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     return Footprint(across / spread - view.first_pixel, slab, pixels, slabs, final_slab, is_seen);
 }
 
-// A voxel that the chunk completes, and the cells of its brick that are left to the lane.
-struct Due {
+// Voxel that the chunk completes, and the cells of its brick that the lane has yet to process.
+struct CompletedVoxel {
     is_due: bool,
     left: vec2u,
     voxel: vec3u,
     found: Footprint,
 }
 
-// The lane's voxel in the next of its cells that the chunk completes.
-fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
+// Voxel of the lane in the next of its cells that the chunk completes.
+fn next_completed_voxel(brick: u32, lane: u32, cells: vec2u) -> CompletedVoxel {
     let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
-    var next: Due;
+    var next: CompletedVoxel;
     next.left = cells;
     loop {
         let left = next.left;
@@ -218,7 +219,7 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
         let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
         next.left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
         let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
-        next.voxel = unpacked(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
+        next.voxel = unpack_coordinates(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
         let found = footprint_of(next.voxel);
         next.found = found;
         next.is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
@@ -229,13 +230,13 @@ fn next_due(brick: u32, lane: u32, cells: vec2u) -> Due {
     return next;
 }
 
-// Voxels of a cell, a lane each.
+// Number of voxels in a cell, with one lane each.
 const CELL_VOXELS = CELL_EDGE * CELL_EDGE * CELL_EDGE;
 
-// Lanes that share a brick, a power of two from 8 to 64 (src/gpu/light/backproject.rs).
+// Number of lanes that share a brick, a power of two from 8 to 64 (src/gpu/light/backproject.rs).
 override LANES: u32 = 64u;
 
-// Eight lanes to a cell of 2³ voxels, and to the same lanes every cell of the brick so many cells on.
+// Eight lanes per cell of 2³ voxels; the same lanes stride over the other cells of the brick.
 @compute @workgroup_size(LANES)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     view = bound_view;
@@ -244,11 +245,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         return;
     }
     let brick = bricks[listed];
-    // One bit in as many as there are eights of lanes.
+    // Mask with one bit set in every LANES / 8 bits.
     let every = 0xffffffffu / ((1u << (LANES / CELL_VOXELS)) - 1u);
-    var next = next_due(brick.x, lane, brick.yz & vec2u(every << (lane / CELL_VOXELS)));
-    // Software drivers run a loop's body to its end before they ask whether any lane is left: they leave from
-    // there, not from the middle.
+    var next = next_completed_voxel(brick.x, lane, brick.yz & vec2u(every << (lane / CELL_VOXELS)));
+    // Software drivers run a loop's body to its end before they test if any lane is active, so breaks are placed at
+    // the end, not in the middle.
     loop {
         if (!next.is_due) {
             break;
@@ -264,7 +265,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
             value = gather_narrow(found.pixel, found.slab);
         }
         textureStore(attenuation, next.voxel, vec4f(value));
-        next = next_due(brick.x, lane, next.left);
+        next = next_completed_voxel(brick.x, lane, next.left);
         if (!next.is_due) {
             break;
         }

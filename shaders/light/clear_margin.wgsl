@@ -1,4 +1,5 @@
-// Around what is filled a light volume is fully lit: only previews look there. One thread per voxel.
+// Clearing of the margin around the filled cells of a light volume, which only previews look up: fully lit. One
+// thread per voxel.
 #import "common/listed_bricks.wgsl"
 
 @group(0) @binding(0) var<storage, read> bricks: array<vec4u>;

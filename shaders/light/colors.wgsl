@@ -1,4 +1,4 @@
-// What is left of a light's three colours, each of which was followed by itself, becomes one volume. One thread per voxel.
+// Merging of the attenuation volumes of red, green and blue light into one. One thread per voxel.
 #import "common/listed_bricks.wgsl"
 
 @group(0) @binding(0) var<storage, read> bricks: array<vec4u>;

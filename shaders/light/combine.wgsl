@@ -1,24 +1,24 @@
-// All lights that material attenuates in one volume of colours (P §4): shading is done here, once for
-// every voxel, and the picture only looks up diffuse light. One thread per voxel.
+// Combined light: all shadowed lights in one volume of colours (P §4). Shading is done here, once for every voxel,
+// and the eye pass only looks up diffuse light. One thread per voxel.
 #import "density/volume.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/looked_up_light.wgsl"
 #import "common/listed_bricks.wgsl"
 #import "density/gradient.wgsl"
 
-struct Combine {
+struct CombineUniform {
     dims: vec3u,
-    // Bricks listed for this dispatch.
+    // Number of bricks listed for this dispatch.
     bricks: u32,
-    // Data voxels per voxel of the light volumes.
+    // Number of data voxels per voxel of the light volumes, along an axis.
     voxel_step: f32,
     pad0: f32,
     pad1: f32,
     pad2: f32,
 }
 
-@group(0) @binding(2) var<uniform> bound_combine: Combine;
-var<private> combine: Combine;
+@group(0) @binding(2) var<uniform> bound_combine: CombineUniform;
+var<private> combine: CombineUniform;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var combined: texture_storage_3d<rgba16float, write>;
 
@@ -37,8 +37,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
     let density = pyramid(p, 0.0);
-    let slope = gradient_to_scene(eye.space, index_gradient(p, level_of_normals(0.0)))
-        + face_slope(p, 0.0, density, presence_slope(p, 0.0));
-    let found = Sampled(p, slope, density, 0.0);
-    textureStore(combined, voxel, vec4f(lit_through_material(surface_of(found)).diffuse, 1.0));
+    let slope = gradient_to_scene(eye.space, index_gradient(p, normal_level(0.0)))
+        + face_slope(p, 0.0, density, presence_gradient(p, 0.0));
+    let found = VolumeSample(p, slope, density, 0.0);
+    textureStore(combined, voxel, vec4f(shadowed_light_sum(surface_of(found)).diffuse, 1.0));
 }

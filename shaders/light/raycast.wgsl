@@ -1,41 +1,41 @@
-// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8): one thread per voxel.
+// Ray casting of a light volume: a ray from every voxel to the light (P §3.4, eq. 8), one thread per voxel.
 #import "density/table.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
 #import "common/space.wgsl"
 #import "common/listed_bricks.wgsl"
 
-struct Raycast {
-    light: Light,
-    space: Space,
+struct RaycastUniform {
+    light: LightUniform,
+    space: SpaceUniform,
     dims: vec3u,
-    // Bricks listed for this dispatch.
+    // Number of bricks listed for this dispatch.
     bricks: u32,
-    // Data voxels per voxel of the light volume.
+    // Number of data voxels per voxel of the light volume, along an axis.
     voxel_step: f32,
     // Distance between samples, in scene units.
     ray_step: f32,
     // Optical depth at which a ray ends.
-    dark: f32,
+    max_optical_depth: f32,
     pad0: u32,
-    // What attenuates light.
-    shading_cut: Cut,
+    // Region that attenuates light.
+    shading_cut: CutUniform,
 }
 
-@group(0) @binding(0) var<uniform> bound_raycast: Raycast;
-var<private> raycast: Raycast;
+@group(0) @binding(0) var<uniform> bound_raycast: RaycastUniform;
+var<private> raycast: RaycastUniform;
 // g: distance to the nearest cell that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
-// All light is followed here, or one of its colours: what is met is one number.
-fn ray_extinction(frame: SheetFrame, ray: Ray, k: f32) -> Left {
-    return Left(classified_extinction(slab_density(frame, ray, k)));
+// White light or a single colour is followed, so extinction is a scalar.
+fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
+    return Transmittance(classified_extinction(slab_density(frame, ray, k)));
 }
 
 fn light_distance(cell: vec3f) -> i32 {
-    return near(distances, cell).y;
+    return cell_distances(distances, cell).y;
 }
 
 @compute @workgroup_size(8, 8, 4)
@@ -51,11 +51,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         return;
     }
     let p = (vec3f(voxel) + 0.5) * raycast.voxel_step - 0.5;
-    let towards = to_light(raycast.light, place_of(raycast.space, p));
-    let direction = to_index(raycast.space, towards.direction);
+    let towards = to_light(raycast.light, scene_from_index(raycast.space, p));
+    let direction = index_from_scene_vector(raycast.space, towards.direction);
     let scale = raycast.light.extinction_scale;
     let reach = towards.distance;
     let cut = raycast.shading_cut;
-    let arriving = shadow_ray(p, direction, reach, raycast.ray_step, scale, raycast.dark, cut);
-    textureStore(attenuation, voxel, vec4f(least_of(arriving) * hood_share(raycast.light, towards.direction)));
+    let arriving = shadow_ray(p, direction, reach, raycast.ray_step, scale, raycast.max_optical_depth, cut);
+    textureStore(attenuation, voxel, vec4f(min_component(arriving) * cone_attenuation(raycast.light, towards.direction)));
 }

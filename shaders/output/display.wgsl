@@ -1,4 +1,4 @@
-// What is shown of a picture, in 8 bits.
+// Display pass with 8 bits per channel.
 #import "output/tone_map.wgsl"
 
 @group(0) @binding(2) var shown: texture_storage_2d<rgba8unorm, write>;
@@ -9,5 +9,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= textureDimensions(shown))) {
         return;
     }
-    textureStore(shown, id.xy, shown_color(id.xy));
+    textureStore(shown, id.xy, display_color(id.xy));
 }

@@ -1,9 +1,9 @@
-// What is shown of a picture, in more than 8 bits; or its light as it is, without a tone map.
+// Display pass with more than 8 bits per channel, or with linear light and no tone map.
 #import "output/tone_map.wgsl"
 
 @group(0) @binding(2) var shown: texture_storage_2d<rgba32float, write>;
 
-// Whether linear, premultiplied light is wanted instead of display colours.
+// Writes linear, premultiplied light instead of display colours.
 override LINEAR: bool = false;
 
 fn linear_light(pixel: vec2u) -> vec4f {
@@ -21,6 +21,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (LINEAR) {
         textureStore(shown, id.xy, linear_light(id.xy));
     } else {
-        textureStore(shown, id.xy, shown_color(id.xy));
+        textureStore(shown, id.xy, display_color(id.xy));
     }
 }

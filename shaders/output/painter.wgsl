@@ -1,27 +1,27 @@
-// A finished picture, texel by texel, into a render pass of another program: one triangle over the viewport.
+// Drawing of a finished picture into a render pass of a host program: one triangle over the viewport.
 #import "output/srgb.wgsl"
 
-// The target converts to sRGB when it is written to.
+// Set if the target encodes to sRGB on writing.
 override LINEAR_TARGET: bool = false;
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
 struct Corner {
     @builtin(position) position: vec4f,
-    // In the picture: 0 … 1 from the upper left.
+    // Position in the picture: 0 … 1 from the upper left.
     @location(0) place: vec2f,
 }
 
 @vertex
-fn corner(@builtin(vertex_index) index: u32) -> Corner {
-    // Half of a square of twice the viewport's edges.
+fn triangle_corner(@builtin(vertex_index) index: u32) -> Corner {
+    // Half of a square with twice the viewport's edges.
     let place = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, 0.0, 1.0), place);
 }
 
-// Not sampled: 32-bit floats cannot be everywhere.
+// Loaded, not sampled: 32-bit floats are not filterable on all adapters.
 @fragment
-fn painted(at: Corner) -> @location(0) vec4f {
+fn paint_pixel(at: Corner) -> @location(0) vec4f {
     let size = textureDimensions(picture);
     let texel = textureLoad(picture, min(vec2u(at.place * vec2f(size)), size - 1u), 0);
     if (LINEAR_TARGET) {

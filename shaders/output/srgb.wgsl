@@ -1,4 +1,4 @@
-// Between light and its coding for screens (IEC 61966-2-1).
+// Conversion between linear light and sRGB (IEC 61966-2-1).
 fn linear_from_srgb(c: vec3f) -> vec3f {
     return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
 }

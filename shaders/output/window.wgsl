@@ -1,29 +1,29 @@
-// The window's picture and what lies under its panels: one triangle over the viewport.
+// Window: the picture and the fill under the panels, drawn as one triangle over the viewport.
 //
-// egui's own shader filters textures in two ways, for pictures of tests too, and chooses between them for every
-// pixel. Software drivers do both: 900 cycles for each pixel of the window.
+// egui's shader filters textures in two ways, for the pictures of tests, too, and chooses between them for every
+// pixel. Software drivers execute both: 900 cycles for each pixel of the window.
 #import "output/srgb.wgsl"
 
-// The target converts to sRGB when it is written to.
+// Set if the target encodes to sRGB on writing.
 override LINEAR_TARGET: bool = false;
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
 
-// What stands for pictures that are not moved (src/gpu/output/window.rs).
-const MOVED_BY_NOTHING = 32768;
+// Encoded shift of pictures that are not shifted (src/gpu/output/window_painter.rs).
+const UNSHIFTED = 32768;
 
 struct Corner {
     @builtin(position) position: vec4f,
-    // In the picture: 0 … 1 from the upper left.
+    // Position in the picture: 0 … 1 from the upper left.
     @location(0) place: vec2f,
-    // The draw's number, which carries what would otherwise need a buffer.
+    // Instance index, which carries parameters that would otherwise need a buffer.
     @location(1) @interpolate(flat) number: u32,
 }
 
 @vertex
-fn corner(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
-    // Half of a square of twice the viewport's edges.
+fn triangle_corner(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
+    // Half of a square with twice the viewport's edges.
     let place = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u));
     return Corner(vec4f(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, 0.0, 1.0), place, number);
 }
@@ -35,18 +35,18 @@ fn for_target(srgb: vec3f) -> vec3f {
     return srgb;
 }
 
-// An opaque picture. The low byte of its number is its opacity in 255ths; above, half of the number of pixels that it
-// could have, plus those by which it is moved to the right.
+// Picture of opaque pixels, drawn with a uniform opacity. The low byte of the number is the opacity in 255ths; the
+// bits above are the shift to the right in pixels, offset by 32768.
 @fragment
-fn shown(at: Corner) -> @location(0) vec4f {
+fn draw_picture(at: Corner) -> @location(0) vec4f {
     let opacity = f32(at.number & 255u) / 255.0;
-    let moved = f32(i32(at.number >> 8u) - MOVED_BY_NOTHING) / f32(textureDimensions(picture).x);
+    let moved = f32(i32(at.number >> 8u) - UNSHIFTED) / f32(textureDimensions(picture).x);
     let place = at.place - vec2f(moved, 0.0);
     return vec4f(for_target(textureSampleLevel(picture, picture_sampler, place, 0.0).rgb) * opacity, opacity);
 }
 
-// One colour; its number is 0xBBGGRR.
+// Uniform colour; the number is 0xBBGGRR.
 @fragment
-fn filled(at: Corner) -> @location(0) vec4f {
+fn draw_fill(at: Corner) -> @location(0) vec4f {
     return vec4f(for_target(unpack4x8unorm(at.number).rgb), 1.0);
 }

@@ -1,26 +1,26 @@
-// The picture from scattered sheets (P §3.5, eq. 9): one thread per pixel takes the slab's sum,
-// classifies and shades it, and composites it behind the slabs before. Its gradient is that of the volume, or of the
-// neighbouring sheets, which are in the ring already.
+// Eye pass over scattered sheets (P §3.5, eq. 9): one thread per pixel takes the slab's sum, classifies and shades
+// it, and composites it behind the previous slabs. Gradients come from the volume, or from the neighbouring sheets,
+// which are in the ring already.
 #import "density/table.wgsl"
 #import "scatter/slab.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/near_light.wgsl"
 #import "density/stored_gradient.wgsl"
 
-// Distance in bricks to the nearest that the eye's transfer function shows.
+// Distance, in bricks, to the nearest brick visible to the eye.
 @group(0) @binding(2) var distances: texture_3d<u32>;
-// Colour and opacity so far.
+// Accumulated colour and opacity of each ray.
 @group(1) @binding(8) var<storage, read_write> rays: array<vec4f>;
 
-// Take gradients from neighbouring sheets.
+// Takes gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    return near_or_looked_up(light, volume, surface, towards);
+fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
+    return shadowed_light(light, volume, surface, towards);
 }
 
-// The share of kernels that lies within the grid where a ray crosses a sheet. A slice of voxels is there all along its
-// axis.
+// Fraction of the kernels within the grid where a ray crosses a sheet. For a slice of voxels only the other two axes
+// count.
 fn sheet_in_grid(ray: Ray, k: i32) -> f32 {
     if (ORDER == ORDER_IMAGE_ALIGNED) {
         return slab_in_grid(eye.frame, ray, f32(k));
@@ -30,7 +30,7 @@ fn sheet_in_grid(ray: Ray, k: i32) -> f32 {
     return presence_in_grid(p, kernel_level(eye.frame, depth));
 }
 
-// The share that lies on voxels that are there.
+// Presence where a ray crosses a sheet.
 fn sheet_presence(ray: Ray, k: i32) -> f32 {
     if (!MISSING) {
         return sheet_in_grid(ray, k);
@@ -39,27 +39,26 @@ fn sheet_presence(ray: Ray, k: i32) -> f32 {
     return presence_at(ray.origin + ray.direction * depth, kernel_level(eye.frame, depth));
 }
 
-// The sheet's value at a pixel, which is the mean of the voxels that are there; nothing lies before the first or behind
-// the last.
-fn sheet(pixel: vec2i, k: i32) -> f32 {
+// Value of a sheet at a pixel: the mean over the voxels that exist; 0 before the first sheet and behind the last.
+fn sheet_value(pixel: vec2i, k: i32) -> f32 {
     let last = i32(scatter.sheet_count) - 1;
     let known = clamp(k, 0, last);
     let at = sheet_index(vec2u(pixel), u32(known));
 #if PRECLASSIFY
-    // Of voxels that were classified the extinction.
-    let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / UNIT;
+    // Extinction, for pre-classified voxels.
+    let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / FIXED_POINT_ONE;
 #else
     let there = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
-    let found = f32(atomicLoad(&sheets[at])) / UNIT / max(there, LEAST_PRESENCE);
+    let found = f32(atomicLoad(&sheets[at])) / FIXED_POINT_ONE / max(there, MIN_PRESENCE);
 #endif
     return select(0.0, found, (k >= 0) & (k <= last));
 }
 
-// The sheet's material: what its density means, as far as it is there, or the sum of what its voxels mean.
+// Material of a sheet: its classified density times presence, or the sum of the voxels' materials.
 fn material_of(pixel: vec2i, k: i32) -> vec4f {
     let there = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
     if (SPLAT != SPLAT_MATERIAL) {
-        let material = classify(sheet(pixel, k));
+        let material = classify(sheet_value(pixel, k));
         return vec4f(material.rgb, material.a * there);
     }
     let at = sheet_index(vec2u(pixel), u32(k));
@@ -68,10 +67,10 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
         f32(atomicLoad(&sheets[channel_index(at, 2u)])),
         f32(atomicLoad(&sheets[channel_index(at, 3u)])),
         f32(atomicLoad(&sheets[channel_index(at, 4u)])),
-    ) / UNIT;
-    // Others stand in for voxels that are missing, but not beyond the grid.
+    ) / FIXED_POINT_ONE;
+    // Neighbours stand in for missing voxels, but not outside the grid.
     let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), k);
-    let share = select(1.0, there / max(in_grid, LEAST_PRESENCE), MISSING);
+    let share = select(1.0, there / max(in_grid, MIN_PRESENCE), MISSING);
     return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 
@@ -80,10 +79,10 @@ fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
     let low = max(pixel - eye.gradient_pixels, vec2i(0));
     let high = min(pixel + eye.gradient_pixels, last);
     let reach = vec2f(max(high - low, vec2i(1)));
-    let across = (sheet(vec2i(high.x, pixel.y), k) - sheet(vec2i(low.x, pixel.y), k)) / reach.x;
-    let down = (sheet(vec2i(pixel.x, high.y), k) - sheet(vec2i(pixel.x, low.y), k)) / reach.y;
+    let across = (sheet_value(vec2i(high.x, pixel.y), k) - sheet_value(vec2i(low.x, pixel.y), k)) / reach.x;
+    let down = (sheet_value(vec2i(pixel.x, high.y), k) - sheet_value(vec2i(pixel.x, low.y), k)) / reach.y;
     let slabs = eye.gradient_slabs;
-    let deep = (sheet(pixel, k + slabs) - sheet(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
+    let deep = (sheet_value(pixel, k + slabs) - sheet_value(pixel, k - slabs)) / (2.0 * f32(slabs) * met.thickness);
     let axis = select(scatter.axis, vec3f(0.0), ORDER == ORDER_IMAGE_ALIGNED);
     return gradient_of_sheets(vec2f(pixel), met.depth, vec3f(across, down, deep), axis);
 }
@@ -106,28 +105,28 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = ray.origin + ray.direction * met.depth;
     let material = material_of(pixel, k);
     let brick = brick_with_material(p);
-    // In front of a perspective eye.
+    // Set for points in front of a perspective eye.
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
-    if (material.a > 0.0 && left >= eye.dark && brick.x >= 0 && in_front) {
-        // Sums are complete only where the transfer function shows something at all.
+    if (material.a > 0.0 && left >= eye.min_transmittance && brick.x >= 0 && in_front) {
+        // Sums are complete only near visible bricks.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
-            let density = sheet(pixel, k);
-            let share = share_within(span_within(eye.seen, ray), met.depth, met.thickness);
+            let density = sheet_value(pixel, k);
+            let share = slab_fraction_inside(span_within(eye.visible_cut, ray), met.depth, met.thickness);
             let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
             var slope: vec3f;
             if (SHEET_GRADIENTS) {
                 slope = gradient_between_sheets(pixel, k, met);
             } else {
-                slope = gradient_to_scene(eye.space, volume_slope(p, level));
+                slope = gradient_to_scene(eye.space, volume_gradient(p, level));
             }
-            slope += face_slope(p, level, density, presence_slope(p, level));
-            let rgb = shade(Sampled(p, slope, density, level), material.rgb);
+            slope += face_slope(p, level, density, presence_gradient(p, level));
+            let rgb = shade(VolumeSample(p, slope, density, level), material.rgb);
             rays[at] = before + left * opacity * vec4f(rgb, 1.0);
         }
     }
-    // Nobody looks back that far again: room for a sheet to come.
-    // Uniforms are no conditions of branches (output/display.wgsl).
+    // Clears the sheet that no later slab reads, for reuse. Uniforms are not used as branch conditions
+    // (output/display.wgsl).
     let kept = select(-1, 0, k >= eye.gradient_slabs);
     let past = sheet_index(id.xy, u32(max(k - eye.gradient_slabs, 0)));
     atomicAnd(&sheets[past], kept);

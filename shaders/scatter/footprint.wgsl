@@ -2,8 +2,8 @@
 #import "density/kernel.wgsl"
 #import "scatter/slab.wgsl"
 
-// Pre-integrated Gaussian of radius two voxels: x by the square of the distance across the ray, from 0
-// to 4; y its integral along the ray up to a distance from −2 to 2.
+// Pre-integrated Gaussian of radius two voxels: x is its profile by the squared distance from the ray, 0 to 4; y its
+// integral along the ray up to a distance from −2 to 2.
 const FOOTPRINT_SIZE = 512u;
 
 @group(1) @binding(7) var<storage, read> footprint_table: array<vec2f, 512>;
@@ -14,8 +14,8 @@ fn entry_at(at: f32) -> vec2f {
     return mix(footprint_table[low], footprint_table[low + 1u], clamped_at - f32(low));
 }
 
-// The Gaussian is round, so its mean over a slab along any ray is a product: of how far the ray passes
-// the voxel, and of which part of the kernel's length lies in the slab.
+// Footprint of the Gaussian. It is isotropic, so the mean over a slab along any ray is a product: of the profile at
+// the ray's distance from the voxel, and of the part of the kernel's length within the slab.
 fn gaussian_footprint(centre: vec3f, ray: Ray, depth: f32) -> f32 {
     let speed = length(ray.direction);
     let along = ray.direction / speed;
@@ -32,8 +32,8 @@ fn gaussian_footprint(centre: vec3f, ray: Ray, depth: f32) -> f32 {
     return entry_at(squared * 0.25).x * (far - near) / (2.0 * reach * scatter.stretch * scatter.stretch);
 }
 
-// The other kernels are products along the axes of the grid: no table of few dimensions holds their
-// oblique slices, so these are taken at one or two points.
+// Footprint of the other kernels. They are separable along the axes of the grid, and no low-dimensional table holds
+// their oblique slices, so these are evaluated at one or two points.
 fn sliced_footprint(centre: vec3f, ray: Ray, depth: f32, of_light: bool) -> f32 {
     let offset = select(0.0, 0.28867513 * scatter.frame.slab, QUADRATURE == 2u);
     let near = product_at(ray.origin + ray.direction * (depth - offset) - centre, of_light);
@@ -47,7 +47,7 @@ fn product_at(p: vec3f, of_light: bool) -> f32 {
     return product / (scatter.stretch * scatter.stretch * scatter.stretch);
 }
 
-// The kernel along an axis; densities take the prefilter and the tent in one.
+// Kernel along an axis. For densities the prefilter and the tent are combined.
 fn profile(t: f32, of_light: bool) -> f32 {
     if (KERNEL == KERNEL_PREFILTERED && !of_light) {
         return (kernel_at(t - 1.0) + 10.0 * kernel_at(t) + kernel_at(t + 1.0)) / 12.0;
@@ -55,8 +55,8 @@ fn profile(t: f32, of_light: bool) -> f32 {
     return kernel_at(t);
 }
 
-// A round Gaussian integrated along the whole ray, over the length that a step of one depth takes in index
-// space; stretched where pixels are wider than voxels.
+// Isotropic Gaussian integrated along the whole ray, relative to the index-space length of a unit of depth; stretched
+// where pixels are wider than voxels.
 fn whole_footprint(centre: vec3f, ray: Ray, stretch: f32) -> f32 {
     let speed = length(ray.direction);
     let along = ray.direction / speed;
@@ -69,7 +69,7 @@ fn whole_footprint(centre: vec3f, ray: Ray, stretch: f32) -> f32 {
     return entry_at(squared * 0.25).x * entry_at(1.0).y / (speed * stretch * stretch);
 }
 
-// The stretch of a kernel at a depth.
+// Stretch of a kernel at a depth.
 fn stretch_of(depth: f32) -> f32 {
     let pitch = scatter.frame.pitch * (1.0 + depth * scatter.frame.inverse_distance);
     return max(pitch / scatter.frame.voxel_edge, 1.0);
@@ -87,14 +87,14 @@ struct Box {
     last: vec2f,
 }
 
-// Pixels that a kernel around a voxel can touch, by where it is seen: none when first is beyond last.
+// Pixels that a kernel around a projected voxel can touch; empty if first is beyond last.
 fn pixels_under(at: vec3f) -> Box {
-    // Seen from where it is widest and where it is narrowest.
+    // Projected at the nearest and at the furthest depth of the kernel.
     let spread = scatter.frame.inverse_distance;
-    let near = max(1.0 + (at.z - scatter.half.z) * spread, 1e-6);
-    let far = max(1.0 + (at.z + scatter.half.z) * spread, 1e-6);
-    let low = at.xy - scatter.half.xy;
-    let high = at.xy + scatter.half.xy;
+    let near = max(1.0 + (at.z - scatter.half_extents.z) * spread, 1e-6);
+    let far = max(1.0 + (at.z + scatter.half_extents.z) * spread, 1e-6);
+    let low = at.xy - scatter.half_extents.xy;
+    let high = at.xy + scatter.half_extents.xy;
     return Box(
         max(ceil(min(low / near, low / far)), vec2f(0.0)),
         min(floor(max(high / near, high / far)), vec2f(scatter.frame.size) - 1.0),

@@ -1,6 +1,6 @@
-// Every footprint composited by itself (the paper's reference 25): one thread per voxel classifies and
-// shades its voxel and lays it over all pixels under its footprint. Voxels of one dispatch are so far
-// apart in their slice that no two of them touch a pixel.
+// Compositing of every footprint separately (the paper's reference 25): one thread per voxel classifies and shades
+// its voxel and composites it over all pixels under its footprint. Voxels of one dispatch are so far apart in their
+// slice that no two of them touch the same pixel.
 #import "density/table.wgsl"
 #import "scatter/footprint.wgsl"
 #import "shading/shade.wgsl"
@@ -8,13 +8,12 @@
 #import "scatter/voxels.wgsl"
 #import "common/listed_bricks.wgsl"
 
-// Which voxels of every brick, or of every `stride`-th brick, this dispatch composites: their place
-// in the slice.
-struct Phase {
-    // Within a brick …
+// Phase of a dispatch: position, in the slice, of the voxels that it composites in every `stride`-th brick.
+struct FootprintPhaseUniform {
+    // Position within a brick.
     u: u32,
     v: u32,
-    // … and which bricks, of `stride` in a row.
+    // Position of the bricks among `stride` in a row.
     brick_u: u32,
     brick_v: u32,
     stride: u32,
@@ -23,18 +22,18 @@ struct Phase {
     pad2: u32,
 }
 
-// Where each brick's voxels begin; −1 for bricks that hold nothing.
+// Word where each brick's voxels begin; −1 for empty bricks.
 @group(0) @binding(3) var<storage, read> first_words: array<i32>;
-// Bricks of the slice: coordinates of ten bits each, and where the brick's voxels begin.
+// Bricks of the slice: packed coordinates of ten bits each, and the word where their voxels begin.
 @group(0) @binding(4) var<storage, read> bricks: array<vec2u>;
-// How many footprints were splatted.
+// Number of footprints splatted.
 @group(0) @binding(5) var<storage, read_write> splats: atomic<u32>;
-// Colour and opacity so far.
+// Accumulated colour and opacity of each ray.
 @group(1) @binding(8) var<storage, read_write> rays: array<vec4f>;
-@group(3) @binding(0) var<uniform> bound_phase: Phase;
-var<private> phase: Phase;
+@group(3) @binding(0) var<uniform> bound_phase: FootprintPhaseUniform;
+var<private> phase: FootprintPhaseUniform;
 
-// Beyond the grid, what its border holds.
+// Density of a voxel; the border value outside the grid.
 fn density_of(place: vec3i) -> f32 {
     let voxel = clamp(place, vec3i(0), vec3i(scatter.dims) - 1);
     let brick = voxel / BRICK_EDGE;
@@ -64,7 +63,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let listed = bricks[scatter.first + id.x];
-    let brick = unpacked(listed.x);
+    let brick = unpack_coordinates(listed.x);
     // The two axes of the slice.
     let along = vec3u(scatter.axis);
     let u_axis = select(vec3u(1u, 0u, 0u), vec3u(0u, 1u, 0u), along.x == 1u);
@@ -80,24 +79,24 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let centre = vec3f(voxel);
-    if (!is_within(eye.seen, centre)) {
+    if (!is_inside_cut(eye.visible_cut, centre)) {
         return;
     }
-    // The blur leaves at least (10/12)³ = 0.58 of what is there, and of what is missing at most the rest.
+    // The blur leaves at least (10/12)³ = 0.58 of an existing voxel, and at most the rest of a missing one.
     if (MISSING && presence_at(centre, 0.0) < 0.5) {
         return;
     }
-    let at = locate(centre);
+    let at = project_to_sheets(centre);
     let box = pixels_under(at);
-    // Behind a perspective eye, or beside the picture.
+    // Behind a perspective eye, or outside the picture.
     if (1.0 + at.z * eye.frame.inverse_distance <= 1e-3 || any(box.first > box.last)) {
         return;
     }
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
     let level = log2(max(stretch, 1.0));
-    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_slope(centre, level));
-    let rgb = shade(Sampled(centre, slope, density, 0.0), material.rgb);
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_gradient(centre, level));
+    let rgb = shade(VolumeSample(centre, slope, density, 0.0), material.rgb);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));

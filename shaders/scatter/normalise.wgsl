@@ -1,5 +1,5 @@
-// What was splatted into the grid, divided by its weights (P §3.5): the attenuation volume. One thread
-// per voxel; those that another view of the light owns stay as they are.
+// Normalisation of the splatted light by its weights (P §3.5), into the attenuation volume. One thread per voxel;
+// voxels of other views of the light are left unchanged.
 #import "scatter/slab.wgsl"
 #import "common/listed_bricks.wgsl"
 
@@ -19,9 +19,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     if (any(voxel >= scatter.light_dims)) {
         return;
     }
-    let at = locate((vec3f(voxel) + 0.5) * scatter.voxel_step - 0.5);
+    let at = project_to_sheets((vec3f(voxel) + 0.5) * scatter.voxel_step - 0.5);
     let spread = 1.0 + at.z * scatter.frame.inverse_distance;
-    // Pixels from the axis, times w.
+    // Distance from the axis in pixels, times w.
     let across = at.xy + scatter.first_pixel * spread;
     let limit = spread / max(scatter.frame.inverse_distance * scatter.frame.pitch, 1e-20);
     if (!(spread > 0.0 && all(abs(across) <= vec2f(limit * 1.00001))) && scatter.cube_face != 0u) {

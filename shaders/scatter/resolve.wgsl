@@ -1,4 +1,4 @@
-// What was composited pixel by pixel becomes the picture.
+// Copy of the accumulated rays into the picture.
 #import "scatter/slab.wgsl"
 
 @group(0) @binding(0) var<storage, read> rays: array<vec4f>;

@@ -1,90 +1,90 @@
-// Splatting as the paper has it (P §3.5, figure 3): what all its passes know about the slab at hand.
+// Slab parameters shared by all passes that splat literally, like the paper (P §3.5, figure 3).
 #import "common/sizes.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
-struct Scatter {
-    frame: SheetFrame,
-    // Index space to (w·i, w·j, z) with w = 1 + z · inverse_distance, which is linear: three rows.
+struct ScatterSlabUniform {
+    frame: SheetFrameUniform,
+    // Index space to (w·i, w·j, z) with w = 1 + z · inverse_distance, a linear map: three rows.
     sheets_from_index_x: vec4f,
     sheets_from_index_y: vec4f,
     sheets_from_index_z: vec4f,
     // Half the extents of a kernel in (w·i, w·j, z).
-    half: vec3f,
-    // How many times wider the kernel is than in index space.
+    half_extents: vec3f,
+    // Width of the kernel relative to that in index space.
     stretch: f32,
-    // Voxels.
+    // Number of voxels along x, y and z.
     dims: vec3f,
-    // The slab.
+    // Index of the slab.
     k: u32,
     bricks: vec3i,
-    // Layers of the ring of sheets.
+    // Number of layers in the ring of sheets.
     layers: u32,
-    // First of the bricks listed for this slab …
+    // Index of the slab's first brick in the list.
     first: u32,
-    // … and how many there are.
+    // Number of bricks listed for this slab.
     count: u32,
     // Weight of a pixel in the grid: pixels per voxel face.
     pixel_share: f32,
-    // Data voxels per voxel of the light volume.
+    // Number of data voxels per voxel of the light volume, along an axis.
     voxel_step: f32,
-    // Voxels of the light volume.
+    // Number of voxels of the light volume along x, y and z.
     light_dims: vec3u,
-    // 1 when the view owns only the quarter-space around its axis.
+    // 1 if the view is a cube face, which covers only the quarter-space around its axis.
     cube_face: u32,
     first_pixel: vec2f,
-    // Sheets of the stack.
+    // Number of sheets in the stack.
     sheet_count: u32,
-    // Sheets along the volume: slice k is first_slice + k · slice_step …
+    // Volume-aligned sheets: sheet k is the slice first_slice + k · slice_step.
     first_slice: f32,
-    // … along this axis of index space.
+    // Axis of index space across which the slices lie.
     axis: vec3f,
     slice_step: f32,
-    // The largest extinction that there is: sums of extinctions are in units of it.
+    // Maximum extinction of the transfer function, the unit of summed extinctions.
     extinction_unit: f32,
     pad0: f32,
     pad1: f32,
     pad2: f32,
 }
 
-// What is splatted: densities; extinctions of voxels, for lights; or densities and, for the eye, colours
-// and extinctions of voxels.
+// Splatted quantity: densities; extinctions of voxels, for lights; or densities with, for the eye, colours and
+// extinctions of voxels.
 const SPLAT_DENSITY = 0u;
 const SPLAT_EXTINCTION = 1u;
 const SPLAT_MATERIAL = 2u;
 
 override SPLAT: u32 = 0u;
 
-// What the sheets are, src/model/settings/mod.rs: across the line of sight, slices of voxels, or single
-// footprints.
+// Order of sheets (src/model/settings/mod.rs): across the line of sight, slices of voxels, or single footprints.
 const ORDER_IMAGE_ALIGNED = 0u;
 const ORDER_VOLUME_ALIGNED = 1u;
 const ORDER_EVERY_FOOTPRINT = 2u;
 
 override ORDER: u32 = 0u;
 
-@group(1) @binding(5) var<uniform> bound_scatter: Scatter;
-var<private> scatter: Scatter;
-// Sums of density × footprint in units of 2⁻²⁴: integers, so that their order does not matter.
+@group(1) @binding(5) var<uniform> bound_scatter: ScatterSlabUniform;
+var<private> scatter: ScatterSlabUniform;
+// Sums of density × footprint in units of 2⁻²⁴: integers, so that the order of summation does not matter.
 @group(1) @binding(6) var<storage, read_write> sheets: array<atomic<i32>>;
 
-// One, as sums hold it: far below what 8 or 16 bits of density show, and room for sums up to 128.
-const UNIT = 16777216.0;
+// Fixed-point representation of 1: the resolution is far below that of 8- or 16-bit densities, with headroom for sums
+// up to 128.
+const FIXED_POINT_ONE = 16777216.0;
 
 fn sheet_index(pixel: vec2u, k: u32) -> u32 {
     return (k % scatter.layers * scatter.frame.size.y + pixel.y) * scatter.frame.size.x + pixel.x;
 }
 
-// A further sum of the same pixel: of SPLAT_MATERIAL 1 … 4.
+// Index of another sum of the same pixel: channels 1 … 4 of SPLAT_MATERIAL.
 fn channel_index(first: u32, channel: u32) -> u32 {
     return first + channel * scatter.layers * scatter.frame.size.x * scatter.frame.size.y;
 }
 
-// The slice of voxels that is sheet k.
+// Slice of voxels of sheet k.
 fn slice_of(k: f32) -> f32 {
     return scatter.first_slice + k * scatter.slice_step;
 }
 
-// Where a ray meets a sheet, in depth, and how much of the ray's depth the sheet stands for.
+// Depth at which a ray crosses a sheet, and thickness of the sheet along the ray, in depth.
 struct Crossing {
     depth: f32,
     thickness: f32,
@@ -99,8 +99,8 @@ fn crossing_of(ray: Ray, k: f32) -> Crossing {
     return Crossing((slice_of(k) - dot(scatter.axis, ray.origin)) / least, 1.0 / abs(least));
 }
 
-// Where an index-space point is seen.
-fn locate(p: vec3f) -> vec3f {
+// Projection of an index-space point: (w·i, w·j, z).
+fn project_to_sheets(p: vec3f) -> vec3f {
     let point = vec4f(p, 1.0);
     return vec3f(
         dot(scatter.sheets_from_index_x, point),
@@ -109,16 +109,16 @@ fn locate(p: vec3f) -> vec3f {
     );
 }
 
-// The brick of a point; what lies beyond the grid belongs to the bricks at its border.
-fn brick_near(p: vec3f) -> vec3i {
+// Brick that contains a point; outside the grid, the nearest at its border.
+fn nearest_brick(p: vec3f) -> vec3i {
     return clamp(vec3i(floor(p / BRICK_EDGE)), vec3i(0), scatter.bricks - 1);
 }
 
-// The brick of a point in the grid or up to two voxels around it; −1 elsewhere.
+// Brick of a point within two voxels of the grid; −1 elsewhere.
 fn brick_with_material(p: vec3f) -> vec3i {
-    // Some slack for faces that lie exactly in the middle of a slab.
+    // Slack for faces exactly in the middle of a slab.
     if (any(p < vec3f(-2.00001)) || any(p > scatter.dims + 1.00001)) {
         return vec3i(-1);
     }
-    return brick_near(p);
+    return nearest_brick(p);
 }

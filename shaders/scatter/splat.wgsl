@@ -1,13 +1,13 @@
-// Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a
-// slab. Voxels come from lists; no texture is sampled.
+// Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a slab. Voxels are
+// read from lists; no texture is sampled.
 #import "density/table.wgsl"
 #import "scatter/footprint.wgsl"
 #import "common/listed_bricks.wgsl"
 #import "scatter/voxels.wgsl"
 
-// Bricks of a slab: coordinates of ten bits each, and where the brick's voxels begin.
+// Bricks of a slab: packed coordinates of ten bits each, and the word where their voxels begin.
 @group(0) @binding(0) var<storage, read> bricks: array<vec2u>;
-// How many footprints were splatted.
+// Number of footprints splatted.
 @group(0) @binding(2) var<storage, read_write> splats: atomic<u32>;
 
 @compute @workgroup_size(8, 8, 4)
@@ -22,15 +22,15 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let density = voxel_density(brick.y, voxel % BRICK_EDGE);
     let material = classify(density);
     let extinction = material.a / scatter.extinction_unit;
-    // What lies beyond the grid is no voxel.
+    // Bricks may extend beyond the grid, where there are no voxels.
     if (any(vec3f(voxel) >= scatter.dims) || (density == 0.0 && (SPLAT == SPLAT_DENSITY || extinction == 0.0))) {
         return;
     }
     let centre = vec3f(voxel);
-    let seen = locate(centre);
+    let seen = project_to_sheets(centre);
     let depth = depth_of(scatter.frame, f32(scatter.k));
     if (ORDER == ORDER_IMAGE_ALIGNED) {
-        if (abs(seen.z - depth) >= scatter.half.z + 0.5 * scatter.frame.slab) {
+        if (abs(seen.z - depth) >= scatter.half_extents.z + 0.5 * scatter.frame.slab) {
             return;
         }
     } else if (dot(scatter.axis, centre) != slice_of(f32(scatter.k))) {
@@ -53,12 +53,12 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
                 weight = whole_footprint(centre, ray, stretch_of(seen.z)) / crossing_of(ray, 0.0).thickness;
             }
             let at = sheet_index(vec2u(pixel), scatter.k);
-            let share = i32(round(value * weight * UNIT));
+            let share = i32(round(value * weight * FIXED_POINT_ONE));
             if (share != 0) {
                 atomicAdd(&sheets[at], share);
             }
             if (SPLAT == SPLAT_MATERIAL && extinction * weight > 0.0) {
-                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * UNIT)));
+                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * FIXED_POINT_ONE)));
                 atomicAdd(&sheets[channel_index(at, 1u)], sums.r);
                 atomicAdd(&sheets[channel_index(at, 2u)], sums.g);
                 atomicAdd(&sheets[channel_index(at, 3u)], sums.b);

@@ -1,10 +1,10 @@
-// The list of voxels that scattering takes them from (src/gpu/scatter/voxels.rs).
+// Voxel list of the scattering engine (src/gpu/scatter/voxels.rs).
 #import "common/sizes.wgsl"
 
-// Densities of 8³ voxels per brick, two to a word, as 16-bit normalised numbers.
+// Densities of 8³ voxels per brick, two per word, as 16-bit normalised numbers.
 @group(0) @binding(6) var<storage, read> voxels: array<u32>;
 
-// A voxel of the brick whose words begin at `first`.
+// Density of a voxel of the brick whose words begin at `first`.
 fn voxel_density(first: u32, local: vec3u) -> f32 {
     let at = local.x + BRICK_EDGE * (local.y + BRICK_EDGE * local.z);
     let pair = unpack2x16unorm(voxels[first + at / 2u]);

@@ -1,10 +1,11 @@
-// Light that material has scattered before (bounces/outcome.wgsl), as passes that shade look it up.
-struct Bounces {
-    // Index space to texture coordinates of the volume: (p + ½) × lookup.
+// Scattered light (bounces/outcome.wgsl), as shading passes look it up.
+struct ScatteredLightUniform {
+    // Scale from index space to texture coordinates: (p + ½) × lookup.
     lookup: vec3f,
-    // How far in front of a surface it is looked up, in scene units: what is closer is the surface itself.
-    ahead: f32,
-    // What is given back of it, as a share of the colour.
+    // Distance in front of a surface at which light is looked up, in scene units: nearer blocks contain the surface
+    // itself.
+    lookup_distance: f32,
+    // Reflected fraction, multiplied by the colour.
     share: f32,
     pad0: f32,
     pad1: f32,

@@ -1,4 +1,4 @@
-// What is left of each light that material attenuates, in their order: volumes, or maps of the floor.
+// Attenuation volumes of the shadowed lights, in their order, or the floor's maps.
 @group(2) @binding(0) var attenuation_0: texture_3d<f32>;
 @group(2) @binding(1) var attenuation_1: texture_3d<f32>;
 @group(2) @binding(2) var attenuation_2: texture_3d<f32>;

@@ -1,36 +1,36 @@
-// Phong's illumination with attenuated light (P eq. 2–4).
-#import "common/left.wgsl"
+// Phong's illumination model with attenuated light (P eq. 2–4).
+#import "common/transmittance.wgsl"
 
 const MAX_LIGHTS = 8;
 
-struct Light {
-    // Unit direction towards a parallel light, or the position of a perspective one; scene space.
-    place: vec3f,
+struct LightUniform {
+    // Unit direction towards a parallel light, or position of a perspective one, in scene space.
+    position_or_direction: vec3f,
     // 0: parallel, 1: perspective.
     perspective: f32,
     // Linear colour × intensity.
     color: vec3f,
-    // Multiplies the extinction that this light meets.
+    // Factor applied to extinction for this light.
     extinction_scale: f32,
-    // Index space to texture coordinates of that volume: (p + ½) × lookup.
+    // Scale from index space to texture coordinates of its volume: (p + ½) × lookup.
     lookup: vec3f,
-    // Of the hood: cosines of the angles up to which it shines fully, and from which it does not.
-    hood_inner: f32,
-    // From the light to what it shines at; a unit vector.
-    hood_axis: vec3f,
-    hood_outer: f32,
-    // By how much the last step of rays nearby is longer: half a voxel of its volume, in scene units.
-    near_ahead: f32,
-    // Of a light that has a size (src/model/settings/light/area.rs): point lights that stand for it, or 1 …
+    // Cosine of the cone's inner angle, up to which the light is full; hood_outer is where it ends.
+    cone_cos_inner: f32,
+    // Axis of the cone, a unit vector from the light towards its target.
+    cone_axis: vec3f,
+    cone_cos_outer: f32,
+    // Additional length of the last near-field step: half a voxel of the light volume, in scene units.
+    last_step_extension: f32,
+    // Number of points on an area light (src/model/settings/light/area_light.rs), or 1.
     points: u32,
-    // … 1: a disc, 2: a rectangle, 3: a ball …
+    // Shape of the area light: 1 disc, 2 rectangle, 3 ball.
     shape: u32,
-    // … how many steps rays nearby take towards it …
+    // Number of near-field steps towards the light.
     near_steps: u32,
-    // … and from its middle to its borders: to the right, up, and towards the volume. Around the place, or of a parallel
-    // light around its direction.
+    // Vectors from the centre of the area light to its borders: right, up, and towards the volume. Relative to the
+    // place, or for a parallel light to its direction.
     area_right: vec3f,
-    // 1: surfaces take its diffuse light from both sides.
+    // 1 if surfaces take its diffuse light on both sides.
     two_sided: f32,
     area_up: vec3f,
     pad0: f32,
@@ -38,11 +38,11 @@ struct Light {
     pad1: f32,
 }
 
-// The golden ratio less one.
+// Golden ratio minus one.
 const GOLDEN_SHARE = 0.618034;
 
-// Point number `index` of `count` on a disc of radius 1, in rings.
-fn on_rings(index: u32, count: u32) -> vec2f {
+// Point `index` of `count` on a disc of radius 1, arranged in rings.
+fn point_on_disc(index: u32, count: u32) -> vec2f {
     let all = f32(count);
     let rings = max(floor(sqrt(all) / 2.0 + 0.5), 1.0);
     let each = all / (rings * rings);
@@ -58,50 +58,50 @@ fn on_rings(index: u32, count: u32) -> vec2f {
     return vec2f(cos(turn), sin(turn)) * sqrt((first + end) / (2.0 * all));
 }
 
-// A light's point number `index`, as a light of its own.
-fn point_of(light: Light, index: u32) -> Light {
+// Point `index` of an area light, as a point light.
+fn area_light_point(light: LightUniform, index: u32) -> LightUniform {
     var one = light;
     if (light.points > 1u) {
         let number = f32(index);
         let at = (number + 0.5) / f32(light.points);
         let spread = fract(number * GOLDEN_SHARE + 0.5);
-        let disc = on_rings(index, light.points);
+        let disc = point_on_disc(index, light.points);
         let across = select(disc, vec2f(2.0 * at, 2.0 * spread) - 1.0, light.shape == 2u);
         let deep = sqrt(1.0 - dot(disc, disc)) * sin(3.1415927 * (spread - 0.5));
-        let place = light.place + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
-        one.place = select(normalize(place), place, light.perspective > 0.5);
-        one.hood_axis = -normalize(place);
+        let place = light.position_or_direction + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
+        one.position_or_direction = select(normalize(place), place, light.perspective > 0.5);
+        one.cone_axis = -normalize(place);
     }
     return one;
 }
 
-struct Towards {
+struct LightDirection {
     // Unit vector to the light.
     direction: vec3f,
-    // To the light; of a parallel one, beyond all material.
+    // Distance to the light; for a parallel one, beyond all material.
     distance: f32,
-    // One over the length of the light's place as seen from there.
+    // One over the distance to the light's place, also for parallel lights.
     per_length: f32,
 }
 
-fn to_light(light: Light, position: vec3f) -> Towards {
-    let away = light.place - position * light.perspective;
+fn to_light(light: LightUniform, position: vec3f) -> LightDirection {
+    let away = light.position_or_direction - position * light.perspective;
     let distance = length(away);
     let per_length = 1.0 / max(distance, 1e-9);
-    return Towards(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
+    return LightDirection(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
 }
 
-// The square of the sine of half the width of a light as it is seen from somewhere; 0 of a point.
-fn width_seen(light: Light, towards: Towards) -> f32 {
+// Squared sine of half the angular width of a light; 0 for a point light.
+fn angular_width(light: LightUniform, towards: LightDirection) -> f32 {
     let mean_square = 0.5 * (dot(light.area_right, light.area_right) + dot(light.area_up, light.area_up));
     let tangent = mean_square * towards.per_length * towards.per_length;
     return tangent / (1.0 + tangent);
 }
 
-// Of a disc of radius 1 whose middle stands at a height above the horizon, from −1 to 1: the share that has risen, and how
-// high the middle of that stands.
-fn risen_disc(height: f32) -> vec2f {
-    // Just below, f32 has too few digits for what is left; the middle of a thin segment stands at 2/5 of its height.
+// Part of a disc of radius 1 above the horizon, for a centre at a height from −1 to 1: fraction of its area, and
+// height of the centroid.
+fn disc_above_horizon(height: f32) -> vec2f {
+    // Below −0.98, f32 lacks the precision for the remainder; the centroid of a thin segment is at 2/5 of its height.
     let u = clamp(height, -0.98, 1.0);
     let quarter = 1.5707963 + asin(u);
     let root = sqrt(1.0 - u * u);
@@ -112,106 +112,107 @@ fn risen_disc(height: f32) -> vec2f {
     return vec2f(share_of_all, select(moment / share, 0.4 * low, height < -0.98));
 }
 
-// A light as a plane sees it.
-struct Risen {
-    // Towards the middle of what stands above the plane's horizon.
-    towards: Towards,
-    // Cosine between the plane's normal and the direction to the light's own middle …
+// Part of a light above the horizon of a surface.
+struct HorizonClip {
+    // Direction to the centroid of the part above the horizon.
+    towards: LightDirection,
+    // Cosine between the surface normal and the direction to the light's centre.
     middle: f32,
-    // … and the mean of those to all that stands above.
+    // Mean cosine over the part above the horizon.
     facing: f32,
-    // The share of the light that does. Light that comes past the plane is no more than that.
+    // Fraction of the light above the horizon, which bounds the light that can arrive.
     share: f32,
 }
 
-// `weight`: how much of a surface the plane is, which turns the direction.
-fn risen_above(light: Light, towards: Towards, normal: vec3f, weight: f32) -> Risen {
-    let half_width = sqrt(width_seen(light, towards));
+// Computes the part of a light above the horizon; `weight` is the surfaceness, which scales the turn of the
+// direction.
+fn clip_to_horizon(light: LightUniform, towards: LightDirection, normal: vec3f, weight: f32) -> HorizonClip {
+    let half_width = sqrt(angular_width(light, towards));
     let facing = dot(normal, towards.direction);
-    // One point that stands for all is risen or not.
+    // A single point is either above the horizon or below.
     if (light.points == 1u || half_width <= max(facing, 0.0)) {
-        return Risen(towards, facing, facing, 1.0);
+        return HorizonClip(towards, facing, facing, 1.0);
     }
     let height = facing / half_width;
-    let disc = risen_disc(height);
-    // Where nothing has risen there is nothing to turn to; it turns back by and by.
+    let disc = disc_above_horizon(height);
+    // With nothing above the horizon there is no centroid; the direction returns gradually to the centre.
     let up = select(disc.y - height, max(2.0 + height, 0.0), height < -1.0) * half_width * weight;
     let direction = normalize(towards.direction + normal * up);
-    let turned = Towards(direction, towards.distance, towards.per_length);
-    return Risen(turned, facing, disc.y * half_width, disc.x);
+    let turned = LightDirection(direction, towards.distance, towards.per_length);
+    return HorizonClip(turned, facing, disc.y * half_width, disc.x);
 }
 
-// What a hood leaves of the light in a direction: 3t² − 2t³ across the rim.
-fn hood_share(light: Light, to_light: vec3f) -> f32 {
-    return smoothstep(light.hood_outer, light.hood_inner, -dot(light.hood_axis, to_light));
+// Smooth step across the rim of the light's cone: 3t² − 2t³.
+fn cone_attenuation(light: LightUniform, to_light: vec3f) -> f32 {
+    return smoothstep(light.cone_cos_outer, light.cone_cos_inner, -dot(light.cone_axis, to_light));
 }
 
-struct Shading {
+struct ShadingUniform {
     emission: f32,
     ambient: f32,
     diffuse: f32,
     specular: f32,
     shininess: f32,
-    // Gradient per scene unit at which a sample counts half as a surface.
+    // Gradient per scene unit at which the surfaceness is one half.
     surface_gradient: f32,
     strength: f32,
     ambient_offset: f32,
     gain: f32,
-    // Length of the step towards the light before looking up its attenuation, in scene units.
+    // Offset towards the light of the attenuation look-up, in scene units.
     bias: f32,
     // Distance between the samples of a ray to a light, in scene units.
     ray_step: f32,
-    // Optical depth at which it ends.
-    dark_depth: f32,
-    // Of light that matter without a surface scatters, the mean cosine of the angle by which it turns.
+    // Optical depth at which a ray to a light ends.
+    max_optical_depth: f32,
+    // Mean cosine of the scattering angle in material without a surface.
     anisotropy: f32,
     pad0: f32,
     pad1: f32,
     pad2: f32,
 }
 
-// What is lit: a sample of the volume.
+// Sample of the volume that is lit.
 struct Surface {
-    // In scene space …
+    // Position in scene space.
     position: vec3f,
-    // … and in index space.
+    // Position in index space.
     point: vec3f,
     normal: vec3f,
-    // How much of a surface it is: 0 amid homogeneous material, 1 at a boundary.
+    // Surfaceness: 0 within homogeneous material, 1 at a boundary.
     surfaceness: f32,
     // Unit vector to the eye.
     to_eye: vec3f,
-    // 1 where opacity falls along the normal, −1 where it falls against it, and between them amid a change.
+    // 1 where opacity falls along the normal, −1 where it rises; in between where it changes over.
     side: f32,
-    // Of the pyramid, as stretched as the kernel of the sample.
+    // Pyramid level for the stretch of the sample's kernel.
     level: f32,
 }
 
-// Lights that cast shadows light the side of a surface to which opacity falls, and highlights lie there, too.
+// Shadowed lights light only the side of a surface to which opacity falls; highlights appear on that side, too.
 override ONE_SIDED: bool = false;
 
-// Widths of the steps towards a light, in smallest edges of voxels: ½ ½ 1 1 1½ 1½ 2.
-fn near_width(step: u32) -> f32 {
+// Lengths of the near-field steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
+fn near_step_length(step: u32) -> f32 {
     return 0.5 * f32(1u + (step >> 1u));
 }
 
-struct Lit {
+struct ReflectedLight {
     diffuse: vec3f,
     specular: vec3f,
 }
 
-// Attenuated light as it reaches the sample, after the cures for darkness (P §4).
-fn received(shading: Shading, attenuation: Left) -> Left {
-    let light = min(shading.gain * attenuation + shading.ambient_offset, Left(1.0));
+// Attenuated light at the sample, after the cures for darkness (P §4).
+fn apply_shadow_cures(shading: ShadingUniform, attenuation: Transmittance) -> Transmittance {
+    let light = min(shading.gain * attenuation + shading.ambient_offset, Transmittance(1.0));
     return 1.0 - shading.strength * (1.0 - light);
 }
 
-// What matter without a surface scatters of light towards the eye, over the mean of all directions: Henyey and Greenstein's
-// phase function times 4π, (1 − g²) / (1 + g² − 2 g cos θ)^(3/2).
-fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
+// Phase function of material without a surface, relative to isotropic scattering: that of Henyey and Greenstein times
+// 4π, (1 − g²) / (1 + g² − 2 g cos θ)^(3/2).
+fn relative_phase_function(shading: ShadingUniform, surface: Surface, to_light: vec3f) -> f32 {
 #if ANISOTROPIC
     let g = shading.anisotropy;
-    // Light that goes on as it came turns by nothing.
+    // The scattering angle is 0 for light that continues in its direction.
     let cosine = -dot(to_light, surface.to_eye);
     let span = 1.0 + g * g - 2.0 * g * cosine;
     return (1.0 - g * g) / (span * sqrt(span));
@@ -220,9 +221,10 @@ fn scattered_share(shading: Shading, surface: Surface, to_light: vec3f) -> f32 {
 #endif
 }
 
-// What of a light diffuse reflection gives back of which a share arrives, without what has not risen, of which `unmissed`
-// counts as if it had; and `amid` of it where there is no surface.
-fn diffuse_share(light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32, amid: f32) -> Left {
+// Diffusely reflected fraction of a light of which `share` arrives. The part below the horizon is subtracted;
+// `unmissed` is the part of the light that counts even if it is below. `amid` is the factor for material without a
+// surface.
+fn diffuse_reflectance(light: LightUniform, surface: Surface, risen: HorizonClip, share: Transmittance, unmissed: f32, amid: f32) -> Transmittance {
     var reflected = share * abs(risen.middle);
     if (ONE_SIDED) {
         let outer = 0.5 + 0.5 * abs(surface.side);
@@ -233,25 +235,25 @@ fn diffuse_share(light: Light, surface: Surface, risen: Risen, share: Left, unmi
     return mix(share * amid, reflected, surface.surfaceness);
 }
 
-// What one light adds of which a given share arrives, and of which highlights show the width. `unmissed`: what counts of
-// that share that has not risen.
+// Diffuse and specular light of one light of which `share` arrives; highlights show its angular width. `unmissed` is
+// the part of the light that counts even if it is below the horizon.
 //
-// A highlight (N·H)^n is about a Gaussian of variance 1/n; light from an even disc of radius s moves H by half of what it
-// moves itself, which adds s²/16 to that, and the highlight is weaker as it is wider.
-fn reflect_light(shading: Shading, light: Light, surface: Surface, risen: Risen, share: Left, unmissed: f32) -> Lit {
+// A highlight (N·H)^n is approximately a Gaussian of variance 1/n. Light from a uniform disc of radius s moves H by
+// half its own deflection, which adds s²/16 to the variance, and the highlight dims as it widens.
+fn reflect_light(shading: ShadingUniform, light: LightUniform, surface: Surface, risen: HorizonClip, share: Transmittance, unmissed: f32) -> ReflectedLight {
     let to_light = risen.towards.direction;
-    // Highlights have one side: that to which density falls, or opacity.
+    // Highlights are one-sided: on the side to which density falls, or opacity if ONE_SIDED.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     let clear = select(1.0, abs(surface.side), ONE_SIDED);
-    let amid = scattered_share(shading, surface, to_light);
-    let diffuse = light.color * diffuse_share(light, surface, risen, share, unmissed, amid);
+    let amid = relative_phase_function(shading, surface, to_light);
+    let diffuse = light.color * diffuse_reflectance(light, surface, risen, share, unmissed, amid);
     let half_vector = to_light + surface.to_eye;
-    // pow(0, x) is spared: some drivers make it NaN.
+    // Avoids pow(0, x), which is NaN on some drivers.
     let aligned = max(turned * dot(surface.normal, half_vector) / max(length(half_vector), 1e-6), 1e-6);
-    let width = width_seen(light, risen.towards);
+    let width = angular_width(light, risen.towards);
     let wider = 1.0 / (1.0 + shading.shininess * width / 16.0);
     let mirrored = pow(aligned, shading.shininess * wider) * wider;
     let is_before = turned * dot(surface.normal, to_light) > 0.0;
     let highlight = select(0.0, mirrored, is_before) * surface.surfaceness * clear;
-    return Lit(diffuse, light.color * share * highlight);
+    return ReflectedLight(diffuse, light.color * share * highlight);
 }

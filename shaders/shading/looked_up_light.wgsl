@@ -1,6 +1,6 @@
-// Shadowed lights for passes that cast no rays: what is left of one is in its light volume.
+// Attenuation of shadowed lights for passes that cast no rays: looked up in the light volumes.
 #import "shading/shade.wgsl"
 
-fn attenuation_at(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    return looked_up(light, volume, biased(surface, towards));
+fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
+    return lookup_attenuation(light, volume, biased_point(surface, towards));
 }

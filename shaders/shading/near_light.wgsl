@@ -1,30 +1,32 @@
-// Short rays from samples towards lights (P eq. 8 for the first voxels of the way), in front of what light volumes know.
+// Near-field rays: short rays from samples towards lights (P eq. 8 for the first voxels), in front of the light
+// volumes.
 #import "density/lighting_density.wgsl"
 #import "density/table.wgsl"
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
 
-// Steps of the near field (src/model/settings/shadows.rs), or none. Towards lights that have a size they are fewer.
+// Maximum number of near-field steps (src/model/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
 
-// Light as a ray finds it close by, and as its volume knows it from there on: a volume blurs what lies within a voxel
-// or two, which is where a surface shades itself. The last step goes half a voxel of the light volume further, to where
-// the trilinear fetch sees little of what the ray has met already; no piece of the way is left out. Every sample looks
-// light up equally far away, so that light volumes hold no more than that takes (src/plan/geometry/ahead.rs).
-fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
-    let forward = to_index(eye.space, towards.direction);
+// Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
+// or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
+// where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
+// omitted. All samples look up light at the same distance, so that light volumes need no larger extent
+// (src/plan/geometry/near_field_cells.rs).
+fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
+    let forward = index_from_scene_vector(eye.space, towards.direction);
     var way = 0.0;
-    var depth = Left(0.0);
+    var depth = Transmittance(0.0);
     var step = 0u;
     loop {
-        // Further steps are none: drivers unroll a loop whose end they know.
+        // Excess steps have length 0: drivers unroll a loop with a known end.
         let is_taken = select(0.0, 1.0, step < light.near_steps);
         let width =
-            is_taken * near_width(step) * eye.near_edge + select(0.0, light.near_ahead, step + 1u == light.near_steps);
+            is_taken * near_step_length(step) * eye.voxel_edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = met_nearly(lighting_density(p, surface.level));
-        depth += extinction * share_that_shades(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
+        let extinction = nearest_lighting_extinction(lighting_density(p, surface.level));
+        depth += extinction * shading_fraction(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;
         if (step >= NEAR_STEPS) {
@@ -32,14 +34,14 @@ fn near_light(light: Light, volume: texture_3d<f32>, surface: Surface, towards: 
         }
     }
     let end = surface.point + forward * way;
-    return exp(-depth * light.extinction_scale) * looked_up(light, volume, end);
+    return exp(-depth * light.extinction_scale) * lookup_attenuation(light, volume, end);
 }
 
-// What is left of a light that has a volume.
-fn near_or_looked_up(light: Light, volume: texture_3d<f32>, surface: Surface, towards: Towards) -> Left {
+// Attenuation of a light that has a volume.
+fn shadowed_light(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
 #if NEAR_STEPS
-    return near_light(light, volume, surface, towards);
+    return near_field_attenuation(light, volume, surface, towards);
 #else
-    return looked_up(light, volume, biased(surface, towards));
+    return lookup_attenuation(light, volume, biased_point(surface, towards));
 #endif
 }

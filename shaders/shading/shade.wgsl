@@ -1,6 +1,6 @@
-// What the picture's samples look like: material, lights, and what of them arrives (P eq. 2–5).
+// Shading of samples: material, lights, and their attenuation (P eq. 2–5).
 //
-// The shader that imports this says what is left of a shadowed light, by attenuation_at().
+// The importing shader provides the attenuation of a shadowed light, as attenuation_at().
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
@@ -11,96 +11,97 @@
 #import "density/cut.wgsl"
 #import "shading/light_volumes.wgsl"
 
-struct Eye {
-    frame: SheetFrame,
-    shading: Shading,
-    space: Space,
-    // The eye in scene space; w is 0 for an orthographic camera, whose eye is the direction to it.
+struct EyeUniform {
+    frame: SheetFrameUniform,
+    shading: ShadingUniform,
+    space: SpaceUniform,
+    // Eye in scene space; w is 0 for an orthographic camera, for which it is the direction to the eye.
     eye: vec4f,
-    // Rows of this dispatch start here.
+    // First row of this dispatch.
     first_row: u32,
-    // One beyond the last row of this dispatch.
+    // End of the rows of this dispatch, exclusive.
     end_row: u32,
-    // Of scattered sheets: bricks beyond an occupied one in which sums are complete.
+    // Distance from occupied bricks, in bricks, within which sums of scattered sheets are complete.
     dilation: i32,
-    // The ray ends when less than this is left of its transmittance.
-    dark: f32,
-    // Gradients from sheets are differences between so many pixels and slabs to either side.
+    // Minimum transmittance, at which the ray ends.
+    min_transmittance: f32,
+    // Distances of gradients from sheets, in pixels and slabs to either side.
     gradient_pixels: i32,
     gradient_slabs: i32,
-    // Runs of rows of tiles (sheets/tiles.wgsl).
+    // Number of interleaved runs of tile rows (sheets/tiles.wgsl).
     runs: u32,
-    // Smallest edge of a voxel, in scene units: the widths of the near field are in these.
-    near_edge: f32,
-    // Index space to texture coordinates of the volume into which lights have been combined.
+    // Shortest edge of a voxel, in scene units; unit of the near-field steps.
+    voxel_edge: f32,
+    // Scale from index space to texture coordinates of the combined light volume.
     combined_lookup: vec3f,
     pad0: f32,
-    // What is seen.
-    seen: Cut,
-    // The same within the grid: where solids end.
-    faces: Cut,
-    // What attenuates light.
-    shading_cut: Cut,
-    sky: Sky,
-    bounces: Bounces,
-    lights: array<Light, MAX_LIGHTS>,
+    // Region that is visible.
+    visible_cut: CutUniform,
+    // Region that is visible, limited to the grid: the faces of solids.
+    face_cut: CutUniform,
+    // Region that attenuates light.
+    shading_cut: CutUniform,
+    sky: SkyUniform,
+    scattered_light: ScatteredLightUniform,
+    lights: array<LightUniform, MAX_LIGHTS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_eye: Eye;
-var<private> eye: Eye;
+@group(0) @binding(0) var<uniform> bound_eye: EyeUniform;
+var<private> eye: EyeUniform;
 
-// Lights that are on; those with an attenuation volume come first.
+// Number of lights that are on; those with an attenuation volume come first.
 override LIGHTS: u32 = 1u;
-// How many of them have one, or would have.
+// Number of lights that cast shadows.
 override SHADOWED: u32 = 1u;
-// The diffuse light of those that have one is in the first volume, as colours (P §4).
+// Set if the first volume holds the diffuse light of all shadowed lights, as colours (P §4).
 override COMBINED: bool = false;
 
-// Where the light of a sample is looked up: the bias nearer to the source.
-fn biased(surface: Surface, towards: Towards) -> vec3f {
-    return surface.point + to_index(eye.space, towards.direction) * eye.shading.bias;
+// Point where a sample's light is looked up: offset towards the light by the bias.
+fn biased_point(surface: Surface, towards: LightDirection) -> vec3f {
+    return surface.point + index_from_scene_vector(eye.space, towards.direction) * eye.shading.bias;
 }
 
-// A light as the side of a surface sees it to which opacity falls.
-fn seen_by(light: Light, surface: Surface) -> Risen {
+// Light above the horizon of the side of a surface to which opacity falls.
+fn light_above_surface(light: LightUniform, surface: Surface) -> HorizonClip {
     let towards = to_light(light, surface.position);
     if (ONE_SIDED) {
         let outward = surface.normal * select(1.0, -1.0, surface.side < 0.0);
-        return risen_above(light, towards, outward, surface.surfaceness * abs(surface.side) * (1.0 - light.two_sided));
+        return clip_to_horizon(light, towards, outward, surface.surfaceness * abs(surface.side) * (1.0 - light.two_sided));
     }
     let facing = dot(surface.normal, towards.direction);
-    return Risen(towards, facing, facing, 1.0);
+    return HorizonClip(towards, facing, facing, 1.0);
 }
 
-// What its light volume says of a light at an index-space point.
-fn looked_up(light: Light, volume: texture_3d<f32>, p: vec3f) -> Left {
-    return stored_left(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
+// Attenuation of a light at an index-space point, from its volume.
+fn lookup_attenuation(light: LightUniform, volume: texture_3d<f32>, p: vec3f) -> Transmittance {
+    return stored_transmittance(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
 
-fn lit_by(index: u32, volume: texture_3d<f32>, surface: Surface) -> Lit {
+fn light_from(index: u32, volume: texture_3d<f32>, surface: Surface) -> ReflectedLight {
     let light = eye.lights[index];
-    let risen = seen_by(light, surface);
-    let share = received(eye.shading, attenuation_at(light, volume, surface, risen.towards));
-    // Without shadows nothing keeps away what has not risen.
+    let risen = light_above_surface(light, surface);
+    let share = apply_shadow_cures(eye.shading, attenuation_at(light, volume, surface, risen.towards));
+    // With weaker shadows, light below the horizon counts in part.
     return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
 }
 
-fn add(a: Lit, b: Lit) -> Lit {
-    return Lit(a.diffuse + b.diffuse, a.specular + b.specular);
+fn add_light(a: ReflectedLight, b: ReflectedLight) -> ReflectedLight {
+    return ReflectedLight(a.diffuse + b.diffuse, a.specular + b.specular);
 }
 
-// A sample of the volume.
-struct Sampled {
-    // In index space.
+// Sample of the volume.
+struct VolumeSample {
+    // Position in index space.
     point: vec3f,
     // Gradient in scene space.
     slope: vec3f,
     density: f32,
-    // Of the pyramid, as stretched as its kernel.
+    // Pyramid level for the stretch of the sample's kernel.
     level: f32,
 }
 
-// To which side of a surface opacity falls; of voxels that were classified, whose densities are opacities, away from them.
+// Side of a surface to which opacity falls; for pre-classified voxels, whose densities are opacities, always
+// outwards.
 fn side_at(density: f32) -> f32 {
 #if PRECLASSIFY
     return 1.0;
@@ -109,31 +110,32 @@ fn side_at(density: f32) -> f32 {
 #endif
 }
 
-// The gradient, in scene space, that faces of what is seen have of their own, the grid's included: into the solid that
-// ends there, in which opacity rises, as density does or against it. `rising` is how presence rises there.
+// Gradient, in scene space, of the faces of the visible region, including those of the grid: into the solid, in the
+// direction in which density rises or, if opacity falls with density, against it. `rising` is the gradient of
+// presence.
 fn face_slope(p: vec3f, level: f32, density: f32, rising: vec3f) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
 #if PRECLASSIFY
-    // What voxels mean ends with them by itself.
-    let faces = face_gradient(eye.seen, p, level);
+    // Pre-classified materials end with their voxels.
+    let faces = face_gradient(eye.visible_cut, p, level);
 #else
 #if MISSING
-    // Beyond the grid, too, nothing is there.
-    let faces = face_gradient(eye.seen, p, level) + rising;
+    // Presence includes the faces of the grid.
+    let faces = face_gradient(eye.visible_cut, p, level) + rising;
 #else
-    let faces = face_gradient(eye.faces, p, level);
+    let faces = face_gradient(eye.face_cut, p, level);
 #endif
 #endif
     return turned * gradient_to_scene(eye.space, faces);
 }
 
-fn surface_of(found: Sampled) -> Surface {
+fn surface_of(found: VolumeSample) -> Surface {
     let p = found.point;
     let slope = found.slope;
     let steepness = length(slope);
     let s = eye.shading;
     let steep2 = steepness * steepness;
-    let position = place_of(eye.space, p);
+    let position = scene_from_index(eye.space, p);
     let away = eye.eye.xyz - position * eye.eye.w;
     return Surface(
         position,
@@ -146,46 +148,47 @@ fn surface_of(found: Sampled) -> Surface {
     );
 }
 
-// The light of all lights that material attenuates.
-fn lit_through_material(surface: Surface) -> Lit {
-    var lit = Lit(vec3f(0.0), vec3f(0.0));
+// Light of all lights that cast shadows.
+fn shadowed_light_sum(surface: Surface) -> ReflectedLight {
+    var lit = ReflectedLight(vec3f(0.0), vec3f(0.0));
 #if SHADOWED > 0
-    lit = add(lit, lit_by(0u, attenuation_0, surface));
+    lit = add_light(lit, light_from(0u, attenuation_0, surface));
 #endif
 #if SHADOWED > 1
-    lit = add(lit, lit_by(1u, attenuation_1, surface));
+    lit = add_light(lit, light_from(1u, attenuation_1, surface));
 #endif
 #if SHADOWED > 2
-    lit = add(lit, lit_by(2u, attenuation_2, surface));
+    lit = add_light(lit, light_from(2u, attenuation_2, surface));
 #endif
 #if SHADOWED > 3
-    lit = add(lit, lit_by(3u, attenuation_3, surface));
+    lit = add_light(lit, light_from(3u, attenuation_3, surface));
 #endif
 #if SHADOWED > 4
-    lit = add(lit, lit_by(4u, attenuation_4, surface));
+    lit = add_light(lit, light_from(4u, attenuation_4, surface));
 #endif
 #if SHADOWED > 5
-    lit = add(lit, lit_by(5u, attenuation_5, surface));
+    lit = add_light(lit, light_from(5u, attenuation_5, surface));
 #endif
 #if SHADOWED > 6
-    lit = add(lit, lit_by(6u, attenuation_6, surface));
+    lit = add_light(lit, light_from(6u, attenuation_6, surface));
 #endif
 #if SHADOWED > 7
-    lit = add(lit, lit_by(7u, attenuation_7, surface));
+    lit = add_light(lit, light_from(7u, attenuation_7, surface));
 #endif
     return lit;
 }
 
-// Some way in front of a surface, on the side from which light comes; amid matter, the sample itself. In index space.
-fn in_front(surface: Surface, way: f32) -> vec3f {
+// Point at a distance in front of a surface, on its lit side; the sample itself within homogeneous material. In index
+// space.
+fn point_in_front(surface: Surface, way: f32) -> vec3f {
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
-    return surface.point + to_index(eye.space, surface.normal) * (turned * surface.surfaceness * way);
+    return surface.point + index_from_scene_vector(eye.space, surface.normal) * (turned * surface.surfaceness * way);
 }
 
-// The light of the sky on a sample, as a share of its colour.
-fn lit_by_sky(surface: Surface) -> vec3f {
+// Light of the sky at a sample, to be multiplied by its colour.
+fn sky_light(surface: Surface) -> vec3f {
 #if SKY
-    return reflect_sky(eye.sky, surface, in_front(surface, eye.sky.ahead), eye.shading.strength);
+    return reflect_sky(eye.sky, surface, point_in_front(surface, eye.sky.lookup_distance), eye.shading.strength);
 #else
     return vec3f(0.0);
 #endif
@@ -195,43 +198,43 @@ fn lit_by_sky(surface: Surface) -> vec3f {
 @group(2) @binding(9) var bounced_texture: texture_3d<f32>;
 #endif
 
-// The light on a sample that material has scattered before, as a share of its colour.
-fn lit_by_bounces(surface: Surface) -> vec3f {
+// Scattered light at a sample, to be multiplied by its colour.
+fn scattered_light(surface: Surface) -> vec3f {
 #if BOUNCES
-    let bounces = eye.bounces;
-    let place = (in_front(surface, bounces.ahead) + 0.5) * bounces.lookup;
+    let bounces = eye.scattered_light;
+    let place = (point_in_front(surface, bounces.lookup_distance) + 0.5) * bounces.lookup;
     return bounces.share * textureSampleLevel(bounced_texture, clamped, place, 0.0).rgb;
 #else
     return vec3f(0.0);
 #endif
 }
 
-// The light from a sample.
-fn shade(found: Sampled, material: vec3f) -> vec3f {
+// Light from a sample towards the eye.
+fn shade(found: VolumeSample, material: vec3f) -> vec3f {
     let s = eye.shading;
     let p = found.point;
     let surface = surface_of(found);
-    var lit: Lit;
+    var lit: ReflectedLight;
     if (COMBINED) {
-        lit = Lit(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
+        lit = ReflectedLight(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
     } else {
-        lit = lit_through_material(surface);
+        lit = shadowed_light_sum(surface);
     }
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
-        // Not from the copy: an index that varies would keep that as an array in memory.
+        // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let light = bound_eye.lights[i];
-        let risen = seen_by(light, surface);
-        let share = hood_share(light, risen.towards.direction);
-        lit = add(lit, reflect_light(s, light, surface, risen, Left(share), share));
+        let risen = light_above_surface(light, surface);
+        let share = cone_attenuation(light, risen.towards.direction);
+        lit = add_light(lit, reflect_light(s, light, surface, risen, Transmittance(share), share));
     }
-    let around = lit_by_sky(surface) + lit_by_bounces(surface);
+    let around = sky_light(surface) + scattered_light(surface);
     return material * (s.emission + s.ambient + around + s.diffuse * lit.diffuse) + s.specular * lit.specular;
 }
 
-// The gradient in scene space from differences of the sheets: per pixel to the right, per pixel down
-// and per unit of depth. With the columns of J what a step of each kind moves the sample, it is J⁻ᵀ of
-// the differences (the paper's [16], for any projection and voxel shape). Sheets lie across the line of
-// sight, or across an axis of index space if it is not zero.
+// Gradient in scene space from differences of sheets: per pixel to the right, per pixel down and per unit of depth.
+// If the columns of J are the displacements of the sample by these steps, it is J⁻ᵀ times the differences (the
+// paper's [16], for any projection and voxel shape). Sheets lie across the line of sight, or across `axis` in index
+// space if that is not zero.
 fn gradient_of_sheets(pixel: vec2f, depth: f32, differences: vec3f, axis: vec3f) -> vec3f {
     let frame = eye.frame;
     let forward = ray_of(frame, pixel).direction;

@@ -1,16 +1,15 @@
-// A ray from a point of the volume towards a light (P eq. 7 and 8). The shader that imports this
-// says what attenuates light, by ray_extinction(frame, ray, k) and light_distance(cell).
-#import "common/left.wgsl"
+// Shadow ray: ray marching from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides
+// extinction and cell distances, as ray_extinction(frame, ray, k) and light_distance(cell).
+#import "common/transmittance.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
 
-// Whether the first sample lies a whole step from the point, as P eq. 7 and 8 have it, or in the
-// middle of the first step.
+// Places the first sample a whole step from the point, as P eq. 7 and 8 have it, instead of in the middle of the
+// first step.
 override DEPOSIT_FRONT: bool = false;
 
-// The transmittance between the point p and what lies `reach` scene units further along `direction`,
-// a unit vector of the scene given in index space. Extinctions are multiplied by `scale`; beyond the
-// optical depth `dark` nothing is added, and nothing outside of `cut`.
+// Transmittance from the point p to `reach` scene units along `direction`, a unit vector of the scene given in index
+// space. Extinction is multiplied by `scale` and limited to `cut`; the ray ends at the optical depth `dark`.
 fn shadow_ray(
     p: vec3f,
     direction: vec3f,
@@ -18,23 +17,23 @@ fn shadow_ray(
     ray_step: f32,
     scale: f32,
     dark: f32,
-    cut: Cut,
-) -> Left {
-    // A stack of sheets of its own: the ray's points are the middles of its slabs.
-    var frame: SheetFrame;
+    cut: CutUniform,
+) -> Transmittance {
+    // The ray as a stack of sheets: its sample points are the middles of the slabs.
+    var frame: SheetFrameUniform;
     frame.first_depth = select(0.0, 0.5 * ray_step, DEPOSIT_FRONT);
     frame.slab = ray_step;
     frame.voxel_edge = 1.0;
-    // Whole slabs; what is left of the way after them is a shorter one.
+    // Whole slabs; the rest of the distance is a shorter one.
     frame.slab_count = u32(clamp((reach - frame.first_depth) / ray_step, 0.0, 65535.0));
     let ray = Ray(p, direction, 1.0);
     let span = span_within(cut, ray);
     let inside = slabs_within(frame, span, slabs_inside(frame, ray));
-    let walk = walk_along(frame, ray);
+    let walk = cell_ray(frame, ray);
     var k = inside.x;
-    var depth = Left(0.0);
+    var depth = Transmittance(0.0);
     loop {
-        // A loop of its own, as in the eye pass.
+        // A loop of its own for empty-space skipping, as in the eye pass.
         loop {
             if (k > inside.y) {
                 break;
@@ -44,14 +43,14 @@ fn shadow_ray(
             if (empty <= 0) {
                 break;
             }
-            k = leap(walk, k, cell, empty);
+            k = skip_empty_cells(walk, k, cell, empty);
         }
         if (k > inside.y) {
             break;
         }
-        let share = share_that_shades(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
+        let share = shading_fraction(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
         depth += ray_extinction(frame, ray, f32(k)) * share * ray_step * scale;
-        if (least_of(depth) > dark) {
+        if (min_component(depth) > dark) {
             break;
         }
         k += 1;
@@ -60,7 +59,7 @@ fn shadow_ray(
     let end = p + direction * reach;
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
-        let share = share_that_shades(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
+        let share = shading_fraction(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
         depth += ray_extinction(frame, ray, 0.0) * share * frame.slab * scale;
     }
     return exp(-depth);

@@ -1,11 +1,12 @@
-// A sky whose radiance is linear in the direction (src/model/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
-struct Sky {
-    // For each colour the slope l₁, in scene space, and the mean l₀.
+// Sky whose radiance is linear in the direction (src/model/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
+struct SkyUniform {
+    // Slope l₁, in scene space, and mean l₀ for each colour.
     red: vec4f,
     green: vec4f,
     blue: vec4f,
-    // Index space to texture coordinates of the volume.
+    // Scale from index space to texture coordinates of the sky volume.
     lookup: vec3f,
-    // How far in front of a surface it is looked up, in scene units: what is closer is the surface itself.
-    ahead: f32,
+    // Distance in front of a surface at which visibility is looked up, in scene units: nearer blocks contain the
+    // surface itself.
+    lookup_distance: f32,
 }

@@ -1,5 +1,5 @@
-// Light from all around (src/model/settings/light/sky.rs): radiance that is linear in the direction, through
-// what is open of the sky. SKY: 1 nothing is in its way, 2 a volume says what is.
+// Light of the sky (src/model/settings/light/sky.rs): radiance that is linear in the direction, times sky visibility.
+// SKY: 1 for an unoccluded sky, 2 for visibility from a volume.
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/sky.wgsl"
@@ -7,8 +7,8 @@
 // V₁ in rgb, V₀ in a: see sky/moments.wgsl.
 @group(2) @binding(8) var sky_texture: texture_3d<f32>;
 
-// The moments at an index-space point.
-fn openness(sky: Sky, p: vec3f, strength: f32) -> vec4f {
+// Moments of sky visibility at an index-space point.
+fn sky_moments(sky: SkyUniform, p: vec3f, strength: f32) -> vec4f {
 #if SKY > 1
     let stored = textureSampleLevel(sky_texture, clamped, (p + 0.5) * sky.lookup, 0.0);
     return mix(vec4f(0.0, 0.0, 0.0, 1.0), stored, strength);
@@ -17,23 +17,23 @@ fn openness(sky: Sky, p: vec3f, strength: f32) -> vec4f {
 #endif
 }
 
-// Of one colour: what matter without a surface receives, and the irradiance over π of surfaces that face along the normal
-// and against it. A₀ = l₀ V₀ + l₁ · V₁, A₁ = l₀ V₁ + l₁ V₀ / 3, E/π = A₀ ± 2 n · A₁.
-fn sky_on(color: vec4f, open: vec4f, normal: vec3f) -> vec3f {
+// Light of the sky in one colour: mean radiance for material without a surface, and the irradiance over π of surfaces
+// that face along and against the normal. A₀ = l₀ V₀ + l₁ · V₁, A₁ = l₀ V₁ + l₁ V₀ / 3, E/π = A₀ ± 2 n · A₁.
+fn sky_irradiance(color: vec4f, open: vec4f, normal: vec3f) -> vec3f {
     let mean = color.a * open.a + dot(color.rgb, open.rgb);
     let facing = 2.0 * dot(normal, color.a * open.rgb + color.rgb * (open.a / 3.0));
     return max(vec3f(mean, mean + facing, mean - facing), vec3f(0.0));
 }
 
-// What a surface gives back of it, as a share of its colour.
-fn reflect_sky(sky: Sky, surface: Surface, p: vec3f, strength: f32) -> vec3f {
-    let open = openness(sky, p, strength);
-    // A surface of two sides takes the brighter.
+// Reflected light of the sky, to be multiplied by the colour.
+fn reflect_sky(sky: SkyUniform, surface: Surface, p: vec3f, strength: f32) -> vec3f {
+    let open = sky_moments(sky, p, strength);
+    // Two-sided surfaces take the brighter side.
     let along = select(1.0, 0.5 + 0.5 * surface.side, ONE_SIDED);
     let shares = vec3f(1.0 - surface.surfaceness, surface.surfaceness * along, surface.surfaceness * (1.0 - along));
-    let red = sky_on(sky.red, open, surface.normal);
-    let green = sky_on(sky.green, open, surface.normal);
-    let blue = sky_on(sky.blue, open, surface.normal);
+    let red = sky_irradiance(sky.red, open, surface.normal);
+    let green = sky_irradiance(sky.green, open, surface.normal);
+    let blue = sky_irradiance(sky.blue, open, surface.normal);
     if (ONE_SIDED) {
         return vec3f(dot(red, shares), dot(green, shares), dot(blue, shares));
     }

@@ -1,6 +1,6 @@
-// What attenuates the light of a sky, in listed blocks of voxels: the mean extinction of eight places in each, or of the
-// one voxel that a block is, as optical depth per shortest edge of a voxel. In all others is nothing, and around the grid is
-// a block of nothing.
+// Extinction of listed blocks of voxels, for the sky's light: mean extinction of eight sample points in each (or of
+// the single voxel), as optical depth per shortest edge of a voxel. Other blocks are empty, and so is a border around
+// the grid.
 #import "sky/places.wgsl"
 #import "common/listed_cells.wgsl"
 
@@ -20,7 +20,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     var sum = 0.0;
     for (var corner = 0u; corner < 8u; corner += 1u) {
-        sum += extinction_at(place_in(id, corner));
+        sum += extinction_at(block_sample_point(id, corner));
     }
     textureStore(extinction, id + 1u, vec4f(sum * blocks.edge / 8.0));
 }

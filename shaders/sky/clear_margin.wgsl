@@ -1,4 +1,4 @@
-// Around what is filled all of the sky is open: only previews look there.
+// Clearing of the margin around the filled blocks, which only previews look up: the whole sky is visible there.
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(0) var<storage, read> cells: array<u32>;

@@ -1,20 +1,20 @@
-// What a floor sees of the sky: for places on a map of it the light that falls on a surface which faces up, as moments over
-// the directions above, C₀ = 4 ⟨T max(n·ω, 0)⟩ and C₁ = 4 ⟨T max(n·ω, 0) ω⟩: E/π = l₀ C₀ + l₁ · C₁. Places lie beside and
-// under the grid, too, where rays end that have passed it by or gone through it. The cosine is in the directions, which are
-// denser above.
+// Sky visibility on the floor, for the texels of a map: irradiance of a surface that faces up, as moments over the
+// directions above, C₀ = 4 ⟨T max(n·ω, 0)⟩ and C₁ = 4 ⟨T max(n·ω, 0) ω⟩: E/π = l₀ C₀ + l₁ · C₁. Texels also lie
+// beside and under the grid, where rays end that have missed it or passed through it. The cosine is in the density of
+// directions, which are denser towards the zenith.
 #import "sky/rays.wgsl"
 #import "sky/floor_place.wgsl"
 
-// What is left of each ray where it meets the floor, a layer for each direction (sky/floor_sweep.wgsl).
+// Transmittance of each ray where it meets the floor, a layer for each direction (sky/floor_sweep.wgsl).
 @group(0) @binding(1) var left: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // C₁ in rgb, C₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 
-// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+// Number of directions in a batch. A constant rather than a uniform, because drivers unroll loops with a known end.
 override DIRECTIONS: u32 = 4u;
-// Whether it is the last, and the mean is known.
+// Set for the last batch, which stores the mean.
 override IS_LAST: bool = true;
 
 @compute @workgroup_size(8, 8)
@@ -29,11 +29,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        // Beyond the first and the last rays there is nothing in their way.
-        let ray = clamp(place_among(rays, block).xy, vec2f(-1.0), vec2f(rays.size) - 1.0);
+        // Beyond the first and the last rays there is no occlusion.
+        let ray = clamp(ray_coordinates(rays, block).xy, vec2f(-1.0), vec2f(rays.size) - 1.0);
         let place = vec3f(ray + 1.5, f32(i) + 0.5) * sweep.sheet_scale;
         let passed = textureSampleLevel(left, clamped, place, 0.0).r;
-        sum += rays.weight * passed * vec4f(rays.towards, 1.0);
+        sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }
     if (IS_LAST) {
         textureStore(moments, vec3u(id.xy, 0u), sum * map.share);

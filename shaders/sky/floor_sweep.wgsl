@@ -1,5 +1,5 @@
-// The march of a sky's light to a floor: one thread per ray follows it to the slice in which it meets the floor, and keeps
-// what is left of it there, a texel for each ray. Before them lies a row and a column of rays that pass the grid by.
+// Sweep of the sky's light down to the floor: one thread per ray follows it to the slice in which it meets the floor,
+// and stores the transmittance there, one texel per ray. A row and a column of rays that miss the grid precede them.
 #import "sky/near.wgsl"
 #import "sky/floor_place.wgsl"
 #import "common/slab_mean.wgsl"
@@ -8,10 +8,10 @@
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var left: texture_storage_3d<STORAGE_FORMAT, write>;
 
-// The slice in which a ray meets the floor, between slices, before the first or behind the last.
-fn slice_of_floor(rays: SkyRays, start: vec2f, last: f32) -> f32 {
-    let begin = turned_from(rays, vec3f(select(last, 0.0, rays.rises == 1u), start));
-    let step = turned_from(rays, vec3f(select(-1.0, 1.0, rays.rises == 1u), rays.drift));
+// Slice in which a ray meets the floor; fractional, and possibly before the first or behind the last.
+fn slice_of_floor(rays: SweepRaysUniform, start: vec2f, last: f32) -> f32 {
+    let begin = from_sweep_axes(rays, vec3f(select(last, 0.0, rays.is_ascending == 1u), start));
+    let step = from_sweep_axes(rays, vec3f(select(-1.0, 1.0, rays.is_ascending == 1u), rays.drift));
     return (map.plane.w - dot(map.plane.xyz, begin)) / dot(map.plane.xyz, step);
 }
 
@@ -19,13 +19,13 @@ fn slice_of_floor(rays: SkyRays, start: vec2f, last: f32) -> f32 {
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
     map = bound_map;
-    // Not from the copy: an index that varies would keep that as an array in memory.
+    // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
     let rays = bound_sweep.rays[id.z];
     if (any(id.xy > rays.size)) {
         return;
     }
     let ray = max(id.xy, vec2u(1u)) - 1u;
-    let size = turned_to(rays, vec3f(sweep.dims));
+    let size = to_sweep_axes(rays, vec3f(sweep.dims));
     let last = size.x - 1.0;
     let start = vec2f(ray) + rays.first;
     let span = slices_of_ray(rays, ray, start, size);
@@ -33,10 +33,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let is_beside = any(id.xy == vec2u(0u));
     var t = 1.0;
     for (var n = span.x; n <= select(min(span.y, end), -1.0, is_beside); n += 1.0) {
-        let slice = select(last - n, n, rays.rises == 1u);
-        let block = turned_from(rays, vec3f(slice, start + rays.drift * n));
+        let slice = select(last - n, n, rays.is_ascending == 1u);
+        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
         let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;
-        t *= select(exp(-tau), slab_mean(tau), n == end);
+        t *= select(exp(-tau), slab_mean_transmittance(tau), n == end);
     }
     textureStore(left, vec3u(id.xy, id.z), vec4f(t));
 }

@@ -1,19 +1,20 @@
-// How open to the sky each listed block is: its mean transmittance over directions, V₀, and the mean of transmittance times
-// direction, V₁, gathered from the rays of a batch around its middle, and added to those of the batches before.
+// Moments of sky visibility at listed blocks: mean transmittance over directions, V₀, and mean of transmittance times
+// direction, V₁, gathered from the rays of a batch around each block's centre and added to the sums of earlier
+// batches.
 #import "sky/rays.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-// A sum for each of the listed blocks.
+// Sums of the moments, one for each listed block.
 @group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // V₁ in rgb, V₀ in a.
 @group(0) @binding(4) var moments: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(5) var<storage, read> cells: array<u32>;
 
-// Rays of a batch. Not a number of the uniform's: drivers lay out a loop whose end they know.
+// Number of directions in a batch. A constant rather than a uniform, because drivers unroll loops with a known end.
 override DIRECTIONS: u32 = 4u;
-// Whether it is the last, and the mean is known.
+// Set for the last batch, which stores the mean.
 override IS_LAST: bool = true;
 
 @compute @workgroup_size(64)
@@ -31,10 +32,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = place_among(rays, vec3f(id));
+        let ray = ray_coordinates(rays, vec3f(id));
         let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
         let passed = textureSampleLevel(sheets, clamped, place, 0.0).r;
-        sum += rays.weight * passed * vec4f(rays.towards, 1.0);
+        sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }
     if (IS_LAST) {
         textureStore(moments, id, sum * sweep.share);

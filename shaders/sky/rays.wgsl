@@ -1,65 +1,65 @@
-// Parallel rays through blocks of voxels, and where blocks lie among them (src/plan/geometry/sweep.rs).
+// Parallel rays through blocks of voxels, and the position of blocks among them (src/plan/geometry/sweep.rs).
 
-// Most directions of a batch.
+// Maximum number of directions in a batch.
 const MAX_SKY_RAYS = 8;
 
-struct SkyRays {
-    // Unit vector towards where the light comes from, in scene space.
-    towards: vec3f,
-    // Shortest edges of a voxel from slice to slice.
+struct SweepRaysUniform {
+    // Unit vector towards the light, in scene space.
+    direction_to_light: vec3f,
+    // Path length from slice to slice, in shortest edges of a voxel.
     step: f32,
-    // Blocks that rays get further from slice to slice, along the axes that follow that of the slices.
+    // Shift of the rays from slice to slice, in blocks, along the two axes that follow that of the slices.
     drift: vec2f,
-    // Where ray (0, 0) crosses the first slice.
+    // Position where ray (0, 0) crosses the first slice.
     first: vec2f,
     size: vec2u,
-    // The slices lie across it.
+    // Axis across which the slices lie.
     axis: u32,
-    // 1 where light goes up the axis.
-    rises: u32,
-    // The light that comes from there, where what is marched is light and not what is left of it (bounces/sweep.wgsl).
-    arriving: vec3f,
-    // Layer of its first slice.
+    // 1 if light travels up the axis, else 0.
+    is_ascending: u32,
+    // Radiance that arrives from this direction, for sweeps of light rather than transmittance (bounces/sweep.wgsl).
+    incoming_radiance: vec3f,
+    // Layer of the first slice in the sheets.
     layer: u32,
-    // 1, or 0 where a batch has fewer.
+    // 1, or 0 for unused entries of a batch.
     weight: f32,
-    // Of its tiles among those of the batch.
+    // Index of the first tile of this direction among those of the batch.
     first_tile: u32,
     pad0: f32,
     pad1: f32,
 }
 
-struct Sweep {
-    // Blocks.
+struct SweepUniform {
+    // Number of blocks along x, y and z.
     dims: vec3u,
-    // The mean over all directions, from their sum.
+    // One over the number of directions, which turns the sum into the mean.
     share: f32,
-    // Of the textures of blocks, with those around the grid, and of sheets: one over their sizes.
+    // One over the sizes of the block textures (including the border) and of the sheets.
     block_scale: vec3f,
-    // 0 in the first batch.
+    // 0 in the first batch, else 1.
     has_sums: f32,
     sheet_scale: vec3f,
     pad0: f32,
-    rays: array<SkyRays, MAX_SKY_RAYS>,
+    rays: array<SweepRaysUniform, MAX_SKY_RAYS>,
 }
 
-@group(0) @binding(0) var<uniform> bound_sweep: Sweep;
-var<private> sweep: Sweep;
+@group(0) @binding(0) var<uniform> bound_sweep: SweepUniform;
+var<private> sweep: SweepUniform;
 
-// The components of a block, or of the grid's size: along the axis of the slices, and the two that follow.
-fn turned_to(rays: SkyRays, block: vec3f) -> vec3f {
+// Permutes the components of a block or of the grid's size: along the axis of the slices, then the two that follow.
+fn to_sweep_axes(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
 }
 
-// And back.
-fn turned_from(rays: SkyRays, turned: vec3f) -> vec3f {
+// Inverse of turned_to.
+fn from_sweep_axes(rays: SweepRaysUniform, turned: vec3f) -> vec3f {
     return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
 }
 
-// Where a place in blocks lies: among the rays, in xy, and at which slice, in z.
-fn place_among(rays: SkyRays, block: vec3f) -> vec3f {
-    let turned = turned_to(rays, block);
-    let last = turned_to(rays, vec3f(sweep.dims)).x - 1.0;
-    let n = select(last - turned.x, turned.x, rays.rises == 1u);
+// Position of a point in block coordinates among the rays, in xy, and its slice, in z.
+fn ray_coordinates(rays: SweepRaysUniform, block: vec3f) -> vec3f {
+    let turned = to_sweep_axes(rays, block);
+    let last = to_sweep_axes(rays, vec3f(sweep.dims)).x - 1.0;
+    let n = select(last - turned.x, turned.x, rays.is_ascending == 1u);
     return vec3f(turned.yz - rays.drift * n - rays.first, n);
 }

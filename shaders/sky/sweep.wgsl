@@ -1,5 +1,5 @@
-// The march of a sky's light along parallel rays: one thread per ray walks slices of blocks, and stores for each the
-// transmittance that it deposits there, as the light pass does (sheets/march.wgsl).
+// Sweep of the sky's light along parallel rays: one thread per ray walks through slices of blocks, and stores the
+// transmittance that it deposits in each, like the light pass does (sheets/march.wgsl).
 #import "sky/rays.wgsl"
 #import "sky/near.wgsl"
 #import "common/slab_mean.wgsl"
@@ -11,21 +11,21 @@
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     sweep = bound_sweep;
-    // Not from the copy: an index that varies would keep that as an array in memory.
+    // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
     let rays = bound_sweep.rays[id.z];
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let size = turned_to(rays, vec3f(sweep.dims));
+    let size = to_sweep_axes(rays, vec3f(sweep.dims));
     let last = size.x - 1.0;
     let start = vec2f(id.xy) + rays.first;
     let span = slices_of_ray(rays, id.xy, start, size);
     var t = 1.0;
     for (var n = span.x; n <= span.y; n += 1.0) {
-        let slice = select(last - n, n, rays.rises == 1u);
-        let block = turned_from(rays, vec3f(slice, start + rays.drift * n));
+        let slice = select(last - n, n, rays.is_ascending == 1u);
+        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
         let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(t * slab_mean(tau)));
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(t * slab_mean_transmittance(tau)));
         t *= exp(-tau);
     }
 }

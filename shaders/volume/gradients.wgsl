@@ -1,5 +1,5 @@
-// Gradients of a level of the pyramid at its texels, so that one fetch replaces six: differences between
-// neighbours and linear interpolation between texels may be taken in either order.
+// Gradients of a pyramid level at its texels, so that one fetch replaces twelve: differences between neighbours and
+// linear interpolation between texels commute.
 #import "volume/levels.wgsl"
 
 @group(0) @binding(0) var source: texture_3d<f32>;
@@ -9,8 +9,8 @@ fn value(texel: vec3i) -> f32 {
     return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
 }
 
-// Change of the density per texel (density/gradient.wgsl).
-fn slope_along(texel: vec3i, step: vec3i) -> f32 {
+// Derivative of the density per texel (density/gradient.wgsl).
+fn derivative_along(texel: vec3i, step: vec3i) -> f32 {
     let near = value(texel + step) - value(texel - step);
     let far = value(texel + 2 * step) - value(texel - 2 * step);
     return (8.0 * near - far) / 12.0;
@@ -19,15 +19,15 @@ fn slope_along(texel: vec3i, step: vec3i) -> f32 {
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(gradients))) {
         return;
     }
     let at = vec3i(texel);
     let slopes = vec3f(
-        slope_along(at, vec3i(1, 0, 0)),
-        slope_along(at, vec3i(0, 1, 0)),
-        slope_along(at, vec3i(0, 0, 1)),
+        derivative_along(at, vec3i(1, 0, 0)),
+        derivative_along(at, vec3i(0, 1, 0)),
+        derivative_along(at, vec3i(0, 0, 1)),
     );
     // Texels of the level are `spacing` voxels apart.
     textureStore(gradients, texel, vec4f(slopes / resample.spacing, 0.0));

@@ -1,35 +1,35 @@
-// Level 0 of classified voxels: what each of them means, blurred as densities are (volume/prefilter.wgsl). First the
-// extinction as a share of the table's largest, then colours times that, so that all of it can be summed.
+// Pre-classification, level 0: materials of the voxels, blurred like densities (volume/prefilter.wgsl). Extinction
+// relative to the table's maximum first, then colours times that, so that all channels can be summed.
 //
 // A workgroup classifies its 8 × 8 × 4 texels and those around them, each once.
 #import "density/stored_presence.wgsl"
 #import "density/table.wgsl"
 #import "volume/levels.wgsl"
 
-// Voxels, with the border once more around them.
+// Density texture, with a border of one voxel.
 @group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(2) var level: texture_storage_3d<rgba16float, write>;
-// The share of what is blurred that lies on voxels that are there.
+// Presence: the fraction of the blur on existing voxels.
 @group(0) @binding(4) var presence_level: texture_3d<f32>;
 
 const WIDTH = 10u;
 const DEPTH = 6u;
 const COUNT = 600u;
-// Invocations of a workgroup.
+// Number of invocations in a workgroup.
 const INVOCATIONS = 256u;
 
 var<workgroup> voxels: array<vec4f, COUNT>;
 
-// What a voxel means; beyond the grid is nothing.
-fn meaning(place: vec3i) -> vec4f {
+// Material of a voxel; 0 outside the grid.
+fn voxel_material(place: vec3i) -> vec4f {
     let last = vec3i(textureDimensions(source)) - 1;
-    // Texels of the border are no voxels.
+    // Texels of the border are not voxels.
     let voxel = clamp(place + 1, vec3i(1), last - 1);
     let material = classify(textureLoad(source, voxel, 0).r);
-    // The largest of all entries.
+    // Maximum over all entries.
     let share = material.a / max(table.peaks[10u * TABLE_SIZE], 1e-20);
 #if MISSING
-    // Others stand in for voxels that are missing, and the sum fades with what is there.
+    // Neighbours stand in for missing voxels, and the sum is multiplied by presence.
     let is_there = true;
 #else
     let is_there = all(voxel == place + 1);
@@ -45,11 +45,11 @@ fn main(
 ) {
     resample = bound_resample;
     let listed = min(listed_brick(group), resample.bricks - 1u);
-    // The pyramid begins four voxels before the grid, and the blur a texel before those that are filled.
+    // The pyramid begins four voxels before the grid, and the blur one texel before those that are filled.
     let first = vec3i(voxel_in(bricks[listed], group, vec3u(0u))) - 5;
     for (var turn = 0u; turn < COUNT; turn += INVOCATIONS) {
         let at = min(turn + index, COUNT - 1u);
-        voxels[at] = meaning(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
+        voxels[at] = voxel_material(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
     }
     workgroupBarrier();
     var sum = vec4f(0.0);
@@ -64,12 +64,12 @@ fn main(
             }
         }
     }
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }
 #if MISSING
-    sum *= share_stored(textureLoad(presence_level, texel, 0));
+    sum *= decode_presence(textureLoad(presence_level, texel, 0));
 #endif
     textureStore(level, texel, sum);
 }

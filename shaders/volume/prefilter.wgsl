@@ -1,4 +1,4 @@
-// Level 0 of the pyramid.
+// Prefiltered density, level 0 of the pyramid.
 #import "volume/prefiltered.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<STORAGE_FORMAT, write>;
@@ -6,7 +6,7 @@
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }

@@ -1,5 +1,5 @@
-// Level 0 of the pyramid where voxels are missing: the volume blurred (volume/prefilter.wgsl), and beside it the share of
-// that kernel which lies on voxels that are there, so that one fetch says both.
+// Prefiltered density and presence, level 0 of the pyramid of a volume with missing voxels: the blurred volume
+// (volume/prefilter.wgsl), and the fraction of the blur on existing voxels, both available in one fetch.
 #import "volume/prefiltered.wgsl"
 #import "density/stored_presence.wgsl"
 
@@ -9,10 +9,10 @@
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
-    let texel = texel_of(group, local);
+    let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }
-    let share = share_stored(textureLoad(presence_level, texel, 0));
+    let share = decode_presence(textureLoad(presence_level, texel, 0));
     textureStore(level, texel, vec4f(prefiltered(texel), share, 0.0, 0.0));
 }

@@ -1,11 +1,11 @@
-// What the levels of a pyramid are made with: eight linear fetches around a texel.
+// Separable filtering for pyramid levels: eight linear fetches around a texel.
 #import "volume/levels.wgsl"
 
 @group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(1) var clamped: sampler;
 
-// The mean of the fetches at the corners of a cube of half width `offset`, in texels of the source:
-// a product of the kernels that the shaders derive.
+// Mean of the fetches at the corners of a cube of half width `offset`, in texels of the source: a separable kernel,
+// derived where it is used.
 fn mean_around(centre: vec3f, offset: f32) -> vec4f {
     let scale = 1.0 / vec3f(textureDimensions(source));
     var sum = vec4f(0.0);

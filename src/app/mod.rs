@@ -1,16 +1,16 @@
-//! The window.
+//! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! Panels change one [`Settings`] value; the viewport turns it into a picture. Whatever renders does so on a thread
-//! beside the window's: the render worker, the loader, the search for lights, exports, contact sheets, slices of light
-//! volumes, and the measurement of the brightness. So does what goes through all voxels: first looks for another kind of
-//! data, and of an object that stands another way up; and what reads files of others, looks and sessions included.
-//! Panels see settings and read-only facts.
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
+//! the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
+//! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
+//! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
+//! included. Panels see settings and read-only facts.
 
 mod common;
-mod kept;
+mod kept_views;
 mod layout;
-mod memory;
 mod panels;
+mod persistence;
 mod shell;
 mod start;
 mod text;
@@ -20,11 +20,11 @@ mod windows;
 mod worker;
 
 #[cfg(feature = "cli")]
-pub(crate) use self::memory::end_in_a_hurry;
+pub(crate) use self::persistence::save_before_termination;
+pub use self::start::desktop_error::show_on_desktop;
 pub use self::start::error::AppError;
-pub use self::start::no_adapter::show_on_desktop;
-pub use self::start::options::{Adjustment, Options};
-pub use self::start::run::{run, storage_folder, wgpu_setup};
+pub use self::start::main_loop::{run, storage_folder, wgpu_setup};
+pub use self::start::options::{SettingsAdjustment, WindowOptions};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,162 +32,162 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::give_up::GiveUp;
+use self::common::drag_cancel::DragCancel;
 use self::common::{light_keys, reveal, shortcuts};
 use self::shell::file_tasks::FileTasks;
 use self::shell::status_file;
-use self::windows::files;
+use self::windows::file_dialogs;
 
-use self::common::commands::Command;
+use self::common::commands::AppCommand;
 use self::common::volume_facts::VolumeFacts;
-use self::kept::Strip;
-use self::layout::Layout;
-use self::memory::{Memory, RecentPictures};
-use self::shell::first_lights::{FirstLights, Seeking};
-use self::shell::history::{History, Listed};
-use self::shell::keep_balanced::KeepBalanced;
-use self::shell::messages::Messages;
-use self::shell::object::corrected::Corrected;
-use self::shell::object::framed::Framed;
-use self::shell::object::treat_as::Treated;
-use self::shell::object::upright::Upright;
-use self::shell::opening::{Neighbour, PendingLook};
-use self::shell::session::Session;
+use self::kept_views::KeptStrip;
+use self::layout::WindowLayout;
+use self::persistence::{PersistentState, RecentThumbnails};
+use self::shell::auto_balance::AutoBalance;
+use self::shell::history::{History, HistoryWindow};
+use self::shell::light_placement::{LightPlacement, LightSearchTask};
+use self::shell::messages::MessageLog;
+use self::shell::object::corrections::CorrectionState;
+use self::shell::object::data_kind::KindOverride;
+use self::shell::object::orientation::OrientationTasks;
+use self::shell::object::outline::OutlineCache;
+use self::shell::opening::{NeighbourSearch, PendingLook};
+use self::shell::session::SessionFile;
 use self::shell::status_file::StatusFile;
-use self::start::carried::Legacy;
+use self::start::handover::HandoverSlot;
 use self::transfer_editor::TransferEditor;
+use self::viewport::camera_transition::CameraTransition;
 use self::viewport::canvas::Canvas;
 use self::viewport::compare::Compare;
 use self::viewport::cut_handles::CutHandles;
-use self::viewport::hints::Hints;
+use self::viewport::first_use_hints::FirstUseHints;
 use self::viewport::light_handles::LightHandles;
 use self::viewport::light_probe::LightProbe;
-use self::viewport::orbit::Orbit;
-use self::viewport::overlay::Overlay;
-use self::viewport::overlay::ct_looks::CtLooks;
-use self::viewport::overlay::export_marks::ExportMarks;
-use self::viewport::turning::Turning;
+use self::viewport::mouse_navigation::OrbitDrag;
+use self::viewport::overlay::ViewportOverlay;
+use self::viewport::overlay::ct_preset_row::CtPresetRow;
+use self::viewport::overlay::export_marks_preview::ExportMarksPreview;
 use self::viewport::{Viewport, paint_callback};
-use self::windows::chooser::Chooser;
-use self::windows::contact_sheet::ContactSheet;
-use self::windows::export::Export;
-use self::windows::files::Files;
-use self::windows::foreign_path::ForeignPath;
-use self::windows::help::Help;
-use self::windows::light_slice::LightSlice;
-use self::windows::lost_again::LostAgain;
-use self::windows::palette::Palette;
-use self::windows::quit::Quit;
+use self::windows::contact_sheet::ContactSheetWindow;
+use self::windows::device_loss::DeviceLossDialog;
+use self::windows::export::ExportWindow;
+use self::windows::file_dialogs::FileDialogs;
+use self::windows::help::HelpWindows;
+use self::windows::large_volume::LargeVolumeDialog;
+use self::windows::light_slice::LightSliceWindow;
+use self::windows::palette::CommandPalette;
+use self::windows::quit_dialog::QuitDialog;
 use self::windows::raw_dialog::RawDialog;
-use self::windows::recovery::Recovery;
-use self::windows::roomy::Roomy;
-use self::windows::slices::Slices;
+use self::windows::recovery::RecoveryDialog;
+use self::windows::slices::SlicesWindow;
+use self::windows::untrusted_path::UntrustedPathDialog;
+use self::windows::volume_chooser::VolumeChooser;
+use self::worker::background_task::{self, BackgroundTask};
 use self::worker::loader::Loader;
-use self::worker::task::{self, Work};
 use crate::data::Dataset;
-use crate::gpu::{Context, GpuError, WindowPainter};
+use crate::gpu::{GpuContext, GpuError, WindowPainter};
 use crate::model::Settings;
 
-/// A frame that keeps the window's thread longer is felt.
-const LONG_FRAME_MS: f64 = 50.0;
+/// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
+const SLOW_FRAME_MS: f64 = 50.0;
 
-/// The window's state.
+/// State of the main window, which implements [`eframe::App`].
 pub struct App {
     settings: Settings,
-    /// The first look at the open volume: what reset buttons put back.
+    /// First look at the open volume, which the reset buttons restore.
     defaults: Settings,
     volume: Option<VolumeFacts>,
-    treated: Treated,
-    upright: Upright,
-    corrected: Corrected,
-    framed: Framed,
+    kind_override: KindOverride,
+    orientation_task: OrientationTasks,
+    corrections_task: CorrectionState,
+    outline_task: OutlineCache,
     viewport: Viewport,
-    /// Fills the window's background.
+    /// Painter of the window's background colour.
     window: WindowPainter,
-    /// The device that draws the window.
-    window_context: Context,
+    /// Graphics device that draws the window.
+    window_context: GpuContext,
     storage: Option<PathBuf>,
-    /// Where this window leaves what another needs to take its place.
-    legacy: Legacy,
-    /// A volume that an earlier window had open, until the user has said how to go on.
-    waiting: Option<Dataset>,
-    /// The device is gone, and nothing is drawn any more.
-    is_ending: bool,
-    /// The next window is to be drawn by the CPU.
+    /// State that this window hands over to its successor after a lost device.
+    handover: HandoverSlot,
+    /// Volume handed over from an earlier window, until the user has chosen how to go on.
+    handed_over_dataset: Option<Dataset>,
+    /// True once the device is lost; nothing is drawn any more.
+    is_device_lost: bool,
+    /// True if the next window is to be drawn by the CPU (software adapter).
     wants_cpu: bool,
     canvas: Option<Canvas>,
     loader: Loader,
-    memory: Memory,
-    recent_pictures: RecentPictures,
-    /// Whether the next volume is shown as this one, and not as its own first look.
-    keeps_look: bool,
-    /// Settings of the volume that is being opened.
-    pending: Option<PendingLook>,
-    balance: Option<Work<Result<f64, GpuError>>>,
+    memory: PersistentState,
+    recent_pictures: RecentThumbnails,
+    /// True if the next volume keeps the current look instead of getting its own first look.
+    keeps_look_for_next: bool,
+    /// Look for the volume that is being opened, applied when the volume arrives.
+    pending_look: Option<PendingLook>,
+    balance: Option<BackgroundTask<Result<f64, GpuError>>>,
     file_tasks: FileTasks,
-    keep_balanced: KeepBalanced,
-    first_lights: FirstLights,
-    light_search: Option<Seeking>,
-    export: Export,
-    files: Files,
-    session: Option<Session>,
-    recovery: Recovery,
-    /// What is opened when nothing is named waits until the user has said whether to reopen the last session.
-    first_waits: bool,
-    quit: Quit,
-    lost_again: LostAgain,
-    /// The session has not been laid over the first look yet.
+    keep_balanced: AutoBalance,
+    first_lights: LightPlacement,
+    light_search: Option<LightSearchTask>,
+    export: ExportWindow,
+    files: FileDialogs,
+    session: Option<SessionFile>,
+    recovery_dialog: RecoveryDialog,
+    /// True while the default volume waits for the user's answer about reopening the last session.
+    default_open_waits: bool,
+    quit_dialog: QuitDialog,
+    device_loss_dialog: DeviceLossDialog,
+    /// True until the session's look has been applied over the first look.
     session_is_due: bool,
-    adjust: Option<Adjustment>,
+    adjust_first_look: Option<SettingsAdjustment>,
     history: History,
-    listed: Listed,
+    history_list: HistoryWindow,
     handles: LightHandles,
     cut_handles: CutHandles,
     compare: Compare,
-    overlay: Overlay,
-    /// What would be written over an exported picture.
-    export_marks: ExportMarks,
-    orbit: Orbit,
-    turning: Turning,
-    probe: LightProbe,
-    palette: Palette,
-    light_slice: LightSlice,
-    slices: Slices,
+    overlay: ViewportOverlay,
+    /// Preview of the marks that would be drawn over an exported picture.
+    export_marks: ExportMarksPreview,
+    orbit: OrbitDrag,
+    camera_animation: CameraTransition,
+    light_probe: LightProbe,
+    palette: CommandPalette,
+    light_slice: LightSliceWindow,
+    slices: SlicesWindow,
     raw_dialog: RawDialog,
-    roomy: Roomy,
-    foreign_path: ForeignPath,
-    /// Whether what looks from outside say of their volumes is opened without a question.
+    large_volume_dialog: LargeVolumeDialog,
+    untrusted_path_dialog: UntrustedPathDialog,
+    /// True if volumes named by looks from outside are opened without asking the user.
     trusts_paths: bool,
-    contact_sheet: ContactSheet,
-    chooser: Chooser,
-    give_up: GiveUp,
-    /// The next file is being looked for.
-    neighbour: Option<Neighbour>,
+    contact_sheet: ContactSheetWindow,
+    volume_chooser: VolumeChooser,
+    drag_cancel: DragCancel,
+    /// Search for the next file in the folder, while it runs.
+    next_file_search: Option<NeighbourSearch>,
     editor: TransferEditor,
     selected_light: usize,
-    layout: Layout,
-    strip: Strip,
-    help: Help,
-    hints: Hints,
-    ct_looks: CtLooks,
-    messages: Messages,
-    /// The longest frame so far; see `status_file`.
+    layout: WindowLayout,
+    kept_strip: KeptStrip,
+    help: HelpWindows,
+    first_run_hints: FirstUseHints,
+    ct_looks: CtPresetRow,
+    messages: MessageLog,
+    /// Longest frame so far on the window's thread, in ms; written by `status_file`.
     longest_ui_ms: f64,
     status_file: StatusFile,
 }
 
-/// How long a window that closes waits for tasks that still use the graphics driver.
-const LAST_TASKS: Duration = Duration::from_secs(10);
+/// Longest wait of a closing window for tasks that still use the graphics driver.
+const TASK_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
-        // Nobody waits for its end any more.
+        // The results of these tasks are no longer needed.
         self.light_search = None;
-        self.contact_sheet.forget();
-        self.strip.forget();
-        // Where another window takes the place of this one, that waits in the end.
-        if !self.is_ending {
-            task::wait_for_all(LAST_TASKS);
+        self.contact_sheet.discard();
+        self.kept_strip.reset();
+        // If another window replaces this one, that window waits for the tasks when it closes.
+        if !self.is_device_lost {
+            background_task::wait_for_all_tasks(TASK_SHUTDOWN_TIMEOUT);
         }
     }
 }
@@ -202,13 +202,13 @@ impl std::fmt::Debug for App {
 }
 
 impl App {
-    /// The look as it is now.
+    /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Whether the full-quality picture of the current settings is on screen, nothing is being opened, the first look is
-    /// finished, and the balance is that of the settings, if it is kept.
+    /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
+    /// first look is finished, and the balance, if it is kept, has been measured for these settings.
     pub fn is_idle(&self) -> bool {
         self.is_complete()
             && !self.is_making_look()
@@ -217,70 +217,71 @@ impl App {
             && !self.keep_balanced.is_due(&self.settings)
     }
 
-    /// Whether a look that was asked for is being made on another thread: for data of another kind, or of the object as
-    /// it is to stand.
+    /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
+    /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
-        self.treated.is_busy() || self.upright.is_busy()
+        self.kind_override.is_busy() || self.orientation_task.is_busy()
     }
 
-    /// Whether the full-quality picture of the current settings is on screen and nothing is being opened, read or corrected.
+    /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
+    /// read or corrected.
     fn is_complete(&self) -> bool {
-        self.has_its_volume() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.is_volume_ready() && self.viewport.is_idle(&self.compare.looks(&self.settings))
     }
 
-    /// Whether nothing is being opened, read or corrected.
-    fn has_its_volume(&self) -> bool {
+    /// Returns true if no volume is being opened, read or corrected.
+    fn is_volume_ready(&self) -> bool {
         self.loader.progress().is_none() && self.file_tasks.path().is_none() && !self.is_correcting()
     }
 
-    /// Where the picture is, in points, and its size in physical pixels.
+    /// Rectangle of the picture in points, and its size in physical pixels.
     pub fn viewport_rect(&self) -> Option<(egui::Rect, [u32; 2])> {
         self.canvas.map(|canvas| (canvas.rect, canvas.size))
     }
 
-    /// Where the handles of the lights that are on are, in points.
+    /// Positions of the handles of the enabled lights, in points.
     pub fn light_handle_positions(&self) -> &[egui::Pos2] {
         self.handles.positions()
     }
 
-    /// How often light volumes were filled for this volume.
+    /// Number of light volume refills since this volume was opened.
     pub fn light_rebuilds(&self) -> u64 {
-        self.viewport.light_rebuilds()
+        self.viewport.light_fill_count()
     }
 
-    /// How often a preview of this volume was followed by its picture at full quality.
-    pub fn refinements(&self) -> u64 {
-        self.viewport.refinements()
+    /// Number of previews of this volume that were followed by a full-quality picture.
+    pub fn full_quality_pictures(&self) -> u64 {
+        self.viewport.refinement_count()
     }
 
-    /// Name of the open volume.
+    /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
         self.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
-    /// What went wrong since the volume was opened.
+    /// Error messages since the volume was opened.
     pub fn errors(&self) -> &[String] {
         self.messages.errors()
     }
 
-    /// The latest note in the status bar since then, also when it has gone.
+    /// Latest note in the status bar since the volume was opened, even if it has disappeared.
     pub fn latest_note(&self) -> Option<&str> {
         self.messages.latest_note()
     }
 
-    /// Whether a note lies over the picture, which goes by itself after some seconds.
+    /// Returns true while a note lies over the picture; notes disappear after some seconds.
     pub fn shows_note(&self) -> bool {
         self.messages.shows_note()
     }
 
-    /// Exports the picture as the export window does.
+    /// Exports the picture as the export window does, replacing an existing file.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.export.set_size(size);
-        self.export.agree_to(path);
+        self.export.allow_replacing(path);
         self.start_export(ctx);
     }
 
-    /// Whether a picture is being exported.
+    /// Returns true while an export is being rendered or written.
     pub fn is_exporting(&self) -> bool {
         self.export.is_busy()
     }
@@ -288,93 +289,97 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.fail_on_purpose();
-        // Before anything is drawn, which would panic.
-        let is_lost = self.window_context.is_lost() || self.viewport.context().was_lost();
-        if self.is_ending || is_lost {
-            return self.end_for_another(ctx);
+        self.inject_faults();
+        // Checked before anything is drawn, because drawing on a lost device would panic.
+        let is_lost = self.window_context.is_lost() || self.viewport.context().is_known_lost();
+        if self.is_device_lost || is_lost {
+            return self.close_for_successor(ctx);
         }
-        self.collect(ctx);
-        // Also when nothing is drawn.
-        self.keep_look();
+        self.collect_results(ctx);
+        // Runs even while the window is hidden and nothing is drawn.
+        self.autosave_look();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if self.is_ending {
+        if self.is_device_lost {
             return;
         }
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
-        ui.painter().add(paint_callback::fill(ctx.viewport_rect(), &self.window, ui.visuals().panel_fill));
-        self.give_up.begin(&ctx, &self.settings);
+        ui.painter().add(paint_callback::fill_shape(
+            ctx.viewport_rect(),
+            &self.window,
+            ui.visuals().panel_fill,
+        ));
+        self.drag_cancel.begin(&ctx, &self.settings);
         let mut commands = Vec::new();
-        let dropped = files::dropped(&ctx);
+        let dropped = file_dialogs::dropped_files(&ctx);
         if !dropped.is_empty() {
-            commands.push(Command::OpenDropped(dropped));
+            commands.push(AppCommand::OpenDropped(dropped));
         }
-        let facts = self.viewport.facts(&self.compare.looks(&self.settings));
+        let facts = self.viewport.renderer_status(&self.compare.looks(&self.settings));
         self.palette.ui(&ctx, self.settings.camera.up, self.volume.as_ref(), &mut commands);
-        self.chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
-        self.around(ui, &facts, &mut commands);
-        self.picture(ui, &facts, &mut commands);
-        shortcuts::from_keys(&ctx, &mut commands);
+        self.volume_chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
+        self.show_outer_panels(ui, &facts, &mut commands);
+        self.show_picture(ui, &facts, &mut commands);
+        shortcuts::commands_from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
-        self.windows(frame, &ctx, &mut commands);
-        self.give_up.end(&mut self.settings);
+        self.show_windows(frame, &ctx, &mut commands);
+        self.drag_cancel.end(&mut self.settings);
         self.ask_for_volume(frame, &ctx);
-        self.history.observe(&ctx, &self.step());
-        commands.extend(self.take_framed());
-        commands.extend(self.follow_outline(&ctx));
+        self.history.observe(&ctx, &self.history_step());
+        commands.extend(self.finish_framing());
+        commands.extend(self.update_outline(&ctx));
         let before = self.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
         }
-        self.turning.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
+        self.camera_animation.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
         self.cancel_files_by_key(&ctx);
         self.leave_picture_only(&ctx);
-        self.follow_corrections(&ctx);
+        self.update_corrections(&ctx);
         self.finish_first_look(&ctx);
-        self.keep_balanced(&ctx);
-        self.keep_look();
+        self.update_balance(&ctx);
+        self.autosave_look();
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
-        if ui_ms > LONG_FRAME_MS {
+        if ui_ms > SLOW_FRAME_MS {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");
         }
         self.longest_ui_ms = self.longest_ui_ms.max(ui_ms);
         let idle = self.is_idle();
         if idle {
-            self.loader.prepare();
+            self.loader.warm_up_rest();
         }
-        let state = status_file::State {
+        let state = status_file::WindowStatus {
             longest_ui_ms: self.longest_ui_ms,
-            response: self.viewport.response(),
+            response: self.viewport.response_times(),
             loading: self.loader.progress().is_some() || self.file_tasks.path().is_some(),
             idle,
             canvas: self.canvas.filter(|_| self.volume.is_some()),
             handles: self.handles.positions(),
             light_rebuilds: self.light_rebuilds(),
             errors: self.messages.errors(),
-            path_window: self.files.path_window(),
-            places: if self.status_file.is_on() { reveal::reported(&ctx) } else { BTreeMap::new() },
+            path_window: self.files.typed_path_title(),
+            places: if self.status_file.is_on() { reveal::reported_areas(&ctx) } else { BTreeMap::new() },
             pixels_per_point: ctx.pixels_per_point(),
         };
         self.status_file.update(&state);
         if self.loader.progress().is_some() || self.export.is_busy() {
-            // The progress bar moves; and an export of an earlier window does not know this one.
+            // The progress bar moves; and an export started by an earlier window cannot wake this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.layout.keep(storage);
+        self.layout.store(storage);
     }
 
     fn on_exit(&mut self) {
-        self.keep_look();
-        if self.is_ending {
-            self.leave();
+        self.autosave_look();
+        if self.is_device_lost {
+            self.hand_over();
         } else {
-            self.export.abandon();
+            self.export.cancel_and_wait();
         }
     }
 

@@ -1,4 +1,4 @@
-//! `chiaroscuro compare`: several looks of one scene side by side, and how far they are apart.
+//! Command `chiaroscuro compare`: several looks of one scene side by side, and their distances.
 
 use std::path::PathBuf;
 
@@ -6,18 +6,18 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use super::CliError;
-use super::outputs::{print_line, warn_of_nothing};
+use super::output::{print_line, warn_empty_picture};
 use super::scene::{SceneArgs, parse_size};
-use crate::export::{check_ending, check_writable, export_png};
-use crate::gpu::{Distance, Picture, RenderOptions, Renderer, is_empty_light};
-use crate::model::Variant;
+use crate::export::{check_extension, check_writable, export_png};
+use crate::gpu::{PictureDistance, RenderOptions, RenderedPicture, Renderer, is_empty_light};
+use crate::model::ComparisonVariant;
 
-/// Pixels between two pictures.
+/// Width of the gap between two pictures, in pixels.
 const GAP: usize = 4;
 
-/// The names of the looks that need nothing else.
-fn names() -> PossibleValuesParser {
-    Variant::PLAIN.map(|variant| variant.name()).into()
+/// Parser for the names of all variants that need no parameters.
+fn variant_names() -> PossibleValuesParser {
+    ComparisonVariant::WITHOUT_DATA.map(|variant| variant.name()).into()
 }
 
 /// Arguments of `compare`.
@@ -32,51 +32,52 @@ pub(super) struct CompareArgs {
     #[arg(long, value_name = "WxH", default_value = "400x400", value_parser = parse_size)]
     size: [u32; 2],
     /// What to show, from the left
-    #[arg(long, value_parser = names(), value_delimiter = ',', default_value = "off,splat")]
+    #[arg(long, value_parser = variant_names(), value_delimiter = ',', default_value = "off,splat")]
     looks: Vec<String>,
 }
 
-/// Renders the looks, writes them in one row and says how far each is from the first.
+/// Renders the looks, writes them in one row, and prints the distance of each from the first.
 pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     args.scene.keep_apart(&[&args.output])?;
-    check_ending(&args.output, &["png"], "looks side by side are written as .png")?;
+    check_extension(&args.output, &["png"], "looks side by side are written as .png")?;
     check_writable(&args.output)?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
     let settings = look.settings(&mut renderer, &loaded)?;
-    let mut pictures: Vec<Picture> = Vec::new();
+    let mut pictures: Vec<RenderedPicture> = Vec::new();
     for name in &args.looks {
-        let variant = Variant::PLAIN.into_iter().find(|variant| variant.name() == name);
-        let settings = variant.unwrap_or(Variant::Current).of(&settings);
+        let variant = ComparisonVariant::WITHOUT_DATA.into_iter().find(|variant| variant.name() == name);
+        let settings = variant.unwrap_or(ComparisonVariant::Current).apply(&settings);
         let options = RenderOptions::default();
         let picture = renderer.render(&loaded, &settings, args.size, &options)?;
         let first = pictures.first().unwrap_or(&picture);
-        let Distance { rmse, largest } = Distance::between(&first.shown, &picture.shown);
+        let PictureDistance { rmse, max: largest } =
+            PictureDistance::between_bytes(&first.display, &picture.display);
         print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"))?;
         pictures.push(picture);
     }
-    if pictures.iter().all(|picture| is_empty_light(&picture.light)) {
-        warn_of_nothing();
+    if pictures.iter().all(|picture| is_empty_light(&picture.linear)) {
+        warn_empty_picture();
     }
-    let row = row_of(&pictures);
-    export_png(row.size, &row.shown, true, None, &args.output)?;
+    let row = side_by_side(&pictures);
+    export_png(row.size, &row.display, true, None, &args.output)?;
     print_line(&format!("{}", args.output.display()))?;
     Ok(())
 }
 
-/// Pictures of one size from left to right, with transparent gaps.
-fn row_of(pictures: &[Picture]) -> Picture {
+/// Places pictures of equal size in one row, with transparent gaps.
+fn side_by_side(pictures: &[RenderedPicture]) -> RenderedPicture {
     let [width, height] = pictures.first().map_or([0, 0], |picture| picture.size.map(|n| n as usize));
     let whole = (width + GAP) * pictures.len() - GAP.min((width + GAP) * pictures.len());
     let mut shown = vec![0; whole * height * 4];
     for (at, picture) in pictures.iter().enumerate() {
-        for (row, line) in picture.shown.chunks_exact(width * 4).enumerate() {
+        for (row, line) in picture.display.chunks_exact(width * 4).enumerate() {
             let start = (row * whole + at * (width + GAP)) * 4;
             shown[start..start + line.len()].copy_from_slice(line);
         }
     }
-    Picture { size: [whole as u32, height as u32], light: Vec::new(), shown }
+    RenderedPicture { size: [whole as u32, height as u32], linear: Vec::new(), display: shown }
 }
 
 #[cfg(test)]
@@ -85,10 +86,10 @@ mod tests {
 
     #[test]
     fn pictures_stand_side_by_side() {
-        let picture = |grey: u8| Picture { size: [2, 1], light: Vec::new(), shown: vec![grey; 8] };
-        let row = row_of(&[picture(1), picture(2), picture(3)]);
+        let picture = |grey: u8| RenderedPicture { size: [2, 1], linear: Vec::new(), display: vec![grey; 8] };
+        let row = side_by_side(&[picture(1), picture(2), picture(3)]);
         assert_eq!(row.size, [6 + 2 * GAP as u32, 1]);
-        let texels: Vec<u8> = row.shown.chunks_exact(4).map(|texel| texel[0]).collect();
+        let texels: Vec<u8> = row.display.chunks_exact(4).map(|texel| texel[0]).collect();
         assert_eq!(texels, [1, 1, 0, 0, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3]);
     }
 }

@@ -1,22 +1,22 @@
-//! `chiaroscuro convert`.
+//! Command `chiaroscuro convert`: writes a volume in another file format.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::CliError;
-use super::outputs::{destination, finish, keep_apart, warn_line};
-use super::scene::{LoadArgs, open_with_word, parse_voxel_type};
-use crate::data::load::{Explanation, LoadError, ReadFiles};
-use crate::data::{Headings, ValueRange, VoxelType};
-use crate::export::{ConvertError, NumberWish, Outgoing, VolumeFormat, check_writable, write_volume};
+use super::output::{check_overwrites, finish_output, open_destination, warn_line};
+use super::scene::{LoadArgs, open_with_size_warning, parse_voxel_type};
+use crate::data::load::{ErrorExplanation, LoadError, ReadFiles};
+use crate::data::{AnatomicalAxes, ValueRange, VoxelType};
+use crate::export::{ConvertError, ExportVolume, NumberRequest, VolumeFormat, check_writable, write_volume};
 
-/// What standard output is for.
+/// Name that stands for standard output.
 const STANDARD_OUTPUT: &str = "-";
 
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
-// `--type` is what is written.
+// In this command, `--type` is the type that is written.
 #[command(mut_arg("voxel_type", |arg| arg.long("input-type")))]
 pub(super) struct ConvertArgs {
     #[arg(help = "Volume: a file, a folder of slices, or builtin:NAME[:N]")]
@@ -30,14 +30,14 @@ pub(super) struct ConvertArgs {
     #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type, id = "written_type")]
     written_type: Option<VoxelType>,
     /// Values that become the lowest and the highest number of a whole --type, those beyond with them
-    #[arg(long, value_name = "LOW:HIGH", value_parser = parse_values, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW:HIGH", value_parser = parse_value_range, allow_hyphen_values = true)]
     rescale: Option<ValueRange>,
     /// Number for voxels that hold nothing: not finite, or what the file declares as padding
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     padding: Option<f64>,
     /// Sides of the body towards which the axes are to go, fastest first: RAS, LPS or another of the 48
     #[arg(long, value_name = "LETTERS")]
-    orient: Option<Headings>,
+    orient: Option<AnatomicalAxes>,
     /// Compress the voxels within .nrrd (gzip) or .mha (zlib); .nii.gz always is
     #[arg(long)]
     compress: bool,
@@ -48,26 +48,26 @@ pub(super) struct ConvertArgs {
     load: LoadArgs,
 }
 
-/// `-1000:3000`
-fn parse_values(text: &str) -> Result<ValueRange, String> {
+/// Parses a range of values such as `-1000:3000`.
+fn parse_value_range(text: &str) -> Result<ValueRange, String> {
     let parsed = text.split_once(':').and_then(|(low, high)| {
         let [low, high]: [f64; 2] = [low.trim().parse().ok()?, high.trim().parse().ok()?];
-        ValueRange::spread(low, high).filter(|range| range.span().is_finite())
+        ValueRange::non_degenerate(low, high).filter(|range| range.span().is_finite())
     });
     parsed.ok_or_else(|| format!("expected two values, the lower first, as in -1000:3000, found {text:?}"))
 }
 
-/// `nii.gz`
+/// Parses a file name extension of a volume format, such as `nii.gz`.
 fn parse_format(text: &str) -> Result<VolumeFormat, String> {
     let name = format!("volume.{}", text.trim_start_matches('.'));
-    VolumeFormat::of_path(Path::new(&name)).ok_or_else(|| format!("expected {}", endings()))
+    VolumeFormat::from_path(Path::new(&name)).ok_or_else(|| format!("expected {}", all_extensions()))
 }
 
-/// All endings, for messages.
-fn endings() -> String {
+/// Lists the extensions of all volume formats, for messages.
+fn all_extensions() -> String {
     let all: Vec<String> = VolumeFormat::ALL
         .iter()
-        .flat_map(|format| format.endings())
+        .flat_map(|format| format.extensions())
         .map(|ending| format!(".{ending}"))
         .collect();
     all.join(", ")
@@ -78,10 +78,10 @@ impl ConvertArgs {
         CliError::Usage(format!("{}: {why}", self.input.display()))
     }
 
-    /// The format that is written.
+    /// Returns the format to be written.
     fn output_format(&self) -> Result<VolumeFormat, CliError> {
         let is_standard_output = self.output == Path::new(STANDARD_OUTPUT);
-        let by_name = VolumeFormat::of_path(&self.output);
+        let by_name = VolumeFormat::from_path(&self.output);
         let format = match (is_standard_output, by_name, self.format) {
             (true, _, format) => format.unwrap_or(VolumeFormat::Nrrd),
             (false, Some(by_name), None) => by_name,
@@ -96,27 +96,27 @@ impl ConvertArgs {
                 return Err(CliError::Usage(format!(
                     "{}: volumes are written as {}, and the name says as which",
                     self.output.display(),
-                    endings()
+                    all_extensions()
                 )));
             }
         };
         if self.compress && !format.may_be_compressed() && format != VolumeFormat::NiftiGzip {
             return Err(CliError::Usage(format!(
                 "--compress: voxels in .{} stay as they are; .nrrd, .mha or .nii.gz helps (command line, --compress)",
-                format.endings()[0]
+                format.extensions()[0]
             )));
         }
         Ok(format)
     }
 }
 
-/// What is wrong with a volume, in the words of this command: what readers know as `--type` has another name here.
-fn in_own_words(error: LoadError) -> LoadError {
-    let own = |mut explanation: Box<Explanation>| {
+/// Adapts the messages of readers to this command: the readers' `--type` is called `--input-type` here.
+fn with_own_option_names(error: LoadError) -> LoadError {
+    let own = |mut explanation: Box<ErrorExplanation>| {
         for text in [&mut explanation.why, &mut explanation.help] {
             *text = text.replace("--type", "--input-type");
         }
-        // Before it stands the name of the file, which may be anything.
+        // The file name before it may contain anything.
         if let Some(file) = explanation.place.strip_suffix(", --type") {
             explanation.place = format!("{file}, --input-type");
         }
@@ -132,31 +132,32 @@ fn in_own_words(error: LoadError) -> LoadError {
 /// Writes a volume in another format.
 pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let format = args.output_format()?;
-    keep_apart(&[&args.input], &[&args.output], args.force)?;
-    let output = destination(&args.output, format.endings()[0])?;
-    // Before anything is read that may take its time.
+    check_overwrites(&[&args.input], &[&args.output], args.force)?;
+    let output = open_destination(&args.output, format.extensions()[0])?;
+    // Checked before the input is read, which may take long.
     check_writable(output.path())?;
-    let read = ReadFiles::watch();
-    let volume = open_with_word(&args.input, &args.load.load_options()?).map_err(in_own_words)?;
-    // A header has named others, a slice or a folder has brought its series.
+    let read = ReadFiles::record();
+    let volume =
+        open_with_size_warning(&args.input, &args.load.load_options()?).map_err(with_own_option_names)?;
+    // A header may refer to other files, and a slice or folder belongs to a series.
     let read = read.paths();
-    keep_apart(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
-    let wish = NumberWish { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
+    check_overwrites(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
+    let wish = NumberRequest { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
     let refused = |err: ConvertError| args.usage(&err);
-    let mut outgoing = Outgoing::of(&volume).in_numbers(&wish).map_err(refused)?;
+    let mut outgoing = ExportVolume::new(&volume).with_number_type(&wish).map_err(refused)?;
     if let Some(headings) = args.orient {
-        outgoing = outgoing.oriented(headings).map_err(refused)?;
+        outgoing = outgoing.reoriented(headings).map_err(refused)?;
     }
     write_volume(output.path(), format, &outgoing, args.compress)?;
-    let lost = format.lost(&outgoing);
+    let lost = format.unsupported_metadata(&outgoing);
     if !lost.is_empty() {
         warn_line(&format!(
             "warning: .{} has no place for {}; .nrrd has",
-            format.endings()[0],
+            format.extensions()[0],
             lost.join(", nor for ")
         ));
     }
-    finish(output)
+    finish_output(output)
 }
 
 #[cfg(test)]
@@ -165,9 +166,9 @@ mod tests {
 
     #[test]
     fn ranges_and_formats_are_understood() {
-        assert_eq!(parse_values("-1000:3e3"), Ok(ValueRange::new(-1000.0, 3000.0)));
+        assert_eq!(parse_value_range("-1000:3e3"), Ok(ValueRange::new(-1000.0, 3000.0)));
         for text in ["", "1", "2:1", "1:1", "nan:1", "0:inf", "0:1:2"] {
-            assert!(parse_values(text).is_err(), "{text}");
+            assert!(parse_value_range(text).is_err(), "{text}");
         }
         assert_eq!(parse_format(".nii.gz"), Ok(VolumeFormat::NiftiGzip));
         assert_eq!(parse_format("tiff"), Ok(VolumeFormat::Tiff));

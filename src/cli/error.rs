@@ -1,17 +1,17 @@
-//! Errors of the command line and their exit codes.
+//! Errors of the command line, and their exit codes.
 
 use std::path::PathBuf;
 
-use crate::data::SurroundingsError;
+use crate::data::EnvironmentMapError;
 use crate::data::load::{LoadError, LoadErrorKind};
 use crate::export::{ExportError, ReadPictureError};
 use crate::gpu::GpuError;
 use crate::model::PresetError;
 
-/// Why a command failed.
+/// Reason for the failure of a command.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// The arguments do not make sense.
+    /// The arguments are invalid or contradict each other.
     #[error("{0}")]
     Usage(String),
     /// The volume could not be loaded.
@@ -22,90 +22,91 @@ pub enum CliError {
         "{what}: {source} ({path}); `chiaroscuro render FILE -o OUT.png --report REPORT.json` shows the names of all settings"
     )]
     Preset {
-        /// Preset or session.
+        /// Kind of the file: preset or session.
         what: &'static str,
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// Why not.
+        /// Cause of the failure.
         source: PresetError,
     },
     /// A file could not be read.
     #[error("{what}: {source} ({path}); a file that exists and can be read helps")]
     Read {
-        /// What was to be read.
+        /// Purpose of the file that was to be read.
         what: &'static str,
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// Why not.
+        /// Cause of the failure.
         source: std::io::Error,
     },
-    /// A panorama cannot serve as surroundings.
+    /// A panorama cannot serve as an environment map.
     #[error(transparent)]
-    Surroundings(#[from] SurroundingsError),
-    /// The GPU could not do it.
+    Surroundings(#[from] EnvironmentMapError),
+    /// The GPU reported an error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// A picture could not be read.
+    /// A picture file could not be read.
     #[error(transparent)]
     Picture(#[from] ReadPictureError),
-    /// A picture cannot be made again.
+    /// A picture cannot be reproduced from its record.
     #[error("{path}: {why}; a picture that was exported by this program, beside its volume, helps")]
     Replay {
-        /// The picture.
+        /// Path of the picture.
         path: String,
-        /// What is missing.
+        /// Missing information or file.
         why: String,
     },
-    /// A picture names a volume that is not opened without a word of the user.
+    /// A picture refers to a volume that is only opened with the user's consent.
     #[error("{}: its volume {volume} is not opened: {why}; {help}", picture.display())]
-    VolumeElsewhere {
-        /// The picture.
+    UntrustedVolumePath {
+        /// Path of the picture.
         picture: PathBuf,
-        /// What it names.
+        /// Path of the volume in the picture's record.
         volume: String,
-        /// Why that is not opened.
+        /// Reason for not opening the volume.
         why: &'static str,
-        /// What helps.
+        /// Command-line option that resolves the problem.
         help: &'static str,
     },
-    /// No volume is left of one that is corrected.
+    /// Corrections would leave no valid volume.
     #[error("{path} could not be corrected ({by}): {why}; other values of `volume.…` help")]
-    Uncorrectable {
-        /// The volume.
+    InvalidCorrection {
+        /// Path of the volume.
         path: String,
-        /// How it was to be corrected.
+        /// Corrections that were to be applied.
         by: String,
-        /// Why that cannot be.
+        /// Reason why they are impossible.
         why: String,
     },
-    /// A picture that was made again is not as it was.
+    /// A reproduced picture differs from the original.
     #[error("{0}")]
-    Differs(String),
+    ReplayDiffers(String),
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// What is told could not be written.
+    /// Standard output could not be written.
     #[error("could not write to standard output: {0}; room where it goes helps")]
     Output(std::io::Error),
-    /// There are to be no threads.
+    /// The system refused to start threads.
     #[error("no thread could be started ({0}); fewer limits (`ulimit -u`, `ulimit -v`) help")]
-    Threads(String),
+    ThreadStart(String),
     /// The window could not be opened.
     #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]
     Window(String),
 }
 
 impl CliError {
-    /// 1 a check that did not hold, 2 usage, 3 bad input, 4 no adapter, 5 out of memory or over a limit, 6 input or output.
+    /// Exit code of the process: 1 failed comparison, 2 usage, 3 bad input, 4 no adapter or window, 5 out of memory
+    /// or over a limit, 6 input or output error.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Differs(_) => 1,
+            Self::ReplayDiffers(_) => 1,
             Self::Usage(_) => 2,
             Self::Preset { .. }
             | Self::Replay { .. }
-            | Self::VolumeElsewhere { .. }
-            | Self::Uncorrectable { .. } => 3,
-            // A region is said by nobody but the command line.
+            | Self::UntrustedVolumePath { .. }
+            | Self::InvalidCorrection { .. } => 3,
+            // Regions are only ever given on the command line.
             Self::Load(err) if err.is_about("--region") => 2,
             Self::Load(err) => match err.kind() {
                 LoadErrorKind::BadInput => 3,
@@ -113,15 +114,17 @@ impl CliError {
                 LoadErrorKind::Io | LoadErrorKind::Cancelled => 6,
             },
             Self::Gpu(
-                GpuError::OutOfMemory { .. } | GpuError::FewAddresses { .. } | GpuError::OverLimit { .. },
+                GpuError::OutOfMemory { .. }
+                | GpuError::AddressSpaceTooSmall { .. }
+                | GpuError::OverLimit { .. },
             )
-            | Self::Threads(_) => 5,
+            | Self::ThreadStart(_) => 5,
             Self::Surroundings(err) => match err {
-                SurroundingsError::Io { .. } => 6,
-                SurroundingsError::TooLarge { .. } => 5,
-                SurroundingsError::Broken { .. }
-                | SurroundingsError::Shape { .. }
-                | SurroundingsError::Black { .. } => 3,
+                EnvironmentMapError::Io { .. } => 6,
+                EnvironmentMapError::TooLarge { .. } => 5,
+                EnvironmentMapError::Broken { .. }
+                | EnvironmentMapError::Shape { .. }
+                | EnvironmentMapError::Black { .. } => 3,
             },
             Self::Gpu(_) | Self::Window(_) => 4,
             Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,

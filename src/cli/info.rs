@@ -1,4 +1,4 @@
-//! `chiaroscuro info`.
+//! Command `chiaroscuro info`: prints what is known about a volume, as text or JSON.
 
 use std::path::PathBuf;
 
@@ -6,16 +6,16 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::CliError;
-use super::outputs::print_line;
-use super::scene::{LoadArgs, corrected_by, open_for_a_glance};
-use crate::data::{CountedLabel, DataKind, Dataset, Hints, SpacingUnit, ValueRange, Volume};
-use crate::gpu::{bytes_with_one_light, small_volume};
-use crate::model::auto;
+use super::output::print_line;
+use super::scene::{LoadArgs, apply_command_line_corrections, open_for_overview};
+use crate::data::{CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume};
+use crate::gpu::{bytes_with_one_light, downsampled_volume};
+use crate::model::first_look;
 
-/// Percentiles that are listed.
+/// Percentiles of the values that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
 
-/// Labels that are listed for people; machines get all.
+/// Maximum number of labels in the text output; JSON has all of them.
 const LISTED_LABELS: usize = 20;
 
 /// Arguments of `info`.
@@ -23,7 +23,7 @@ const LISTED_LABELS: usize = 20;
 pub(super) struct InfoArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: PathBuf,
-    /// As JSON
+    /// Print a JSON object in place of lines of text
     #[arg(long)]
     json: bool,
     /// One correction of the volume by its path, for instance volume.spacing=0.5,0.5,2; may be repeated
@@ -33,10 +33,10 @@ pub(super) struct InfoArgs {
     load: LoadArgs,
 }
 
-/// Prints what is known about a volume.
+/// Prints the properties of a volume.
 pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
-    let volume = open_for_a_glance(&args.file, &args.load.load_options()?)?;
-    let volume = corrected_by(&args.file, volume, &args.set)?;
+    let volume = open_for_overview(&args.file, &args.load.load_options()?)?;
+    let volume = apply_command_line_corrections(&args.file, volume, &args.set)?;
     let ValueRange { low, high } = volume.value_range();
     let shown = volume.shown_range();
     let percentile = |p: u32| volume.quantile(f64::from(p) / 100.0);
@@ -45,11 +45,11 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let spacing = volume.spacing_mm();
     let voxels = volume.voxel_count() as u64;
     let gpu_bytes = bytes_with_one_light(volume.dims());
-    let portion = volume.held().portion;
+    let portion = volume.contents().portion;
     let facts = json!({
         "name": volume.name(),
         "dims": volume.dims(),
-        "file_dims": volume.held().grid.unwrap_or_else(|| volume.file_dims()),
+        "file_dims": volume.contents().grid.unwrap_or_else(|| volume.file_dims()),
         "portion": portion,
         "type": volume.samples().voxel_type().name(),
         "spacing_mm": [spacing.x, spacing.y, spacing.z],
@@ -61,24 +61,24 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
         "corrections": volume.corrections(),
         "remarks": volume.remarks(),
         "non_finite_voxels": volume.non_finite_voxels(),
-        "kind": kind(&volume.kind().kind),
-        "kind_why": volume.kind().why,
-        "hints": hints(volume.hints()),
-        "labels": labels(&volume).iter().map(LabelFacts::json).collect::<Vec<_>>(),
+        "kind": kind_json(&volume.kind().kind),
+        "kind_why": volume.kind().reason,
+        "hints": hints_json(volume.metadata()),
+        "labels": label_infos(&volume).iter().map(LabelInfo::json).collect::<Vec<_>>(),
         "percentiles": percentiles,
         "cpu_bytes": voxels * volume.samples().voxel_type().bytes() as u64,
         "gpu_bytes_with_one_light": gpu_bytes,
     });
     if args.json {
         let mut facts = facts;
-        facts["looks"] = looks(&Dataset::new(volume))?;
+        facts["looks"] = looks_json(&Dataset::new(volume))?;
         print_line(&format!("{facts:#}"))?;
         return Ok(());
     }
     let [nx, ny, nz] = volume.dims();
     print_line(volume.name())?;
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
-    if let Some([x, y, z]) = volume.held().grid.filter(|_| !portion.is_whole()) {
+    if let Some([x, y, z]) = volume.contents().grid.filter(|_| !portion.is_whole()) {
         print_line(&format!("  read         {} {x} × {y} × {z}", portion.in_words()))?;
     }
     print_line(&spacing_line(&volume))?;
@@ -86,8 +86,8 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
-    print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().why))?;
-    for line in hint_lines(volume.hints()) {
+    print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().reason))?;
+    for line in hint_lines(volume.metadata()) {
         print_line(&line)?;
     }
     for correction in volume.corrections().in_words() {
@@ -106,31 +106,31 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Distances between voxels in the unit that suits them, for people.
+/// Formats the voxel spacing in a suitable unit, for the text output.
 fn spacing_line(volume: &Volume) -> String {
     let spacing: [f64; 3] = volume.spacing_mm().into();
     let (unit, symbol) = if volume.has_unknown_scale() {
         (SpacingUnit::Voxels, "(nobody knows of what)")
     } else {
-        let unit = SpacingUnit::of_spacing(spacing);
+        let unit = SpacingUnit::suiting_spacing(spacing);
         (unit, unit.symbol())
     };
-    let [x, y, z] = spacing.map(|length| in_unit(length, unit));
+    let [x, y, z] = spacing.map(|length| length_in_unit(length, unit));
     format!("  spacing      {x} × {y} × {z} {symbol}")
 }
 
-/// A length with the digits that it has in millimetres: another unit adds none but those of rounding.
-fn in_unit(length_mm: f64, unit: SpacingUnit) -> f64 {
+/// Converts a length to another unit without adding digits: conversion errors are rounded off.
+fn length_in_unit(length_mm: f64, unit: SpacingUnit) -> f64 {
     if unit.mm() == 1.0 {
         return length_mm;
     }
     let length = length_mm / unit.mm();
-    // Numbers of 64 bits are right to 15 digits.
+    // Numbers of 64 bits are accurate to 15 digits.
     format!("{length:.14e}").parse().unwrap_or(length)
 }
 
-/// A kind of data, for machines.
-fn kind(kind: &DataKind) -> Value {
+/// Returns the kind of data as JSON.
+fn kind_json(kind: &DataKind) -> Value {
     let name = kind.name().key();
     match kind {
         DataKind::LabelMap { count } => json!({ "name": name, "labels": count }),
@@ -141,8 +141,8 @@ fn kind(kind: &DataKind) -> Value {
     }
 }
 
-/// What the file says of the values, for machines.
-fn hints(hints: &Hints) -> Value {
+/// Returns the file's metadata about the values as JSON.
+fn hints_json(hints: &ValueMetadata) -> Value {
     let labels: Vec<Value> = hints
         .labels
         .iter()
@@ -160,8 +160,8 @@ fn hints(hints: &Hints) -> Value {
     })
 }
 
-/// What the file says of the values, for people.
-fn hint_lines(hints: &Hints) -> Vec<String> {
+/// Formats the file's metadata about the values, for the text output.
+fn hint_lines(hints: &ValueMetadata) -> Vec<String> {
     let mut lines = Vec::new();
     let mut add = |name: &str, text: Option<&str>| {
         if let Some(text) = text {
@@ -178,15 +178,15 @@ fn hint_lines(hints: &Hints) -> Vec<String> {
     lines
 }
 
-/// A label of a label map.
-struct LabelFacts {
+/// Properties of one label of a label map.
+struct LabelInfo {
     number: i64,
-    /// What the file calls it; empty if it does not say.
+    /// Name of the label in the file; empty if there is none.
     name: String,
     voxels: u64,
 }
 
-impl LabelFacts {
+impl LabelInfo {
     fn json(&self) -> Value {
         json!({ "number": self.number, "name": self.name, "voxels": self.voxels })
     }
@@ -197,33 +197,33 @@ impl LabelFacts {
     }
 }
 
-/// The labels of a label map; of other data none.
-fn labels(volume: &Volume) -> Vec<LabelFacts> {
+/// Returns the labels of a label map; empty for other data.
+fn label_infos(volume: &Volume) -> Vec<LabelInfo> {
     let is_label_map = matches!(volume.kind().kind, DataKind::LabelMap { .. });
     let counted = volume.labels().filter(|_| is_label_map).map_or(&[][..], |labels| labels.labels());
-    let facts = |label: &CountedLabel| LabelFacts {
+    let facts = |label: &CountedLabel| LabelInfo {
         number: label.number,
-        name: volume.hints().labels.get(label.number).map_or_else(String::new, |known| known.name.clone()),
+        name: volume.metadata().labels.get(label.number).map_or_else(String::new, |known| known.name.clone()),
         voxels: label.voxels,
     };
     counted.iter().map(facts).collect()
 }
 
-/// The labels of a label map, for people.
+/// Formats the labels of a label map, for the text output.
 fn label_lines(volume: &Volume) -> Vec<String> {
-    let all = labels(volume);
+    let all = label_infos(volume);
     let more = all.len().saturating_sub(LISTED_LABELS);
     let rest = (more > 0).then(|| format!("  label        and {more} more"));
-    all.iter().take(LISTED_LABELS).map(LabelFacts::line).chain(rest).collect()
+    all.iter().take(LISTED_LABELS).map(LabelInfo::line).chain(rest).collect()
 }
 
-/// The looks that are proposed, for `--look`.
-fn looks(loaded: &Dataset) -> Result<Value, CliError> {
-    let first = auto::first_settings(loaded.volume(), loaded.histogram());
-    let small = small_volume(loaded)?;
-    let looks = auto::looks(&first, small.volume(), small.histogram()).into_iter().enumerate();
+/// Returns the suggested looks as JSON; `--look` selects one by number.
+fn looks_json(loaded: &Dataset) -> Result<Value, CliError> {
+    let first = first_look::first_settings(loaded.volume(), loaded.histogram());
+    let small = downsampled_volume(loaded)?;
+    let looks = first_look::propose_looks(&first, small.volume(), small.histogram()).into_iter().enumerate();
     let listed =
-        looks.map(|(at, look)| json!({"number": at + 1, "name": look.name, "differs": look.differs}));
+        looks.map(|(at, look)| json!({"number": at + 1, "name": look.name, "differs": look.description}));
     Ok(listed.collect())
 }
 

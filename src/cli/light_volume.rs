@@ -1,16 +1,16 @@
-//! `chiaroscuro light-volume`.
+//! Command `chiaroscuro light-volume`: writes a light's attenuation volume, or a slice of it.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::CliError;
-use super::outputs::{destination, finish};
+use super::output::{finish_output, open_destination};
 use super::scene::SceneArgs;
-use crate::export::{check_ending, write_atomically};
+use crate::export::{check_extension, write_atomically};
 use crate::gpu::{RenderOptions, Renderer, export_slice, light_volume_nrrd};
 use crate::model::LightStorage;
-use crate::plan::Request;
+use crate::plan::RenderRequest;
 
 /// Arguments of `light-volume`.
 #[derive(Debug, Args)]
@@ -22,48 +22,48 @@ pub(super) struct LightVolumeArgs {
     output: PathBuf,
     /// One slice of it, for instance z:40 (counted in voxels of the light volume)
     #[arg(long, value_name = "AXIS:INDEX", value_parser = parse_slice)]
-    slice: Option<Slice>,
+    slice: Option<LightVolumeSlice>,
     /// Which light, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     light: usize,
 }
 
-/// A slice across an axis of the light volume.
+/// Slice of the light volume across one axis.
 #[derive(Debug, Clone, Copy)]
-struct Slice {
-    /// 0, 1 or 2 for x, y or z.
+struct LightVolumeSlice {
+    /// Index of the axis: 0, 1 or 2 for x, y or z.
     axis: usize,
-    /// Where along it, in voxels.
+    /// Position along the axis, in voxels.
     index: usize,
 }
 
-/// Index axes, as users name them.
+/// Names of the index axes on the command line.
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
-/// `z:40`
-fn parse_slice(text: &str) -> Result<Slice, String> {
+/// Parses a slice such as `z:40`.
+fn parse_slice(text: &str) -> Result<LightVolumeSlice, String> {
     let parsed = text.split_once(':').and_then(|(axis, index)| {
         let axis = AXES.iter().position(|name| axis == name.to_string())?;
-        Some(Slice { axis, index: index.parse().ok()? })
+        Some(LightVolumeSlice { axis, index: index.parse().ok()? })
     });
     parsed.ok_or_else(|| format!("expected x, y or z and a number, as in z:40, found {text:?}"))
 }
 
-/// Fills and writes one attenuation volume.
+/// Fills and writes the attenuation volume of one light.
 pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     args.scene.keep_apart(&[&args.output])?;
-    let output = destination(&args.output, if args.slice.is_some() { "png" } else { "nrrd" })?;
+    let output = open_destination(&args.output, if args.slice.is_some() { "png" } else { "nrrd" })?;
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
     let mut settings = look.settings(&mut renderer, &loaded)?;
-    // Combined with others, it would be gone.
+    // In a combined volume, this light could not be separated.
     settings.shadows.storage = LightStorage::PerLight;
-    let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+    let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
     let size = [16, 16];
     renderer.draw(&loaded, &settings, size, &options)?;
     let lights = settings.lights.len();
-    let request = Request { volume: loaded.volume().id(), settings, size, coarse: None };
+    let request = RenderRequest { volume: loaded.volume().id(), settings, size, preview_resolution: None };
     let attenuation = renderer.attenuation(&request, args.light)?.ok_or_else(|| {
         CliError::Usage(format!(
             "--light: light {} has no attenuation volume: it must be one of {lights}, be on and cast shadows, and shadows must be on (command line, --light)",
@@ -72,14 +72,14 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     })?;
     match args.slice {
         None => {
-            check_ending(
+            check_extension(
                 output.path(),
                 &["nrrd"],
                 "light volumes are written as .nrrd, their slices as .png",
             )?;
             write_atomically(output.path(), &light_volume_nrrd(loaded.volume(), &attenuation))?;
         }
-        Some(Slice { axis, index }) => {
+        Some(LightVolumeSlice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
                 CliError::Usage(format!(
                     "--slice: there is no slice {index}: the light volume has {} along {} (command line, --slice)",
@@ -89,5 +89,5 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
             export_slice(&slice, output.path())?;
         }
     }
-    finish(output)
+    finish_output(output)
 }

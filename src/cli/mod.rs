@@ -1,4 +1,4 @@
-//! The command line: arguments become the same `Settings` and go to the same renderer as in the
+//! Command line: arguments become the same [`Settings`](crate::model::Settings) and go to the same renderer as in the
 //! window.
 
 mod bench;
@@ -8,7 +8,7 @@ mod error;
 mod image_args;
 mod info;
 mod light_volume;
-mod outputs;
+mod output;
 mod process;
 mod render;
 mod replay;
@@ -19,9 +19,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::fault::{self, Fault};
+use crate::fault::{self, InjectedFault};
 pub use error::CliError;
-use outputs::{print_line, warn_line, warn_lines};
+use output::{print_line, warn_line, warn_lines};
 pub use process::note_closed_output;
 use scene::LoadArgs;
 
@@ -30,9 +30,9 @@ use crate::export::may_carry_record;
 /// See the shape of volume data, with true volumetric shadows.
 #[derive(Debug, Parser)]
 #[command(name = "chiaroscuro", version, args_conflicts_with_subcommands = true)]
-struct Args {
+struct CommandLine {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
     #[arg(help = "Volume to view: a file, or builtin:NAME[:N]")]
     file: Option<PathBuf>,
     /// Session to continue; Ctrl+S saves to it
@@ -48,12 +48,12 @@ struct Args {
     load: LoadArgs,
     /// A fault on purpose, to see what the program does then; may be repeated
     #[arg(long, value_name = "FAULT", global = true, hide = true)]
-    fault: Vec<Fault>,
+    fault: Vec<InjectedFault>,
 }
 
-impl Args {
-    /// What the window is to be opened with.
-    fn request(self) -> Result<ViewerRequest, CliError> {
+impl CommandLine {
+    /// Returns the request with which the window is opened.
+    fn viewer_request(self) -> Result<ViewerRequest, CliError> {
         let Self { command: _, file, session, volume, trust_paths, load, fault: _ } = self;
         if let (Some(file), Some(volume)) = (&file, &volume)
             && !is_look(file)
@@ -68,13 +68,13 @@ impl Args {
     }
 }
 
-/// Whether a file holds a look and not a volume, by its name.
+/// Returns true if a file's name indicates a look (session or picture) and not a volume.
 fn is_look(path: &Path) -> bool {
     may_carry_record(path) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Render a picture to a PNG file
     Render(render::RenderArgs),
     /// Render one turn of the camera or of a light
@@ -93,30 +93,30 @@ enum Command {
     Bench(bench::BenchArgs),
 }
 
-/// What the window is to be opened with.
+/// Request with which the window is opened.
 #[derive(Debug, Clone)]
 pub struct ViewerRequest {
-    /// File or built-in.
+    /// Path of a file, or name of a built-in volume.
     pub source: Option<PathBuf>,
-    /// How to read it.
+    /// Options for reading the volume.
     pub load: crate::data::load::LoadOptions,
-    /// See `--session`.
+    /// Session to continue, from `--session`.
     pub session: Option<PathBuf>,
-    /// See `--volume`.
+    /// Volume of a look, from `--volume`.
     pub volume: Option<PathBuf>,
-    /// See `--trust-paths`.
+    /// True if recorded paths of volumes are trusted, from `--trust-paths`.
     pub trust_paths: bool,
 }
 
-/// What is done when the process is told to end: the window's look is kept.
+/// Actions on termination signals: the window's look is saved.
 #[cfg(feature = "window")]
-const LAST_ACTS: &[fn()] = &[crate::app::end_in_a_hurry];
+const TERMINATION_ACTIONS: &[fn()] = &[crate::app::save_before_termination];
 #[cfg(not(feature = "window"))]
-const LAST_ACTS: &[fn()] = &[];
+const TERMINATION_ACTIONS: &[fn()] = &[];
 
 /// Runs the command line; `open_window` runs the viewer. Returns the exit code.
 pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> u8 {
-    let args = match Args::try_parse() {
+    let args = match CommandLine::try_parse() {
         Ok(args) => args,
         Err(err) => {
             let text = err.render().to_string();
@@ -124,27 +124,27 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
                 warn_lines(text.trim_end());
                 return 2;
             }
-            // Help and version are no errors.
+            // Help and version are not errors.
             return exit_code(print_line(text.trim_end()));
         }
     };
-    fault::choose(args.fault.clone());
-    process::listen(LAST_ACTS);
-    let result = process::start().and_then(|()| match args.command {
-        Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Turntable(args)) => turntable::run(&args),
-        Some(Command::Replay(args)) => replay::run(&args),
-        Some(Command::Compare(args)) => compare::run(&args),
-        Some(Command::LightVolume(args)) => light_volume::run(&args),
-        Some(Command::Convert(args)) => convert::run(&args),
-        Some(Command::Info(args)) => info::run(&args),
-        Some(Command::Bench(args)) => bench::run(&args),
-        None => args.request().and_then(open_window),
+    fault::set_faults(args.fault.clone());
+    process::listen_for_signals(TERMINATION_ACTIONS);
+    let result = process::start_thread_pool().and_then(|()| match args.command {
+        Some(CliCommand::Render(args)) => render::run(&args),
+        Some(CliCommand::Turntable(args)) => turntable::run(&args),
+        Some(CliCommand::Replay(args)) => replay::run(&args),
+        Some(CliCommand::Compare(args)) => compare::run(&args),
+        Some(CliCommand::LightVolume(args)) => light_volume::run(&args),
+        Some(CliCommand::Convert(args)) => convert::run(&args),
+        Some(CliCommand::Info(args)) => info::run(&args),
+        Some(CliCommand::Bench(args)) => bench::run(&args),
+        None => args.viewer_request().and_then(open_window),
     });
     exit_code(result)
 }
 
-/// The exit code of a command that has ended, after a word about what went wrong.
+/// Returns the exit code of a finished command, and prints its error message.
 fn exit_code(result: Result<(), CliError>) -> u8 {
     match result {
         Ok(()) => 0,

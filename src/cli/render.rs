@@ -1,4 +1,4 @@
-//! `chiaroscuro render`.
+//! Command `chiaroscuro render`: renders one picture to a file.
 
 use std::path::PathBuf;
 
@@ -7,12 +7,14 @@ use serde_json::json;
 
 use super::CliError;
 use super::image_args::ImageArgs;
-use super::outputs::{destination, finish, hand_over, warn_line, warn_of_nothing};
+use super::output::{copy_to_stdout, finish_output, open_destination, warn_empty_picture, warn_line};
 use super::scene::SceneArgs;
 use crate::data::fingerprint;
-use crate::export::{Destination, check_picture, check_writable, marks, write_atomically, write_picture};
-use crate::gpu::{RenderOptions, Renderer, dark_share, mean_luminance};
-use crate::model::{PictureRecord, Record, VolumeRecord, tells_maker};
+use crate::export::{
+    OutputDestination, check_picture, check_writable, marks_layer, write_atomically, write_picture,
+};
+use crate::gpu::{RenderOptions, Renderer, dark_fraction, mean_luminance};
+use crate::model::{ImageRecord, LookRecord, VolumeRecord, with_provenance_mark};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -23,7 +25,7 @@ pub(super) struct RenderArgs {
     #[arg(short, long, value_name = "OUT.png|OUT.exr")]
     output: PathBuf,
     #[command(flatten)]
-    shot: ImageArgs,
+    image: ImageArgs,
     /// Also write what it took, and all settings, as JSON: of the picture drawn at once, with a sample per pixel
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
@@ -32,7 +34,7 @@ pub(super) struct RenderArgs {
     progress: bool,
 }
 
-/// Renders one picture.
+/// Renders one picture, and a report if requested.
 pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let say = |text: &str| {
         if args.progress {
@@ -41,10 +43,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     };
     let written: Vec<_> = std::iter::once(&args.output).chain(&args.report).map(PathBuf::as_path).collect();
     args.scene.keep_apart(&written)?;
-    let output = destination(&args.output, "png")?;
-    let report_to = args.report.as_deref().map(|path| destination(path, "json")).transpose()?;
-    let shot = args.shot.spec(output.path());
-    check_picture(output.path(), &shot)?;
+    let output = open_destination(&args.output, "png")?;
+    let report_to = args.report.as_deref().map(|path| open_destination(path, "json")).transpose()?;
+    let image_spec = args.image.spec(output.path());
+    check_picture(output.path(), &image_spec)?;
     for to in std::iter::once(&output).chain(&report_to) {
         check_writable(to.path())?;
     }
@@ -57,20 +59,20 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     say("rendering");
     let mut report = None;
     if args.report.is_some() {
-        // It measures a whole picture, light volumes included, not what the balance left over.
+        // The report measures a whole picture including light volumes, so the renderer starts without caches.
         renderer = Renderer::new(&context)?;
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
-        let picture = renderer.render(&loaded, &settings, shot.size, &options)?;
+        let picture = renderer.render(&loaded, &settings, image_spec.size, &options)?;
         let took = renderer.report();
         report = Some(json!({
             "adapter": context.info.name,
             "driver": format!("{} {}", context.info.driver, context.info.driver_info),
-            "image_size": shot.size,
+            "image_size": image_spec.size,
             "volume_dims": loaded.volume().dims(),
             "volume_file_dims": loaded.volume().file_dims(),
             "stages_ms": {
                 "upload": took.upload_ms,
-                "bricks": took.bricks_ms,
+                "bricks": took.tables_ms,
                 "light_march": took.light_march_ms,
                 "light_backproject": took.light_backproject_ms,
                 "light_raycast": took.light_raycast_ms,
@@ -79,20 +81,20 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             },
             "light_rebuilds": renderer.light_rebuilds(),
             "slabs": took.slabs,
-            "splats": renderer.splats()?,
+            "splats": renderer.splat_count()?,
             "peak_gpu_bytes": took.peak_gpu_bytes,
-            "mean_luminance": mean_luminance(&picture.light),
-            "dark_share": dark_share(&picture.light, settings.output.exposure),
+            "mean_luminance": mean_luminance(&picture.linear),
+            "dark_share": dark_fraction(&picture.linear, settings.output.exposure),
             "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
             "settings": settings,
         }));
     }
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
-        .choosing(loaded.volume().held().choice());
-    let how = PictureRecord::new(shot, context.description());
-    let record = Record::text(&settings, Some(&volume), Some(&how));
-    let mut bands = renderer.bands(&loaded, &settings, &shot);
-    let (layer, mut first) = (marks(&shot, &settings, loaded.volume()), 0);
+        .with_choice(loaded.volume().contents().choice());
+    let picture_record = ImageRecord::new(image_spec, context.description());
+    let record = LookRecord::to_json(&settings, Some(&volume), Some(&picture_record));
+    let mut bands = renderer.bands(&loaded, &settings, &image_spec);
+    let (layer, mut first) = (marks_layer(&image_spec, &settings, loaded.volume()), 0);
     let mut rows = || -> Result<_, CliError> {
         let (done, total) = bands.progress();
         if total > 1 && done < total {
@@ -100,20 +102,20 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         }
         let mut rows = bands.next_rows()?;
         if let Some(rows) = &mut rows {
-            layer.lay_over(&shot, first, rows);
-            first += rows.count(&shot);
+            layer.composite_over(&image_spec, first, rows);
+            first += rows.count(&image_spec);
         }
         Ok(rows)
     };
-    write_picture(output.path(), &shot, Some(&record), &mut rows)?;
+    write_picture(output.path(), &image_spec, Some(&record), &mut rows)?;
     if bands.is_empty() {
-        warn_of_nothing();
+        warn_empty_picture();
     }
-    // A report without its picture would mislead.
-    let is_told = report_to.as_ref().is_some_and(Destination::is_standard_output);
+    // A report without its picture would be misleading, so it is written last.
+    let is_told = report_to.as_ref().is_some_and(OutputDestination::is_standard_output);
     if let Some((to, report)) = report_to.zip(report) {
-        write_atomically(to.path(), format!("{:#}\n", tells_maker(report)).as_bytes())?;
-        hand_over(to)?;
+        write_atomically(to.path(), format!("{:#}\n", with_provenance_mark(report)).as_bytes())?;
+        copy_to_stdout(to)?;
     }
-    if is_told { hand_over(output) } else { finish(output) }
+    if is_told { copy_to_stdout(output) } else { finish_output(output) }
 }

@@ -1,15 +1,15 @@
-//! `chiaroscuro turntable`: the camera or a light goes once around the volume.
+//! Command `chiaroscuro turntable`: an animation in which the camera or a light goes once around the volume.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::CliError;
-use super::outputs::{print_line, warn_line, warn_of_nothing};
+use super::output::{print_line, warn_empty_picture, warn_line};
 use super::scene::{SceneArgs, parse_size};
 use crate::export::{Animation, AnimationFormat, AnimationSpec, frame_names};
 use crate::gpu::{RenderOptions, Renderer};
-use crate::model::{ImageSpec, PictureRecord, Record, VolumeRecord};
+use crate::model::{ImageRecord, ImageSpec, LookRecord, VolumeRecord};
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
@@ -19,7 +19,7 @@ pub(super) struct TurntableArgs {
     /// A file that moves (PNG; GIF; MP4, which needs ffmpeg); or a folder for one PNG file per picture
     #[arg(short, long, value_name = "OUT.png|OUT.gif|OUT.mp4|FOLDER")]
     output: PathBuf,
-    /// Pixels
+    /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
     size: [u32; 2],
     /// Pictures for one turn
@@ -39,10 +39,10 @@ pub(super) struct TurntableArgs {
     progress: bool,
 }
 
-/// Renders one turn.
+/// Renders the frames of one turn.
 pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let mut written = vec![args.output.clone()];
-    if AnimationFormat::of_path(&args.output) == AnimationFormat::Folder {
+    if AnimationFormat::from_path(&args.output) == AnimationFormat::Folder {
         written = frame_names(&args.output, args.frames);
     }
     args.scene.keep_apart(&written.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -67,22 +67,22 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         Animation::create(&args.output, &AnimationSpec { size, frames, rate: args.rate, transparent })?;
     let folder = AnimationFormat::record_folder(&args.output);
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), folder)
-        .choosing(loaded.volume().held().choice());
-    let shot = ImageSpec { transparent, ..ImageSpec::new(size) };
-    let how = PictureRecord::new(shot, context.description());
-    let options = RenderOptions::of_shot(&shot);
+        .with_choice(loaded.volume().contents().choice());
+    let image_spec = ImageSpec { transparent, ..ImageSpec::new(size) };
+    let how = ImageRecord::new(image_spec, context.description());
+    let options = RenderOptions::for_image(&image_spec);
     let mut is_empty = true;
     for frame in 0..args.frames {
-        let settings = settings.turned(light, f64::from(frame) / f64::from(args.frames));
-        let shown = renderer.render_shown(&loaded, &settings, size, &options)?;
+        let settings = settings.at_turntable_angle(light, f64::from(frame) / f64::from(args.frames));
+        let shown = renderer.render_display(&loaded, &settings, size, &options)?;
         is_empty = is_empty && renderer.is_picture_empty()?;
-        file.add(&shown, &Record::text(&settings, Some(&volume), Some(&how)))?;
+        file.add(&shown, &LookRecord::to_json(&settings, Some(&volume), Some(&how)))?;
         if args.progress {
             warn_line(&format!("{} of {}", frame + 1, args.frames));
         }
     }
     if is_empty {
-        warn_of_nothing();
+        warn_empty_picture();
     }
     file.finish()?;
     print_line(&format!("{}", args.output.display()))?;

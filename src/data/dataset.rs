@@ -1,57 +1,63 @@
-//! A volume together with what follows from its voxels, and from the values that it shows.
+//! Dataset: a volume together with its bricks, cells and histogram.
 
 use std::sync::Arc;
 
-use super::{Bricks, Corrections, Histogram, Shown, Volume, VolumeError};
+use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeError};
 
-/// A volume with the bounds of its bricks and its histogram, which are made from it and cannot be mixed up with
-/// those of another. Copies share the voxels.
+/// Volume with the bounds of its bricks and its histogram, which are derived from it and so cannot be combined with
+/// those of another volume. Clones share the voxels.
 #[derive(Debug, Clone)]
 pub struct Dataset {
     volume: Arc<Volume>,
-    bricks: Arc<Bricks>,
+    bricks: Arc<BrickBounds>,
     histogram: Arc<Histogram>,
 }
 
 impl Dataset {
-    /// Finds bounds and histogram of a volume: about a second for 512³ voxels.
+    /// Computes bounds and histogram of a volume: about a second for 512³ voxels.
     pub fn new(volume: impl Into<Arc<Volume>>) -> Self {
         let volume = volume.into();
-        let (bricks, histogram) = (Arc::new(Bricks::of(&volume)), Arc::new(Histogram::of(&volume)));
+        let (bricks, histogram) =
+            (Arc::new(BrickBounds::from_volume(&volume)), Arc::new(Histogram::from_volume(&volume)));
         Self { volume, bricks, histogram }
     }
 
-    /// The same voxels with densities that stand for something else, and bounds and histogram of these densities.
+    /// Returns the dataset with the same voxels mapped to densities in another way, and with bounds and histogram of
+    /// these.
     #[must_use]
-    pub fn showing(&self, shown: impl Into<Shown>) -> Self {
+    pub fn with_density_mapping(&self, shown: impl Into<DensityMapping>) -> Self {
         let shown = shown.into();
-        if shown == self.volume.shown() { self.clone() } else { Self::new(self.volume.showing(shown)) }
+        if shown == self.volume.density_mapping() {
+            self.clone()
+        } else {
+            Self::new(self.volume.with_density_mapping(shown))
+        }
     }
 
-    /// The volume that was opened, corrected; where its values stay, at once.
+    /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.
     ///
     /// # Errors
-    /// As [`Volume::corrected`].
+    /// Fails like [`Volume::corrected`].
     pub fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let volume = self.volume.corrected(by)?;
         if !volume.shares_voxels(&self.volume) {
             return Ok(Self::new(volume));
         }
-        let volume = Arc::new(volume.showing(self.volume.shown()));
+        let volume = Arc::new(volume.with_density_mapping(self.volume.density_mapping()));
         Ok(Self { volume, ..self.clone() })
     }
 
-    /// The voxels.
+    /// Returns the volume whose voxels are shown.
     pub fn volume(&self) -> &Arc<Volume> {
         &self.volume
     }
 
-    /// Bounds of the density in bricks of 8³ and cells of 2³ voxels.
-    pub fn bricks(&self) -> &Arc<Bricks> {
+    /// Returns the density bounds of bricks of 8³ and cells of 2³ voxels.
+    pub fn bricks(&self) -> &Arc<BrickBounds> {
         &self.bricks
     }
 
-    /// How often each density occurs.
+    /// Returns the histogram of densities.
     pub fn histogram(&self) -> &Arc<Histogram> {
         &self.histogram
     }

@@ -1,9 +1,9 @@
-//! How often each value occurs.
+//! Histogram of the densities of a volume.
 
-use super::interrupt::Interrupt;
-use super::{Missing, Volume};
+use super::cancellation::CancelToken;
+use super::{MissingVoxels, Volume};
 
-/// Bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
+/// Number of bins of a histogram: fine enough for 12-bit data whose object spans a tenth of the range.
 pub const HISTOGRAM_BINS: usize = 1024;
 
 /// Counts of densities in equal bins over the volume's value range.
@@ -11,13 +11,13 @@ pub const HISTOGRAM_BINS: usize = 1024;
 pub struct Histogram {
     /// Voxels per bin; bin `i` of `n` holds densities in `[i/n, (i+1)/n)`, the last one also 1.
     pub counts: Vec<u64>,
-    /// All voxels that are there.
+    /// Number of voxels that are not missing.
     pub total: u64,
 }
 
 impl Histogram {
     /// Counts a volume's voxels in [`HISTOGRAM_BINS`] bins.
-    pub fn of(volume: &Volume) -> Self {
+    pub fn from_volume(volume: &Volume) -> Self {
         Self::with_bins(volume, HISTOGRAM_BINS)
     }
 
@@ -25,11 +25,11 @@ impl Histogram {
         use rayon::prelude::*;
         let missing = volume.missing();
         let empty = || vec![0u64; bins];
-        let interrupt = Interrupt::here();
+        let interrupt = CancelToken::current();
         let counts = (0..volume.dims()[2])
             .into_par_iter()
             .fold(empty, |mut counts, z| {
-                if interrupt.is_due() {
+                if interrupt.should_stop() {
                     return counts;
                 }
                 let densities = volume.slice_densities(z);
@@ -44,10 +44,10 @@ impl Histogram {
                 a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
                 a
             });
-        Self { counts, total: (volume.voxel_count() - missing.map_or(0, Missing::count)) as u64 }
+        Self { counts, total: (volume.voxel_count() - missing.map_or(0, MissingVoxels::count)) as u64 }
     }
 
-    /// The density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.
+    /// Returns the density below which a share of `fraction` (0 … 1) of the voxels lies, to one bin.
     pub fn percentile(&self, fraction: f64) -> f64 {
         let wanted = fraction * self.total as f64;
         let mut seen = 0.0;

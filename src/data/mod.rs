@@ -1,39 +1,43 @@
-//! Volumes: what they are, where they come from, what can be said of their values.
+//! Volumes: their voxels, readers of file formats, built-in volumes, and statistics of their values.
 //!
-//! Knows nothing of settings, of the GPU or of the window.
+//! Independent of settings, the GPU and the window.
 
-mod attempt;
 mod bricks;
+mod cancellation;
 mod cells;
 mod dataset;
-mod foreign;
-mod hints;
+mod environment_map;
 mod histogram;
-mod interrupt;
 pub mod load;
+mod load_context;
 mod open;
-mod surroundings;
 pub mod synthetic;
+mod untrusted;
+mod value_metadata;
 mod values;
 mod volume;
 
-pub(crate) use attempt::address_bytes_left;
-pub use bricks::Bricks;
+pub use bricks::BrickBounds;
+pub(crate) use cancellation::CancelToken;
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::Dataset;
-pub use foreign::{XmlError, fingerprint, one_line, plain, read_small, single_line, without_controls};
-pub(crate) use foreign::{natural, read_bounded, xml};
-pub use hints::{Hints, Label, Labels, MAX_LABEL_NAME, MAX_LABELS, Meaning, Modality};
+pub use environment_map::{BrightLight, EnvironmentMap, EnvironmentMapError, read_environment_map};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
-pub(crate) use interrupt::Interrupt;
+pub(crate) use load_context::address_bytes_left;
 pub use open::open;
-pub use surroundings::{BrightLight, Surroundings, SurroundingsError, read_surroundings};
+pub use untrusted::{
+    XmlError, fingerprint, one_line, read_small_file, sanitised, sanitised_line, without_controls,
+};
+pub(crate) use untrusted::{natural_sort_key, read_bounded, xml};
+pub use value_metadata::{
+    FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
+};
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{Samples, VoxelType};
-use volume::Blocks;
+use volume::BlockPartition;
 pub use volume::{
-    AxisOrder, Corrections, CountedLabel, DataKind, Flips, Headings, KindFound, KindName, LabelSet,
-    MAX_CLASSES, Missing, Orientation, PaddingValue, Shown, SpacingUnit, ValueScale, Volume, VolumeError,
-    VolumeId, reduced_dims,
+    AnatomicalAxes, AxisOrder, Corrections, CountedLabel, DataKind, DensityMapping, DetectedKind, Flips,
+    KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue, SpacingUnit, ValueScale,
+    Volume, VolumeError, VolumeId, block_counts,
 };

@@ -1,63 +1,63 @@
-//! What can go wrong with files.
+//! Errors of writing files and of reading pictures.
 
 use std::path::{Path, PathBuf};
 
-/// Why a file could not be written.
+/// Reason why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// The encoder refused.
+    /// The PNG encoder reported an error.
     #[error("the picture could not be encoded: {0}")]
     Encode(#[from] png::EncodingError),
-    /// The encoder of EXR files refused.
+    /// The EXR encoder reported an error.
     #[error("the picture could not be encoded: {0}")]
     Exr(#[from] exr::error::Error),
-    /// The encoder of GIF files refused.
+    /// The GIF encoder reported an error.
     #[error("the picture could not be encoded: {0}")]
     Gif(#[from] gif::EncodingError),
-    /// The disk refused.
+    /// The file system reported an error.
     #[error("could not write: {source} ({path}); a folder that exists and can be written to helps")]
     Write {
-        /// What was to be written.
+        /// Path of the file to be written.
         path: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         source: std::io::Error,
     },
-    /// The kind of file cannot hold this.
+    /// The file format cannot hold the requested content.
     #[error("{what} ({path})")]
-    Unfit {
-        /// What it cannot, and what can.
+    UnsupportedByFormat {
+        /// Limitation of the format, and a suggestion.
         what: &'static str,
-        /// What was to be written.
+        /// Path of the file to be written.
         path: PathBuf,
     },
-    /// There is no program to make videos with.
+    /// The program ffmpeg, which encodes videos, was not found.
     #[error(
         "MP4 needs ffmpeg, and `{program}` could not be started: {source}; install it, or write .gif or .png"
     )]
     NoFfmpeg {
-        /// Which was tried.
+        /// Name of the program that was tried.
         program: String,
-        /// Why it could not be started.
+        /// Cause of the failure to start it.
         source: std::io::Error,
     },
-    /// That program failed.
+    /// The program ffmpeg failed.
     #[error("ffmpeg failed: {said} ({path})")]
     Ffmpeg {
-        /// What was to be written.
+        /// Path of the file to be written.
         path: PathBuf,
-        /// The last words of ffmpeg.
+        /// Last line of ffmpeg's error output.
         said: String,
     },
 }
 
 impl ExportError {
-    /// Says which file the disk refused.
-    pub(super) fn writing(path: &Path) -> impl Fn(std::io::Error) -> Self {
+    /// Returns a function that wraps an I/O error with the path of the file.
+    pub(super) fn io_error_for(path: &Path) -> impl Fn(std::io::Error) -> Self {
         move |source| Self::Write { path: path.to_owned(), source }
     }
 
-    /// Says which file the disk refused, where an encoder only passes on that it did.
-    pub(super) fn about(path: &Path) -> impl Fn(Self) -> Self {
+    /// Returns a function that replaces an encoder's wrapped I/O error by one with the path of the file.
+    pub(super) fn with_path(path: &Path) -> impl Fn(Self) -> Self {
         move |err| match err {
             Self::Encode(png::EncodingError::IoError(source))
             | Self::Exr(exr::error::Error::Io(source))
@@ -67,18 +67,18 @@ impl ExportError {
     }
 }
 
-/// Why a picture could not be read.
+/// Reason why a picture could not be read.
 #[derive(Debug, thiserror::Error)]
 #[error("could not read the picture: {why} ({path}); a PNG or EXR file that this program has exported helps")]
 pub struct ReadPictureError {
-    /// Which.
+    /// Path of the picture file.
     path: PathBuf,
-    /// What is wrong with it.
+    /// Description of the problem.
     why: String,
 }
 
 impl ReadPictureError {
-    /// Of a file, for a reason.
+    /// Creates an error for a file, with a reason.
     pub(super) fn new(path: &Path, why: &dyn std::fmt::Display) -> Self {
         Self { path: path.to_owned(), why: why.to_string() }
     }

@@ -1,22 +1,22 @@
-//! PNG: display colours in 8 or 16 bits, with a record as text.
+//! PNG files: display colours in 8 or 16 bits, with a record as text.
 
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
-use super::files::{check_ending, open_regular, place, temporary_beside, write_atomically};
-use super::rows::{RECORD, word};
-use super::{ExportError, ReadPictureError, Rows};
-use crate::model::{Depth, ImageSpec, MAX_EDGE, MAX_LOOK_BYTES, made_by};
+use super::files::{check_extension, open_regular, rename_into_place, temporary_file_for, write_atomically};
+use super::rows::{RECORD_KEY, quantize_u16};
+use super::{ExportError, PixelRows, ReadPictureError};
+use crate::model::{ImageSpec, MAX_IMAGE_EDGE, MAX_LOOK_BYTES, PixelFormat, provenance_mark};
 
-/// Most bytes that are read of all that stands before a picture's pixels, other programs' texts and colour profiles
-/// among it, as they are stored: ten times what cameras write.
-const MOST_BEFORE: usize = 16 << 20;
+/// Maximum number of bytes read before a picture's pixels, including texts and colour profiles of other programs, as
+/// stored: ten times what cameras write.
+const MAX_METADATA_BYTES: usize = 16 << 20;
 
-/// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha when
-/// it is transparent. It carries a record ([`crate::model::Record`]) as text.
+/// Writes a picture of sRGB bytes, RGBA row by row, as PNG: RGB, or RGBA with straight alpha if it is transparent. It
+/// embeds a record ([`crate::model::LookRecord`]) as text.
 ///
 /// # Errors
-/// As [`write_atomically`].
+/// Under the conditions of [`write_atomically`].
 pub fn export_png(
     size: [u32; 2],
     shown: &[u8],
@@ -24,7 +24,7 @@ pub fn export_png(
     record: Option<&str>,
     path: &Path,
 ) -> Result<(), ExportError> {
-    check_ending(path, &["png"], "pictures of this kind are written as .png")?;
+    check_extension(path, &["png"], "pictures of this kind are written as .png")?;
     let bytes = if transparent {
         encode_png(size, png::ColorType::Rgba, shown, record)?
     } else {
@@ -33,10 +33,10 @@ pub fn export_png(
     write_atomically(path, &bytes)
 }
 
-/// Bytes of colours as PNG, with a record if there is one.
+/// Encodes bytes of colours as PNG, with a record if there is one.
 ///
 /// # Errors
-/// When there are more or fewer bytes than pixels.
+/// When the number of bytes does not match the pixels.
 pub fn encode_png(
     [width, height]: [u32; 2],
     color: png::ColorType,
@@ -47,9 +47,9 @@ pub fn encode_png(
     let mut encoder = png::Encoder::new(&mut png, width, height);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_color(color);
-    mark(&mut encoder)?;
+    add_software_text(&mut encoder)?;
     if let Some(record) = record {
-        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned())?;
+        encoder.add_itxt_chunk(RECORD_KEY.to_owned(), record.to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(bytes)?;
@@ -57,85 +57,93 @@ pub fn encode_png(
     Ok(png)
 }
 
-/// Says in a file who made it.
-pub(super) fn mark<W: std::io::Write>(encoder: &mut png::Encoder<'_, W>) -> Result<(), png::EncodingError> {
-    encoder.add_text_chunk("Software".to_owned(), made_by())
+/// Adds the name of this program to the file's metadata.
+pub(super) fn add_software_text<W: std::io::Write>(
+    encoder: &mut png::Encoder<'_, W>,
+) -> Result<(), png::EncodingError> {
+    encoder.add_text_chunk("Software".to_owned(), provenance_mark())
 }
 
-/// Writes a picture as its rows come.
+/// Writes a picture from bands of rows.
 pub(super) fn write<E: From<ExportError>>(
     path: &Path,
-    shot: &ImageSpec,
+    image_spec: &ImageSpec,
     record: Option<&str>,
-    rows: &mut dyn FnMut() -> Result<Option<Rows>, E>,
+    rows: &mut dyn FnMut() -> Result<Option<PixelRows>, E>,
 ) -> Result<(), E> {
-    let failed = ExportError::writing(path);
-    let not_encoded = |err| ExportError::about(path)(ExportError::Encode(err));
-    let file = temporary_beside(path)?;
+    let failed = ExportError::io_error_for(path);
+    let not_encoded = |err| ExportError::with_path(path)(ExportError::Encode(err));
+    let file = temporary_file_for(path)?;
     let mut out = BufWriter::new(file.reopen().map_err(&failed)?);
-    let mut encoder = png::Encoder::new(&mut out, shot.size[0], shot.size[1]);
-    encoder.set_depth(if shot.depth == Depth::Eight { png::BitDepth::Eight } else { png::BitDepth::Sixteen });
-    encoder.set_color(if shot.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    mark(&mut encoder).map_err(not_encoded)?;
+    let mut encoder = png::Encoder::new(&mut out, image_spec.size[0], image_spec.size[1]);
+    encoder.set_depth(if image_spec.depth == PixelFormat::Eight {
+        png::BitDepth::Eight
+    } else {
+        png::BitDepth::Sixteen
+    });
+    encoder.set_color(if image_spec.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    add_software_text(&mut encoder).map_err(not_encoded)?;
     if let Some(record) = record {
-        encoder.add_itxt_chunk(RECORD.to_owned(), record.to_owned()).map_err(not_encoded)?;
+        encoder.add_itxt_chunk(RECORD_KEY.to_owned(), record.to_owned()).map_err(not_encoded)?;
     }
     let mut writer = encoder.write_header().map_err(not_encoded)?;
     let mut stream = writer.stream_writer_with_size(1 << 20).map_err(not_encoded)?;
     while let Some(rows) = rows()? {
         let bytes = match rows {
-            Rows::Bytes(shown) if shot.transparent => shown,
-            Rows::Bytes(shown) => rgb(&shown),
-            Rows::Floats(shown) => words(&shown, shot.transparent),
+            PixelRows::Bytes(shown) if image_spec.transparent => shown,
+            PixelRows::Bytes(shown) => rgb(&shown),
+            PixelRows::Floats(shown) => to_u16_be(&shown, image_spec.transparent),
         };
         stream.write_all(&bytes).map_err(&failed)?;
     }
     stream.finish().map_err(not_encoded)?;
     writer.finish().map_err(not_encoded)?;
     out.flush().map_err(&failed)?;
-    Ok(place(file, path)?)
+    Ok(rename_into_place(file, path)?)
 }
 
-/// The colours of a picture without its alpha.
+/// Returns the colours of a picture without alpha.
 pub(super) fn rgb(shown: &[u8]) -> Vec<u8> {
     shown.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect()
 }
 
-/// Numbers from 0 to 1 in 16 bits, high byte first, with alpha or without.
-fn words(shown: &[f32], alpha: bool) -> Vec<u8> {
+/// Encodes values from 0 to 1 as 16-bit numbers, big-endian, with or without alpha.
+fn to_u16_be(shown: &[f32], alpha: bool) -> Vec<u8> {
     let kept = if alpha { 4 } else { 3 };
     let texels = shown.chunks_exact(4);
-    texels.flat_map(|texel| texel[..kept].iter().flat_map(|&value| word(value).to_be_bytes())).collect()
+    texels
+        .flat_map(|texel| texel[..kept].iter().flat_map(|&value| quantize_u16(value).to_be_bytes()))
+        .collect()
 }
 
-/// Reads a PNG file.
+/// Opens a PNG file for decoding.
 fn reader(path: &Path) -> Result<image::ImageReader<BufReader<std::fs::File>>, ReadPictureError> {
     Ok(image::ImageReader::with_format(BufReader::new(open_regular(path)?), image::ImageFormat::Png))
 }
 
-/// Columns and rows of a PNG file.
+/// Reads the columns and rows of a PNG file.
 pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     let size = reader(path)?.into_dimensions().map_err(|err| ReadPictureError::new(path, &err))?;
-    sizes_of_ours(path, size.into())
+    check_size(path, size.into())
 }
 
-/// Columns and rows, unless they are more than those of any picture of this program.
-pub(super) fn sizes_of_ours(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
+/// Rejects sizes beyond those of any picture that this program writes.
+pub(super) fn check_size(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPictureError> {
     let [width, height] = size;
-    if size.iter().all(|edge| (1..=MAX_EDGE).contains(edge)) {
+    if size.iter().all(|edge| (1..=MAX_IMAGE_EDGE).contains(edge)) {
         return Ok(size);
     }
     let why = format!("it has {width} × {height} pixels, which none of this program has");
     Err(ReadPictureError::new(path, &why))
 }
 
-/// All of a PNG file.
-pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
+/// Reads the pixels of a PNG file.
+pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let size = size(path)?;
     let [width, height] = size;
     let mut reader = reader(path)?;
-    // As much as our own largest pictures need, twice: not what the file makes of its text or colours.
+    // Twice the memory of the decoded pixels: limits the memory for texts and colour profiles in the file.
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 * u64::from(width) * u64::from(height) + (1 << 20));
     reader.limits(limits);
@@ -143,23 +151,23 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], Rows), ReadPictureError> {
     let is_deep = matches!(image.color(), image::ColorType::Rgb16 | image::ColorType::Rgba16);
     let rows = if is_deep {
         let words = image.to_rgba16().into_raw();
-        Rows::Floats(words.into_iter().map(|word| f32::from(word) / 65535.0).collect())
+        PixelRows::Floats(words.into_iter().map(|word| f32::from(word) / 65535.0).collect())
     } else {
-        Rows::Bytes(image.to_rgba8().into_raw())
+        PixelRows::Bytes(image.to_rgba8().into_raw())
     };
     Ok((size, rows))
 }
 
-/// The record in a PNG file, if there is one.
+/// Reads the record in a PNG file, if there is one.
 pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let file = open_regular(path)?;
-    let limits = png::Limits { bytes: MOST_BEFORE };
+    let limits = png::Limits { bytes: MAX_METADATA_BYTES };
     let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
     let reader = decoder.read_info().map_err(|err| failed(&err))?;
-    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD);
+    let found = reader.info().utf8_text.iter().find(|text| text.keyword == RECORD_KEY);
     let Some(mut text) = found.cloned() else { return Ok(None) };
-    // Inflating stops there, whatever it would come to.
+    // Decompression stops at this length.
     text.decompress_text_with_limit(MAX_LOOK_BYTES)
         .map_err(|err| failed(&format!("what it says of how it was made cannot be read: {err}")))?;
     text.get_text().map(Some).map_err(|err| failed(&err))
@@ -191,7 +199,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut info = png::Info::with_size(1, 1);
-        let mut text = png::text_metadata::ITXtChunk::new(RECORD, "x".repeat(MAX_LOOK_BYTES + 1));
+        let mut text = png::text_metadata::ITXtChunk::new(RECORD_KEY, "x".repeat(MAX_LOOK_BYTES + 1));
         text.compressed = true;
         text.compress_text().unwrap();
         info.utf8_text.push(text);
@@ -211,16 +219,19 @@ mod tests {
         let path = folder.path().join("a.png");
         let value = |i: usize| i as f32 / 65535.0;
         for transparent in [false, true] {
-            let shot = ImageSpec { depth: Depth::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
+            let image_spec = ImageSpec { depth: PixelFormat::Sixteen, transparent, ..ImageSpec::new([5, 4]) };
             let shown: Vec<f32> = (0..80).map(|i| value(i * 3)).collect();
-            // A band of three rows and one of one.
+            // Bands of three rows and of one row.
             let mut bands = vec![shown[60..].to_vec(), shown[..60].to_vec()];
-            let mut next = || Ok::<_, ExportError>(bands.pop().map(Rows::Floats));
-            super::super::write_picture(&path, &shot, None, &mut next).unwrap();
+            let mut next = || Ok::<_, ExportError>(bands.pop().map(PixelRows::Floats));
+            super::super::write_picture(&path, &image_spec, None, &mut next).unwrap();
             let expected = |i: usize| if i % 4 == 3 && !transparent { 65535 } else { i as u16 * 3 };
             let read = image::open(&path).unwrap().to_rgba16().into_raw();
             assert_eq!(read, (0..80).map(expected).collect::<Vec<_>>());
-            assert_eq!(read_picture(&path).unwrap(), ([5, 4], Rows::Floats(shown).as_written(&shot)));
+            assert_eq!(
+                read_picture(&path).unwrap(),
+                ([5, 4], PixelRows::Floats(shown).after_round_trip(&image_spec))
+            );
         }
     }
 }

@@ -1,54 +1,54 @@
-//! What pictures consist of before they are files.
+//! Bands of rows, in which pictures are passed to the writers of files.
 
-use crate::model::{Depth, ImageSpec};
+use crate::model::{ImageSpec, PixelFormat};
 
-/// Under which name a picture carries its record.
-pub(super) const RECORD: &str = "chiaroscuro";
+/// Key of the embedded record in a picture's metadata.
+pub(super) const RECORD_KEY: &str = "chiaroscuro";
 
-/// A number from 0 to 1 in 16 bits.
-pub(super) fn word(value: f32) -> u16 {
+/// Quantises a value from 0 to 1 to 16 bits.
+pub(super) fn quantize_u16(value: f32) -> u16 {
     (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }
 
-/// Rows of a picture, RGBA: display colours with straight alpha, or linear and premultiplied light.
+/// Rows of a picture as RGBA: display colours with straight alpha, or linear light with premultiplied alpha.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Rows {
-    /// sRGB bytes.
+pub enum PixelRows {
+    /// sRGB bytes, four per pixel.
     Bytes(Vec<u8>),
-    /// 0 … 1, or light.
+    /// Display colours from 0 to 1, or linear light; four per pixel.
     Floats(Vec<f32>),
 }
 
-impl Rows {
-    /// How many rows of a picture they are.
-    pub fn count(&self, shot: &ImageSpec) -> usize {
+impl PixelRows {
+    /// Number of rows of the given picture.
+    pub fn count(&self, image_spec: &ImageSpec) -> usize {
         let numbers = match self {
             Self::Bytes(shown) => shown.len(),
             Self::Floats(shown) => shown.len(),
         };
-        numbers / (shot.size[0] as usize * 4).max(1)
+        numbers / (image_spec.size[0] as usize * 4).max(1)
     }
 
-    /// What a file of them gives back.
+    /// Returns the values that reading a file with these rows gives back.
     #[must_use]
-    pub fn as_written(self, shot: &ImageSpec) -> Self {
+    pub fn after_round_trip(self, image_spec: &ImageSpec) -> Self {
         match self {
             Self::Bytes(mut shown) => {
-                if !shot.transparent {
+                if !image_spec.transparent {
                     shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
                 }
                 Self::Bytes(shown)
             }
             Self::Floats(mut shown) => {
-                if shot.depth == Depth::Linear {
+                if image_spec.depth == PixelFormat::Linear {
                     for value in &mut shown {
                         *value = half::f16::from_f32(*value).to_f32();
                     }
                 } else {
                     for value in &mut shown {
-                        *value = f32::from(word(*value)) / 65535.0;
+                        *value = f32::from(quantize_u16(*value)) / 65535.0;
                     }
-                    if !shot.transparent {
+                    if !image_spec.transparent {
                         shown.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
                     }
                 }
@@ -57,7 +57,7 @@ impl Rows {
         }
     }
 
-    /// All of them where 1 is white.
+    /// Returns all values, scaled so that 1 is white.
     pub fn values(&self) -> Vec<f32> {
         match self {
             Self::Bytes(shown) => shown.iter().map(|&byte| f32::from(byte) / 255.0).collect(),

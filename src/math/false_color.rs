@@ -1,8 +1,7 @@
-//! Colours for numbers.
+//! False-colour map: scalar values of 0 … 1 as sRGB colours.
 
-/// sRGB anchors at equal steps, dark to bright: luminance rises evenly, so that the picture reads the
-/// same without colour, and hue turns from blue over green to yellow, which most colour-blind people
-/// tell apart.
+/// sRGB anchors at equal steps, dark to bright. Luminance rises evenly, so that the map is readable in greyscale; the
+/// hue goes from blue over green to yellow, which most colour-blind people can tell apart.
 const ANCHORS: [[f64; 3]; 6] = [
     [0.05, 0.03, 0.15],
     [0.16, 0.18, 0.45],
@@ -12,10 +11,10 @@ const ANCHORS: [[f64; 3]; 6] = [
     [1.00, 0.93, 0.62],
 ];
 
-/// The colour of a value of 0 … 1, as sRGB bytes.
+/// Returns the colour of a value as sRGB bytes; values are clamped to 0 … 1.
 pub fn false_color(value: f32) -> [u8; 3] {
     let last = ANCHORS.len() - 1;
-    // No number counts as dark.
+    // NaN gets the darkest colour.
     let value = if value.is_nan() { 0.0 } else { f64::from(value) };
     let at = value.clamp(0.0, 1.0) * last as f64;
     let low = (at as usize).min(last - 1);

@@ -1,31 +1,30 @@
-//! Scene space: the one in which cameras and lights are placed.
+//! Scene space: the space in which cameras and lights are placed.
 //!
-//! World space is millimetres, as the file says. Scene space is world space moved and scaled
-//! (never turned or sheared) so that the middle of the volume's box is the origin and its longest
-//! edge runs from −1 to 1. A camera or a light then means the same for a snail and for a skull,
-//! and a preset can be used on both.
+//! World space is in millimetres, as the file says. Scene space is world space translated and uniformly scaled (never
+//! rotated or sheared) so that the centre of the volume's box is the origin and its longest edge runs from −1 to 1. A
+//! camera or a light then means the same for a snail and for a skull, and a preset fits both.
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Bounds;
+use super::Aabb;
 
-/// How one volume's grid lies in scene space.
+/// Transforms between a volume's index space and scene space, with voxel sizes in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneSpace {
     /// Number of voxels along each index axis.
     pub dims: [usize; 3],
-    /// Index space (voxel centres at integers) to scene space.
+    /// Transform from index space (voxel centres at integers) to scene space.
     pub scene_from_index: DAffine3,
-    /// Scene space to index space.
+    /// Transform from scene space to index space.
     pub index_from_scene: DAffine3,
     /// Length of one scene unit in millimetres.
     pub mm_per_unit: f64,
-    /// Voxel edges along the index axes, in scene units.
+    /// Lengths of a voxel's edges along the index axes, in scene units.
     pub voxel_edges: DVec3,
 }
 
 impl SceneSpace {
-    /// The scene of a grid of `dims` voxels with `world_from_index` in millimetres.
+    /// Creates the scene space of a grid of `dims` voxels with `world_from_index` in millimetres.
     ///
     /// `world_from_index` must be invertible; `Volume` guarantees that.
     pub fn new(dims: [usize; 3], world_from_index: DAffine3) -> Self {
@@ -48,28 +47,29 @@ impl SceneSpace {
         }
     }
 
-    /// The shortest voxel edge in scene units: the unit of slab thickness and of the light's pixels.
+    /// Returns the shortest voxel edge in scene units: the unit of slab thickness and of the pixel size in the light
+    /// pass.
     pub fn smallest_edge(&self) -> f64 {
         self.voxel_edges.min_element()
     }
 
-    /// ∛(voxel volume) in scene units: the edge of a cube as large as a voxel.
+    /// Returns the cube root of the voxel volume, in scene units: the edge of a cube with a voxel's volume.
     pub fn mean_edge(&self) -> f64 {
         self.scene_from_index.matrix3.determinant().abs().cbrt()
     }
 
-    /// Where material can be: the grid grown by the kernel's radius of two voxels, in index space.
-    pub fn support_in_index(&self) -> Bounds {
-        // Voxel centres end at 0 and n−1; a kernel of radius 2 reaches two voxels further.
-        Bounds::of_grid(self.dims, 1.5)
+    /// Returns the box that can hold material: the grid grown by the kernel's radius of two voxels, in index space.
+    pub fn support_in_index(&self) -> Aabb {
+        // Voxel centres end at 0 and n − 1; a kernel of radius 2 reaches two voxels beyond them.
+        Aabb::of_grid(self.dims, 1.5)
     }
 
-    /// The corners of [`Self::support_in_index`] in scene space.
+    /// Returns the corners of [`Self::support_in_index`] in scene space.
     pub fn support_corners(&self) -> [DVec3; 8] {
         self.support_in_index().corners().map(|corner| self.scene_from_index.transform_point3(corner))
     }
 
-    /// Radius of the sphere around the origin that holds all material, in scene units.
+    /// Returns the radius of the sphere around the origin that holds all material, in scene units.
     pub fn support_radius(&self) -> f64 {
         self.support_corners().iter().map(|corner| corner.length()).fold(0.0, f64::max)
     }

@@ -1,17 +1,17 @@
-//! How a picture is taken, which is no part of the look.
+//! Specification of a rendered image: size, supersampling, bit depth and annotations; not part of the look.
 
 use serde::{Deserialize, Serialize};
 
-/// Largest edge of a picture, in pixels.
-pub const MAX_EDGE: u32 = 32768;
+/// Largest edge of an image, in pixels.
+pub const MAX_IMAGE_EDGE: u32 = 32768;
 
-/// Most samples of a pixel along an edge: sixteen in all, beyond which no eye sees a difference.
-pub const MAX_SAMPLES: u32 = 4;
+/// Largest number of samples of a pixel along an edge: 4 × 4 = 16 in all, beyond which no difference is visible.
+pub const MAX_SAMPLES_PER_EDGE: u32 = 4;
 
-/// What the numbers of a picture are.
+/// Number format and encoding of an image's pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Depth {
+pub enum PixelFormat {
     /// Display colours in 8 bits.
     #[default]
     Eight,
@@ -21,59 +21,65 @@ pub enum Depth {
     Linear,
 }
 
-/// What is written over a picture.
+/// Annotations drawn over an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Marks {
-    /// How long things are.
+pub struct Annotations {
+    /// Draws a scale bar with a length.
     pub scale_bar: bool,
-    /// Which side of a body is where.
+    /// Draws the letters of anatomical directions (left, right, …).
     pub letters: bool,
-    /// Which colour stands for which value.
+    /// Draws a legend that maps colours to values.
     pub legend: bool,
 }
 
-impl Marks {
-    /// Whether there are none.
+impl Annotations {
+    /// Returns true if no annotation is enabled.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// Size and fineness of a picture.
+/// Size, supersampling, bit depth and annotations of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageSpec {
-    /// Columns and rows.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Whether the background is left out.
+    /// Leaves the background out, so that it is transparent.
     pub transparent: bool,
-    /// Samples of each pixel along an edge, 1 … [`MAX_SAMPLES`].
-    #[serde(default = "one")]
+    /// Samples of each pixel along an edge, 1 … [`MAX_SAMPLES_PER_EDGE`].
+    #[serde(default = "default_samples")]
     pub samples: u32,
-    /// What its numbers are.
+    /// Number format and encoding of the pixels.
     #[serde(default)]
-    pub depth: Depth,
-    /// What is written over it.
-    #[serde(default, skip_serializing_if = "Marks::is_none")]
-    pub marks: Marks,
+    pub depth: PixelFormat,
+    /// Annotations drawn over the image.
+    #[serde(default, skip_serializing_if = "Annotations::is_none")]
+    pub marks: Annotations,
 }
 
-fn one() -> u32 {
+fn default_samples() -> u32 {
     1
 }
 
 impl ImageSpec {
-    /// An opaque picture of 8 bits and a sample per pixel.
+    /// Specification of an opaque 8-bit image with one sample per pixel.
     pub fn new(size: [u32; 2]) -> Self {
-        Self { size, transparent: false, samples: 1, depth: Depth::Eight, marks: Marks::default() }
+        Self {
+            size,
+            transparent: false,
+            samples: 1,
+            depth: PixelFormat::Eight,
+            marks: Annotations::default(),
+        }
     }
 
-    /// The nearest one that can be taken: what a file asks for may be anything.
+    /// Returns the specification clamped to the supported limits; a file may ask for any numbers.
     #[must_use]
-    pub fn within_limits(self) -> Self {
+    pub fn clamped(self) -> Self {
         Self {
-            size: self.size.map(|edge| edge.clamp(1, MAX_EDGE)),
-            samples: self.samples.clamp(1, MAX_SAMPLES),
+            size: self.size.map(|edge| edge.clamp(1, MAX_IMAGE_EDGE)),
+            samples: self.samples.clamp(1, MAX_SAMPLES_PER_EDGE),
             ..self
         }
     }

@@ -1,23 +1,23 @@
-//! What a picture needs: the keys of its products, and the geometry of its passes. Pure functions only.
+//! Frame planning: the keys of a picture's products, and the geometry of its passes. Pure functions only.
 //!
-//! [`FrameKeys`] says what each product is made from; the renderer keeps each with its key and makes anew what
-//! has another. `geometry` lays out sheets, bricks and cells. [`probe()`] asks what is under a pixel.
+//! [`FrameKeys`] are the inputs of each product; the renderer caches products with their keys, and recomputes those
+//! whose key differs. `geometry` lays out sheets, bricks and cells. [`probe()`] finds what is under a pixel.
 
 mod geometry;
 mod keys;
 mod probe;
 mod request;
 
-pub use self::geometry::ahead::CellsAhead;
 pub use self::geometry::brick_set::BrickSet;
-pub use self::geometry::cell_distances::{CellDistances, FARTHEST};
+pub use self::geometry::cell_distances::{CellDistances, MAX_CELL_DISTANCE};
 pub use self::geometry::cell_set::CellSet;
 pub use self::geometry::eye_frame::{eye_frame, picture_frame, preview_slab};
-pub use self::geometry::floor_place::{FloorPlace, FloorTexels};
+pub use self::geometry::floor_plane::{FloorPlane, FloorTexels};
 pub use self::geometry::light_frame::{
     LightView, MAX_KERNEL_PIXELS, MIN_KERNEL_VOXELS, SheetPosition, light_views,
 };
 pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
+pub use self::geometry::near_field_cells::NearFieldOffset;
 pub use self::geometry::pixel_window::PixelWindow;
 pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
@@ -28,8 +28,8 @@ pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SweepFrame, directions_above, sweep_directions};
 pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
 pub use keys::{
-    Attenuation, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey,
-    LitLight, LitLights, OneColor, OpacityKey, SkyKey, TablesKey,
+    ActiveLight, ActiveLights, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey,
+    FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
-pub use probe::{Arrival, Probe, probe};
-pub use request::{RenderOptions, Request, VolumeKey};
+pub use probe::{LightArrival, Probe, probe};
+pub use request::{RenderOptions, RenderRequest, VolumeKey};

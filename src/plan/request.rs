@@ -1,67 +1,67 @@
-//! What is asked of the renderer: which volume, which look, how large, and how it is to be computed.
+//! Request to the renderer: volume, look, size and options of a picture.
 
 use super::PixelWindow;
-use crate::data::{Shown, VolumeId};
-use crate::model::{Depth, ImageSpec, Resolution, Settings};
+use crate::data::{DensityMapping, VolumeId};
+use crate::model::{ImageSpec, LightVolumeResolution, PixelFormat, Settings};
 
-/// A picture to be made: of which volume, how, and how large.
+/// Request for a picture: the volume, its look and the size.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// `Volume::id`, which changes with its voxels and its geometry.
+pub struct RenderRequest {
+    /// Identity of the volume (`Volume::id`), which changes with its voxels and its geometry.
     pub volume: VolumeId,
-    /// The whole look.
+    /// Complete look of the picture.
     pub settings: Settings,
-    /// Pixels per row and column.
+    /// Width and height, in pixels.
     pub size: [u32; 2],
-    /// Previews: light volumes that are not there yet may be filled at this resolution.
-    pub coarse: Option<Resolution>,
+    /// Resolution for previews, at which missing light volumes may be filled.
+    pub preview_resolution: Option<LightVolumeResolution>,
 }
 
-/// A volume as pictures show it.
+/// Identity of a volume as a picture shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeKey {
-    /// `Volume::content_id`.
+    /// Content hash of the volume, `Volume::content_id`.
     pub content_id: u64,
-    /// What densities from 0 to 1 stand for.
-    pub shown: Shown,
+    /// Quantity that densities from 0 to 1 represent.
+    pub density_mapping: DensityMapping,
 }
 
-impl Request {
-    /// The volume as this picture shows it.
-    pub fn shown_volume(&self) -> VolumeKey {
+impl RenderRequest {
+    /// Returns the identity of the volume as this picture shows it.
+    pub fn volume_key(&self) -> VolumeKey {
         let VolumeId { content_id, ranges, .. } = self.volume;
-        VolumeKey { content_id, shown: self.settings.shown(&ranges) }
+        VolumeKey { content_id, density_mapping: self.settings.shown_content(&ranges) }
     }
 }
 
-/// Ways of rendering that are no part of the look.
+/// Options of rendering that are not part of the look.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderOptions {
-    /// Leave out the background, write straight alpha.
+    /// Omit the background and write straight (not premultiplied) alpha.
     pub transparent: bool,
-    /// Multiplies all light of what is shown; the light itself stays as it is. Previews need it.
+    /// Exposure, a factor of all displayed light that leaves linear light unchanged; previews need it.
     pub exposure: f32,
-    /// Skip empty space. Only a test that it changes nothing, and a measurement of what it saves, switch it off.
+    /// Skip empty space. Only tests that pictures stay the same, and measurements, switch it off.
     pub empty_space_skipping: bool,
     /// Fill light volumes everywhere, not only where the picture looks them up.
-    pub fill_everything: bool,
-    /// A ray ends when less than this is left of its light, to the eye or from a light.
+    pub fill_all_light_voxels: bool,
+    /// Minimum transmittance, below which a ray to the eye or from a light ends.
     pub min_transmittance: f32,
-    /// Slabs per chunk of the light march, instead of what memory and time suggest.
+    /// Number of slabs per chunk of the light march, in place of the choice by memory and time.
     pub chunk: Option<u32>,
-    /// Pieces into which each chunk of the light pass is cut, for short submissions.
+    /// Number of parts into which each chunk of the light pass is divided, for short submissions.
     pub light_parts: u32,
-    /// Take shortcuts with stretched kernels that only previews may: normals from the texture of gradients,
-    /// and nothing of their outermost tails.
+    /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
+    /// kernels without their outermost tails.
     pub preview: bool,
-    /// Wait after every step, so that a report's stages are true.
+    /// Wait after every step, so that the durations of stages in a report are exact.
     pub timed: bool,
-    /// The part of the picture that is drawn, if not all of it.
+    /// Part of the picture to draw, if not all of it.
     pub part: Option<PixelWindow>,
-    /// Samples of a pixel along an edge.
+    /// Number of samples per pixel along an edge.
     pub samples: u32,
-    /// What is shown.
-    pub depth: Depth,
+    /// Bit depth of the displayed picture.
+    pub depth: PixelFormat,
 }
 
 impl Default for RenderOptions {
@@ -70,7 +70,7 @@ impl Default for RenderOptions {
             transparent: false,
             exposure: 1.0,
             empty_space_skipping: true,
-            fill_everything: false,
+            fill_all_light_voxels: false,
             // 1/16 of an 8-bit step.
             min_transmittance: 1.0 / 4096.0,
             chunk: None,
@@ -79,31 +79,31 @@ impl Default for RenderOptions {
             timed: false,
             part: None,
             samples: 1,
-            depth: Depth::Eight,
+            depth: PixelFormat::Eight,
         }
     }
 }
 
 impl RenderOptions {
-    /// What a picture is drawn with that is taken like this.
-    pub fn of_shot(shot: &ImageSpec) -> Self {
-        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *shot;
+    /// Creates the options for an exported image.
+    pub fn for_image(image_spec: &ImageSpec) -> Self {
+        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *image_spec;
         Self { transparent, samples, depth, ..Self::default() }
     }
 
-    /// The part of a picture that is shown.
-    pub fn shown(&self, request: &Request) -> PixelWindow {
+    /// Returns the part of a picture that is displayed.
+    pub fn displayed_window(&self, request: &RenderRequest) -> PixelWindow {
         self.part.unwrap_or_else(|| request.size.into())
     }
 
-    /// The samples that are drawn for the part that is shown.
-    pub fn window(&self, request: &Request) -> PixelWindow {
-        self.shown(request).finer(self.samples)
+    /// Returns the samples that are drawn for the displayed part.
+    pub fn sample_window(&self, request: &RenderRequest) -> PixelWindow {
+        self.displayed_window(request).supersampled(self.samples)
     }
 
-    /// The optical depth at which [`Self::min_transmittance`] is left.
+    /// Returns the optical depth that corresponds to [`Self::min_transmittance`].
     pub fn max_optical_depth(&self) -> f32 {
-        // No 32-bit optical depth is beyond that of nothing at all.
+        // A minimum transmittance of 0 is never reached by 32-bit optical depths.
         if self.min_transmittance > 0.0 { -self.min_transmittance.ln() } else { f32::MAX }
     }
 }

@@ -1,42 +1,42 @@
-//! The reverse splat: sheets of light into the voxels of the light volume (P eq. 10, figure 3).
-//! Stored is the attenuation, Σ D·h / Σ h, not the light.
+//! Back-projection (reverse splat): sheets of light into the voxels of the light volume (P eq. 10, figure 3). The
+//! attenuation Σ D·h / Σ h is stored, not the light.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::field::trilinear;
 use super::footprint::SlabSlice;
-use super::kernel::Profile;
-use super::light::ViewSheets;
-use super::{Fault, Reference, Weights};
-use crate::model::{Kernel, ReverseKernel, SceneLight, ShadowAlgorithm};
+use super::kernel::KernelProfile;
+use super::light_march::ViewSheets;
+use super::{Reference, ReferenceFault, ReferenceWeights};
+use crate::model::{ReconstructionKernel, ReverseKernel, SceneLight, ShadowAlgorithm};
 use crate::plan::SheetPosition;
 
-/// How much of a light arrives where: the paper's attenuation volume.
+/// Attenuation volume of a light, as in the paper: the share that arrives in each voxel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Attenuation {
-    /// Light voxels along x, y, z.
+pub struct AttenuationVolume {
+    /// Number of light voxels along x, y, z.
     pub dims: [usize; 3],
     /// Voxels per light voxel along an axis.
     pub divisor: usize,
-    /// One value per light voxel, x fastest; 1 is unattenuated.
+    /// One transmittance per light voxel, x fastest; 1 is unattenuated.
     pub values: Vec<f64>,
 }
 
-impl Attenuation {
-    /// The trilinearly interpolated value at an index-space point.
+impl AttenuationVolume {
+    /// Returns the trilinearly interpolated value at an index-space point.
     pub fn at(&self, point: DVec3) -> f64 {
         trilinear(self.dims, &self.values, (point + 0.5) / self.divisor as f64 - 0.5)
     }
 
-    /// Unattenuated everywhere.
-    pub(super) fn unlit(grid: [usize; 3], divisor: usize) -> Self {
+    /// Creates a volume that is unattenuated everywhere.
+    pub(super) fn unattenuated(grid: [usize; 3], divisor: usize) -> Self {
         let dims = grid.map(|n| n.div_ceil(divisor));
         Self { dims, divisor, values: vec![1.0; dims.iter().product()] }
     }
 
-    /// The index-space point in the middle of a light voxel.
-    pub(super) fn point_of(&self, voxel: usize) -> DVec3 {
+    /// Returns the index-space point in the middle of a light voxel.
+    pub(super) fn voxel_centre(&self, voxel: usize) -> DVec3 {
         let [nx, ny, _] = self.dims;
         let texel = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
         DVec3::from(texel.map(|t| (t as f64 + 0.5) * self.divisor as f64 - 0.5))
@@ -44,15 +44,15 @@ impl Attenuation {
 }
 
 impl Reference<'_> {
-    /// The attenuation volume of light `index`: the mean of those of its points.
-    pub fn attenuation(&self, index: usize) -> Attenuation {
+    /// Computes the attenuation volume of light `index`: the mean over its points.
+    pub fn attenuation(&self, index: usize) -> AttenuationVolume {
         let resolution = self.light_resolution(index);
         let of_point = |point: &SceneLight| match self.settings.shadows.algorithm {
             ShadowAlgorithm::Raycast => self.raycast(point, resolution.divisor()),
-            _ => self.back_project_to(&self.sheets_of(point, resolution), resolution.divisor()),
+            _ => self.back_project_to(&self.point_light_sheets(point, resolution), resolution.divisor()),
         };
         let points = self.points(index);
-        let mut mean = Attenuation::unlit(self.scene.dims, resolution.divisor());
+        let mut mean = AttenuationVolume::unattenuated(self.scene.dims, resolution.divisor());
         mean.values.fill(0.0);
         for point in &points {
             for (sum, value) in mean.values.iter_mut().zip(of_point(point).values) {
@@ -62,28 +62,32 @@ impl Reference<'_> {
         mean
     }
 
-    /// The attenuation volumes of all lights that have one.
-    pub fn attenuations(&self) -> Vec<Option<Attenuation>> {
+    /// Computes the attenuation volumes of all lights that have one.
+    pub fn attenuations(&self) -> Vec<Option<AttenuationVolume>> {
         let lights = &self.settings.lights;
-        (0..lights.len()).map(|index| self.casts(index).then(|| self.attenuation(index))).collect()
+        (0..lights.len())
+            .map(|index| self.has_attenuation_volume(index).then(|| self.attenuation(index)))
+            .collect()
     }
 
-    /// Splats the sheets of a point light back into its attenuation volume. What several views claim, the
-    /// last of them gets; what none does is unattenuated.
-    pub fn back_project(&self, sheets: &[ViewSheets]) -> Attenuation {
+    /// Splats the sheets of a point light back into its attenuation volume. Voxels covered by several views get the
+    /// value of the last; voxels covered by none are unattenuated.
+    pub fn back_project(&self, sheets: &[ViewSheets]) -> AttenuationVolume {
         self.back_project_to(sheets, self.settings.shadows.resolution.divisor())
     }
 
-    fn back_project_to(&self, sheets: &[ViewSheets], divisor: usize) -> Attenuation {
-        let mut volume = Attenuation::unlit(self.scene.dims, divisor);
+    fn back_project_to(&self, sheets: &[ViewSheets], divisor: usize) -> AttenuationVolume {
+        let mut volume = AttenuationVolume::unattenuated(self.scene.dims, divisor);
         for sheets in sheets.iter().filter(|sheets| !sheets.deposits.is_empty()) {
             let filled: Vec<_> = match self.weights() {
-                Weights::Footprint | Weights::Scatter if !self.settings.shadows.first_touch => {
+                ReferenceWeights::Footprint | ReferenceWeights::Scatter
+                    if !self.settings.shadows.first_touch =>
+                {
                     self.scatter(sheets, &volume)
                 }
                 _ => (0..volume.values.len())
                     .into_par_iter()
-                    .map(|voxel| self.gathered(sheets, volume.point_of(voxel)))
+                    .map(|voxel| self.gather_voxel(sheets, volume.voxel_centre(voxel)))
                     .collect(),
             };
             for (value, filled) in volume.values.iter_mut().zip(filled) {
@@ -93,29 +97,29 @@ impl Reference<'_> {
         volume
     }
 
-    /// Where a view's sheets see an index-space point, if the view owns it.
+    /// Returns the position of an index-space point on a view's sheets, if the view covers it.
     fn position(&self, sheets: &ViewSheets, point: DVec3) -> Option<SheetPosition> {
-        sheets.view.position(self.scene.scene_from_index.transform_point3(point))
+        sheets.view.project(self.scene.scene_from_index.transform_point3(point))
     }
 
-    /// The GPU's form: one voxel takes from all pixels around it.
-    fn gathered(&self, sheets: &ViewSheets, point: DVec3) -> Option<f64> {
+    /// Gathers one voxel from all pixels around it, as the GPU does.
+    fn gather_voxel(&self, sheets: &ViewSheets, point: DVec3) -> Option<f64> {
         let at = self.position(sheets, point)?;
         if self.settings.shadows.first_touch {
             return Some(first_touch(sheets, &at));
         }
         let kernel = match self.settings.shadows.reverse_kernel {
-            ReverseKernel::Tent => Kernel::Prefiltered,
+            ReverseKernel::Tent => ReconstructionKernel::Prefiltered,
             ReverseKernel::Forward => self.settings.shadows.kernel,
         };
         let profile = self.profile(kernel);
         let [columns, rows] = sheets.view.frame.size;
-        let across = taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize, &[0.0]);
-        let down = taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize, &[0.0]);
-        // Across the slabs the kernel is averaged over each slab: the paper's h̄.
+        let across = kernel_taps(&profile, at.pixel.x, at.kernel_pixels, columns as usize, &[0.0]);
+        let down = kernel_taps(&profile, at.pixel.y, at.kernel_pixels, rows as usize, &[0.0]);
+        // Across slabs, the kernel is averaged over each slab: the paper's h̄.
         let points = self.settings.shadows.quadrature.offsets();
-        let deep = taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len(), points);
-        let mut sums = Sums::default();
+        let deep = kernel_taps(&profile, at.slab, at.kernel_slabs, sheets.deposits.len(), points);
+        let mut sums = WeightedSums::default();
         for &(k, wk) in &deep {
             for &(j, wj) in &down {
                 for &(i, wi) in &across {
@@ -126,62 +130,62 @@ impl Reference<'_> {
         Some(sums.normalised(self.options.fault))
     }
 
-    /// The paper's form: sheet after sheet is splatted into the light volume, each pixel with the
-    /// slice of the voxel's kernel that lies in the sheet's slab; a voxel is divided by its sum of
-    /// weights as soon as the sheets have passed it (the rolling normalisation).
-    fn scatter(&self, sheets: &ViewSheets, volume: &Attenuation) -> Vec<Option<f64>> {
+    /// Scatters sheet after sheet into the light volume, as the paper does, each pixel with the slice of the voxel's
+    /// kernel that lies in the sheet's slab; a voxel is divided by its sum of weights as soon as the sheets have
+    /// passed it (the rolling normalisation).
+    fn scatter(&self, sheets: &ViewSheets, volume: &AttenuationVolume) -> Vec<Option<f64>> {
         let shadows = &self.settings.shadows;
         let profile = self.profile(shadows.kernel);
-        let points = (self.weights() == Weights::Scatter).then_some(shadows.quadrature);
-        let mut light = vec![Sums::default(); volume.values.len()];
+        let points = (self.weights() == ReferenceWeights::Scatter).then_some(shadows.quadrature);
+        let mut light = vec![WeightedSums::default(); volume.values.len()];
         let mut done = vec![None; light.len()];
         for k in 0..sheets.view.frame.slab_count {
             // The kernel is as wide as a light voxel, or as a pixel where that is wider.
             let slice = SlabSlice::new(&sheets.view.frame, k, &profile, points, volume.divisor as f64);
-            // Near a light pixels are small and many: each counts for as much of the grid as it covers.
+            // Near a light, pixels are small and many: each is weighted by the part of the grid that it covers.
             let share = points.map_or(1.0, |_| slice.voxels_per_pixel());
             light.par_iter_mut().zip(&mut done).enumerate().for_each(|(voxel, (sums, done))| {
-                let centre = volume.point_of(voxel);
+                let centre = volume.voxel_centre(voxel);
                 if slice.is_beyond(centre) {
                     done.get_or_insert_with(|| sums.normalised(self.options.fault));
                     return;
                 }
-                let Some([columns, rows]) = slice.pixels_under(centre) else {
+                let Some([columns, rows]) = slice.covered_pixels(centre) else {
                     return;
                 };
                 for j in rows {
                     for i in columns.clone() {
-                        let weight = share * slice.mean_of(|t| profile.of_light(t), centre, i, j);
+                        let weight = share * slice.kernel_mean(|t| profile.light_weight(t), centre, i, j);
                         sums.add(sheets.deposit(i as usize, j as usize, k as usize), weight);
                     }
                 }
             });
         }
-        let value = |(voxel, (sums, done)): (usize, (Sums, Option<f64>))| {
-            self.position(sheets, volume.point_of(voxel))?;
+        let value = |(voxel, (sums, done)): (usize, (WeightedSums, Option<f64>))| {
+            self.position(sheets, volume.voxel_centre(voxel))?;
             Some(done.unwrap_or_else(|| sums.normalised(self.options.fault)))
         };
         light.into_iter().zip(done).enumerate().map(value).collect()
     }
 }
 
-/// Σ D·h (the light volume) and Σ h (the weight volume) of one voxel.
+/// Sums of one voxel: Σ D·h (the light volume) and Σ h (the weight volume).
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct WeightedSums {
     light: f64,
     weight: f64,
 }
 
-impl Sums {
+impl WeightedSums {
     fn add(&mut self, deposit: f64, weight: f64) {
         self.light += deposit * weight;
         self.weight += weight;
     }
 
-    fn normalised(self, fault: Fault) -> f64 {
+    fn normalised(self, fault: ReferenceFault) -> f64 {
         if self.weight <= 0.0 {
             1.0
-        } else if fault == Fault::NoDivision {
+        } else if fault == ReferenceFault::NoDivision {
             self.light
         } else {
             self.light / self.weight
@@ -189,21 +193,27 @@ impl Sums {
     }
 }
 
-/// The integers 0 … count − 1 under a kernel of some width around `centre`, with its weights: the
-/// mean of the kernel at `points` around each.
-fn taps(profile: &Profile, centre: f64, width: f64, count: usize, points: &[f64]) -> Vec<(usize, f64)> {
+/// Returns the integers 0 … count − 1 under a kernel of a given width around `centre`, with weights: the mean of the
+/// kernel at `points` around each.
+fn kernel_taps(
+    profile: &KernelProfile,
+    centre: f64,
+    width: f64,
+    count: usize,
+    points: &[f64],
+) -> Vec<(usize, f64)> {
     let reach = profile.reach() * width + points.iter().copied().fold(0.0, f64::max);
     let first = (centre - reach).ceil().max(0.0) as usize;
     let end = (centre + reach).floor().clamp(-1.0, count as f64 - 1.0) + 1.0;
     let weight = |tap: usize| {
-        let at = |point: f64| profile.of_light((tap as f64 + point - centre) / width);
+        let at = |point: f64| profile.light_weight((tap as f64 + point - centre) / width);
         points.iter().map(|&point| at(point)).sum::<f64>() / points.len() as f64
     };
     (first..end as usize).map(|tap| (tap, weight(tap))).collect()
 }
 
-/// P §4: a voxel takes the light of the first sheet that touches it, l = ⌈z − 2·width⌉, and needs
-/// no weights. Bilinear between the sheet's pixels.
+/// Returns the deposit of the first sheet that touches a voxel (P §4), l = ⌈z − 2·width⌉, which needs no weights.
+/// Bilinear between the sheet's pixels.
 fn first_touch(sheets: &ViewSheets, at: &SheetPosition) -> f64 {
     let last = (sheets.deposits.len() - 1) as f64;
     let k = (at.slab - 2.0 * at.kernel_slabs).ceil().clamp(0.0, last) as usize;

@@ -1,4 +1,4 @@
-//! The floor: rays from the eye that meet it, and rays from there to the lights.
+//! Floor pass: rays from the eye that meet the floor, and rays from there to the lights.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,12 +9,12 @@ use crate::model::{Projection, SceneLight, ShadowAlgorithm};
 use crate::plan::SweepFrame;
 
 impl Reference<'_> {
-    /// The floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
+    /// Renders the floor without what is in front of it: linear, premultiplied RGBA, row by row from the top left.
     pub fn floor(&self, size: [u32; 2]) -> Vec<[f64; 4]> {
         let settings = self.settings;
         let shadows = &settings.shadows;
         let attenuates = settings.shadows.algorithm != ShadowAlgorithm::Off;
-        let lamps: Vec<_> = (0..settings.lights.len())
+        let scene_lights: Vec<_> = (0..settings.lights.len())
             .filter(|&index| settings.lights[index].on)
             .map(|index| {
                 let rays = attenuates && settings.lights[index].needs_volume();
@@ -30,7 +30,7 @@ impl Reference<'_> {
         let pixel = |at: u32| {
             let (i, j) = (f64::from(at % size[0]) + 0.5, f64::from(at / size[0]) + 0.5);
             let (eye, direction) = camera.ray_through(i, j, width, height);
-            self.floor_along(eye, direction, &lamps, &sky)
+            self.floor_along(eye, direction, &scene_lights, &sky)
         };
         (0..size[0] * size[1]).into_par_iter().map(pixel).collect()
     }
@@ -39,32 +39,34 @@ impl Reference<'_> {
         &self,
         eye: DVec3,
         direction: DVec3,
-        lamps: &[(SceneLight, Option<ShadowRays<'_>>)],
+        scene_lights: &[(SceneLight, Option<ShadowRays<'_>>)],
         sky: &[(SweepFrame, Vec<f64>)],
     ) -> [f64; 4] {
         let (floor, shading) = (&self.settings.floor, &self.settings.shading);
         let up = self.settings.camera.up.direction();
         let towards = direction.dot(up);
-        // An orthographic eye is nowhere: its rays begin behind everything.
+        // An orthographic eye has no position: its rays begin infinitely far away.
         let along = (floor.height - eye.dot(up)) / towards;
         let is_in_front = along > 0.0 || self.settings.camera.projection == Projection::Orthographic;
         if towards >= 0.0 || !is_in_front {
             return [0.0; 4];
         }
         let place = eye + direction * along;
-        let presence = floor.presence(place.reject_from(up).length());
+        let presence = floor.opacity_at(place.reject_from(up).length());
         let index = self.scene.index_from_scene.transform_point3(place);
         let (mut fallen, mut bare) = ([0.0; 3], [0.0; 3]);
-        for (light, rays) in lamps {
-            let risen = self.with_points(*light).risen(place, up, 1.0);
+        for (light, rays) in scene_lights {
+            let risen = self.with_sampled_area(*light).above_horizon(place, up, 1.0);
             let cone = light.cone();
-            let hood = cone.share(-cone.axis.dot(risen.towards)) * risen.share;
+            let hood = cone.attenuation(-cone.axis.dot(risen.direction)) * risen.visible_share;
             let of_rays = |rays: &ShadowRays<'_>| {
-                self.cured(rays.attenuation_above(index, up)) - self.uncast() * (1.0 - risen.share)
+                self.apply_cures(rays.attenuation_above(index, up))
+                    - self.shadowed_share() * (1.0 - risen.visible_share)
             };
             let arriving = rays.as_ref().map_or(hood, of_rays);
             for channel in 0..3 {
-                let rgb = linear_from_srgb(light.color[channel]) * light.intensity * risen.facing.max(0.0);
+                let rgb =
+                    linear_from_srgb(light.color[channel]) * light.intensity * risen.mean_cosine.max(0.0);
                 fallen[channel] += rgb * arriving;
                 bare[channel] += rgb * hood;
             }

@@ -1,55 +1,56 @@
-//! The GPU's weights: the density at a point, gathered from the voxels around it.
+//! Gathering with the GPU's weights: the density at a point from the voxels around it.
 //!
-//! The sum over voxels of density × kernel (P eq. 9) turned around: the same sum as that of the
-//! footprints, with the slab's mean taken at one or two points and weights that sum to 1.
+//! Gathers the sum over voxels of density × kernel (P eq. 9) that footprints scatter, with the slab's mean taken at
+//! one or two points and weights that sum to 1.
 
 use glam::DVec3;
 
 use super::Reference;
-use super::field::classified::Side;
+use super::field::classified::TransferSide;
 use super::field::pyramid::MAX_LEVEL;
-use super::kernel::{Profile, cubic_b_spline, cubic_b_spline_slope};
-use crate::model::{Kernel, Quadrature};
+use super::kernel::{KernelProfile, cubic_b_spline, cubic_b_spline_slope};
+use crate::model::{ReconstructionKernel, SlabQuadrature};
 use crate::plan::SheetFrame;
 
-/// The density at an index-space point, with the kernel stretched 2^`level` times.
+/// Returns the density at an index-space point, with the kernel stretched 2^`level` times.
 pub(super) fn density(
     reference: &Reference<'_>,
-    side: Side,
-    profile: &Profile,
+    side: TransferSide,
+    profile: &KernelProfile,
     point: DVec3,
     level: f64,
 ) -> f64 {
     let pyramid = reference.gathered_pyramid(side);
     let level = level.clamp(0.0, MAX_LEVEL as f64);
-    if profile.kernel == Kernel::Prefiltered || level >= 1.0 {
+    if profile.kernel == ReconstructionKernel::Prefiltered || level >= 1.0 {
         return pyramid.fetch(point, level);
     }
-    let narrow = with_kernel(reference, profile, point);
+    let narrow = kernel_sum(reference, profile, point);
     if level == 0.0 { narrow } else { narrow + (pyramid.fetch(point, 1.0) - narrow) * level }
 }
 
-/// Σ ρ(v) · w(v) over the 4³ voxels around a point.
-fn with_kernel(reference: &Reference<'_>, profile: &Profile, point: DVec3) -> f64 {
-    weighed(reference, point, weights(profile, point))
+/// Returns Σ ρ(v) · w(v) over the 4³ voxels around a point.
+fn kernel_sum(reference: &Reference<'_>, profile: &KernelProfile, point: DVec3) -> f64 {
+    weighted_sum(reference, point, weights(profile, point))
 }
 
-/// ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space: along one axis the slope, along the others the weight.
-pub(super) fn slope(reference: &Reference<'_>, point: DVec3) -> DVec3 {
+/// Returns ∇ Σ ρ(v) · w(v) with the cubic B-spline, in index space: the spline's slope along one axis, its weight
+/// along the others.
+pub(super) fn kernel_gradient(reference: &Reference<'_>, point: DVec3) -> DVec3 {
     let distances = point.fract_gl().to_array().map(|f| [f + 1.0, f, f - 1.0, f - 2.0]);
     let [wx, wy, wz] = distances.map(|axis| axis.map(cubic_b_spline));
     let [sx, sy, sz] = distances.map(|axis| axis.map(cubic_b_spline_slope));
-    let along = |of| weighed(reference, point, of);
+    let along = |of| weighted_sum(reference, point, of);
     DVec3::new(along([sx, wy, wz]), along([wx, sy, wz]), along([wx, wy, sz]))
 }
 
-/// The weights along each axis of the voxels around a point.
-fn weights(profile: &Profile, point: DVec3) -> [[f64; 4]; 3] {
+/// Returns the weights along each axis of the voxels around a point.
+fn weights(profile: &KernelProfile, point: DVec3) -> [[f64; 4]; 3] {
     point.fract_gl().to_array().map(|fraction| profile.four_weights(fraction))
 }
 
-/// Σ ρ(v) · w(v) with these weights along each axis.
-fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
+/// Returns Σ ρ(v) · w(v) for given weights along each axis.
+fn weighted_sum(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f64 {
     let [wx, wy, wz] = weights;
     let [x, y, z] = point.floor().to_array().map(|c| c as i64 - 1);
     let term = |at: usize| {
@@ -60,12 +61,12 @@ fn weighed(reference: &Reference<'_>, point: DVec3, weights: [[f64; 4]; 3]) -> f
     (0..64).map(term).sum()
 }
 
-/// The mean over slab `k` along the ray of pixel (i, j) of what is found at a point and a level: over the quadrature's
-/// points, each with the stretch of its own depth.
+/// Returns the mean of `of(point, level)` over slab `k` along the ray of pixel (i, j): over the quadrature's points,
+/// each with the stretch at its own depth.
 pub(super) fn slab_mean(
     reference: &Reference<'_>,
     frame: &SheetFrame,
-    quadrature: Quadrature,
+    quadrature: SlabQuadrature,
     [i, j, k]: [f64; 3],
     of: impl Fn(DVec3, f64) -> f64,
 ) -> f64 {

@@ -1,268 +1,279 @@
-//! The slow, readable renderer in f64 that the GPU is compared with, stage by stage.
+//! Reference renderer in f64, slow and readable, with which the GPU is compared stage by stage.
 //!
-//! It follows the paper literally (P §3.5, figure 3): sheet buffers filled by splatting voxels,
-//! composited as seen from the light, splatted back into a light volume and normalised, then the
-//! same again for the eye. [`Weights::Footprint`] is that; [`Weights::Gather`] are the same sums
-//! turned around, with the weights of the GPU, which must then agree to rounding. Nothing is
-//! skipped and no ray ends early.
+//! It follows the paper literally (P §3.5, figure 3): sheet buffers are filled by splatting voxels, composited as
+//! seen from the light, splatted back into a light volume and normalised; then sheets are composited for the eye.
+//! [`ReferenceWeights::Footprint`] does this; [`ReferenceWeights::Gather`] computes the same sums by gathering, with
+//! the weights of the GPU, which must then agree to rounding. There is no empty-space skipping and no early ray
+//! termination.
 //!
 //! | stage | file | to compare |
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `field/pyramid` | [`Reference::density`] |
-//! | voxels classified before they are spread | `field/classified` | [`Reference::light_sheets`], [`Reference::picture`] |
+//! | pre-classified voxels | `field/classified` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet` | [`Reference::eye_sheet`] |
-//! | what is there at all | `remains/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
+//! | presence: grid and missing voxels | `remains/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | crop box and clip plane | `remains/cut` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | march of light | `light` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
-//! | the light of a sky | `around/sky` | [`Reference::openness`], [`Reference::picture`] |
-//! | light that bounces | `around/bounces` | [`Reference::bounced`], [`Reference::picture`] |
+//! | sky visibility and light | `around/sky` | [`Reference::sky_visibility`], [`Reference::picture`] |
+//! | bounced light | `around/bounces` | [`Reference::bounced_light`], [`Reference::picture`] |
 //! | the floor | `floor` | [`Reference::floor`] |
 //! | shading, compositing | `shade`, `eye` | [`Reference::picture`] |
 
-mod around;
 mod back_project;
+mod extent;
 mod eye;
 mod field;
 mod floor;
 mod footprint;
 mod gather;
+mod indirect;
 mod kernel;
-mod light;
-mod remains;
+mod light_march;
 mod shade;
 mod shadow_ray;
-mod sheet;
+mod sheet_stack;
 #[cfg(test)]
 mod tests;
 
-pub use around::bounces::{Bounced, Medium};
-pub use around::sky::Openness;
-pub use back_project::Attenuation;
+pub use back_project::AttenuationVolume;
 pub use field::pyramid::Pyramid;
-pub use field::{Field, Rounding};
+pub use field::{DensityField, Rounding};
+pub use indirect::bounces::{BouncedLight, ScatteringMedium};
+pub use indirect::sky::SkyVisibility;
 pub use kernel::{cubic_b_spline, gaussian, tent};
-pub use light::ViewSheets;
+pub use light_march::ViewSheets;
 
 use glam::DVec3;
 
 use crate::data::{ValueRange, Volume};
 use crate::math::SceneSpace;
-use crate::model::{BakedTransfer, Classification, Kernel, Resolution, SceneLight, Settings};
-use field::classified::{Classified, SIDES, Side};
-use kernel::Profile;
+use crate::model::{
+    BakedTransfer, ClassificationOrder, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings,
+};
+use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
+use kernel::KernelProfile;
 
-/// Whose weights the sums are taken with.
+/// Weights with which densities and light are summed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Weights {
-    /// The GPU's: kernels evaluated at one or two points per slab, weights that sum to 1.
+pub enum ReferenceWeights {
+    /// Weights of the GPU: kernels evaluated at one or two points per slab, normalised to sum to 1.
     #[default]
     Gather,
-    /// The paper's: kernel slices integrated over the slab, not normalised on the way to the sheet.
+    /// Weights of the paper: kernel slices integrated over the slab, not normalised when splatted into the sheet.
     Footprint,
-    /// Those of the scattering engine: a round Gaussian's slices integrated over the slab, other
-    /// kernels evaluated at one or two points per slab, neither normalised on the way to the sheet.
+    /// Weights of the scattering engine: a round Gaussian's slices integrated over the slab, other kernels evaluated
+    /// at one or two points per slab, neither normalised when splatted into the sheet.
     Scatter,
 }
 
-/// A deliberate mistake. Tests use it to prove that a comparison with the GPU, or a check against
-/// a closed form, can fail; each is visible only where what it spoils matters.
+/// Deliberate fault. Tests use it to prove that a comparison with the GPU, or a check against a closed form, can
+/// fail; each is visible only where the faulty quantity matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Fault {
-    /// No mistake.
+pub enum ReferenceFault {
+    /// No fault: the correct reference.
     #[default]
     None,
-    /// All kernels 5 % wider: every stage, wherever densities or light vary.
+    /// All kernels are 5 % wider: affects every stage where densities or light vary.
     WiderKernel,
     /// Sheets deposit the transmittance behind their slab, whatever the settings say.
     DepositAfter,
-    /// The reverse splat is not divided by its sum of weights. Those of the B-spline sum to 1 by
-    /// themselves where the kernel is one pixel and one slab wide: look at another slab thickness,
-    /// another kernel or a perspective light.
+    /// The reverse splat is not divided by its sum of weights. Weights of the B-spline sum to 1 anyway if the kernel
+    /// is one pixel and one slab wide: the fault shows with another slab thickness, another kernel or a perspective
+    /// light.
     NoDivision,
-    /// Slabs are as thick for oblique rays as for straight ones: perspective eyes and lights only.
+    /// Slabs are as thick for oblique rays as for straight ones: affects only perspective eyes and lights.
     NoObliquity,
-    /// Normals point inwards: specular light only, since diffuse light is two-sided.
+    /// Normals point inwards: affects only specular light, since diffuse light is two-sided.
     FlippedNormal,
-    /// Slabs that are cut count as a whole: only where something is cut.
+    /// Partly cut slabs count as whole: affects only cut volumes.
     WholeSlabs,
     /// Densities are looked up half a voxel further along x.
     ShiftedKernel,
 }
 
-/// What kind of reference is wanted.
+/// Options of a reference renderer.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Options {
-    /// Whose weights; [`Weights::Gather`] stands for those of the settings' engine.
-    pub weights: Weights,
-    /// Which mistake, if any.
-    pub fault: Fault,
-    /// How densities and the prefiltered volume's levels are stored; `None` keeps them as they are.
+pub struct ReferenceOptions {
+    /// Weights of the sums; [`ReferenceWeights::Gather`] stands for those of the engine in the settings.
+    pub weights: ReferenceWeights,
+    /// Deliberate fault, if any.
+    pub fault: ReferenceFault,
+    /// Rounding of densities and of the prefiltered volume's levels when stored; `None` for none.
     pub rounding: Option<Rounding>,
-    /// Which colour of light is followed, where shadows are coloured: red, green or blue. Of the picture that component
-    /// alone means something ([`of_colors`]).
+    /// Colour channel of light that is followed under coloured shadows: red, green or blue. Only this channel of the
+    /// picture is valid ([`merge_color_channels`]).
     pub color: Option<usize>,
 }
 
-/// A picture under coloured shadows: colours of light do not depend on each other, so that it is that of each colour in its
-/// component. The coverage is the same in all.
-pub fn of_colors(picture: impl Fn(usize) -> Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+/// Combines a picture under coloured shadows from pictures of the three channels, which are independent of each
+/// other. The coverage is the same in all.
+pub fn merge_color_channels(picture: impl Fn(usize) -> Vec<[f64; 4]>) -> Vec<[f64; 4]> {
     let [red, green, blue] = [0, 1, 2].map(picture);
     let joined = |((r, g), b): ((&[f64; 4], &[f64; 4]), &[f64; 4])| [r[0], g[1], b[2], r[3]];
     red.iter().zip(&green).zip(&blue).map(joined).collect()
 }
 
-/// A volume and the look of it, ready to be rendered.
+/// Volume with its look, ready to be rendered.
 #[derive(Debug, Clone)]
 pub struct Reference<'a> {
     settings: &'a Settings,
-    options: Options,
+    options: ReferenceOptions,
     scene: SceneSpace,
     range: ValueRange,
-    field: Field,
+    field: DensityField,
     pyramid: Pyramid,
-    /// The share of kernels that lies on voxels that are there, where some are missing.
+    /// Presence pyramid, if voxels are missing: the share of kernels that lies on present voxels.
     presence: Option<Pyramid>,
-    /// How that changes along x, y and z, where it is as it is stored.
+    /// Differences of presence along x, y and z, if it is rounded as stored.
     presence_changes: Option<[Pyramid; 3]>,
-    /// Voxels as the eye and light see them, where they are classified before kernels spread them.
-    classified: Option<Box<[Classified; 3]>>,
+    /// Pre-classified voxels of the eye and of light, if voxels are classified before kernels spread them.
+    classified: Option<Box<[ClassifiedVoxels; 3]>>,
 }
 
-/// The transfer function of a side, where one of the colours of light is followed.
-fn table_of(
+/// Returns the transfer function of a side, for the colour channel of light that is followed, if any.
+fn transfer_table(
     settings: &Settings,
-    side: Side,
+    side: TransferSide,
     color: Option<usize>,
     (range, scene): (ValueRange, &SceneSpace),
 ) -> BakedTransfer {
     match (side, color) {
-        (Side::Eye, _) => settings.baked_eye(range, scene),
-        (Side::Lighting, Some(color)) if settings.has_colored_shadows() => {
-            settings.baked_lighting(range, scene).met_by(color)
+        (TransferSide::Eye, _) => settings.bake_eye(range, scene),
+        (TransferSide::Lighting, Some(color)) if settings.has_colored_shadows() => {
+            settings.bake_lighting(range, scene).for_light_color(color)
         }
-        (Side::Lighting | Side::Around, _) => settings.baked_lighting(range, scene),
+        (TransferSide::Lighting | TransferSide::Indirect, _) => settings.bake_lighting(range, scene),
     }
 }
 
 impl<'a> Reference<'a> {
-    /// A reference for a volume with some settings; of labels, settings [as drawn](Settings::as_drawn).
-    pub fn new(volume: &Volume, settings: &'a Settings, options: Options) -> Self {
-        let volume = &volume.showing(settings.shown(&volume.ranges()));
+    /// Creates a reference for a volume and settings; for labels, the settings must be [as
+    /// drawn](Settings::resolved_for).
+    pub fn new(volume: &Volume, settings: &'a Settings, options: ReferenceOptions) -> Self {
+        let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges()));
         let range = volume.table_range();
-        let field = Field::with_rounding(volume, options.rounding.unwrap_or(|density| density));
-        let pyramid = Pyramid::of(&field, kernel_width(options.fault), options.rounding);
-        let mut presence =
-            Field::of_presence(volume).map(|field| Pyramid::of(&field, kernel_width(options.fault), None));
+        let field = DensityField::with_rounding(volume, options.rounding.unwrap_or(|density| density));
+        let pyramid = Pyramid::new(&field, kernel_width(options.fault), options.rounding);
+        let mut presence = DensityField::from_presence(volume)
+            .map(|field| Pyramid::new(&field, kernel_width(options.fault), None));
         let mut presence_changes = None;
         if options.rounding.is_some() {
-            // Stored in signed bytes, the share over all of their range.
+            // Stored as signed bytes, whose full range presence uses.
             presence_changes = presence
                 .as_ref()
-                .map(|presence| [0, 1, 2].map(|axis| presence.changes(axis).in_steps(127.0)));
-            presence = presence.map(|presence| presence.in_steps(254.0));
+                .map(|presence| [0, 1, 2].map(|axis| presence.central_differences(axis).quantised(127.0)));
+            presence = presence.map(|presence| presence.quantised(254.0));
         }
         let scene = volume.scene();
-        let classified = (settings.sampling.classification == Classification::Pre).then(|| {
-            let tables = SIDES.map(|side| table_of(settings, side, options.color, (range, &scene)));
-            let (width, rounding) = (kernel_width(options.fault), options.rounding);
-            Box::new(tables.map(|table| Classified::of(&field, &table, presence.as_ref(), width, rounding)))
-        });
+        let classified =
+            (settings.sampling.classification == ClassificationOrder::Pre).then(|| {
+                let tables = ALL_TRANSFER_SIDES
+                    .map(|side| transfer_table(settings, side, options.color, (range, &scene)));
+                let (width, rounding) = (kernel_width(options.fault), options.rounding);
+                Box::new(tables.map(|table| {
+                    ClassifiedVoxels::classify(&field, &table, presence.as_ref(), width, rounding)
+                }))
+            });
         Self { settings, options, scene, range, field, pyramid, presence, presence_changes, classified }
     }
 
-    /// Voxels as they are classified before kernels spread them, if they are.
-    fn classified(&self, side: Side) -> Option<&Classified> {
+    /// Returns the pre-classified voxels of a side, if voxels are classified before kernels spread them.
+    fn classified(&self, side: TransferSide) -> Option<&ClassifiedVoxels> {
         let [eye, lighting, around] = &**self.classified.as_ref()?;
         Some(match side {
-            Side::Eye => eye,
-            Side::Lighting => lighting,
-            Side::Around => around,
+            TransferSide::Eye => eye,
+            TransferSide::Lighting => lighting,
+            TransferSide::Indirect => around,
         })
     }
 
-    /// The pyramid of what is gathered: of densities, or of shares of the largest extinction.
-    fn gathered_pyramid(&self, side: Side) -> &Pyramid {
+    /// Returns the pyramid that is gathered: of densities, or of shares of the largest extinction.
+    fn gathered_pyramid(&self, side: TransferSide) -> &Pyramid {
         self.classified(side).map_or(&self.pyramid, |classified| &classified.shares)
     }
 
-    /// The kernel of what is gathered: classified voxels are spread by the prefiltered one.
-    fn gathered_kernel(&self, chosen: Kernel) -> Kernel {
-        if self.classified.is_some() { Kernel::Prefiltered } else { chosen }
+    /// Returns the kernel for gathering: classified voxels always have the prefiltered one.
+    fn gathered_kernel(&self, chosen: ReconstructionKernel) -> ReconstructionKernel {
+        if self.classified.is_some() { ReconstructionKernel::Prefiltered } else { chosen }
     }
 
-    /// What the density that is gathered means.
-    fn gathered_table(&self, side: Side) -> BakedTransfer {
+    /// Returns the table that classifies gathered densities.
+    fn gathered_table(&self, side: TransferSide) -> BakedTransfer {
         match self.classified(side) {
             Some(classified) => classified.table.clone(),
             None => self.table(side),
         }
     }
 
-    /// The transfer function of a side.
-    fn table(&self, side: Side) -> BakedTransfer {
-        table_of(self.settings, side, self.options.color, (self.range, &self.scene))
+    /// Returns the transfer function of a side.
+    fn table(&self, side: TransferSide) -> BakedTransfer {
+        transfer_table(self.settings, side, self.options.color, (self.range, &self.scene))
     }
 
-    /// The share of what is gathered that is there; classified voxels end by themselves.
-    fn gathered_presence(&self, profile: &Profile, point: DVec3, level: f64) -> f64 {
+    /// Returns the presence of gathered densities; 1 for classified voxels, whose extinction ends at missing ones
+    /// anyway.
+    fn gathered_presence(&self, profile: &KernelProfile, point: DVec3, level: f64) -> f64 {
         if self.classified.is_some() { 1.0 } else { self.presence(profile, point, level) }
     }
 
-    /// The density at an index-space point as the GPU gathers it, with the kernel stretched
-    /// 2^`level` times.
-    pub fn density(&self, kernel: Kernel, point: DVec3, level: f64) -> f64 {
-        gather::density(self, Side::Eye, &self.profile(kernel), point + self.kernel_shift(), level)
+    /// Returns the density at an index-space point as the GPU gathers it, with the kernel stretched 2^`level` times.
+    pub fn density(&self, kernel: ReconstructionKernel, point: DVec3, level: f64) -> f64 {
+        gather::density(self, TransferSide::Eye, &self.profile(kernel), point + self.kernel_shift(), level)
     }
 
-    /// Light `index`, its position in the scene.
+    /// Returns light `index`, resolved into scene space.
     fn light(&self, index: usize) -> SceneLight {
-        self.settings.lights[index].in_scene(&self.settings.camera)
+        self.settings.lights[index].resolve(&self.settings.camera)
     }
 
-    /// The points of light `index` that stand for it.
+    /// Returns the point lights that represent light `index`.
     fn points(&self, index: usize) -> Vec<SceneLight> {
-        self.light(index).points(self.settings.shadows.area.samples)
+        self.light(index).sample_lights(self.settings.shadows.area.samples)
     }
 
-    /// The resolution of the volume of light `index`; one volume for all lights has one.
-    fn light_resolution(&self, index: usize) -> Resolution {
+    /// Returns the resolution of the volume of light `index`; a combined volume has one resolution for all lights.
+    fn light_resolution(&self, index: usize) -> LightVolumeResolution {
         let shadows = &self.settings.shadows;
         if self.settings.combines_lights() {
             shadows.resolution
         } else {
-            self.light(index).resolution(shadows, self.scene.dims)
+            self.light(index).volume_resolution(shadows, self.scene.dims)
         }
     }
 
-    /// Whether light `index` has an attenuation volume.
-    fn casts(&self, index: usize) -> bool {
+    /// Returns true if light `index` has an attenuation volume.
+    fn has_attenuation_volume(&self, index: usize) -> bool {
         self.settings.shadows.algorithm.has_volume() && self.settings.lights[index].needs_volume()
     }
 
-    /// Whose weights are used: those of the settings' engine unless others are asked for.
-    fn weights(&self) -> Weights {
-        let gathers = self.options.weights == Weights::Gather;
-        if gathers && self.settings.scatters() { Weights::Scatter } else { self.options.weights }
+    /// Returns the weights in use: those of the engine in the settings unless others are chosen.
+    fn weights(&self) -> ReferenceWeights {
+        let gathers = self.options.weights == ReferenceWeights::Gather;
+        if gathers && self.settings.uses_scattering_engine() {
+            ReferenceWeights::Scatter
+        } else {
+            self.options.weights
+        }
     }
 
-    fn profile(&self, kernel: Kernel) -> Profile {
-        Profile { kernel, width: kernel_width(self.options.fault) }
+    fn profile(&self, kernel: ReconstructionKernel) -> KernelProfile {
+        KernelProfile { kernel, width: kernel_width(self.options.fault) }
     }
 
-    /// Where densities are looked up, relative to where they should be.
+    /// Returns the shift of density lookups by a fault.
     fn kernel_shift(&self) -> DVec3 {
-        if self.options.fault == Fault::ShiftedKernel { DVec3::X / 2.0 } else { DVec3::ZERO }
+        if self.options.fault == ReferenceFault::ShiftedKernel { DVec3::X / 2.0 } else { DVec3::ZERO }
     }
 }
 
-/// The kernels' width relative to the right one.
-fn kernel_width(fault: Fault) -> f64 {
-    if fault == Fault::WiderKernel { 1.05 } else { 1.0 }
+/// Returns the width of kernels relative to the correct one.
+fn kernel_width(fault: ReferenceFault) -> f64 {
+    if fault == ReferenceFault::WiderKernel { 1.05 } else { 1.0 }
 }
 
-/// One sRGB component to linear light (IEC 61966-2-1); the reference has its own.
+/// Converts one sRGB component to linear light (IEC 61966-2-1); independent of the renderer's own conversion.
 fn linear_from_srgb(encoded: f32) -> f64 {
     let encoded = f64::from(encoded);
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }

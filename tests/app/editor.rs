@@ -1,12 +1,12 @@
-//! The editor of the transfer function.
+//! Tests of the transfer function editor: points, selection, colour maps and freehand drawing.
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro::model::{ControlPoint, Easing, Settings, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, drag, turn_wheel, wait_until_idle, window, window_with};
+use crate::harness::{SCENE, adjusted_window, click, drag, turn_wheel, wait_until_idle, window};
 
 #[test]
 fn the_transfer_function_is_edited_in_its_plot() {
@@ -21,7 +21,7 @@ fn the_transfer_function_is_edited_in_its_plot() {
     );
     assert_eq!(after.points[0], before.points[0]);
 
-    // A click on the empty plot adds a point, Delete removes it.
+    // A click on the empty plot adds a point; Delete removes it.
     let plot = harness.get_by_label("Transfer function plot").rect();
     // Between the ends of the curve, above it.
     let empty = plot.center_top() + vec2(10.0, 12.0);
@@ -34,8 +34,8 @@ fn the_transfer_function_is_edited_in_its_plot() {
     wait_until_idle(&mut harness);
 }
 
-/// What is seen of other values stays as it is when a point is added beyond the ends of the curve, and one step takes
-/// back all that came with it.
+/// A point added beyond the ends of the curve leaves the look of other values unchanged, and one undo step removes
+/// all that was added with it.
 #[test]
 fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     let adjust = |mut settings: Settings| {
@@ -46,9 +46,12 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
         settings.transfer.points = vec![point(0.4, 0.0), point(0.5, 0.8), point(0.6, 0.0)];
         settings
     };
-    let options =
-        Options { source: Some(SCENE.into()), adjust: Some(Box::new(adjust)), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 1140.0));
+    let options = WindowOptions {
+        source: Some(SCENE.into()),
+        adjust: Some(Box::new(adjust)),
+        ..WindowOptions::default()
+    };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 1140.0));
     let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
     let before = transfer(&harness);
     let (first, last) = (before.points[0].value, before.points[2].value);
@@ -70,7 +73,7 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     wait_until_idle(&mut harness);
 }
 
-/// The chain between the curves gives light one of its own, and takes it back.
+/// The link button gives light a curve of its own, and links it again.
 #[test]
 fn a_chain_links_the_curves() {
     let mut harness = window();
@@ -106,7 +109,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
     click(&mut harness, "Bump");
     assert!(transfer(&harness).points.len() >= preset.points.len() + 8);
 
-    // The wheel shows fewer values, and points beyond are not in the way.
+    // The wheel zooms in, and points outside the range do not interfere.
     let plot = harness.get_by_label("Transfer function plot").rect();
     harness.hover_at(plot.left_center() + vec2(30.0, 0.0));
     harness.step();
@@ -126,7 +129,7 @@ fn points_are_selected_and_changed_together() {
     let place = |harness: &Harness<'_, App>, number: usize| {
         harness.get_by_label(&format!("Eye point {number}")).rect().center()
     };
-    // A frame around the second and the third, from above to below.
+    // A rubber band around the second and third point, from top to bottom.
     let plot = harness.get_by_label("Transfer function plot").rect();
     let (second, third) = (place(&harness, 2), place(&harness, 3));
     let from = Pos2::new(second.x - 6.0, plot.min.y + 3.0);
@@ -142,7 +145,7 @@ fn points_are_selected_and_changed_together() {
     assert!(by(1) > 0.0 && (by(1) - by(2)).abs() < 1e-9, "{} and {}", by(1), by(2));
     assert_eq!((moved[0], moved[3]), (before[0], before[3]));
 
-    // Looking at the colour changes nothing; a step to the right changes that of both.
+    // Opening the colour menu changes nothing; a step to the right changes the hue of both points.
     let colors = |harness: &Harness<'_, App>| points(harness).iter().map(|p| p.color).collect::<Vec<_>>();
     let plain = colors(&harness);
     click(&mut harness, "OKLCH…");
@@ -158,7 +161,7 @@ fn points_are_selected_and_changed_together() {
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
 
-    // The way to the next point, for both; and one more with Shift.
+    // The interpolation to the next point, for both; and one more point with Shift.
     click(&mut harness, "Linear");
     click(&mut harness, "Smooth");
     let eased = points(&harness).iter().map(|point| point.easing).collect::<Vec<_>>();
@@ -181,7 +184,7 @@ fn points_are_selected_and_changed_together() {
     harness.key_press(egui::Key::Delete);
     harness.run_steps(2);
     assert_eq!(points(&harness).len(), before.len() - 3);
-    // All of them with Ctrl+A over the plot; Escape leaves them.
+    // Ctrl+A over the plot selects all points; Escape clears the selection.
     harness.hover_at(plot.center());
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
@@ -193,7 +196,7 @@ fn points_are_selected_and_changed_together() {
     click(&mut harness, "Shape");
     click(&mut harness, "Box");
     assert_eq!(points(&harness).len(), before.len());
-    // A selection does not outlive the points that it meant.
+    // A selection is cleared when the curve is replaced.
     harness.hover_at(plot.center());
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
@@ -215,7 +218,7 @@ fn a_curve_is_drawn_by_hand() {
     drag(&mut harness, from, vec2(260.0, -50.0));
     let drawn = harness.state().settings().transfer.clone();
     assert!(drawn != before && drawn.points.len() <= before.points.len() + 20, "{drawn:?}");
-    // One step, and Escape ends drawing.
+    // One undo step; Escape ends freehand drawing.
     harness.run_steps(8);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);

@@ -1,4 +1,4 @@
-//! What the pointer does in the picture.
+//! Tests of pointer gestures in the picture: orbit, handles, flicks, window and level, and Escape.
 
 use chiaroscuro::app::App;
 use eframe::egui::{self, Event, Modifiers, PointerButton, vec2};
@@ -6,26 +6,26 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{
-    bare_window, click, drag, drag_with, flick, in_one_frame, picture, render, slow_window, stroke,
-    wait_until_idle, window,
+    click, drag, drag_with, flick, key_stroke, picture, render, send_in_one_frame, slow_window,
+    wait_until_idle, window, window_without_overlays,
 };
 
 #[test]
 fn the_window_shows_what_the_renderer_makes() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     assert_eq!(harness.state().volume_name(), Some("chair"));
     harness.check_accessibility();
     let (shown, size) = picture(&mut harness);
-    assert!(shown == render(&harness, size).shown, "the window shows other bytes than the renderer makes");
+    assert!(shown == render(&harness, size).display, "the window shows other bytes than the renderer makes");
 }
 
 #[test]
 fn lights_and_camera_follow_the_mouse() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (before, _) = picture(&mut harness);
     let rebuilds = harness.state().light_rebuilds();
 
-    // Orbit: nothing is refilled.
+    // Orbiting refills no light volume.
     let settings = harness.state().settings().clone();
     let (rect, _) = harness.state().viewport_rect().unwrap();
     drag(&mut harness, rect.left_bottom() + vec2(40.0, -30.0), vec2(60.0, -25.0));
@@ -36,9 +36,9 @@ fn lights_and_camera_follow_the_mouse() {
     assert_eq!(harness.state().light_rebuilds(), rebuilds, "orbiting refilled a light volume");
     let (turned, size) = picture(&mut harness);
     assert!(turned != before);
-    assert!(turned == render(&harness, size).shown, "after an orbit");
+    assert!(turned == render(&harness, size).display, "after an orbit");
 
-    // The key light's handle.
+    // Drags the handle of the key light.
     harness.hover_at(rect.center());
     harness.run_steps(2);
     let handle = harness.state().light_handle_positions()[0];
@@ -51,20 +51,20 @@ fn lights_and_camera_follow_the_mouse() {
     assert!(harness.state().light_rebuilds() > rebuilds);
     let (lit, size) = picture(&mut harness);
     assert!(lit != turned);
-    assert!(lit == render(&harness, size).shown, "after a light drag");
+    assert!(lit == render(&harness, size).display, "after a light drag");
 
-    // Undo puts the light back.
+    // Undo restores the light's position.
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().settings().lights[0].position, orbited.lights[0].position);
 }
 
-/// The first button goes down or up.
+/// Event of pressing or releasing the primary button.
 fn button(pos: egui::Pos2, pressed: bool) -> Event {
     Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
 }
 
-/// A finger or a pen comes from nowhere: it is never above a handle before it presses it.
+/// Handles react to a finger or pen, which never hovers over a handle before it presses it.
 #[test]
 fn handles_are_taken_without_hovering() {
     let mut harness = window();
@@ -86,30 +86,30 @@ fn handles_are_taken_without_hovering() {
     assert_eq!(after.camera, before.camera);
 }
 
-/// Whatever is pressed is what is dragged, however far the pointer has gone when the next frame begins.
+/// A flick drags what was pressed, however far the pointer has moved when the next frame begins.
 #[test]
-fn what_is_flicked_within_a_frame_is_what_was_pressed() {
+fn flicks_drag_the_pressed_item() {
     let mut harness = slow_window(vec2(760.0, 1140.0));
     let camera = harness.state().settings().camera.clone();
     let flicks = |harness: &mut Harness<'static, App>, what: &str, by: egui::Vec2| {
         let before = harness.state().settings().clone();
         let from = harness.get_by_label(what).rect().center();
-        in_one_frame(harness, flick(from, by));
+        send_in_one_frame(harness, flick(from, by));
         let after = harness.state().settings().clone();
         assert_eq!(after.camera, camera, "{what}: the camera turned");
         assert_ne!(after, before, "{what} stayed");
         (before, after)
     };
-    // A number of the panel, by its slider.
-    let (before, after) = flicks_slider(&mut harness);
+    // A number of the panel is dragged by its slider.
+    let (before, after) = flick_strength_slider(&mut harness);
     assert_ne!(after, before);
     let (before, after) = flicks(&mut harness, "Light handle Key", vec2(-60.0, 45.0));
     assert_ne!(after.lights[0].position, before.lights[0].position);
-    in_one_frame(&mut harness, stroke(egui::Key::K, Modifiers::NONE).to_vec());
+    send_in_one_frame(&mut harness, key_stroke(egui::Key::K, Modifiers::NONE).to_vec());
     let (_, after) = flicks(&mut harness, "Crop box, side +z", vec2(0.0, 60.0));
     assert!(after.cuts.crop.high[2] < 1.0);
-    let keys = [egui::Key::K, egui::Key::X].map(|key| stroke(key, Modifiers::NONE));
-    in_one_frame(&mut harness, keys.concat());
+    let keys = [egui::Key::K, egui::Key::X].map(|key| key_stroke(key, Modifiers::NONE));
+    send_in_one_frame(&mut harness, keys.concat());
     let place = |harness: &Harness<'_, App>, part| {
         harness.get_by_label(&format!("Clip plane, {part}")).rect().center()
     };
@@ -119,30 +119,30 @@ fn what_is_flicked_within_a_frame_is_what_was_pressed() {
     wait_until_idle(&mut harness);
 }
 
-/// The strength of shadows before and after its slider was flicked.
-fn flicks_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
+/// Flicks the slider of the shadow strength, and returns the strength before and after.
+fn flick_strength_slider(harness: &mut Harness<'static, App>) -> (f64, f64) {
     let strength = |harness: &Harness<'_, App>| harness.state().settings().shadows.strength;
     let before = strength(harness);
     let slider = harness.get_by_role_and_label(egui::Role::Slider, "Strength").rect();
-    in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
+    send_in_one_frame(harness, flick(slider.center(), vec2(-20.0, 70.0)));
     (before, strength(harness))
 }
 
-/// Strokes that come together are as many: each takes one step back.
+/// Key strokes that arrive within one frame are all counted: each undoes one step.
 #[test]
 fn keys_that_are_struck_within_a_frame_are_counted() {
     let mut harness = slow_window(vec2(760.0, 1140.0));
     let before = harness.state().settings().clone();
     for _ in 0..3 {
         harness.key_press(egui::Key::CloseBracket);
-        // Longer than changes of one step may lie apart.
+        // Longer than the interval within which changes are merged into one undo step.
         harness.run_steps(12);
     }
     assert!(harness.state().settings().lights[0].intensity > 1.3 * before.lights[0].intensity);
-    let undo = stroke(egui::Key::Z, Modifiers::COMMAND);
+    let undo = key_stroke(egui::Key::Z, Modifiers::COMMAND);
     let modifiers = |modifiers| vec![Event::ModifiersChanged(modifiers)];
     let events = [modifiers(Modifiers::COMMAND), vec![undo; 3].concat(), modifiers(Modifiers::NONE)];
-    in_one_frame(&mut harness, events.concat());
+    send_in_one_frame(&mut harness, events.concat());
     assert_eq!(harness.state().settings().lights, before.lights);
     wait_until_idle(&mut harness);
 }
@@ -176,14 +176,14 @@ fn level_and_window_are_dragged_in_the_picture() {
 }
 
 #[test]
-fn hoods_are_opened_by_their_rim() {
+fn spotlights_widen_by_their_rim_handle() {
     let mut harness = window();
     click(&mut harness, "Positional");
     click(&mut harness, "Spotlight");
     harness.run_steps(3);
     let angle = |harness: &Harness<'_, App>| harness.state().settings().lights[0].hood.half_angle_deg;
     let before = angle(&harness);
-    // Where the handle is depends on what the picture shows of the cone.
+    // The direction of the handle depends on how the picture shows the cone.
     let mut changes = Vec::new();
     for by in [vec2(24.0, 0.0), vec2(-24.0, 0.0), vec2(0.0, 24.0), vec2(0.0, -24.0)] {
         let handle = harness.get_by_label("Spotlight handle Key").rect().center();
@@ -199,9 +199,10 @@ fn hoods_are_opened_by_their_rim() {
     wait_until_idle(&mut harness);
 }
 
-/// Of a parallel light, which is shown on a sphere around the volume: others may stand outside of the picture.
+/// Size handle of a parallel light, which is shown on a sphere around the volume; handles of other lights may be
+/// outside the picture.
 #[test]
-fn lights_grow_by_their_borders() {
+fn size_handles_resize_lights() {
     let mut harness = window();
     click(&mut harness, "Disc");
     harness.run_steps(3);
@@ -215,7 +216,7 @@ fn lights_grow_by_their_borders() {
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(angle(&harness), before, "a drag is a step");
-    // Far beyond the middle: as narrow as can be, and there to be grabbed again.
+    // A drag far beyond the middle gives the smallest size, and the handle can still be grabbed.
     drag(&mut harness, handle, (middle - handle) * 3.0);
     harness.run_steps(2);
     assert!(angle(&harness) < before && angle(&harness) > 0.0, "{}", angle(&harness));
@@ -225,7 +226,7 @@ fn lights_grow_by_their_borders() {
 
 #[test]
 fn the_probe_says_what_light_arrives() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (before, _) = picture(&mut harness);
     harness.key_press(egui::Key::I);
     let (rect, _) = harness.state().viewport_rect().unwrap();
@@ -240,7 +241,7 @@ fn the_probe_says_what_light_arrives() {
     assert!(before == after, "and gone again");
 }
 
-/// Escape takes everything back to where a drag began: a light, the camera, what an editor's hand has changed.
+/// Escape reverts a drag to its beginning: of a light, of the camera, or of a freehand curve.
 #[test]
 fn escape_ends_a_drag_where_it_began() {
     let mut harness = window();
@@ -273,7 +274,7 @@ fn escape_ends_a_drag_where_it_began() {
     wait_until_idle(&mut harness);
 }
 
-/// Escape closes the windows over the picture, the highest first.
+/// Escape closes the windows over the picture, the topmost first.
 #[test]
 fn escape_closes_windows_one_by_one() {
     let mut harness = window();

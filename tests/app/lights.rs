@@ -1,4 +1,4 @@
-//! Lights and presets that are set by the keyboard, found by name and tried on the volume.
+//! Tests of lights set by the keyboard, of the command palette, and of contact sheets of lights and presets.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use eframe::egui::{self, Event, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{PATIENCE, click, wait_until_idle, window};
+use crate::harness::{WAIT_TIMEOUT, click, wait_until_idle, window};
 
 #[test]
 fn lights_are_set_by_the_keyboard() {
@@ -37,7 +37,7 @@ fn lights_are_set_by_the_keyboard() {
     press(&mut harness, egui::Key::M);
     assert!(!lights(&harness)[1].on);
 
-    // The chip selects, as its handle would.
+    // The chip in the overlay selects the light, as its handle would.
     click(&mut harness, "Light Key, off");
     press(&mut harness, egui::Key::M);
     assert!(lights(&harness)[0].on);
@@ -56,7 +56,7 @@ fn lights_are_tried_on_the_volume() {
     harness.run_steps(3);
     let begin = Instant::now();
     while harness.query_by_label("From above").is_none() {
-        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "no pictures");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -75,13 +75,13 @@ fn presets_are_tried_on_the_volume() {
     click(&mut harness, "Presets");
     click(&mut harness, "Try presets…");
     let begin = Instant::now();
-    // Until the last one is there.
+    // Waits until the last picture is finished.
     while harness.query_by_label("Refresh").is_none() {
-        assert!(begin.elapsed() < PATIENCE, "no pictures");
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "no pictures");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    // The window grows around them.
+    // The window grows around the pictures.
     harness.run_steps(5);
     assert!(harness.query_by_label("Use CT angiography").is_some());
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
@@ -112,9 +112,9 @@ fn commands_are_found_by_name() {
     wait_until_idle(&mut harness);
 }
 
-/// What is not there is said, with what is nearest; and where nothing is found.
+/// The palette reports a missing feature with its nearest commands, and says when nothing is found.
 #[test]
-fn what_is_missing_is_said() {
+fn missing_features_are_reported() {
     let mut harness = window();
     let type_words = |harness: &mut Harness<'_, App>, words: &str| {
         harness.key_press(egui::Key::Escape);
@@ -131,7 +131,7 @@ fn what_is_missing_is_said() {
     harness.get_by_label_contains("two clicks");
     type_words(&mut harness, "qwertz");
     harness.get_by_label("No matches");
-    // The chair has none.
+    // The chair has no labels.
     type_words(&mut harness, "labels");
     assert!(harness.query_by_label("Labels").is_none());
     harness.get_by_label_contains("label maps of other programs");
@@ -140,7 +140,7 @@ fn what_is_missing_is_said() {
     wait_until_idle(&mut harness);
 }
 
-/// Each new light has a place and a colour of its own, and is seen when it shines from a point.
+/// New lights have distinct positions and colours, and are visible when they shine from a point.
 #[test]
 fn new_lights_are_told_apart() {
     let mut harness = window();
@@ -160,7 +160,7 @@ fn new_lights_are_told_apart() {
             assert_ne!(lights[at].color, lights[at - 1].color);
         }
     }
-    // What they add to each other stays within what the first look has.
+    // The sum of the added intensities stays within that of the first look.
     assert!(lights[2..].iter().map(|light| light.intensity).sum::<f64>() < 2.0);
     click(&mut harness, "Positional");
     harness.run_steps(4);

@@ -1,9 +1,9 @@
-//! What the program proposes: lights that come after the first picture, places for a light, whole looks.
+//! Tests of proposed looks: lights found after the first picture, light positions, and whole looks.
 
 use std::time::{Duration, Instant};
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::gpu::{LightSearch, Open, Sought, finish_look, first_look};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::gpu::{LightSearch, SearchedLight, UndecidedPart, complete_first_look, first_look};
 use chiaroscuro::model::Settings;
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::{self, Modifiers, vec2};
@@ -11,37 +11,38 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use crate::harness::{
-    PATIENCE, SCENE, beside, click, untouched_window, wait_until, wait_until_idle, window, window_with,
+    SCENE, WAIT_TIMEOUT, adjusted_window, automatic_window, click, second_renderer, wait_until,
+    wait_until_idle, window,
 };
 
 /// Waits for a picture of a contact sheet.
 fn wait_for(harness: &mut Harness<'_, App>, label: &str) {
     let begin = Instant::now();
     while harness.query_by_label(label).is_none() {
-        assert!(begin.elapsed() < PATIENCE, "no {label}: {:?}", harness.state().errors());
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "no {label}: {:?}", harness.state().errors());
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    // The window grows around them.
+    // The window grows around the pictures.
     harness.run_steps(5);
 }
 
 #[test]
-fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = untouched_window(options);
+fn the_light_search_is_not_an_undo_step() {
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = automatic_window(options);
     wait_until_idle(&mut harness);
-    let (dataset, mut renderer) = beside();
+    let (dataset, mut renderer) = second_renderer();
     let first = first_look(&mut renderer, &dataset).expect("a first look");
     let search =
-        LightSearch::new(renderer.shaders(), &dataset, &first, Sought::KeyAndFill).expect("a search");
+        LightSearch::new(renderer.shaders(), &dataset, &first, SearchedLight::KeyAndFill).expect("a search");
     let found = search.run().expect("a search").expect("something is seen");
     let Settings { lights, floor, .. } = found.apply(&first);
     let shown = harness.state().settings().clone();
     assert_eq!((&shown.lights, &shown.floor), (&lights, &floor), "what the search finds by itself");
-    // The command line waits for it, and comes to the same look; its brightness is measured with all voxels.
-    let open = [Open::Lights, Open::Floor, Open::Balance, Open::Exposure];
-    let waited = finish_look(&mut renderer, &dataset, &first, &open).expect("a look");
+    // The command line waits for the search and arrives at the same look; its brightness is measured with all voxels.
+    let open = [UndecidedPart::Lights, UndecidedPart::Floor, UndecidedPart::Balance, UndecidedPart::Exposure];
+    let waited = complete_first_look(&mut renderer, &dataset, &first, &open).expect("a look");
     assert_eq!((&waited.lights, &waited.floor), (&lights, &floor));
     let apart = |a: f64, b: f64| (a / b - 1.0).abs();
     assert!(apart(waited.output.exposure, shown.output.exposure) < 0.1, "{shown:?}");
@@ -53,11 +54,11 @@ fn the_light_of_a_first_look_is_sought_and_is_no_step_to_undo() {
 
 #[test]
 fn lights_that_are_found_stay_when_a_turn_is_undone() {
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = untouched_window(options);
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = automatic_window(options);
     wait_until(&mut harness, "never opened", |app| app.volume_name().is_some());
     let first = harness.state().settings().clone();
-    // Lights are sought while it is turned: a step of its own.
+    // Lights are searched for while the camera is turned: an undo step of its own.
     harness.key_press(egui::Key::Num3);
     wait_until(&mut harness, "never turned", |app| app.settings().camera != first.camera);
     let turned = harness.state().settings().camera.clone();
@@ -101,7 +102,7 @@ fn looks_are_tried_on_the_volume() {
     harness.key_press(egui::Key::V);
     harness.run_steps(3);
     wait_for(&mut harness, "Use 1 · First look");
-    // The others follow one by one.
+    // The other looks follow one by one.
     wait_for(&mut harness, "Refresh");
     let count = harness.query_all_by_label_contains("Use ").count();
     assert!([8, 10].contains(&count), "{count} looks");
@@ -120,7 +121,7 @@ fn looks_are_tried_on_the_volume() {
 #[test]
 fn looks_that_were_tried_are_forgotten_with_their_volume() {
     let mut harness = window();
-    // As a key that is held repeats.
+    // Like the repeats of a held key.
     for _ in 0..8 {
         harness.key_press(egui::Key::V);
         harness.step();
@@ -132,8 +133,8 @@ fn looks_that_were_tried_are_forgotten_with_their_volume() {
     assert_eq!(harness.query_all_by_label_contains("Use 1").count(), 0, "it was of the volume before");
 }
 
-/// A little CT: a ball of bone in one of water, in air.
-fn ct(folder: &std::path::Path) -> std::path::PathBuf {
+/// Small CT: a ball of bone in a ball of water, in air.
+fn write_ct(folder: &std::path::Path) -> std::path::PathBuf {
     let mut file =
         "NRRD0004\ntype: int16\ndimension: 3\nsizes: 24 24 24\nspacings: 4 4 4\nendian: little\nencoding: raw\nsample units: \"HU\"\n\n".as_bytes().to_vec();
     for at in 0..24_i32.pow(3) {
@@ -153,13 +154,13 @@ fn ct(folder: &std::path::Path) -> std::path::PathBuf {
     path
 }
 
-/// What is looked for in a CT is offered over its picture, and over no other, until somebody closes that.
+/// CT looks are offered over the picture of a CT, and over no other, until the user closes the offer.
 #[test]
 fn looks_of_a_ct_are_offered_over_its_picture() {
     assert!(window().query_by_label("Lung").is_none());
     let folder = tempfile::tempdir().expect("a folder");
-    let options = Options { source: Some(ct(folder.path())), ..Options::default() };
-    let mut harness = window_with(options, vec2(760.0, 1140.0));
+    let options = WindowOptions { source: Some(write_ct(folder.path())), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, vec2(760.0, 1140.0));
     let before = harness.state().settings().clone();
     click(&mut harness, "Muscle and skin");
     wait_until_idle(&mut harness);

@@ -1,6 +1,7 @@
-//! The real window, driven without a display: pointer, keys and widgets by their names.
+//! Tests of the real window without a display: pointer and keyboard events, and widgets found by their names.
 
-mod cuts;
+mod accessibility;
+mod clipping;
 mod editor;
 mod files;
 mod gestures;
@@ -8,7 +9,6 @@ mod harness;
 mod keep_balanced;
 mod lights;
 mod looks;
-mod names;
 mod orientation;
 mod panels;
 mod snapshots;

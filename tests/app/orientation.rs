@@ -1,14 +1,14 @@
-//! Which way up the object stands: by a key, after a reset, and in the next file of the folder.
+//! Tests of the object's orientation: turned by a key, after a reset, and in the next file of the folder.
 
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro::model::{Camera, SceneAxis, Settings};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, wait_until, wait_until_idle, window_with};
+use crate::harness::{SCENE, adjusted_window, click, wait_until, wait_until_idle};
 
 fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
@@ -20,21 +20,21 @@ fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
     wait_until_turned(harness);
 }
 
-/// What the view is reset to is framed on another thread.
+/// Waits for the turn, whose framing is computed on another thread.
 fn wait_until_turned(harness: &mut Harness<'_, App>) {
     wait_until(harness, "never turned", |app| !app.is_making_look());
     harness.run_steps(3);
 }
 
-/// Angles may be whole turns apart, and what is framed again is so but for rounding.
+/// Fails if two views differ by more than rounding; angles may differ by full turns.
 fn assert_same_view(a: &Camera, b: &Camera) {
     let views = [a, b].map(Camera::scene_from_view);
     assert_eq!(a.up, b.up);
     assert!((0..3).all(|axis| (views[0].col(axis) - views[1].col(axis)).length() < 1e-9), "{a:?} and {b:?}");
-    assert!((a.eye() - b.eye()).length() < 1e-6, "{a:?} and {b:?}");
+    assert!((a.position() - b.position()).length() < 1e-6, "{a:?} and {b:?}");
 }
 
-/// A slab that is long in x, less in y and thin in z, in the middle of nothing.
+/// Writes a slab that is long in x, shorter in y and thin in z, surrounded by zeros.
 fn write_slab(path: &Path) {
     let value = |at: usize| {
         let [x, y, z] = [at % 24, at / 24 % 24, at / 576];
@@ -51,7 +51,10 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     write_slab(&second);
     let start = |source: PathBuf| {
         let (source, storage) = (Some(source), Some(storage.path().to_owned()));
-        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 1140.0))
+        adjusted_window(
+            WindowOptions { source, storage, ..WindowOptions::default() },
+            Vec2::new(760.0, 1140.0),
+        )
     };
     let mut harness = start(first);
     let flat = settings(&harness);
@@ -66,7 +69,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     wait_until_idle(&mut harness);
     assert!(harness.state().light_rebuilds() > fills, "and shine on another side");
 
-    // What was chosen stays when the view is reset; a step back takes it back.
+    // The chosen orientation survives a reset of the view; undo reverts it.
     press(&mut harness, Modifiers::SHIFT, Key::T);
     let round = settings(&harness);
     assert_eq!((round.camera.up, &round.lights), (on_end.camera.up, &on_end.lights));
@@ -80,7 +83,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     assert_eq!(settings(&harness), flat);
     press(&mut harness, Modifiers::NONE, Key::R);
     assert_same_view(&settings(&harness).camera, &flat.camera);
-    // However quickly one follows the other.
+    // Turns queue up, however quickly they follow each other.
     for _ in 0..4 {
         harness.key_press(Key::T);
         harness.step();
@@ -89,7 +92,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     let again = settings(&harness);
     assert_same_view(&again.camera, &flat.camera);
     assert_eq!(again.floor.height, flat.floor.height);
-    // A view that was kept of the object as it stood before: its light comes along.
+    // A kept view of the object in another orientation: its lights turn as well.
     harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Num4);
     harness.run_steps(3);
     let kept = settings(&harness);
@@ -99,7 +102,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     assert_eq!(settings(&harness), kept);
     press(&mut harness, Modifiers::NONE, Key::T);
 
-    // The next file of the folder stands like this one, also after a restart; others do not.
+    // The next file of the folder takes this orientation, also after a restart; other volumes do not.
     let ctx = harness.ctx.clone();
     harness.state_mut().open(&second, &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("b") && app.is_idle());
@@ -111,8 +114,7 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     drop(harness);
     let mut harness = start(second);
     assert_eq!(settings(&harness).camera.up, on_end.camera.up);
-    // The panel does the same.
-    // The section may begin below the window's edge.
+    // The panel has an equivalent control. Its section may begin below the window's edge.
     harness.get_by_label("Camera").scroll_to_me();
     harness.run_steps(10);
     click(&mut harness, "Camera");

@@ -1,10 +1,10 @@
-//! Views that are found and kept, and two looks side by side.
+//! Tests of standard and kept views, and of two looks side by side.
 
 use chiaroscuro::app::App;
 use eframe::egui::{self, Modifiers, vec2};
 use egui_kittest::Harness;
 
-use crate::harness::{bare_window, drag, picture, press, turn_wheel, wait_until_idle, window};
+use crate::harness::{click_at, drag, picture, turn_wheel, wait_until_idle, window, window_without_overlays};
 
 #[test]
 fn views_are_found_kept_and_found_again() {
@@ -28,7 +28,7 @@ fn views_are_found_kept_and_found_again() {
     harness.run_steps(2);
     assert_eq!(camera(&harness), first);
 
-    // The pointer stays on what it is on while the wheel brings it nearer.
+    // The wheel zooms towards the point under the pointer, which stays there.
     let (rect, _) = harness.state().viewport_rect().unwrap();
     harness.hover_at(rect.center() + vec2(60.0, 40.0));
     harness.step();
@@ -40,16 +40,16 @@ fn views_are_found_kept_and_found_again() {
     harness.run_steps(2);
     assert_eq!(camera(&harness), first, "all of it, from the same side");
 
-    // A double click makes what is there the middle.
+    // A double click makes the point under the pointer the camera's target.
     let at = rect.center() + vec2(0.0, 30.0);
-    press(&mut harness, at, 2);
+    click_at(&mut harness, at, 2);
     assert_ne!(camera(&harness).target, first.target, "there is something there");
     wait_until_idle(&mut harness);
 }
 
 #[test]
 fn two_looks_share_the_picture() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let (before, _) = picture(&mut harness);
     let fills = harness.state().light_rebuilds();
@@ -57,7 +57,7 @@ fn two_looks_share_the_picture() {
     wait_until_idle(&mut harness);
     assert_eq!(harness.state().light_rebuilds(), fills, "the same camera needs no new light");
     let (both, _) = picture(&mut harness);
-    // The left part is this look, the right one that without shadows; the line and labels lie between.
+    // The left part is the current look, the right one the look without shadows; divider and labels are between them.
     let [width, height] = size.map(|n| n as usize);
     let differs = |from: f64, to: f64| {
         let columns = (width as f64 * from) as usize..(width as f64 * to) as usize;
@@ -68,7 +68,7 @@ fn two_looks_share_the_picture() {
     };
     assert_eq!(differs(0.02, 0.46), 0, "left of the line");
     assert!(differs(0.54, 0.98) > 100, "right of the line");
-    // Dragging the line shows more of the left look, and does not turn the camera.
+    // Dragging the divider shows more of the left look, and does not turn the camera.
     let camera = harness.state().settings().camera.clone();
     drag(&mut harness, rect.center() + vec2(0.0, rect.height() / 4.0), vec2(0.44 * rect.width(), 0.0));
     assert_eq!(harness.state().settings().camera, camera);

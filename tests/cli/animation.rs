@@ -1,11 +1,11 @@
-//! Turntables.
+//! Tests of the command `turntable`: animation files and folders of frames.
 
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 
 #[test]
 fn turntables_are_files_that_move_or_folders() {
-    let folder = Folder::new();
-    folder.succeed("turntable builtin:chair:16 -o turn.png --size 40x30 --frames 4 --rate 8");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("turntable builtin:chair:16 -o turn.png --size 40x30 --frames 4 --rate 8");
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(folder.read("turn.png")))
         .expect("a PNG file");
     assert!(decoder.is_apng().expect("it can be read"));
@@ -14,11 +14,11 @@ fn turntables_are_files_that_move_or_folders() {
     assert_eq!(frames.len(), 4);
     assert!(frames.windows(2).all(|pair| pair[0] != pair[1]), "the camera turns");
 
-    folder.succeed("turntable builtin:chair:16 -o pictures --size 40x30 --frames 3 --light 1");
+    folder.run_successfully("turntable builtin:chair:16 -o pictures --size 40x30 --frames 3 --light 1");
     let names = ["0000.png", "0001.png", "0002.png"].map(|name| format!("pictures/{name}"));
     assert!(names.iter().all(|name| folder.path(name).exists()));
-    assert!(folder.succeed("replay pictures/0001.png --check").contains("identical"));
-    folder.succeed("turntable builtin:chair:16 -o turn.gif --size 40x30 --frames 3 --transparent");
+    assert!(folder.run_successfully("replay pictures/0001.png --check").contains("identical"));
+    folder.run_successfully("turntable builtin:chair:16 -o turn.gif --size 40x30 --frames 3 --transparent");
     let gif =
         image::codecs::gif::GifDecoder::new(std::io::Cursor::new(folder.read("turn.gif"))).expect("a GIF");
     let frames = image::AnimationDecoder::into_frames(gif).collect_frames().expect("its pictures");

@@ -1,15 +1,15 @@
-//! Timings as JSON.
+//! Tests of the command `bench`: timings as JSON and as tables.
 
 use serde_json::Value;
 
 use crate::checks::{assert_has_keys, keys};
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 use crate::volumes::small_ball;
 
 #[test]
 fn orbiting_is_timed_and_rebuilds_no_light_volume() {
-    let folder = Folder::new();
-    let text = folder.succeed(
+    let folder = ProgramFolder::new();
+    let text = folder.run_successfully(
         "bench --json --volume builtin:sphere:16 --size 32x32 --frames 1 --only orbit --set sampling.slab=1",
     );
     let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
@@ -29,8 +29,9 @@ fn orbiting_is_timed_and_rebuilds_no_light_volume() {
     assert!(orbit["wall_ms"]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{orbit}");
     assert!(cases.iter().all(|case| case["name"] != "light-drag"), "only what was asked for");
 
-    let text =
-        folder.succeed("bench --json --volume builtin:sphere:16 --size 32x32 --frames 2 --only light-drag");
+    let text = folder.run_successfully(
+        "bench --json --volume builtin:sphere:16 --size 32x32 --frames 2 --only light-drag",
+    );
     let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
     let cases = result["cases"].as_array().expect("a list");
     let drag = cases.iter().find(|case| case["name"] == "light-drag").expect("the case that was asked for");
@@ -39,8 +40,9 @@ fn orbiting_is_timed_and_rebuilds_no_light_volume() {
 
 #[test]
 fn the_table_of_the_paper_has_its_three_variants() {
-    let folder = Folder::new();
-    let text = folder.succeed("bench --json --volume builtin:sphere:16 --size 32x32 --frames 1 --only paper");
+    let folder = ProgramFolder::new();
+    let text = folder
+        .run_successfully("bench --json --volume builtin:sphere:16 --size 32x32 --frames 1 --only paper");
     let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
     let cases = result["cases"].as_array().expect("a list");
     let names: Vec<_> = cases.iter().filter_map(|case| case["name"].as_str()).collect();
@@ -55,30 +57,30 @@ fn the_table_of_the_paper_has_its_three_variants() {
 #[test]
 fn loading_is_timed_stage_by_stage() {
     const STAGES: [&str; 5] = ["first_look", "picture", "read", "statistics", "upload"];
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("ball_8x8x8_uint8.raw", small_ball());
     let loading = "bench --volume ball_8x8x8_uint8.raw --size 32x32 --frames 1 --reduced";
-    let text = folder.succeed(&format!("{loading} --json --only load"));
+    let text = folder.run_successfully(&format!("{loading} --json --only load"));
     let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
     let load = &result["cases"][0];
     assert_eq!((&load["name"], &load["frames"]), (&"load".into(), &1.into()));
     assert_eq!(keys(&load["load_ms"]), STAGES);
     let median = |stage: &str| load["load_ms"][stage]["median"].as_f64().expect("a number");
     assert!(STAGES.iter().all(|stage| median(stage) > 0.0), "{load}");
-    // Of one time each: what they take together is what loading takes, but for the first look, which is apart.
+    // Measured once each: their sum is the loading time, except for the first look, which is timed separately.
     let together = STAGES[1..].iter().map(|stage| median(stage)).sum::<f64>();
     assert!(together <= load["wall_ms"]["median"].as_f64().expect("a number"), "{load}");
-    let table = folder.succeed(&format!("{loading} --only load"));
+    let table = folder.run_successfully(&format!("{loading} --only load"));
     for words in ["read", "statistics", "upload", "first look", "picture", "ball 8 x 8 x 8"] {
         assert!(table.contains(words), "{words}: {table}");
     }
 
-    let text = folder.succeed(&format!("{loading} --json --only read"));
+    let text = folder.run_successfully(&format!("{loading} --json --only read"));
     let result: Value = serde_json::from_str(&text).expect("one JSON object and nothing else");
     let read = &result["cases"][0];
     assert!(result.get("adapter").is_none(), "nothing is drawn");
     assert_eq!((&read["name"], &read["type"]), (&"read".into(), &"uint8".into()));
     assert!(read["load_ms"]["read"]["median"].as_f64().is_some_and(|ms| ms > 0.0), "{read}");
     assert!(read["load_ms"]["upload"].is_null(), "{read}");
-    folder.fail("bench --only read --volume elsewhere.raw", 6);
+    folder.run_failing("bench --only read --volume elsewhere.raw", 6);
 }

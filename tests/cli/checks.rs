@@ -1,10 +1,10 @@
-//! What pictures and reports are asked.
+//! Checks of exported pictures and of JSON reports.
 
 use std::path::Path;
 
 use serde_json::Value;
 
-/// Width, height and RGBA of a PNG.
+/// Width, height and RGBA pixels of a PNG.
 pub(crate) fn pixels(path: &Path) -> (u32, u32, Vec<[u8; 4]>) {
     let image = image::open(path).expect("a PNG that can be decoded").to_rgba8();
     (image.width(), image.height(), image.pixels().map(|pixel| pixel.0).collect())

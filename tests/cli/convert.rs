@@ -1,19 +1,20 @@
-//! `convert`: what is written is what was read, in another format, in part, turned or in other numbers.
+//! Tests of the command `convert`: the written volume is the one that was read, in another format, cropped,
+//! reoriented or in another voxel type.
 
 use serde_json::Value;
 
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 use crate::volumes::{attached, gzipped, header};
 
-/// Endings of all formats.
-const ENDINGS: [&str; 8] = ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti"];
+/// File extensions of all output formats.
+const EXTENSIONS: [&str; 8] = ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti"];
 
-fn facts(folder: &Folder, file: &str) -> Value {
-    serde_json::from_str(&folder.succeed(&format!("info {file} --json"))).expect("valid JSON")
+fn info_json(folder: &ProgramFolder, file: &str) -> Value {
+    serde_json::from_str(&folder.run_successfully(&format!("info {file} --json"))).expect("valid JSON")
 }
 
-/// A volume of 4 x 3 x 2 numbers in a body, of which much is known.
-fn ct() -> Vec<u8> {
+/// NRRD file of 4 × 3 × 2 voxels of a body, with much metadata.
+fn ct_nrrd() -> Vec<u8> {
     let header = header(
         "sizes: 4 3 2\nspace: left-posterior-superior\nspace directions: (0,0.5,0) (-0.75,0,0) (0,0,2)\n\
          space origin: (10,-20,30)\nsample units: \"HU\"\ncontent: a chest\nmodality:=CT\npadding value:=5\n\
@@ -25,14 +26,14 @@ fn ct() -> Vec<u8> {
 }
 
 #[test]
-fn what_info_says_of_the_result_is_what_it_says_of_the_input() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
-    let wanted = facts(&folder, "ct.nrrd");
+fn info_agrees_before_and_after_conversion() {
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
+    let wanted = info_json(&folder, "ct.nrrd");
     assert_eq!((&wanted["hints"]["modality"], &wanted["is_anatomical"]), (&"ct".into(), &true.into()));
-    for ending in ENDINGS {
-        folder.succeed(&format!("convert ct.nrrd out.{ending}"));
-        let found = facts(&folder, &format!("out.{ending}"));
+    for ending in EXTENSIONS {
+        folder.run_successfully(&format!("convert ct.nrrd out.{ending}"));
+        let found = info_json(&folder, &format!("out.{ending}"));
         for same in ["dims", "type", "range", "non_finite_voxels"] {
             assert_eq!(found[same], wanted[same], "{ending}: {same}");
         }
@@ -47,8 +48,8 @@ fn what_info_says_of_the_result_is_what_it_says_of_the_input() {
         assert_eq!(found["is_anatomical"], has_place && ending != "vti", "{ending}");
     }
     for file in ["nrrd.nrrd", "nrrd.nrrd --compress", "mha.mha", "mha.mha --compress"] {
-        folder.succeed(&format!("convert ct.nrrd {file}"));
-        let found = facts(&folder, file.split(' ').next().unwrap_or_default());
+        folder.run_successfully(&format!("convert ct.nrrd {file}"));
+        let found = info_json(&folder, file.split(' ').next().unwrap_or_default());
         for (key, value) in wanted.as_object().expect("an object") {
             assert_eq!(&found[key], value, "{file}: {key}");
         }
@@ -56,9 +57,9 @@ fn what_info_says_of_the_result_is_what_it_says_of_the_input() {
 }
 
 #[test]
-fn what_has_no_place_is_said() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
+fn dropped_metadata_is_reported() {
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
     let outcome = folder.run("convert ct.nrrd out.npy");
     let said = &outcome.stderr;
     assert!(outcome.code == Some(0) && said.starts_with("warning: .npy has no place for"), "{outcome:?}");
@@ -70,10 +71,10 @@ fn what_has_no_place_is_said() {
 
 #[test]
 fn parts_turns_and_numbers() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
-    folder.succeed("convert ct.nrrd part.nrrd --region 1:3,:,1:");
-    let (part, whole) = (facts(&folder, "part.nrrd"), facts(&folder, "ct.nrrd"));
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
+    folder.run_successfully("convert ct.nrrd part.nrrd --region 1:3,:,1:");
+    let (part, whole) = (info_json(&folder, "part.nrrd"), info_json(&folder, "ct.nrrd"));
     assert_eq!(part["dims"], serde_json::json!([2, 3, 1]));
     assert_eq!(part["range"], serde_json::json!([305.0, 1205.0]));
     let number = |facts: &Value, at: usize| facts["world_from_index"][at].as_f64().expect("a number");
@@ -82,35 +83,37 @@ fn parts_turns_and_numbers() {
         let wanted = number(&whole, axis) + number(&whole, axis - 9) + number(&whole, axis - 3);
         assert!((number(&part, axis) - wanted).abs() < 1e-12, "{axis}");
     }
-    folder.succeed("convert ct.nrrd ras.nrrd --orient RAS");
-    let ras = facts(&folder, "ras.nrrd");
+    folder.run_successfully("convert ct.nrrd ras.nrrd --orient RAS");
+    let ras = info_json(&folder, "ras.nrrd");
     assert_eq!(ras["dims"], serde_json::json!([3, 4, 2]));
     assert_eq!(ras["spacing_mm"], serde_json::json!([0.75, 0.5, 2.0]));
     assert!([0, 4, 8].iter().all(|&at| number(&ras, at) > 0.0), "{ras}");
-    // Back again, and nothing is lost.
-    folder.succeed("convert ras.nrrd back.nrrd --orient PRS");
-    folder.succeed("convert ct.nrrd once.nrrd --orient PRS");
+    // Reoriented back, and nothing is lost.
+    folder.run_successfully("convert ras.nrrd back.nrrd --orient PRS");
+    folder.run_successfully("convert ct.nrrd once.nrrd --orient PRS");
     assert_eq!(folder.read("back.nrrd"), folder.read("once.nrrd"));
     // A region counts voxels of the file, and blocks are averaged in it.
-    folder.succeed("convert builtin:sphere:16 half.nrrd --region 0:8,0:6,0:4 --reduce 2");
-    assert_eq!(facts(&folder, "half.nrrd")["dims"], serde_json::json!([4, 3, 2]));
-    folder.succeed("convert ct.nrrd thin.nrrd --every 2");
-    assert_eq!(facts(&folder, "thin.nrrd")["dims"], serde_json::json!([2, 2, 1]));
-    folder.succeed("convert ct.nrrd float.mha --type float32");
-    assert_eq!(facts(&folder, "float.mha")["type"], "float32");
-    folder.succeed("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");
-    let small = facts(&folder, "small.tif");
+    folder.run_successfully("convert builtin:sphere:16 half.nrrd --region 0:8,0:6,0:4 --reduce 2");
+    assert_eq!(info_json(&folder, "half.nrrd")["dims"], serde_json::json!([4, 3, 2]));
+    folder.run_successfully("convert ct.nrrd thin.nrrd --every 2");
+    assert_eq!(info_json(&folder, "thin.nrrd")["dims"], serde_json::json!([2, 2, 1]));
+    folder.run_successfully("convert ct.nrrd float.mha --type float32");
+    assert_eq!(info_json(&folder, "float.mha")["type"], "float32");
+    folder.run_successfully("convert ct.nrrd small.tif --type uint8 --rescale -1000:1000");
+    let small = info_json(&folder, "small.tif");
     assert_eq!((&small["type"], &small["hints"]["padding"]), (&"uint8".into(), &0.0.into()));
-    // RAW, whose own type has another name here.
+    // RAW input, whose own voxel type has an option of another name here.
     folder.write("x.bin", [1u8, 0, 2, 0, 3, 0, 4, 1]);
-    folder.succeed("convert x.bin x.npy --dims 2x2x1 --input-type uint16 --endian little --type float64");
-    assert_eq!(facts(&folder, "x.npy")["range"], serde_json::json!([1.0, 260.0]));
+    folder.run_successfully(
+        "convert x.bin x.npy --dims 2x2x1 --input-type uint16 --endian little --type float64",
+    );
+    assert_eq!(info_json(&folder, "x.npy")["range"], serde_json::json!([1.0, 260.0]));
 }
 
 #[test]
-fn what_cannot_be_written_is_refused() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
+fn unwritable_outputs_are_refused() {
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
     folder.write("plain.nrrd", attached("sizes: 8 8 8", 512));
     folder.write("theirs.mha", "ObjectType = Image\nComment = somebody's\n");
     folder.write("theirs.nii.gz", gzipped(b"somebody's"));
@@ -132,82 +135,86 @@ fn what_cannot_be_written_is_refused() {
         ("ct.nrrd out.nrrd --type complex", &["float32"]),
         ("ct.nrrd out.nrrd --rescale 3:1 --type uint8", &["-1000:3000"]),
     ] {
-        let said = folder.fail(&format!("convert {args}"), 2);
+        let said = folder.run_failing(&format!("convert {args}"), 2);
         assert!(words.iter().all(|word| said.contains(word)), "{args}: {said}");
     }
-    folder.fail("convert nothing.nrrd out.nrrd", 6);
-    folder.fail("convert theirs.mha out.nrrd", 3);
-    folder.fail("convert ct.nrrd no/such/folder/out.nrrd", 6);
-    folder.succeed("convert ct.nrrd theirs.mha --force");
-    // What the program has made it may make again.
-    for ending in ENDINGS {
-        folder.succeed(&format!("convert ct.nrrd o.{ending}"));
+    folder.run_failing("convert nothing.nrrd out.nrrd", 6);
+    folder.run_failing("convert theirs.mha out.nrrd", 3);
+    folder.run_failing("convert ct.nrrd no/such/folder/out.nrrd", 6);
+    folder.run_successfully("convert ct.nrrd theirs.mha --force");
+    // Files made by the program may be replaced by it.
+    for ending in EXTENSIONS {
+        folder.run_successfully(&format!("convert ct.nrrd o.{ending}"));
         if ending == "npy" {
-            // NumPy's arrays cannot say who made them.
-            folder.fail("convert ct.nrrd o.npy", 2);
+            // NumPy arrays cannot state which program wrote them.
+            folder.run_failing("convert ct.nrrd o.npy", 2);
         } else {
-            folder.succeed(&format!("convert ct.nrrd o.{ending}"));
+            folder.run_successfully(&format!("convert ct.nrrd o.{ending}"));
         }
     }
 }
 
-/// Besides the input itself: data that a header names, and what comes along with a folder or a slice.
+/// Inputs are never replaced: besides the input file itself, data files that a header names, and the other files of a
+/// folder or a slice.
 #[test]
-fn what_is_read_is_never_replaced() {
-    let folder = Folder::new();
+fn inputs_are_never_replaced() {
+    let folder = ProgramFolder::new();
     let header = header("sizes: 4 4 2\ndata file: voxels.nii");
     folder.write("volume.nhdr", header);
     folder.write("voxels.nii", [7; 32]);
     folder.write("beside.nii", [7; 32]);
     std::fs::create_dir(folder.path("slices")).expect("room");
     for at in 0..2 {
-        folder.succeed(&format!("convert builtin:sphere:8 slices/{at}.tif --region :,:,{at}:{}", at + 1));
+        folder.run_successfully(&format!(
+            "convert builtin:sphere:8 slices/{at}.tif --region :,:,{at}:{}",
+            at + 1
+        ));
     }
     for args in
         ["volume.nhdr voxels.nii", "slices slices/1.tif", "slices slices/../slices/0.tif --type float32"]
     {
-        let said = folder.fail(&format!("convert {args} --force"), 2);
+        let said = folder.run_failing(&format!("convert {args} --force"), 2);
         assert!(said.contains("would replace") && said.contains("which is read"), "{args}: {said}");
     }
     assert_eq!(folder.read("voxels.nii"), [7; 32]);
-    // What lies beside them is none of that.
-    folder.succeed("convert volume.nhdr beside.nii --force");
-    folder.succeed("convert slices slices/all.npy");
-    folder.succeed("convert slices slices/all.npy --force");
+    // Files beside them that are not read may be replaced.
+    folder.run_successfully("convert volume.nhdr beside.nii --force");
+    folder.run_successfully("convert slices slices/all.npy");
+    folder.run_successfully("convert slices slices/all.npy --force");
 }
 
 #[test]
 fn options_are_called_as_this_command_calls_them() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("a--type.bin", [0; 30]);
     for (command, own, other) in [
         ("info a--type.bin", " --type", "--input-type"),
         ("convert a--type.bin o.npy", "--input-type", " --type"),
     ] {
         for dims in ["", " --dims 2x3x4"] {
-            let said = folder.fail(&format!("{command}{dims}"), 3);
+            let said = folder.run_failing(&format!("{command}{dims}"), 3);
             assert!(said.contains(own) && !said.contains(other) && said.contains("a--type.bin"), "{said}");
         }
     }
     folder.write("b.bin", [0; 48]);
-    let said = folder.fail("convert b.bin o.npy --dims 2x3x4 --input-type uint8", 3);
+    let said = folder.run_failing("convert b.bin o.npy --dims 2x3x4 --input-type uint8", 3);
     assert!(said.contains("try --input-type uint16"), "{said}");
 }
 
 #[cfg(unix)]
 #[test]
 fn devices_are_no_targets() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
     std::os::unix::fs::symlink("/dev/null", folder.path("null.nrrd")).expect("a link");
-    let said = folder.fail("convert ct.nrrd null.nrrd --force", 6);
+    let said = folder.run_failing("convert ct.nrrd null.nrrd --force", 6);
     assert!(said.contains("device"), "{said}");
 }
 
 #[test]
 fn standard_output_is_a_file_alone() {
-    let folder = Folder::new();
-    folder.write("ct.nrrd", ct());
+    let folder = ProgramFolder::new();
+    folder.write("ct.nrrd", ct_nrrd());
     let output = |args: &str| {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_chiaroscuro"))
             .args(args.split_whitespace())
@@ -217,8 +224,8 @@ fn standard_output_is_a_file_alone() {
         assert!(output.status.success(), "{args}: {output:?}");
         output.stdout
     };
-    folder.succeed("convert ct.nrrd file.nrrd");
-    folder.succeed("convert ct.nrrd file.vti");
+    folder.run_successfully("convert ct.nrrd file.nrrd");
+    folder.run_successfully("convert ct.nrrd file.vti");
     assert_eq!(output("convert ct.nrrd -"), folder.read("file.nrrd"));
     assert_eq!(output("convert ct.nrrd - --format vti"), folder.read("file.vti"));
 }

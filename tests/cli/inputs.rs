@@ -1,23 +1,23 @@
-//! Volumes that are refused.
+//! Tests of volumes that are refused as input.
 
 use std::fs;
 use std::process::Command;
 
 use serde_json::Value;
 
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 use crate::volumes::{attached, gzipped, header, small_ball};
 
 #[test]
 fn files_that_are_not_there_or_no_files_are_io_errors() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     fs::create_dir(folder.path("directory.raw")).expect("the folder can be written to");
     for file in ["missing.raw", "missing.nrrd", "no/such/folder/x.nrrd"] {
-        folder.refuse(file, &[6]);
+        folder.check_refused(file, &[6]);
     }
-    // A folder may be a volume, of slices.
+    // A folder may be a volume of slices.
     for file in ["directory.raw", "."] {
-        folder.refuse(file, &[3]);
+        folder.check_refused(file, &[3]);
     }
 }
 
@@ -25,7 +25,7 @@ fn files_that_are_not_there_or_no_files_are_io_errors() {
 #[test]
 fn files_that_may_not_be_read_are_io_errors() {
     use std::os::unix::fs::PermissionsExt as _;
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("secret_8x8x8_uint8.raw", small_ball());
     let path = folder.path("secret_8x8x8_uint8.raw");
     fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).expect("it is our file");
@@ -33,36 +33,36 @@ fn files_that_may_not_be_read_are_io_errors() {
         println!("not checked: permissions, of which this user (root?) needs none");
         return;
     }
-    folder.refuse("secret_8x8x8_uint8.raw", &[6]);
+    folder.check_refused("secret_8x8x8_uint8.raw", &[6]);
 }
 
-/// Files that open and look like any other, but that cannot be read; whoever asks, root included.
+/// Files that open and look like any other, but cannot be read by any user, root included.
 #[cfg(target_os = "linux")]
 #[test]
 fn files_whose_reading_fails_are_io_errors() {
-    let folder = Folder::new();
-    // The memory of the program itself: nothing is where it begins.
+    let folder = ProgramFolder::new();
+    // Memory of the program itself: the start of the address space is not mapped.
     let memory = "/proc/self/mem";
     assert!(fs::metadata(memory).expect("it is there").is_file() && fs::read(memory).is_err());
     for file in ["memory.nrrd", "memory.nhdr", "memory_8x8x8_uint8.raw.gz"] {
         std::os::unix::fs::symlink(memory, folder.path(file)).expect("the folder can be written to");
-        folder.refuse(file, &[6]);
+        folder.check_refused(file, &[6]);
     }
 }
 
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_refused_and_never_waited_for() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let made = Command::new("mkfifo").arg(folder.path("pipe.raw")).status();
     assert!(made.is_ok_and(|status| status.success()), "mkfifo is part of every Unix");
-    folder.refuse("pipe.raw", &[6]);
-    folder.refuse("/dev/zero", &[6]);
+    folder.check_refused("pipe.raw", &[6]);
+    folder.check_refused("/dev/zero", &[6]);
 }
 
 #[test]
 fn volumes_of_the_wrong_size_are_bad_input() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("short_8x8x8_uint8.raw", vec![0; 511]);
     folder.write("long_8x8x8_uint8.raw", vec![0; 513]);
     folder.write("empty_8x8x8_uint8.raw", b"");
@@ -81,20 +81,20 @@ fn volumes_of_the_wrong_size_are_bad_input() {
         "short.nrrd",
         "negative.nrrd",
     ] {
-        folder.refuse(file, &[3]);
+        folder.check_refused(file, &[3]);
     }
-    let said = folder.fail("info short_8x8x8_uint8.raw", 3);
+    let said = folder.run_failing("info short_8x8x8_uint8.raw", 3);
     assert!(said.contains("512") && said.contains("511"), "expected and found sizes: {said}");
 }
 
 #[test]
 fn truncated_compressed_volumes_are_bad_input() {
-    let folder = Folder::new();
-    // Noise, so that the compressed file is long enough to be cut.
+    let folder = ProgramFolder::new();
+    // Noise, so that the compressed file is long enough to be truncated.
     let noise: Vec<u8> = (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     let whole = gzipped(&noise);
     folder.write("whole_16x16x16_uint8.raw.gz", &whole);
-    folder.succeed("info whole_16x16x16_uint8.raw.gz");
+    folder.run_successfully("info whole_16x16x16_uint8.raw.gz");
     folder.write("half_16x16x16_uint8.raw.gz", &whole[..whole.len() / 2]);
     folder.write("tail_16x16x16_uint8.raw.gz", &whole[..whole.len() - 4]);
     folder.write("fewer_16x16x16_uint8.raw.gz", gzipped(&noise[..4000]));
@@ -107,13 +107,13 @@ fn truncated_compressed_volumes_are_bad_input() {
         "fewer_16x16x16_uint8.raw.gz",
         "half.nrrd",
     ] {
-        folder.refuse(file, &[3]);
+        folder.check_refused(file, &[3]);
     }
 }
 
 #[test]
 fn enormous_claims_are_refused_at_once() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("huge.nrrd", attached("sizes: 1000000 1000000 1000000", 64));
     let mut zipped = header("sizes: 1000000 1000000 1000000").replace("raw", "gzip").into_bytes();
     zipped.extend(gzipped(&[0; 4096]));
@@ -132,26 +132,26 @@ fn enormous_claims_are_refused_at_once() {
         "huge_99999999999999999999999x1x1_uint8.raw",
         "x.bin --dims 1000000x1000000x1000000 --type uint8",
     ] {
-        folder.refuse(file, &[3, 5]);
+        folder.check_refused(file, &[3, 5]);
     }
-    folder.fail("info builtin:sphere:100000", 3);
-    // Behind a header without an end.
+    folder.run_failing("info builtin:sphere:100000", 3);
+    // Data behind a header that does not end.
     folder.write("endless.nrrd", [b"NRRD0004\n".to_vec(), vec![b'x'; 4 << 20]].concat());
-    folder.refuse("endless.nrrd", &[3, 5]);
+    folder.check_refused("endless.nrrd", &[3, 5]);
 }
 
 #[test]
 fn spacings_that_are_no_lengths_are_bad_input() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("ball_8x8x8_uint8.raw", small_ball());
     for spacing in ["nanx1x1", "infx1x1", "0x1x1", "-1x1x1", "1e300x1x1"] {
-        folder.refuse(&format!("ball_8x8x8_uint8.raw --spacing={spacing}"), &[2, 3]);
+        folder.check_refused(&format!("ball_8x8x8_uint8.raw --spacing={spacing}"), &[2, 3]);
     }
     for (name, line) in [("words.nrrd", "spacings: a b c"), ("few.nrrd", "spacings: 1 1")] {
         folder.write(name, attached(&format!("sizes: 8 8 8\n{line}"), 512));
-        folder.refuse(name, &[3]);
+        folder.check_refused(name, &[3]);
     }
-    // What cannot be is mended, and said.
+    // Impossible values are corrected, with a note.
     for (name, line) in [
         ("infinite.nrrd", "spacings: inf 1 1"),
         ("zero.nrrd", "spacings: 0 1 1"),
@@ -159,20 +159,21 @@ fn spacings_that_are_no_lengths_are_bad_input() {
         ("flat.nrrd", "space: left-posterior-superior\nspace directions: (1,0,0) (1,0,0) (0,0,1)"),
     ] {
         folder.write(name, attached(&format!("sizes: 8 8 8\n{line}"), 512));
-        let facts = folder.succeed(&format!("info {name} --json"));
+        let facts = folder.run_successfully(&format!("info {name} --json"));
         let facts: Value = serde_json::from_str(&facts).expect("valid JSON");
         assert_eq!(facts["spacing_mm"], serde_json::json!([1.0, 1.0, 1.0]), "{name}");
         assert!(facts["remarks"].as_array().is_some_and(|remarks| !remarks.is_empty()), "{name}: {facts}");
     }
-    // NRRD writes nan for a spacing that nobody knows: 1 mm then.
+    // NRRD writes nan for an unknown spacing, which becomes 1 mm.
     folder.write("unknown.nrrd", attached("sizes: 8 8 8\nspacings: nan 1 2", 512));
-    let facts: Value = serde_json::from_str(&folder.succeed("info unknown.nrrd --json")).expect("valid JSON");
+    let facts: Value =
+        serde_json::from_str(&folder.run_successfully("info unknown.nrrd --json")).expect("valid JSON");
     assert_eq!(facts["spacing_mm"], serde_json::json!([1.0, 1.0, 2.0]));
 }
 
 #[test]
 fn headers_cannot_name_files_outside_their_folder() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("outside.raw", small_ball());
     fs::create_dir(folder.path("inside")).expect("the folder can be written to");
     let absolute = folder.path("outside.raw").to_string_lossy().into_owned();
@@ -180,7 +181,7 @@ fn headers_cannot_name_files_outside_their_folder() {
         ["../../etc/passwd", "../outside.raw", "/etc/passwd", &absolute, "x/../../outside.raw", "C:\\x", ".."]
     {
         folder.write("inside/bad.nhdr", header(&format!("sizes: 8 8 8\ndata file: {data_file}")));
-        let said = folder.refuse("inside/bad.nhdr", &[3]);
+        let said = folder.check_refused("inside/bad.nhdr", &[3]);
         assert!(!said.contains("root:"), "nothing of the file may be shown: {said}");
     }
     #[cfg(unix)]
@@ -188,17 +189,17 @@ fn headers_cannot_name_files_outside_their_folder() {
         std::os::unix::fs::symlink(folder.path("outside.raw"), folder.path("inside/link.raw"))
             .expect("links can be made");
         folder.write("inside/bad.nhdr", header("sizes: 8 8 8\ndata file: link.raw"));
-        folder.refuse("inside/bad.nhdr", &[3]);
+        folder.check_refused("inside/bad.nhdr", &[3]);
     }
     folder.write("good.nhdr", header("sizes: 8 8 8\ndata file: ./outside.raw"));
-    folder.succeed("info good.nhdr");
+    folder.run_successfully("info good.nhdr");
 }
 
 #[cfg(unix)]
 #[test]
 fn names_that_are_no_text_are_opened() {
     use std::os::unix::ffi::OsStrExt as _;
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let name = std::ffi::OsStr::from_bytes(b"a\xff_8x8x8_uint8.raw");
     fs::write(folder.path("x").with_file_name(name), small_ball()).expect("the folder can be written to");
     for args in [&["info"][..], &["render", "-o", "out.png", "--size", "16x16"]] {

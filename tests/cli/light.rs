@@ -1,18 +1,19 @@
-//! Light: its attenuation as a volume and slices of it, and panoramas that scenes are lit by.
+//! Tests of light on the command line: attenuation as a volume and as slices, and environment maps.
 
 use image::{Rgb, Rgb32FImage};
 use serde_json::Value;
 
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 
 #[test]
 fn an_attenuation_volume_can_be_loaded_back() {
-    let folder = Folder::new();
-    folder.succeed("light-volume builtin:box:16 -o l.nrrd");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("light-volume builtin:box:16 -o l.nrrd");
     assert_eq!(folder.names(), ["l.nrrd"]);
-    let facts: Value = serde_json::from_str(&folder.succeed("info l.nrrd --json")).expect("valid JSON");
+    let facts: Value =
+        serde_json::from_str(&folder.run_successfully("info l.nrrd --json")).expect("valid JSON");
     let source: Value =
-        serde_json::from_str(&folder.succeed("info builtin:box:16 --json")).expect("valid JSON");
+        serde_json::from_str(&folder.run_successfully("info builtin:box:16 --json")).expect("valid JSON");
     assert_eq!(facts["type"], "float32");
     assert_eq!(facts["dims"], source["dims"]);
     assert_eq!(facts["spacing_mm"], source["spacing_mm"]);
@@ -25,8 +26,10 @@ fn an_attenuation_volume_can_be_loaded_back() {
 
 #[test]
 fn a_slice_of_light_is_a_picture_in_false_colours() {
-    let folder = Folder::new();
-    folder.succeed("light-volume builtin:sphere:16 -o slice.png --slice y:4 --set shadows.resolution=half");
+    let folder = ProgramFolder::new();
+    folder.run_successfully(
+        "light-volume builtin:sphere:16 -o slice.png --slice y:4 --set shadows.resolution=half",
+    );
     let slice = image::open(folder.path("slice.png")).expect("a picture").to_rgb8();
     assert_eq!(slice.dimensions(), (8, 8));
     let luma = |pixel: &image::Rgb<u8>| pixel.0.iter().map(|&c| u32::from(c)).sum::<u32>();
@@ -34,7 +37,7 @@ fn a_slice_of_light_is_a_picture_in_false_colours() {
     assert!(dark < 300 && bright > 500, "a ball has a lit and a dark side: {dark} … {bright}");
 }
 
-/// A grey sky over a brown ground, and a lamp at the right.
+/// Environment map with a grey sky over brown ground, and a lamp on the right.
 fn panorama() -> Rgb32FImage {
     Rgb32FImage::from_fn(128, 64, |x, y| match (x, y) {
         (94..=97, 20..=23) => Rgb([900.0, 800.0, 500.0]),
@@ -45,9 +48,9 @@ fn panorama() -> Rgb32FImage {
 
 #[test]
 fn a_panorama_lights_the_scene_by_its_gradient_and_its_brightest_light() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     panorama().save(folder.path("room.hdr")).expect("the folder can be written to");
-    folder.succeed(
+    folder.run_successfully(
         "render builtin:chair:32 -o out.png --size 64x48 --surroundings room.hdr --report out.json --set sky.tilt_deg=5",
     );
     let report = folder.json("out.json");
@@ -61,23 +64,23 @@ fn a_panorama_lights_the_scene_by_its_gradient_and_its_brightest_light() {
     assert_eq!(lights[0]["name"], "Surroundings");
     assert!(number("/lights/0/color/0") > number("/lights/0/color/2"), "a warm lamp: {settings}");
     assert!(lights[1..].iter().all(|light| light["on"] == false), "others are switched off");
-    // The picture is all that is needed to make it again.
+    // The picture alone is enough to render it again.
     std::fs::remove_file(folder.path("room.hdr")).expect("it is ours");
-    folder.succeed("replay out.png -o again.png");
+    folder.run_successfully("replay out.png -o again.png");
     assert!(folder.read("out.png") == folder.read("again.png"), "the same picture");
 }
 
 #[test]
 fn other_pictures_are_refused_before_anything_is_drawn() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     image::RgbImage::new(8, 8).save(folder.path("square.png")).expect("the folder can be written to");
     folder.write("text.hdr", "no picture");
     let render = |file: &str| format!("render builtin:chair:16 -o out.png --size 8x8 --surroundings {file}");
-    assert!(folder.fail(&render("square.png"), 3).contains("twice as wide as high"));
-    assert!(folder.fail(&render("text.hdr"), 3).contains("text.hdr"));
-    folder.fail(&render("missing.hdr"), 6);
+    assert!(folder.run_failing(&render("square.png"), 3).contains("twice as wide as high"));
+    assert!(folder.run_failing(&render("text.hdr"), 3).contains("text.hdr"));
+    folder.run_failing(&render("missing.hdr"), 6);
     panorama().save(folder.path("room.hdr")).expect("the folder can be written to");
-    let said =
-        folder.fail("render builtin:chair:16 -o room.hdr --size 8x8 --surroundings room.hdr --force", 2);
+    let said = folder
+        .run_failing("render builtin:chair:16 -o room.hdr --size 8x8 --surroundings room.hdr --force", 2);
     assert!(said.contains("room.hdr"), "{said}");
 }

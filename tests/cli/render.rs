@@ -1,15 +1,15 @@
-//! Pictures of volumes, their reports, and the settings that they are made with.
+//! Tests of the command `render`: pictures, their reports, and the settings that they are made with.
 
 use serde_json::Value;
 
 use crate::checks::{assert_has_keys, assert_shows_something, keys, pixels};
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 use crate::volumes::{gzipped, small_ball};
 
 #[test]
 fn a_picture_and_its_report_are_written() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:sphere:24 -o out.png --size 64x48 --report r.json");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:sphere:24 -o out.png --size 64x48 --report r.json");
     assert_eq!(folder.names(), ["out.png", "r.json"], "and nothing else");
     assert_shows_something(&folder.path("out.png"), [64, 48]);
 
@@ -38,7 +38,7 @@ fn a_picture_and_its_report_are_written() {
     assert!(report["adapter"].as_str().is_some_and(|name| !name.is_empty()));
     assert_eq!(report["image_size"], serde_json::json!([64, 48]));
     assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
-    // The key light casts shadows, so its volume was made for the picture; the fill light casts none.
+    // The key light casts shadows, so its volume was filled for the picture; the fill light casts none.
     assert_eq!(report["light_rebuilds"][0], 1, "{}", report["light_rebuilds"]);
     assert!(report["slabs"].as_u64().is_some_and(|slabs| slabs >= 24), "{}", report["slabs"]);
     assert!(report["peak_gpu_bytes"].as_u64().is_some_and(|bytes| bytes > 2 * 24 * 24 * 24));
@@ -47,42 +47,42 @@ fn a_picture_and_its_report_are_written() {
 
 #[test]
 fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:sphere:48 --reduce 2 -o out.png --size 64x48 --report r.json");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:sphere:48 --reduce 2 -o out.png --size 64x48 --report r.json");
     assert_shows_something(&folder.path("out.png"), [64, 48]);
     let report = folder.json("r.json");
     assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
     assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
     let replayed = folder.run("replay out.png --check --reduce 1");
     assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
-    // The picture says how much of the volume it shows.
-    folder.succeed("replay out.png --check");
-    folder.fail("render builtin:sphere:48 --reduce 0 -o none.png", 2);
+    // The picture records which portion of the volume it shows.
+    folder.run_successfully("replay out.png --check");
+    folder.run_failing("render builtin:sphere:48 --reduce 0 -o none.png", 2);
 }
 
 #[test]
 fn a_part_of_a_file_is_shown_and_found_again() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let values = (0..24 * 20 * 16).map(|at| (at % 24 * 5 + at / 480 * 8) as u8);
     folder.write("ramp_24x20x16_uint8.raw", values.collect::<Vec<u8>>());
     let part =
         "render ramp_24x20x16_uint8.raw --region 4:,:,0:10 --every 2 -o out.png --size 32x24 --report r.json";
-    folder.succeed(part);
+    folder.run_successfully(part);
     let report = folder.json("r.json");
     assert_eq!(report["volume_dims"], serde_json::json!([10, 10, 5]));
     assert_eq!(report["volume_file_dims"], serde_json::json!([20, 20, 10]), "the region's");
-    folder.succeed("replay out.png --check");
-    let said = folder.succeed("info ramp_24x20x16_uint8.raw --region 4:,:,0:10 --every 2");
+    folder.run_successfully("replay out.png --check");
+    let said = folder.run_successfully("info ramp_24x20x16_uint8.raw --region 4:,:,0:10 --every 2");
     assert!(said.contains("every second voxel of the region 4:,0:,0:10 of 24 × 20 × 16"), "{said}");
-    folder.fail("info ramp_24x20x16_uint8.raw --every 2 --reduce 2", 2);
-    let outside = folder.fail("render ramp_24x20x16_uint8.raw --region 0:25,:,: -o none.png", 2);
+    folder.run_failing("info ramp_24x20x16_uint8.raw --every 2 --reduce 2", 2);
+    let outside = folder.run_failing("render ramp_24x20x16_uint8.raw --region 0:25,:,: -o none.png", 2);
     assert!(outside.contains("24 x 20 x 16"), "{outside}");
 }
 
 #[test]
 fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
-    let folder = Folder::new();
-    // Longer than any adapter's axes.
+    let folder = ProgramFolder::new();
+    // Longer than the largest texture of any adapter.
     folder.write("long_20000x3x3_uint8.raw", vec![200; 20000 * 9]);
     let outcome = folder.run("render long_20000x3x3_uint8.raw -o out.png --size 64x48 --report r.json");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
@@ -91,50 +91,50 @@ fn volumes_beyond_the_adapter_are_shown_with_fewer_voxels() {
     assert_eq!(report["volume_file_dims"], serde_json::json!([20000, 3, 3]));
     assert!(report["volume_dims"][0].as_u64().is_some_and(|n| n < 20000), "{}", report["volume_dims"]);
     assert_eq!(report["volume_dims"][1], 3, "the other axes are short enough");
-    // Nobody mistakes it for the whole.
+    // A benchmark of it is refused, because it would not be of the whole volume.
     let bench = "bench --volume long_20000x3x3_uint8.raw --only orbit --frames 1 --size 16x16";
-    let said = folder.fail(bench, 2);
+    let said = folder.run_failing(bench, 2);
     assert!(said.contains("full resolution"), "{said}");
 }
 
 #[test]
 fn the_same_command_gives_the_same_bytes() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     for name in ["a", "b"] {
-        folder.succeed(&format!("render builtin:cloud:24 -o {name}.png --size 64x48"));
-        folder.succeed(&format!("light-volume builtin:cloud:24 -o {name}.nrrd"));
+        folder.run_successfully(&format!("render builtin:cloud:24 -o {name}.png --size 64x48"));
+        folder.run_successfully(&format!("light-volume builtin:cloud:24 -o {name}.nrrd"));
     }
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
     assert_eq!(folder.read("a.nrrd"), folder.read("b.nrrd"));
     // An older result is replaced.
-    folder.succeed("render builtin:cloud:24 -o b.png --size 32x24");
-    folder.succeed("render builtin:cloud:24 -o b.png --size 64x48");
+    folder.run_successfully("render builtin:cloud:24 -o b.png --size 32x24");
+    folder.run_successfully("render builtin:cloud:24 -o b.png --size 64x48");
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
 }
 
 #[test]
 fn a_transparent_picture_has_nothing_in_its_corner() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:sphere:24 -o clear.png --size 64x48 --transparent");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:sphere:24 -o clear.png --size 64x48 --transparent");
     let image = image::open(folder.path("clear.png")).expect("a PNG that can be decoded");
     assert_eq!(image.color(), image::ColorType::Rgba8);
     let (_, _, clear) = pixels(&folder.path("clear.png"));
     assert_eq!(clear[0][3], 0, "the corner");
     assert!(clear.iter().any(|pixel| pixel[3] > 200), "the object");
 
-    folder.succeed("render builtin:sphere:24 -o solid.png --size 64x48");
+    folder.run_successfully("render builtin:sphere:24 -o solid.png --size 64x48");
     let image = image::open(folder.path("solid.png")).expect("a PNG that can be decoded");
     assert_eq!(image.color(), image::ColorType::Rgb8);
 }
 
 #[test]
 fn shadows_change_the_picture() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let render = "render builtin:sphere:24 --size 64x48 -o";
-    folder.succeed(&format!("{render} with.png"));
-    folder.succeed(&format!("{render} off.png --shadows off"));
-    folder.succeed(&format!("{render} none.png --set shadows.algorithm=off"));
-    folder.succeed(&format!("{render} splat.png --shadows splat"));
+    folder.run_successfully(&format!("{render} with.png"));
+    folder.run_successfully(&format!("{render} off.png --shadows off"));
+    folder.run_successfully(&format!("{render} none.png --set shadows.algorithm=off"));
+    folder.run_successfully(&format!("{render} splat.png --shadows splat"));
     assert_ne!(folder.read("with.png"), folder.read("off.png"));
     assert_eq!(folder.read("off.png"), folder.read("none.png"), "two ways to say the same");
     assert_eq!(folder.read("with.png"), folder.read("splat.png"), "splatting is the default");
@@ -142,7 +142,7 @@ fn shadows_change_the_picture() {
 
 #[test]
 fn presets_that_come_with_the_program_are_known_by_name() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let outcome = folder.run("render builtin:chair:24 -o out.png --size 32x32 --preset bench/creature");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
     assert!(!outcome.stderr.contains("warning: preset"), "{outcome:?}");
@@ -150,16 +150,16 @@ fn presets_that_come_with_the_program_are_known_by_name() {
 
 #[test]
 fn presets_of_the_library_can_be_named() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:chair:16 -o own.png --size 40x30");
-    folder.succeed("render builtin:chair:16 -o paper.png --size 40x30 --preset paper/chair");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:chair:16 -o own.png --size 40x30");
+    folder.run_successfully("render builtin:chair:16 -o paper.png --size 40x30 --preset paper/chair");
     assert_shows_something(&folder.path("paper.png"), [40, 30]);
     assert!(folder.read("own.png") != folder.read("paper.png"));
 }
 
 #[test]
 fn unknown_names_in_a_preset_are_warnings() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("typo.json", r#"{"shadows": {"strenght": 0.5}, "_remark": "free"}"#);
     let outcome = folder.run("render builtin:sphere:16 -o out.png --size 16x16 --preset typo.json");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
@@ -169,15 +169,15 @@ fn unknown_names_in_a_preset_are_warnings() {
 
 #[test]
 fn raw_files_say_their_format_in_the_name_or_in_options() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("x_8x8x8_uint8.raw", small_ball());
     folder.write("x.bin", small_ball());
     folder.write("padded.bin", [vec![9; 10], small_ball()].concat());
     folder.write("x_8x8x8_uint8.raw.gz", gzipped(&small_ball()));
     let render = |file: &str, out: &str| {
-        folder.succeed(&format!("render {file} -o {out} --size 32x24"));
+        folder.run_successfully(&format!("render {file} -o {out} --size 32x24"));
         assert_shows_something(&folder.path(out), [32, 24]);
-        // The pixels: beside them, a picture says of which file it is.
+        // Pixels only: the metadata of a picture name its volume file.
         image::open(folder.path(out)).expect("a picture").to_rgba8().into_raw()
     };
     let named = render("x_8x8x8_uint8.raw", "named.png");
@@ -187,7 +187,7 @@ fn raw_files_say_their_format_in_the_name_or_in_options() {
     assert!(named != render("x_8x8x8_uint8.raw --spacing 1x1x3", "stretched.png"), "spacing counts");
 
     let facts = |args: &str| -> Value {
-        serde_json::from_str(&folder.succeed(&format!("info --json {args}"))).expect("valid JSON")
+        serde_json::from_str(&folder.run_successfully(&format!("info --json {args}"))).expect("valid JSON")
     };
     folder.write("wide.bin", [1, 0, 0, 2].repeat(4));
     let little = facts("wide.bin --dims 2x2x2 --type uint16 --endian little");
@@ -198,8 +198,9 @@ fn raw_files_say_their_format_in_the_name_or_in_options() {
 
 #[test]
 fn looks_stand_side_by_side_with_their_distances() {
-    let folder = Folder::new();
-    let text = folder.succeed("compare builtin:sphere:16 -o row.png --size 40x30 --looks splat,splat,off");
+    let folder = ProgramFolder::new();
+    let text =
+        folder.run_successfully("compare builtin:sphere:16 -o row.png --size 40x30 --looks splat,splat,off");
     let row = image::open(folder.path("row.png")).expect("a picture").to_rgba8();
     assert_eq!(row.dimensions(), (3 * 40 + 2 * 4, 30));
     let lines: Vec<&str> = text.lines().collect();
@@ -209,9 +210,9 @@ fn looks_stand_side_by_side_with_their_distances() {
 
 #[test]
 fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let settings = |kind: &str| {
-        folder.succeed(&format!(
+        folder.run_successfully(&format!(
             "render builtin:sphere:24 -o {kind}.png --size 32x24 --report {kind}.json --as {kind}"
         ));
         folder.json(&format!("{kind}.json"))["settings"]["transfer"].clone()
@@ -220,37 +221,39 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
     let (scalar, mask, labels) = (settings("scalar"), settings("mask"), settings("labels"));
     assert!(scalar != mask && mask != labels);
     assert!(points(&labels) > points(&mask), "a colour for every number");
-    folder.succeed("render builtin:sphere:24 -o own.png --size 32x24 --report own.json");
+    folder.run_successfully("render builtin:sphere:24 -o own.png --size 32x24 --report own.json");
     assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "it is one");
-    folder.fail("render builtin:sphere:24 -o no.png --as something", 2);
+    folder.run_failing("render builtin:sphere:24 -o no.png --as something", 2);
 }
 
-/// The sphere alone, which floats above a plate.
+/// The sphere alone, without the plate below it, over which it floats.
 #[test]
 fn the_floor_lies_under_what_is_shown() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let height = |arguments: &str| {
-        folder
-            .succeed(&format!("render builtin:sphere:24 -o p.png --size 32x24 --report r.json {arguments}"));
+        folder.run_successfully(&format!(
+            "render builtin:sphere:24 -o p.png --size 32x24 --report r.json {arguments}"
+        ));
         folder.json("r.json")["settings"]["floor"]["height"].as_f64().expect("a number")
     };
     let points = r#"[{"value": 150, "opacity": 0}, {"value": 190, "opacity": 0.9}]"#;
     folder.write("sphere.json", format!(r#"{{"transfer": {{"points": {points}}}}}"#));
     let [under_plate, under_sphere] = ["", "--preset sphere.json"].map(height);
     assert!(under_plate < -0.6, "{under_plate}");
-    // A third below its middle at a quarter, and the voxels have twelve to a scene unit.
+    // The sphere's lowest point is a third below its centre, at a quarter; there are twelve voxels to a scene unit.
     assert!((under_sphere + 1.0 / 12.0).abs() < 0.1, "{under_sphere}");
     assert_eq!(height("--preset sphere.json --set floor.height=-0.9"), -0.9);
 }
 
-/// The report has the settings: a volume that is stood up is lit and framed as it stands, however that is said.
+/// Setting the up axis turns the object: the report shows that it is lit and framed in that orientation, whichever
+/// option set it.
 #[test]
-fn whoever_names_what_is_up_stands_the_object_up() {
-    let folder = Folder::new();
+fn setting_the_up_axis_turns_the_object() {
+    let folder = ProgramFolder::new();
     let render = "render builtin:chair:24 -o p.png --size 32x24 --report r.json";
-    folder.succeed(render);
+    folder.run_successfully(render);
     let upright = folder.json("r.json")["settings"].clone();
-    folder.succeed(&format!("{render} --set camera.up=minus_z"));
+    folder.run_successfully(&format!("{render} --set camera.up=minus_z"));
     let on_its_head = folder.json("r.json")["settings"].clone();
     let height =
         |settings: &serde_json::Value| settings["lights"][0]["position"][2].as_f64().expect("a number");
@@ -260,24 +263,25 @@ fn whoever_names_what_is_up_stands_the_object_up() {
     // Without a space, which would end the argument.
     let camera = format!("--set camera={}", on_its_head["camera"]);
     for how in ["--preset up.json", "--session up.json", &camera] {
-        folder.succeed(&format!("{render} {how}"));
+        folder.run_successfully(&format!("{render} {how}"));
         assert_eq!(folder.json("r.json")["settings"], on_its_head, "{how}");
     }
-    assert!(folder.fail(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
+    assert!(folder.run_failing(&format!("{render} --set camera.up=sideways"), 2).contains("camera.up"));
 }
 
-/// Whether a picture without its background shows anything, and whether the program says that it does not.
-fn shown_and_warned(folder: &Folder, args: &str) -> (bool, bool) {
+/// Renders a picture without its background; returns whether it shows anything, and whether the program warns that it
+/// does not.
+fn is_visible_and_warned(folder: &ProgramFolder, args: &str) -> (bool, bool) {
     let done = folder.run(&format!("render {args} --set floor.on=false -o out.png --transparent"));
     assert_eq!(done.code, Some(0), "{done:?}");
     let shows = pixels(&folder.path("out.png")).2.iter().any(|pixel| pixel[3] > 4);
     (shows, done.stderr.contains("nothing of the volume is visible"))
 }
 
-/// 20 single voxels of 64³ are smaller than what a first look is made for.
+/// 20 single voxels of 64³ are smaller than a first look is made for.
 #[test]
 fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let specks = |n: usize| {
         let mut voxels = vec![0; n * n * n];
         (0..20).for_each(|speck| voxels[(speck * 7919 + 12_345) * 31 % (n * n * n)] = 1);
@@ -288,13 +292,13 @@ fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
     folder.write("fewer.nrrd", specks(128));
     for size in ["320x240", "64x48"] {
         for file in ["specks.nrrd", "fewer.nrrd"] {
-            let (shows, warned) = shown_and_warned(&folder, &format!("{file} --size {size}"));
+            let (shows, warned) = is_visible_and_warned(&folder, &format!("{file} --size {size}"));
             assert!(shows != warned, "{file} at {size}: shows {shows}, warned {warned}");
         }
     }
-    // Nothing is in the picture that the camera does not look at, and nothing is transparent.
+    // The camera looks past the volume, so the picture is empty; or everything is transparent.
     let away = "builtin:sphere:16 --size 64x48 --set camera.target=[90,0,0]";
-    assert_eq!(shown_and_warned(&folder, away), (false, true));
+    assert_eq!(is_visible_and_warned(&folder, away), (false, true));
     let sphere = "builtin:sphere:16 --size 64x48";
-    assert_eq!(shown_and_warned(&folder, sphere), (true, false));
+    assert_eq!(is_visible_and_warned(&folder, sphere), (true, false));
 }

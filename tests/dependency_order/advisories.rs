@@ -1,8 +1,8 @@
-//! What `deny.toml` says of packages is true of those in `Cargo.lock`.
+//! Check that the ignored advisories in `deny.toml` concern packages that are in `Cargo.lock`.
 
 use std::collections::BTreeSet;
 
-/// Names of the packages that are used.
+/// Names of the packages in the lock file.
 fn packages() -> BTreeSet<&'static str> {
     let lines = include_str!("../../Cargo.lock").lines();
     lines.filter_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"')).collect()
@@ -19,7 +19,7 @@ fn advisories_that_are_passed_over_concern_packages_that_are_used() {
         let package = reason.split_whitespace().next().unwrap_or_default();
         assert!(packages.contains(package), "{package} is not in Cargo.lock: {reason}");
     }
-    // It has no maintainer, so that it needs an entry for as long as it is used.
+    // It is unmaintained, and needs an entry for as long as it is used.
     let has_entry = reasons.iter().any(|reason| reason.starts_with("ttf-parser "));
     assert_eq!(has_entry, packages.contains("ttf-parser"));
 }

@@ -1,20 +1,20 @@
-//! Modules import those below them only, and some crates belong to some modules.
+//! Check of the layering: modules import lower modules only, and some crates are confined to some modules.
 
 use std::collections::BTreeSet;
 
-use crate::paths::{crates, paths};
-use crate::sources::{Source, files};
+use crate::module_paths::{crates, paths};
+use crate::sources::{SourceFile, source_files};
 use crate::tokens::tokens;
 
-/// The modules, lowest first. Each may import those before it.
+/// Modules from the lowest layer up. Each may import those before it.
 const ORDER: [&str; 11] =
     ["fault", "math", "data", "model", "plan", "export", "reference", "gpu", "app", "cli", "main"];
 
-/// Imports that the order allows and the design does not: the renderer owes the reference nothing,
-/// or comparing them would prove nothing.
+/// Imports that the order allows and the design forbids: the renderer must not use the reference, or comparing them
+/// would prove nothing.
 const FORBIDDEN: [(&str, &str); 1] = [("gpu", "reference")];
 
-/// Crates, and the modules that may name them.
+/// Crates that only these modules may name.
 const CONFINED: [(&str, &[&str]); 4] = [
     ("egui", &["app", "main"]),
     ("eframe", &["app", "main"]),
@@ -22,9 +22,9 @@ const CONFINED: [(&str, &[&str]); 4] = [
     ("wgpu", &["gpu", "app"]),
 ];
 
-fn violations(file: &Source) -> Vec<String> {
-    let Source { path, text } = file;
-    let top = file.top();
+fn violations(file: &SourceFile) -> Vec<String> {
+    let SourceFile { path, text } = file;
+    let top = file.top_module();
     let mut found = Vec::new();
     let tokens = tokens(text);
     for (name, allowed) in CONFINED {
@@ -33,7 +33,7 @@ fn violations(file: &Source) -> Vec<String> {
         }
     }
 
-    // The root itself declares all modules, in alphabetical order.
+    // The root declares all modules, in alphabetical order.
     if top == "lib" {
         return found;
     }
@@ -42,7 +42,7 @@ fn violations(file: &Source) -> Vec<String> {
         found.push(format!("{path} is in {top}, which has no place in the order of modules"));
         return found;
     };
-    let module = if top == "main" { Vec::new() } else { file.module() };
+    let module = if top == "main" { Vec::new() } else { file.module_path() };
     let roots: BTreeSet<String> =
         paths(&tokens, &module).into_iter().filter_map(|path| path.into_iter().next()).collect();
     for root in roots {
@@ -63,7 +63,7 @@ fn violations(file: &Source) -> Vec<String> {
 
 #[test]
 fn source_files_keep_the_order_of_modules() {
-    let files = files("src", "rs");
+    let files = source_files("src", "rs");
     assert!(files.len() > 50, "the check must see the sources");
     let found: Vec<_> = files.iter().flat_map(violations).collect();
     assert!(found.is_empty(), "\n{}", found.join("\n"));
@@ -73,7 +73,7 @@ fn source_files_keep_the_order_of_modules() {
 fn the_order_is_that_of_the_documentation() {
     let documented: Vec<_> = include_str!("../../src/lib.rs")
         .lines()
-        // Modules that a feature brings are named without a link.
+        // Modules behind a feature are listed without a link.
         .filter_map(|line| line.strip_prefix("//! | [`").or_else(|| line.strip_prefix("//! | `")))
         .filter_map(|line| line.split('`').next())
         .map(|name| name.trim_start_matches("mod@"))
@@ -82,7 +82,7 @@ fn the_order_is_that_of_the_documentation() {
 }
 
 fn violations_of(path: &str, text: &str) -> Vec<String> {
-    violations(&Source { path: path.to_owned(), text: text.to_owned() })
+    violations(&SourceFile { path: path.to_owned(), text: text.to_owned() })
 }
 
 #[test]

@@ -1,12 +1,14 @@
-//! Modules import downwards only (the table in `src/lib.rs`), and no two of a folder import each other; the window
-//! library stays in the window and the GPU library in the renderer; files say what they are and stay short, and
-//! folders can be taken in at a glance.
+//! Checks of the source tree: modules import downwards only (the table in `src/lib.rs`), without cycles between
+//! siblings; the UI library stays in the window and the GPU library in the renderer; files state their subject and
+//! stay short, and folders have few entries.
 
 mod advisories;
-mod circles;
-mod disk;
-mod form;
+mod disk_writes;
+mod documents;
+mod file_form;
+mod import_cycles;
 mod layers;
-mod paths;
+mod module_paths;
 mod sources;
 mod tokens;
+mod words;

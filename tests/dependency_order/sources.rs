@@ -1,30 +1,30 @@
-//! Files of the project, and the modules that they are.
+//! Source files of the project, and the modules that they define.
 
 use std::fs;
 use std::path::Path;
 
-/// A source file.
-pub(crate) struct Source {
-    /// Below the folder that was asked for, with `/` between folders.
+/// Source file with its path and text.
+pub(crate) struct SourceFile {
+    /// Path below the folder that was searched, with `/` between folders.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-impl Source {
-    /// The module's path below the root: folders and stem, without `mod`.
-    pub(crate) fn module(&self) -> Vec<&str> {
+impl SourceFile {
+    /// Module path below the root: folders and stem, without `mod`.
+    pub(crate) fn module_path(&self) -> Vec<&str> {
         let stem = self.path.strip_suffix(".rs").unwrap_or(&self.path);
         stem.split('/').filter(|part| *part != "mod").collect()
     }
 
-    /// The module at the root that it belongs to.
-    pub(crate) fn top(&self) -> &str {
-        self.module()[0]
+    /// Top-level module that contains the file.
+    pub(crate) fn top_module(&self) -> &str {
+        self.module_path()[0]
     }
 }
 
-/// Paths of all files below a folder of the project, in order.
-pub(crate) fn paths(folder: &str) -> Vec<String> {
+/// Paths of all files below a folder of the project, sorted.
+pub(crate) fn file_paths(folder: &str) -> Vec<String> {
     fn walk(folder: &Path, root: &Path, found: &mut Vec<String>) {
         for entry in fs::read_dir(folder).expect("the folder can be listed") {
             let path = entry.expect("the folder can be listed").path();
@@ -43,13 +43,13 @@ pub(crate) fn paths(folder: &str) -> Vec<String> {
     found
 }
 
-/// All files below a folder of the project with this ending.
-pub(crate) fn files(folder: &str, ending: &str) -> Vec<Source> {
+/// All files below a folder of the project with this extension.
+pub(crate) fn source_files(folder: &str, ending: &str) -> Vec<SourceFile> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let text = |path: &str| fs::read_to_string(root.join(path)).expect("sources are text");
-    paths(folder)
+    file_paths(folder)
         .into_iter()
         .filter(|path| Path::new(path).extension().is_some_and(|found| found == ending))
-        .map(|path| Source { text: text(&path), path })
+        .map(|path| SourceFile { text: text(&path), path })
         .collect()
 }

@@ -1,9 +1,9 @@
-//! Source text as words, and `::` and single characters between them.
+//! Tokeniser of Rust source text: words, `::` and single characters.
 
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// Words, and `::` and single characters between them; no comments, strings or white space.
+/// Splits source text into words, `::` and single characters; without comments, strings and white space.
 pub(crate) fn tokens(source: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = source.chars().peekable();
@@ -37,12 +37,12 @@ pub(crate) fn tokens(source: &str) -> Vec<String> {
     found
 }
 
-/// The rest of a block comment, which may hold others.
+/// Skips the rest of a block comment, which may contain nested ones.
 fn skip_block_comment(rest: &mut Peekable<Chars<'_>>) {
     let (mut depth, mut last) = (0, '/');
     for c in rest.by_ref() {
         let joined = (last, c);
-        // The character is used up, so that `/*/` does not also close what it opens.
+        // The character is consumed, so that `/*/` does not also close what it opens.
         last = if matches!(joined, ('/', '*') | ('*', '/')) { ' ' } else { c };
         match joined {
             ('/', '*') => depth += 1,
@@ -65,7 +65,7 @@ fn skip_string(rest: &mut Peekable<Chars<'_>>) {
     }
 }
 
-/// From the hashes or the quote on; `r#type` is no string, but a name that is of no use here.
+/// Skips a raw string from its hashes or quote on; `r#type` is no string, but an identifier that is not needed here.
 fn skip_raw_string(rest: &mut Peekable<Chars<'_>>) {
     let mut hashes = 0;
     while rest.next_if_eq(&'#').is_some() {
@@ -81,7 +81,7 @@ fn skip_raw_string(rest: &mut Peekable<Chars<'_>>) {
     }
 }
 
-/// A character in quotes, or the quote of a lifetime.
+/// Skips a character literal, or the quote of a lifetime.
 fn skip_character(rest: &mut Peekable<Chars<'_>>) {
     let mut ahead = rest.clone();
     match (ahead.next(), ahead.next()) {

@@ -1,4 +1,4 @@
-//! Volumes that somebody cuts, overwrites, replaces or removes while they are read.
+//! Tests of volumes that another process truncates, overwrites, replaces or removes while they are read.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, SeekFrom, Write as _};
@@ -10,35 +10,36 @@ use chiaroscuro::data::open;
 
 use crate::random::Random;
 
-/// 32 MiB: long enough to be met in the middle.
-const EDGE: usize = 256;
+/// Edge in voxels; 32 MiB, long enough to be changed during the read.
+const EDGE_VOXELS: usize = 256;
 
-/// The data of a volume of one value.
-fn data(value: u8) -> Vec<u8> {
-    vec![value; EDGE * EDGE * EDGE * 2]
+/// Voxel data of a constant volume.
+fn voxel_data(value: u8) -> Vec<u8> {
+    vec![value; EDGE_VOXELS * EDGE_VOXELS * EDGE_VOXELS * 2]
 }
 
-/// What may happen to a file.
+/// Change of a file during the read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Change {
-    Cut,
+enum FileChange {
+    Truncated,
     Overwritten,
     Replaced,
     Removed,
 }
 
-const CHANGES: [Change; 4] = [Change::Cut, Change::Overwritten, Change::Replaced, Change::Removed];
+const CHANGES: [FileChange; 4] =
+    [FileChange::Truncated, FileChange::Overwritten, FileChange::Replaced, FileChange::Removed];
 
-impl Change {
-    fn happen(self, path: &Path, random: &mut Random, other: &[u8]) {
+impl FileChange {
+    fn apply(self, path: &Path, random: &mut Random, other: &[u8]) {
         match self {
-            Self::Cut => {
+            Self::Truncated => {
                 let file = OpenOptions::new().write(true).open(path).expect("it is there");
                 file.set_len(random.below(other.len()) as u64).expect("it can be cut");
             }
             Self::Overwritten => {
                 let mut file = OpenOptions::new().write(true).open(path).expect("it is there");
-                // From the end, so that a reader must meet it.
+                // From the end, so that a reader must encounter it.
                 file.seek(SeekFrom::Start(other.len() as u64 / 2)).expect("it is long");
                 file.write_all(&other[other.len() / 2..]).expect("room");
             }
@@ -52,16 +53,16 @@ impl Change {
     }
 }
 
-/// Changes so many files, each at a time of chance of its reading.
-fn change(count: usize) {
+/// Changes files a number of times, each at a random time of the read.
+fn change_files_while_reading(count: usize) {
     let folder = tempfile::tempdir().expect("a folder");
-    let name = format!("v_{EDGE}x{EDGE}x{EDGE}_uint16");
+    let name = format!("v_{EDGE_VOXELS}x{EDGE_VOXELS}x{EDGE_VOXELS}_uint16");
     let paths = [folder.path().join(format!("{name}.raw")), folder.path().join("apart.nhdr")];
     let header = format!(
-        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: {EDGE} {EDGE} {EDGE}\nencoding: raw\nendian: little\ndata file: {name}.raw\n\n"
+        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: {EDGE_VOXELS} {EDGE_VOXELS} {EDGE_VOXELS}\nencoding: raw\nendian: little\ndata file: {name}.raw\n\n"
     );
     fs::write(&paths[1], header).expect("room");
-    let contents = [data(3), data(200)];
+    let contents = [voxel_data(3), voxel_data(200)];
     let load = |path: &Path| open(path, &LoadOptions::default(), &LoadControl::new());
     fs::write(&paths[0], &contents[0]).expect("room");
     let begin = Instant::now();
@@ -80,14 +81,14 @@ fn change(count: usize) {
         let result = std::thread::scope(|threads| {
             let loader = threads.spawn(|| load(path));
             std::thread::sleep(after);
-            change.happen(&paths[0], &mut random, &contents[1]);
+            change.apply(&paths[0], &mut random, &contents[1]);
             loader.join().expect("no panic")
         });
         match result {
-            // As a whole what was there, or what is there now.
+            // Either all of the old data or all of the new.
             Ok(volume) => {
                 let id = volume.content_id();
-                assert!(id == old || (id == new && change == Change::Replaced), "{change:?} mixes");
+                assert!(id == old || (id == new && change == FileChange::Replaced), "{change:?} mixes");
             }
             Err(err) => {
                 refused += 1;
@@ -102,11 +103,11 @@ fn change(count: usize) {
 
 #[test]
 fn files_that_change_are_refused_or_read_as_they_were() {
-    change(16);
+    change_files_while_reading(16);
 }
 
 #[test]
 #[ignore = "a minute"]
 fn files_that_change_at_any_time_are_refused_or_read_as_they_were() {
-    change(160);
+    change_files_while_reading(160);
 }

@@ -1,15 +1,15 @@
-//! Numbers that look random and are the same for the same seed.
+//! Pseudo-random numbers, reproducible by their seed.
 
-/// Marsaglia's xorshift with 64 bits.
+/// Marsaglia's xorshift generator with 64 bits.
 pub(crate) struct Random(u64);
 
 impl Random {
     pub(crate) fn new(seed: u64) -> Self {
-        // Zero would stay zero.
+        // Zero would remain zero.
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    /// A number below a limit, which is not zero.
+    /// Random number below a limit, which must not be zero.
     pub(crate) fn below(&mut self, limit: usize) -> usize {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -1,10 +1,10 @@
-//! Disks that refuse, in every way that they have: what was there stays as it was, and the program says why.
+//! Tests of disks that refuse writes, in every way: the old file stays unchanged, and the program says why.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// The writers of the command line, with the ending of what they write.
+/// Writers of the command line, with the extensions of their files.
 const WRITERS: [(&str, &str); 6] = [
     ("render builtin:sphere:16 --size 64x48", "png"),
     ("render builtin:sphere:16 --size 64x48", "exr"),
@@ -14,10 +14,10 @@ const WRITERS: [(&str, &str); 6] = [
     ("turntable builtin:sphere:16 --size 64x48 --frames 3", "png"),
 ];
 
-/// What a write that is refused ends with.
+/// Exit code of a refused write.
 const INPUT_OR_OUTPUT: Option<i32> = Some(6);
 
-/// Longest that a command may take, on a busy machine.
+/// Longest run of a command, on a busy machine.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 fn program(folder: &Path, command: &mut Command, args: &str, output: &Path) -> Output {
@@ -42,7 +42,7 @@ fn names(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// It has ended with words about a file, and nothing else.
+/// Fails unless the program has ended with an error message about a file, and without a panic.
 fn assert_refused(ended: &Output, what: &str, file: &Path) {
     let said = String::from_utf8_lossy(&ended.stderr);
     assert_eq!(ended.status.code(), INPUT_OR_OUTPUT, "{what}: {said}");
@@ -51,7 +51,7 @@ fn assert_refused(ended: &Output, what: &str, file: &Path) {
     assert!(!said.contains("panicked"), "{what}: {said}");
 }
 
-/// A limit on the size of files refuses in the middle of what is written, as a disk does that is full or broken.
+/// Refuses writes in the middle by a limit on file sizes, like a full or broken disk.
 #[cfg(target_os = "linux")]
 fn refused_in_the_middle(shares: &[f64]) {
     for (args, ending) in WRITERS {
@@ -85,7 +85,7 @@ fn files_that_cannot_be_finished_leave_what_was_there_wherever_they_end() {
     refused_in_the_middle(&[0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0]);
 }
 
-/// Folders in which nobody may write, not even whoever may do everything.
+/// Folders in which no user may write, not even root.
 #[cfg(target_os = "linux")]
 #[test]
 fn folders_that_refuse_are_named() {
@@ -100,7 +100,7 @@ fn folders_that_refuse_are_named() {
     }
 }
 
-/// A folder that goes while something is written into it.
+/// A folder that is removed while a file is written into it.
 #[cfg(unix)]
 #[test]
 fn folders_that_go_are_said() {

@@ -1,6 +1,7 @@
 """Measures a folder of test data: python measure.py FOLDER, which writes data.tsv beside this file.
 
-Each file below formats/, raw/ and first/ gets a row: what an independent library finds in it, or why it holds no volume.
+Each file below formats/, raw/ and first/ gets a row: what an independent library reads from it, or why it has no
+volume.
 """
 
 import sys
@@ -11,7 +12,7 @@ from table import refusal, row, save
 
 HERE = Path(__file__).parent
 
-# Files that hold several volumes, and which is measured.
+# Files of several volumes, with the choice of the measured one.
 CHOICES = {
     "formats/nifti/example4d.nii.gz": "--frame 1",
     "formats/nifti/example_nifti2.nii.gz": "--frame 1",
@@ -21,14 +22,14 @@ CHOICES = {
     "formats/vtk/uniform.vtk": "--array 1",
 }
 
-# Files that hold no volume of their own, and words of what is said of them.
+# Files without a volume of their own, with words of the error message.
 REFUSED = {
     "formats/dat/bonsai.raw.dat": "there is no such file",
     "formats/dat/fuel.raw.dat": "there is no such file",
     "formats/dat/manix128.dat": "there is no such file",
     "formats/dat/tooth.raw.dat": "there is no such file",
     "formats/nrrd/blaze/credits.txt": "its format is not one that is read",
-    # The voxels of headers beside them.
+    # Voxel data of headers beside them.
     "formats/metaimage/frogtissue.zraw": "its format is not one that is read",
 } | dict.fromkeys(
     (
@@ -45,7 +46,7 @@ REFUSED = {
 
 
 def measure(folder):
-    """A row for each file, and for the folder of a series."""
+    """Returns a row for each file, and for the folder of a series."""
     found = []
     for top in ("formats", "raw", "first"):
         for path in sorted((folder / top).rglob("*")):

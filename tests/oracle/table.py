@@ -1,8 +1,8 @@
-"""The table of what independent libraries find in files, and the few conventions that turn it into voxels.
+"""Table of what independent libraries read from files, and the conventions that turn it into voxels.
 
-A library says which numbers a file holds and where they lie. What follows is what docs/FORMATS.md promises beyond
-that: which type a volume has where it cannot have the file's own, what is shown of vectors and colours, and the world
-in which axes are written down (right-anterior-superior millimetres; voxels where nobody knows how large they are).
+A library returns the numbers of a file and their positions. The rest implements docs/FORMATS.md: the type of a volume
+that cannot have the file's own, the displayed values of vectors and colours, and the world of the affine
+(right-anterior-superior millimetres; voxels if their size is unknown).
 """
 
 import zlib
@@ -12,43 +12,43 @@ import numpy as np
 
 COLUMNS = ["file", "choice", "dims", "type", "space", "affine", "min", "max", "mean", "crc32", "tolerance"]
 
-# The file says which way a body lies; how large voxels are, and no more; or not even that.
+# Space of the affine: anatomical; known voxel size only; or unknown.
 BODY, WORLD, VOXELS = "body", "world", "voxels"
 
 
 @dataclass
 class Reading:
-    """What a library finds: voxels by [z, y, x], and the place of voxel (x, y, z) by three rows of four numbers."""
+    """Result of a library: voxels by [z, y, x], and the affine of voxel (x, y, z) by three rows of four numbers."""
 
     voxels: np.ndarray
     affine: np.ndarray
     space: str
-    # How far voxels may differ that were packed with loss, where decoders may round differently.
+    # Tolerance of voxels after lossy compression, where decoders may round differently.
     tolerance: float = 0.0
 
 
 def spaced(spacing, space=WORLD):
-    """Voxels so far apart, of which no more is known."""
+    """Affine and space of voxels of which only the spacing is known."""
     return np.hstack([np.diag(np.asarray(spacing, dtype=float)), np.zeros((3, 1))]), space
 
 
 def unknown():
-    """Voxels of which nothing is known."""
+    """Affine and space of voxels without metadata."""
     return spaced([1, 1, 1], VOXELS)
 
 
 def from_lps(affine):
-    """Left-posterior-superior to right-anterior-superior."""
+    """Converts an affine from left-posterior-superior to right-anterior-superior."""
     return np.diag([-1.0, -1.0, 1.0]) @ affine
 
 
 def columns(x, y, z, origin):
-    """The affine of three steps and the place of the first voxel."""
+    """Affine of three steps and the position of the first voxel."""
     return np.column_stack([x, y, z, origin]).astype(float)
 
 
 def luminance(colors):
-    """How light colours are (ITU-R BT.709); whole numbers stay whole."""
+    """Luminance of colours (ITU-R BT.709); integers stay integers."""
     light = colors[..., :3].astype(float) @ np.array([0.2126, 0.7152, 0.0722])
     if colors.dtype in (np.uint8, np.uint16):
         return np.floor(light + 0.5).astype(colors.dtype)
@@ -56,12 +56,12 @@ def luminance(colors):
 
 
 def length(vectors):
-    """How long vectors are."""
+    """Length of vectors."""
     return np.sqrt((vectors.astype(float) ** 2).sum(axis=-1)).astype(np.float32)
 
 
 def held(voxels):
-    """Voxels in one of the eight types that volumes have, little-endian."""
+    """Converts voxels to one of the eight types of volumes, little-endian."""
     voxels = np.asarray(voxels)
     kind, size = voxels.dtype.kind, voxels.dtype.itemsize
     if kind == "b":
@@ -80,7 +80,7 @@ def held(voxels):
 
 
 def rescaled(voxels, slope, intercept):
-    """Times a slope, plus an intercept: whole where that is exact, in the smallest type that holds all."""
+    """Applies a slope and an intercept: to integers if exact, in the smallest type that holds all values."""
     voxels = held(voxels)
     if not (np.isfinite(slope) and np.isfinite(intercept)) or slope == 0 or (slope, intercept) == (1, 0):
         return voxels
@@ -95,13 +95,13 @@ def rescaled(voxels, slope, intercept):
 
 
 def number(value):
-    """A number as text that is read back as the same."""
+    """Formats a number as text that is parsed to the same value."""
     value = float(value)
     return str(int(value)) if value.is_integer() and abs(value) < 2**53 else repr(value)
 
 
 def row(name, choice, reading):
-    """The columns of a file."""
+    """Columns of a row for a file."""
     voxels = held(reading.voxels)
     finite = voxels[np.isfinite(voxels)].astype(float)
     bytes_of_voxels = np.ascontiguousarray(voxels).tobytes()
@@ -112,7 +112,7 @@ def row(name, choice, reading):
         "dims": " ".join(str(n) for n in reversed(voxels.shape)),
         "type": voxels.dtype.name,
         "space": reading.space,
-        # Nothing is said by the sign of a zero.
+        # Removes the sign of zeros.
         "affine": " ".join(number(value + 0.0) for value in reading.affine.flat),
         "min": number(finite.min()),
         "max": number(finite.max()),
@@ -123,12 +123,12 @@ def row(name, choice, reading):
 
 
 def refusal(name, words):
-    """The columns of a file that holds no volume: words that the message has."""
+    """Columns of a row for a file without a volume, with words of the error message."""
     return dict.fromkeys(COLUMNS, "-") | {"file": name, "type": "refused", "choice": words}
 
 
 def save(path, rows, comment):
-    """Writes a table."""
+    """Writes a table to a file."""
     lines = ["# " + line for line in comment] + ["\t".join(COLUMNS)]
     lines += ["\t".join(found[column] for column in COLUMNS) for found in rows]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

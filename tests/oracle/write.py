@@ -1,6 +1,6 @@
 """Writes the small files in written/ with other libraries, and written.tsv with what these read back: python write.py
 
-Each file is read by an independent reader (readers.py), which must find the numbers that were written.
+Each file is read by an independent reader (`readers/`), which must find the numbers that were written.
 """
 
 import shutil
@@ -16,12 +16,12 @@ from table import row, save
 HERE = Path(__file__).parent
 WRITTEN = HERE / "written"
 
-# Largest file that is committed.
+# Size in bytes of the largest file that is committed.
 MOST_BYTES = 4096
 
 
 def main():
-    """Writes everything anew."""
+    """Writes all files and tables from scratch."""
     shutil.rmtree(WRITTEN, ignore_errors=True)
     WRITTEN.mkdir()
     cases = [

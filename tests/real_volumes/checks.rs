@@ -1,4 +1,4 @@
-//! What is asked of a volume and of the first look at it.
+//! Checks of a real volume and of its first look.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use chiaroscuro::data::load::{LoadControl, LoadError, LoadOptions, RawFormat, load};
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::data::{Histogram, Samples, ValueRange, Volume};
-use chiaroscuro::model::auto;
+use chiaroscuro::model::first_look;
 
-use crate::manifest::{Facts, manifest};
+use crate::manifest::{ManifestEntry, read_manifest};
 
-/// Files of a folder with one of these endings, in order.
-pub(crate) fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+/// Files of a folder with one of these extensions, sorted.
+pub(crate) fn files_with_extension(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let mut found: Vec<_> = fs::read_dir(folder)
         .unwrap_or_else(|err| panic!("{}: {err}", folder.display()))
         .map(|entry| entry.expect("the folder can be listed").path())
@@ -26,8 +26,8 @@ pub(crate) fn open(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {
     load(path, &LoadOptions { raw, ..LoadOptions::default() }, &LoadControl::new())
 }
 
-/// All that differs between a volume and what is known of its file.
-fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
+/// All differences between a volume and the known facts about its file.
+fn manifest_differences(volume: &Volume, facts: &ManifestEntry) -> Vec<String> {
     let mut found = Vec::new();
     if facts.dims.is_some_and(|dims| dims != volume.dims()) {
         found.push(format!("{:?} voxels, {:?} expected", volume.dims(), facts.dims));
@@ -53,27 +53,27 @@ fn differences(volume: &Volume, facts: &Facts) -> Vec<String> {
     found
 }
 
-/// All that is wrong with the first look at a volume.
+/// All faults of the first look at a volume.
 fn first_look_flaws(volume: &Volume) -> Vec<String> {
-    let settings = auto::first_settings(volume, &Histogram::of(volume));
+    let settings = first_look::first_settings(volume, &Histogram::from_volume(volume));
     let mut found = Vec::new();
     let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
     if !values.windows(2).all(|pair| pair[0] <= pair[1]) {
         found.push(format!("control points do not ascend: {values:?}"));
     }
-    // As pictures show it: what is missing is not there, and values beyond the range are the nearest in it.
-    let shown = volume.showing(settings.shown_range(&volume.ranges()));
+    // As pictures show it: missing voxels are left out, and values beyond the range are clamped to it.
+    let shown = volume.with_density_mapping(settings.shown_range(&volume.ranges()));
     let [nx, ny, nz] = shown.dims();
     let places = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
-    let (mut there, mut visible) = (0usize, 0usize);
+    let (mut present, mut visible) = (0usize, 0usize);
     for density in places.filter_map(|place| shown.density_at(place)) {
-        there += 1;
+        present += 1;
         visible += usize::from(settings.transfer.opacity_at(shown.value_of(density)) > 0.05);
     }
-    let share = visible as f64 / there as f64;
+    let share = visible as f64 / present as f64;
     println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);
-    // Less is a picture of nothing; more than two thirds is a block without a shape. (The
-    // Marschner–Lobb signal fills more of its cube than any scan.)
+    // A smaller share is an empty picture; more than two thirds is a shapeless block. (The Marschner–Lobb signal
+    // fills more of its cube than any scan.)
     if !(0.005..=0.667).contains(&share) {
         found.push(format!("{:.2} % of the voxels are visible, 0.5 % to 67 % expected", share * 100.0));
     }
@@ -83,9 +83,9 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     found
 }
 
-/// Loads files as the manifest describes them; the volumes, or all that is wrong.
+/// Loads files as the manifest describes them; returns the volumes, or fails with all differences.
 pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
-    let facts = manifest(folder);
+    let facts = read_manifest(folder);
     let (mut volumes, mut wrong) = (Vec::new(), Vec::new());
     for path in paths {
         let name = path.strip_prefix(folder).expect("it is below").to_string_lossy().replace('\\', "/");
@@ -93,12 +93,14 @@ pub(crate) fn load_all(folder: &Path, paths: &[PathBuf]) -> Vec<Volume> {
             wrong.push(format!("{name} is not in the manifest"));
             continue;
         };
-        // A RAW file cannot say its spacing.
+        // A RAW file cannot state its spacing.
         let is_raw = path.extension().is_some_and(|ending| ending == "raw");
         let spacing_mm = if is_raw { facts.spacing_mm } else { None };
         match open(path, RawFormat { spacing_mm, ..RawFormat::default() }) {
             Ok(volume) => {
-                wrong.extend(differences(&volume, facts).into_iter().map(|flaw| format!("{name}: {flaw}")));
+                wrong.extend(
+                    manifest_differences(&volume, facts).into_iter().map(|flaw| format!("{name}: {flaw}")),
+                );
                 volumes.push(volume);
             }
             Err(err) => wrong.push(format!("{name}: {err}")),
@@ -121,18 +123,21 @@ pub(crate) fn assert_good_first_looks(volumes: &[Volume]) {
 
 pub(crate) fn wrong_facts_and_looks_are_noticed() {
     let ball = builtin("sphere", Some(16)).expect("it can be made");
-    let right =
-        Facts { dims: Some([16; 3]), voxel_type: Some("uint8".to_owned()), spacing_mm: Some([8.0; 3]) };
-    assert_eq!(differences(&ball, &right), Vec::<String>::new());
-    let wrong = Facts {
+    let right = ManifestEntry {
+        dims: Some([16; 3]),
+        voxel_type: Some("uint8".to_owned()),
+        spacing_mm: Some([8.0; 3]),
+    };
+    assert_eq!(manifest_differences(&ball, &right), Vec::<String>::new());
+    let wrong = ManifestEntry {
         dims: Some([16, 16, 17]),
         voxel_type: Some("int8".to_owned()),
         spacing_mm: Some([8.0, 8.0, 8.1]),
     };
-    assert_eq!(differences(&ball, &wrong).len(), 3);
+    assert_eq!(manifest_differences(&ball, &wrong).len(), 3);
 
     let empty = Volume::with_spacing("empty", [8; 3], glam::DVec3::ONE, Samples::U8(vec![0; 512]))
         .expect("a volume of one value");
     assert!(!first_look_flaws(&empty).is_empty(), "all of it looks the same");
-    assert!(!differences(&empty, &Facts::default()).is_empty(), "only one value");
+    assert!(!manifest_differences(&empty, &ManifestEntry::default()).is_empty(), "only one value");
 }

@@ -1,22 +1,22 @@
-//! A harness that decides when it runs which tests are ignored, and gives the reason in their names. It understands
-//! what `cargo test` and `cargo nextest` ask of one.
+//! Test harness that decides at run time which tests are ignored, and gives the reason in their names. It supports
+//! the options that `cargo test` and `cargo nextest` pass.
 //!
-//! A library for this would turn on features of the command line's library in all tests: they would no longer test
-//! the program as it is built otherwise.
+//! A library for this would enable features of the command-line library in all tests: they would no longer test the
+//! program as it is otherwise built.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-/// A test.
-pub(crate) struct Trial {
-    /// Of what is missing, if anything, and of what is tested.
+/// Named test with its check.
+pub(crate) struct NamedTest {
+    /// Name of the test, with the missing data as a prefix, if any.
     name: String,
     ignored: bool,
     check: Box<dyn Fn()>,
 }
 
-impl Trial {
-    /// A test that is ignored if something is missing. Run all the same, it fails.
+impl NamedTest {
+    /// Creates a test that is ignored if something is missing. If run nevertheless, it fails.
     pub(crate) fn new(name: &str, missing: Option<String>, check: impl Fn() + 'static) -> Self {
         let Some(missing) = missing else {
             return Self { name: name.to_owned(), ignored: false, check: Box::new(check) };
@@ -26,19 +26,19 @@ impl Trial {
     }
 }
 
-/// What is asked for.
+/// Options of the test run.
 #[derive(Debug, Default)]
-struct Asked {
+struct TestOptions {
     list: bool,
     exact: bool,
-    /// Those that are ignored, and no others.
+    /// True to run only ignored tests.
     ignored: bool,
     include_ignored: bool,
     filters: Vec<String>,
     skip: Vec<String>,
 }
 
-impl Asked {
+impl TestOptions {
     fn new(args: impl IntoIterator<Item = String>) -> Self {
         let mut asked = Self::default();
         let mut args = args.into_iter();
@@ -49,7 +49,7 @@ impl Asked {
                 "--ignored" => asked.ignored = true,
                 "--include-ignored" => asked.include_ignored = true,
                 "--skip" => asked.skip.extend(args.next()),
-                // Of all others only these are followed by a word of their own.
+                // Other options that are followed by a value of their own.
                 "--format" | "--color" | "--test-threads" | "--logfile" | "-Z" => drop(args.next()),
                 flag if flag.starts_with('-') => {}
                 _ => asked.filters.push(arg),
@@ -62,22 +62,23 @@ impl Asked {
         if self.exact { name == filter } else { name.contains(filter) }
     }
 
-    fn is_meant(&self, trial: &Trial) -> bool {
+    fn selects(&self, trial: &NamedTest) -> bool {
         let is_chosen = self.filters.is_empty() || self.filters.iter().any(|f| self.matches(&trial.name, f));
         let is_left_out = self.skip.iter().any(|filter| self.matches(&trial.name, filter));
         is_chosen && !is_left_out && (trial.ignored || !self.ignored)
     }
 
-    /// What is missing is so for those who want to run everything, too: only a test's full name runs it.
-    fn runs(&self, trial: &Trial) -> bool {
+    /// Returns true if a test is run. Tests without their data run only under their full names, even if ignored tests
+    /// are included.
+    fn runs(&self, trial: &NamedTest) -> bool {
         !trial.ignored || self.exact && (self.ignored || self.include_ignored)
     }
 }
 
-/// Lists or runs the tests that the arguments ask for; whether none failed.
-pub(crate) fn run(trials: &[Trial]) -> ExitCode {
-    let asked = Asked::new(std::env::args().skip(1));
-    let meant: Vec<_> = trials.iter().filter(|trial| asked.is_meant(trial)).collect();
+/// Lists or runs the tests selected by the arguments; fails if any of them fails.
+pub(crate) fn run(trials: &[NamedTest]) -> ExitCode {
+    let asked = TestOptions::new(std::env::args().skip(1));
+    let meant: Vec<_> = trials.iter().filter(|trial| asked.selects(trial)).collect();
     if asked.list {
         for trial in meant {
             println!("{}: test", trial.name);
@@ -100,15 +101,15 @@ pub(crate) fn run(trials: &[Trial]) -> ExitCode {
     let passed = meant.len() - failed - ignored;
     let outcome = if failed == 0 { "ok" } else { "FAILED" };
     println!("\ntest result: {outcome}. {passed} passed; {failed} failed; {ignored} ignored\n");
-    // As the harness that comes with the compiler.
+    // Exit code of the standard harness.
     if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(101) }
 }
 
-/// The harness itself.
+/// Test of the harness: tests without their data are ignored.
 pub(crate) fn tests_without_their_data_are_ignored() {
-    let asked = |line: &str| Asked::new(line.split_whitespace().map(str::to_owned));
-    let here = Trial::new("here", None, || {});
-    let absent = Trial::new("absent", Some("needs DATA".to_owned()), || {});
+    let asked = |line: &str| TestOptions::new(line.split_whitespace().map(str::to_owned));
+    let here = NamedTest::new("here", None, || {});
+    let absent = NamedTest::new("absent", Some("needs DATA".to_owned()), || {});
     assert_eq!(absent.name, "[needs DATA] absent");
     for (line, meant, run) in [
         ("", [true, true], [true, false]),
@@ -121,7 +122,7 @@ pub(crate) fn tests_without_their_data_are_ignored() {
         ("--exact absent --ignored", [false, false], [true, true]),
     ] {
         let asked = asked(line);
-        assert_eq!([&here, &absent].map(|trial| asked.is_meant(trial)), meant, "{line}");
+        assert_eq!([&here, &absent].map(|trial| asked.selects(trial)), meant, "{line}");
         assert_eq!([&here, &absent].map(|trial| asked.runs(trial)), run, "{line}");
     }
     assert!(catch_unwind(AssertUnwindSafe(|| (here.check)())).is_ok());

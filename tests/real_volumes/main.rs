@@ -1,8 +1,8 @@
-//! Volumes as they come from scanners and other programs, where there are any: they load as they should, and their
-//! first look shows something. The built-in volumes are checked everywhere.
+//! Tests of real volumes from scanners and other programs, if available: they load correctly, and their first look
+//! shows something. The built-in volumes are checked everywhere.
 //!
-//! The files are in the folder that `CHIAROSCURO_TEST_DATA` names, else in `../shared/data`, with `MANIFEST.tsv`
-//! saying what each of them is. Where they are not, their tests are ignored and say why.
+//! The files are in the folder that `CHIAROSCURO_TEST_DATA` names, else in `../shared/data`, described by
+//! `MANIFEST.tsv`. Without them their tests are ignored and say why.
 
 #![expect(clippy::print_stdout, reason = "tests say what they measured, and the harness how they went")]
 
@@ -15,18 +15,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use chiaroscuro::data::load::RawFormat;
-use chiaroscuro::data::synthetic::{NAMES, builtin};
+use chiaroscuro::data::synthetic::{BUILTIN_NAMES, builtin};
 use chiaroscuro::data::{Histogram, KindName, Samples};
 
-use chiaroscuro::model::auto;
+use chiaroscuro::model::first_look;
 
-use checks::{assert_good_first_looks, files, load_all, open};
-use harness::Trial;
+use checks::{assert_good_first_looks, files_with_extension, load_all, open};
+use harness::NamedTest;
 
-/// The variable that names the folder of the data.
+/// Environment variable that names the folder of the data.
 const FOLDER: &str = "CHIAROSCURO_TEST_DATA";
 
-/// Where the data are looked for.
+/// Folder of the test data.
 fn data() -> PathBuf {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data");
     std::env::var_os(FOLDER).map_or_else(|| beside.into(), PathBuf::from)
@@ -37,9 +37,9 @@ fn main() -> ExitCode {
     let missing = (!folder.join("MANIFEST.tsv").is_file()).then(|| format!("needs {FOLDER}"));
     let real = |name, check: fn(&Path)| {
         let folder = folder.clone();
-        Trial::new(name, missing.clone(), move || check(&folder))
+        NamedTest::new(name, missing.clone(), move || check(&folder))
     };
-    let always = |name, check: fn()| Trial::new(name, None, check);
+    let always = |name, check: fn()| NamedTest::new(name, None, check);
     harness::run(&[
         real(
             "raw_volumes_load_as_their_names_and_the_manifest_say",
@@ -66,20 +66,20 @@ fn main() -> ExitCode {
 }
 
 fn raw_volumes_load_as_their_names_and_the_manifest_say(folder: &Path) {
-    let volumes = load_all(folder, &files(&folder.join("raw"), &["raw", "nhdr"]));
+    let volumes = load_all(folder, &files_with_extension(&folder.join("raw"), &["raw", "nhdr"]));
     assert_good_first_looks(&volumes);
 }
 
 fn nrrd_volumes_load_as_the_manifest_says(folder: &Path) {
-    let mut paths = files(&folder.join("formats/nrrd"), &["nrrd", "nhdr"]);
-    paths.extend(files(&folder.join("formats/nrrd/blaze"), &["nhdr"]));
+    let mut paths = files_with_extension(&folder.join("formats/nrrd"), &["nrrd", "nhdr"]);
+    paths.extend(files_with_extension(&folder.join("formats/nrrd/blaze"), &["nhdr"]));
     let volumes = load_all(folder, &paths);
     assert_good_first_looks(&volumes);
 }
 
 fn odd_nrrd_files_load_or_say_why_not(folder: &Path) {
     let odd = folder.join("formats/nrrd/odd");
-    let readable: Vec<_> = files(&odd, &["nrrd", "nhdr"])
+    let readable: Vec<_> = files_with_extension(&odd, &["nrrd", "nhdr"])
         .into_iter()
         .filter(|path| !path.ends_with("test_simple4d_raw.nrrd"))
         .collect();
@@ -112,7 +112,7 @@ fn one_volume_is_the_same_in_every_form(folder: &Path) {
     }
 }
 
-/// Volumes of each kind, by the names of their files; all others are scalar.
+/// Files of each kind of data, by name; all others are scalar.
 const KINDS: [(KindName, &[&str]); 4] = [
     (KindName::LabelMap, &["aal_labels", "ctchest_seg", "platynereis_labels", "torso_labels"]),
     (KindName::Signed, &["cn9_homo", "f_orbital", "narps_zmap", "seismic_ex2", "spmMotor", "spmMotor_nan"]),
@@ -121,8 +121,8 @@ const KINDS: [(KindName, &[&str]); 4] = [
 ];
 
 fn kinds_of_data_are_recognised(folder: &Path) {
-    let mut paths = files(&folder.join("first"), &["nrrd"]);
-    paths.extend(files(&folder.join("raw"), &["raw"]));
+    let mut paths = files_with_extension(&folder.join("first"), &["nrrd"]);
+    paths.extend(files_with_extension(&folder.join("raw"), &["raw"]));
     let mut wrong = Vec::new();
     for path in paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -132,12 +132,12 @@ fn kinds_of_data_are_recognised(folder: &Path) {
             .map_or(KindName::Scalar, |(kind, _)| *kind);
         let volume = open(&path, RawFormat::default()).expect("it loads");
         let found = volume.kind();
-        println!("{name}: {:?}, {}", found.kind, found.why);
+        println!("{name}: {:?}, {}", found.kind, found.reason);
         if found.kind.name() != expected {
-            wrong.push(format!("{name} is {expected:?}, {:?} was found: {}", found.kind, found.why));
+            wrong.push(format!("{name} is {expected:?}, {:?} was found: {}", found.kind, found.reason));
         }
-        let settings = auto::first_settings(&volume, &Histogram::of(&volume));
-        if expected == KindName::LabelMap && auto::labels_lost(&settings, &volume) > 0 {
+        let settings = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
+        if expected == KindName::LabelMap && first_look::count_lost_labels(&settings, &volume) > 0 {
             wrong.push(format!("{name} has labels that are not shown"));
         }
     }
@@ -149,6 +149,7 @@ fn same(a: &Samples, b: &Samples) -> bool {
 }
 
 fn built_in_volumes_have_good_first_looks() {
-    let volumes: Vec<_> = NAMES.iter().map(|name| builtin(name, Some(64)).expect("it can be made")).collect();
+    let volumes: Vec<_> =
+        BUILTIN_NAMES.iter().map(|name| builtin(name, Some(64)).expect("it can be made")).collect();
     assert_good_first_looks(&volumes);
 }

@@ -1,56 +1,57 @@
-//! What independent libraries have found in files, by the tables in `tests/oracle/`, and whether we find the same.
+//! Comparison with independent readers: values that other libraries read from files, in the tables of
+//! `tests/oracle/`.
 
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::data::Volume;
-use chiaroscuro::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, VolumeChoice, load};
 use flate2::Crc;
 use glam::DVec3;
 
-/// How far an affine may be off, as a share of the step that it is: headers of `NIfTI` and MRC have 24 bits.
-const SAME_PLACE: f64 = 1e-6;
+/// Tolerance of an affine, as a share of its largest step: headers of `NIfTI` and MRC have 24 bits.
+const AFFINE_TOLERANCE: f64 = 1e-6;
 
-/// How far a mean may be off, as a share of the largest value: sums of millions in another order.
-const SAME_MEAN: f64 = 1e-9;
+/// Tolerance of a mean, as a share of the largest value: millions are summed in another order.
+const MEAN_TOLERANCE: f64 = 1e-9;
 
-/// The share of voxels that decoders may round differently where values are packed with loss: up to 6 % were found for
-/// JPEG and JPEG 2000.
-const ROUNDED: f64 = 0.1;
+/// Share of voxels that decoders may round differently after lossy compression: up to 6 % were found for JPEG and
+/// JPEG 2000.
+const LOSSY_SHARE: f64 = 0.1;
 
-/// The largest file that is kept here.
-const MOST_BYTES: u64 = 4096;
+/// Size of the largest file in the repository, in bytes.
+const MAX_FILE_BYTES: u64 = 4096;
 
-/// The file holds no volume.
-const REFUSED: &str = "refused";
+/// Voxel type in the table of a file without a volume.
+const REFUSED_TYPE: &str = "refused";
 
-/// A row: what is said of a file, by the columns of its table.
+/// Row of a table: facts about a file, by column.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct OracleRow {
     pub(crate) file: String,
-    /// Which volume is meant, as options of the command line; or why there is none, in words of the message.
+    /// Choice of the volume, as options of the command line; or the reason for a refusal, in words of the message.
     pub(crate) choice: String,
     pub(crate) dims: String,
     pub(crate) voxel_type: String,
-    /// `body`, `world` (a place, but no body's) or `voxels` (nobody knows how large they are).
+    /// Space of the affine: `body`, `world` (millimetres, not anatomical) or `voxels` (unknown size).
     pub(crate) space: String,
     /// Three rows of four numbers: index to right-anterior-superior millimetres.
     pub(crate) affine: Vec<f64>,
     pub(crate) min: f64,
     pub(crate) max: f64,
     pub(crate) mean: f64,
-    /// Of the voxels in their type, little-endian, x fastest.
+    /// Checksum of the voxels in their type, little-endian, x fastest.
     pub(crate) crc32: String,
-    /// How far values may be off that were packed with loss.
+    /// Tolerance of values after lossy compression.
     pub(crate) tolerance: f64,
 }
 
-/// The folder of the tables.
+/// Folder of the tables.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle")
 }
 
-/// The rows of a table.
-pub(crate) fn table(name: &str) -> Vec<Row> {
+/// Reads the rows of a table.
+pub(crate) fn read_table(name: &str) -> Vec<OracleRow> {
     let path = folder().join(name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|err| panic!("{}: {err}", path.display()));
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -60,11 +61,11 @@ pub(crate) fn table(name: &str) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-fn row(line: &str) -> Row {
+fn row(line: &str) -> OracleRow {
     let columns: Vec<&str> = line.split('\t').collect();
     let text = |at: usize| columns[at].to_owned();
     let number = |at: usize| columns[at].parse().unwrap_or(f64::NAN);
-    Row {
+    OracleRow {
         file: text(0),
         choice: text(1),
         dims: text(2),
@@ -79,9 +80,9 @@ fn row(line: &str) -> Row {
     }
 }
 
-/// Which volume is meant.
-fn choice(said: &str) -> Choice {
-    let mut choice = Choice::default();
+/// Parses the choice of a volume.
+fn parse_choice(said: &str) -> VolumeChoice {
+    let mut choice = VolumeChoice::default();
     let words: Vec<&str> = said.split(' ').collect();
     for pair in words.chunks_exact(2) {
         let number = || Some(pair[1].parse().expect("a number"));
@@ -97,14 +98,14 @@ fn choice(said: &str) -> Choice {
     choice
 }
 
-pub(crate) fn open(folder: &Path, row: &Row) -> Result<Volume, LoadError> {
-    let said = if row.voxel_type == REFUSED { "-" } else { &row.choice };
-    let options = LoadOptions { choice: choice(said), ..LoadOptions::default() };
+pub(crate) fn open(folder: &Path, row: &OracleRow) -> Result<Volume, LoadError> {
+    let said = if row.voxel_type == REFUSED_TYPE { "-" } else { &row.choice };
+    let options = LoadOptions { choice: parse_choice(said), ..LoadOptions::default() };
     load(&folder.join(&row.file), &options, &LoadControl::new())
 }
 
-/// The row of a volume, with the file, the choice and the tolerance of another.
-fn row_of(volume: &Volume, said: &Row) -> Row {
+/// Row of a loaded volume, with the file, choice and tolerance of another row.
+fn row_of(volume: &Volume, said: &OracleRow) -> OracleRow {
     let samples = volume.samples();
     let voxel_type = samples.voxel_type();
     let space = match (volume.is_anatomical(), volume.has_unknown_scale()) {
@@ -130,7 +131,7 @@ fn row_of(volume: &Volume, said: &Row) -> Row {
             _ => crc.update(&value.to_le_bytes()),
         }
     }
-    Row {
+    OracleRow {
         dims: volume.dims().map(|n| n.to_string()).join(" "),
         voxel_type: voxel_type.name().to_owned(),
         space: space.to_owned(),
@@ -143,27 +144,28 @@ fn row_of(volume: &Volume, said: &Row) -> Row {
     }
 }
 
-/// Whether two affines are the same but for how their numbers were rounded.
-fn same_place(found: &[f64], said: &[f64]) -> bool {
+/// Returns true if two affines agree up to rounding.
+fn affines_agree(found: &[f64], said: &[f64]) -> bool {
     let column = |of: &[f64], at: usize| DVec3::new(of[at], of[at + 4], of[at + 8]);
     let step = |of: &[f64]| (0..3).map(|at| column(of, at).length()).fold(0.0, f64::max);
     found.len() == 12
         && said.len() == 12
         && (0..4).all(|at| {
-            let (found, said_here) = (column(found, at), column(said, at));
-            let scale = if at < 3 { said_here.length() } else { said_here.length().max(step(said)) };
-            found.distance(said_here) <= SAME_PLACE * scale
+            let (found, expected_column) = (column(found, at), column(said, at));
+            let scale =
+                if at < 3 { expected_column.length() } else { expected_column.length().max(step(said)) };
+            found.distance(expected_column) <= AFFINE_TOLERANCE * scale
         })
 }
 
-/// The columns in which two rows differ, with both.
-fn differing(found: &Row, said: &Row) -> Vec<String> {
+/// Columns in which two rows differ, with both values.
+fn differing_columns(found: &OracleRow, said: &OracleRow) -> Vec<String> {
     let largest = said.min.abs().max(said.max.abs());
     let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by;
     let numbers = [
         ("min", found.min, said.min, said.tolerance),
         ("max", found.max, said.max, said.tolerance),
-        ("mean", found.mean, said.mean, SAME_MEAN * largest + ROUNDED * said.tolerance),
+        ("mean", found.mean, said.mean, MEAN_TOLERANCE * largest + LOSSY_SHARE * said.tolerance),
     ];
     let words = [
         ("dims", &found.dims, &said.dims),
@@ -173,7 +175,7 @@ fn differing(found: &Row, said: &Row) -> Vec<String> {
     ];
     let words = words.into_iter().filter(|(_, found, said)| found != said);
     let numbers = numbers.into_iter().filter(|(_, found, said, by)| !near(*found, *said, *by));
-    let place = (!same_place(&found.affine, &said.affine))
+    let place = (!affines_agree(&found.affine, &said.affine))
         .then(|| format!("affine {:?}, {:?} expected", found.affine, said.affine));
     words
         .map(|(name, found, said)| format!("{name} {found}, {said} expected"))
@@ -182,10 +184,10 @@ fn differing(found: &Row, said: &Row) -> Vec<String> {
         .collect()
 }
 
-/// All that differs between a file and its row.
-pub(crate) fn differences(folder: &Path, row: &Row) -> Vec<String> {
-    let found = match (open(folder, row), row.voxel_type == REFUSED) {
-        (Ok(volume), false) => differing(&row_of(&volume, row), row),
+/// All differences between a file and its row.
+pub(crate) fn differences(folder: &Path, row: &OracleRow) -> Vec<String> {
+    let found = match (open(folder, row), row.voxel_type == REFUSED_TYPE) {
+        (Ok(volume), false) => differing_columns(&row_of(&volume, row), row),
         (Ok(_), true) => vec!["it is opened, and holds no volume".to_owned()],
         (Err(error), false) => vec![error.to_string()],
         (Err(error), true) => {
@@ -197,9 +199,9 @@ pub(crate) fn differences(folder: &Path, row: &Row) -> Vec<String> {
     found.into_iter().map(|difference| format!("{}: {difference}", row.file)).collect()
 }
 
-/// Files that other libraries have written.
+/// Checks the files in the repository, which other libraries have written.
 pub(crate) fn written_files_are_read_as_other_libraries_read_them() {
-    let rows = table("written.tsv");
+    let rows = read_table("written.tsv");
     let wrong: Vec<String> =
         rows.iter().flat_map(|row| differences(&folder().join("written"), row)).collect();
     println!("{} files, {} differences", rows.len(), wrong.len());
@@ -208,17 +210,17 @@ pub(crate) fn written_files_are_read_as_other_libraries_read_them() {
     for entry in std::fs::read_dir(folder().join("written")).expect("it is there") {
         let entry = entry.expect("it can be listed");
         let bytes = entry.metadata().expect("it is there").len();
-        assert!(bytes <= MOST_BYTES, "{} has {bytes} bytes", entry.path().display());
+        assert!(bytes <= MAX_FILE_BYTES, "{} has {bytes} bytes", entry.path().display());
     }
 }
 
-/// The test data.
+/// Checks the test data outside the repository, if available.
 pub(crate) fn test_data_are_read_as_other_libraries_read_them(data: &Path) {
-    let rows = table("data.tsv");
+    let rows = read_table("data.tsv");
     let wrong: Vec<String> = rows.iter().flat_map(|row| differences(data, row)).collect();
     println!("{} files, {} differences", rows.len(), wrong.len());
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
-    // None is forgotten.
+    // Every file has a row.
     let mut folders = ["formats", "raw", "first"].map(|name| data.join(name)).to_vec();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).expect("it is there") {
@@ -233,9 +235,9 @@ pub(crate) fn test_data_are_read_as_other_libraries_read_them(data: &Path) {
     }
 }
 
-/// A change of any column is noticed.
+/// Guards the comparison itself: a change of any column is detected.
 pub(crate) fn a_wrong_row_is_noticed() {
-    let rows = table("written.tsv");
+    let rows = read_table("written.tsv");
     let folder = folder().join("written");
     let row = rows.iter().find(|row| row.space == "body").expect("a file of a body");
     assert_eq!(differences(&folder, row), Vec::<String>::new());
@@ -245,30 +247,30 @@ pub(crate) fn a_wrong_row_is_noticed() {
         affine
     };
     let changes = [
-        ("dims", Row { dims: row.dims.split(' ').rev().collect::<Vec<_>>().join(" "), ..row.clone() }),
-        ("type", Row { voxel_type: "uint64".to_owned(), ..row.clone() }),
-        ("space", Row { space: "world".to_owned(), ..row.clone() }),
-        ("affine", Row { affine: moved(3, 1e-3), ..row.clone() }),
-        ("affine", Row { affine: moved(4, 1e-3), ..row.clone() }),
-        ("affine", Row { affine: Vec::new(), ..row.clone() }),
-        ("min", Row { min: row.min + 1.0, ..row.clone() }),
-        ("max", Row { max: row.max - 1.0, ..row.clone() }),
-        ("mean", Row { mean: row.mean + 1e-3, ..row.clone() }),
-        ("crc32", Row { crc32: "00000000".to_owned(), ..row.clone() }),
+        ("dims", OracleRow { dims: row.dims.split(' ').rev().collect::<Vec<_>>().join(" "), ..row.clone() }),
+        ("type", OracleRow { voxel_type: "uint64".to_owned(), ..row.clone() }),
+        ("space", OracleRow { space: "world".to_owned(), ..row.clone() }),
+        ("affine", OracleRow { affine: moved(3, 1e-3), ..row.clone() }),
+        ("affine", OracleRow { affine: moved(4, 1e-3), ..row.clone() }),
+        ("affine", OracleRow { affine: Vec::new(), ..row.clone() }),
+        ("min", OracleRow { min: row.min + 1.0, ..row.clone() }),
+        ("max", OracleRow { max: row.max - 1.0, ..row.clone() }),
+        ("mean", OracleRow { mean: row.mean + 1e-3, ..row.clone() }),
+        ("crc32", OracleRow { crc32: "00000000".to_owned(), ..row.clone() }),
     ];
     for (column, changed) in changes {
         let found = differences(&folder, &changed);
         assert!(matches!(&found[..], [only] if only.contains(column)), "{column}: {found:?}");
     }
-    let missing = Row { file: "none.nrrd".to_owned(), ..row.clone() };
-    let refused = Row { voxel_type: REFUSED.to_owned(), ..row.clone() };
-    let otherwise = Row { choice: "no such word".to_owned(), ..missing.clone() };
-    for wrong in [missing, refused, Row { voxel_type: REFUSED.to_owned(), ..otherwise }] {
+    let missing = OracleRow { file: "none.nrrd".to_owned(), ..row.clone() };
+    let refused = OracleRow { voxel_type: REFUSED_TYPE.to_owned(), ..row.clone() };
+    let otherwise = OracleRow { choice: "no such word".to_owned(), ..missing.clone() };
+    for wrong in [missing, refused, OracleRow { voxel_type: REFUSED_TYPE.to_owned(), ..otherwise }] {
         assert_eq!(differences(&folder, &wrong).len(), 1, "{wrong:?}");
     }
-    // With loss: what is off by no more than that passes, and no more.
-    let lossy = Row { tolerance: 1.0, ..row.clone() };
-    let off = |by: f64| differing(&Row { min: row.min + by, ..row.clone() }, &lossy).len();
+    // After lossy compression: values within the tolerance pass, and no others.
+    let lossy = OracleRow { tolerance: 1.0, ..row.clone() };
+    let off = |by: f64| differing_columns(&OracleRow { min: row.min + by, ..row.clone() }, &lossy).len();
     assert_eq!([off(1.0), off(1.5)], [0, 1]);
     let pairs = rows.iter().filter(|row| row.choice != "-").count();
     assert!(pairs > 5, "files of several volumes, of which another is chosen");

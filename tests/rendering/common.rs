@@ -1,44 +1,44 @@
-//! What the rendering tests share: a device and ways to render.
+//! Shared helpers of the rendering tests: a device and ways to render.
 
 pub(crate) use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{Context, Picture, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary};
 use chiaroscuro::model::Settings;
 
-/// A device, or a failed test: without one nothing is checked, and that must be seen.
-pub(crate) fn context() -> Context {
-    Context::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
+/// Opens a device, or fails the test: a check that did not run must be seen.
+pub(crate) fn context() -> GpuContext {
+    GpuContext::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
 }
 
-/// A picture with everything as the settings say.
+/// Renders a picture with default options.
 pub(crate) fn render(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
     size: [u32; 2],
-) -> Picture {
+) -> RenderedPicture {
     renderer.render(loaded, settings, size, &RenderOptions::default()).expect("the picture is rendered")
 }
 
-/// A light's attenuation volume, filled everywhere.
-pub(crate) fn attenuation(
+/// Attenuation volume of a light, filled everywhere.
+pub(crate) fn full_attenuation(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
     light: usize,
 ) -> Vec<f32> {
-    let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+    let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
-    let request = chiaroscuro::plan::Request {
+    let request = chiaroscuro::plan::RenderRequest {
         volume: loaded.volume().id(),
         settings: settings.clone(),
         size: [8, 8],
-        coarse: None,
+        preview_resolution: None,
     };
     renderer.attenuation(&request, light).expect("it is read back").expect("the light has a volume").values
 }
 
-/// A renderer whose shaders have something else in place of `from`.
-pub(crate) fn damaged(from: &str, to: &str) -> Renderer {
+/// Creates a renderer whose shaders have `from` replaced by `to`.
+pub(crate) fn damaged_renderer(from: &str, to: &str) -> Renderer {
     let context = context();
     let shaders = ShaderLibrary::with_mutation(&context, from, to);
     Renderer::with_shaders(&context, shaders).expect("a renderer")

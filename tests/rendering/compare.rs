@@ -1,26 +1,31 @@
-//! Comparators. Each has a test below that it can fail.
+//! Comparison of pictures and volumes by their largest error and RMSE. Tests below show that each comparison can
+//! fail.
 
-/// What a comparison allows.
+/// Upper limits for a comparison's errors.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limit {
+pub(crate) struct ErrorLimit {
+    /// Largest absolute difference that is allowed.
     pub(crate) max: f64,
+    /// Largest root mean square of the differences that is allowed.
     pub(crate) rmse: f64,
 }
 
-/// What a comparison found.
+/// Result of a comparison of two lists.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Difference {
+pub(crate) struct ErrorMeasure {
+    /// Largest absolute difference of two values.
     pub(crate) max: f64,
+    /// Index of the largest difference.
     pub(crate) max_at: usize,
+    /// Root mean square of the differences.
     pub(crate) rmse: f64,
 }
 
-/// The difference of two lists of numbers of the same length; what is not a number counts as an
-/// infinite difference.
-pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> Difference {
+/// Difference of two lists of the same length; a value that is NaN counts as an infinite difference.
+pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> ErrorMeasure {
     assert_eq!(actual.len(), expected.len(), "lists of different lengths cannot be compared");
     assert!(!actual.is_empty(), "nothing to compare");
-    let mut found = Difference { max: 0.0, max_at: 0, rmse: 0.0 };
+    let mut found = ErrorMeasure { max: 0.0, max_at: 0, rmse: 0.0 };
     let mut squares = 0.0;
     for (at, (a, b)) in actual.iter().zip(expected).enumerate() {
         let d = (a - b).abs();
@@ -34,13 +39,13 @@ pub(crate) fn difference(actual: &[f64], expected: &[f64]) -> Difference {
     found
 }
 
-/// Compares and says what is wrong.
+/// Compares two lists with a limit; an error says where they differ and by how much.
 pub(crate) fn compare(
     what: &str,
     actual: &[f64],
     expected: &[f64],
-    limit: Limit,
-) -> Result<Difference, String> {
+    limit: ErrorLimit,
+) -> Result<ErrorMeasure, String> {
     let found = difference(actual, expected);
     println!("{what}: max {:.2e} at {}, rmse {:.2e}", found.max, found.max_at, found.rmse);
     if found.max <= limit.max && found.rmse <= limit.rmse {
@@ -53,33 +58,33 @@ pub(crate) fn compare(
     ))
 }
 
-/// Flattens texels.
-pub(crate) fn flat32(texels: &[[f32; 4]]) -> Vec<f64> {
+/// Flattens f32 texels into a list of channels in f64.
+pub(crate) fn channels_f32(texels: &[[f32; 4]]) -> Vec<f64> {
     texels.iter().flatten().map(|&c| f64::from(c)).collect()
 }
 
-/// Flattens texels.
-pub(crate) fn flat64(texels: &[[f64; 4]]) -> Vec<f64> {
+/// Flattens f64 texels into a list of channels.
+pub(crate) fn channels_f64(texels: &[[f64; 4]]) -> Vec<f64> {
     texels.iter().flatten().copied().collect()
 }
 
-/// To f64.
-pub(crate) fn wide(values: &[f32]) -> Vec<f64> {
+/// Converts a list of f32 values to f64.
+pub(crate) fn to_f64(values: &[f32]) -> Vec<f64> {
     values.iter().map(|&v| f64::from(v)).collect()
 }
 
 mod can_fail {
-    use super::{Limit, compare};
+    use super::{ErrorLimit, compare};
     use crate::thresholds::{LITERAL, SAME_WEIGHTS};
 
-    /// A smooth list, and the same with one thing wrong.
+    /// Smooth list, and a copy with some values spoiled.
     fn lists(spoil: impl Fn(usize, f64) -> f64) -> (Vec<f64>, Vec<f64>) {
         let good: Vec<f64> = (0..1000).map(|i| (f64::from(i) / 100.0).sin().abs()).collect();
         let bad = good.iter().enumerate().map(|(i, &v)| spoil(i, v)).collect();
         (good, bad)
     }
 
-    fn fails(limit: Limit, spoil: impl Fn(usize, f64) -> f64) -> bool {
+    fn fails(limit: ErrorLimit, spoil: impl Fn(usize, f64) -> f64) -> bool {
         let (good, bad) = lists(spoil);
         compare("spoiled", &bad, &good, limit).is_err()
     }

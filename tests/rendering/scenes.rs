@@ -2,12 +2,12 @@
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Camera, ControlPoint, Interpolation, Length, Light, LightKind, NearField, Projection, ReverseKernel,
-    Settings, Shadows, Sides, TransferFunction,
+    Camera, ControlPoint, LightGeometry, LightSettings, LitSides, NearFieldRay, OpacityInterpolation,
+    OpacityLength, Projection, ReverseKernel, Settings, ShadowSettings, TransferFunction,
 };
 use glam::DVec3;
 
-/// Something with thin and thick, hard and soft parts, without any symmetry.
+/// Asymmetric volume with thin and thick, hard and soft parts.
 pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
     let half = n as f64 / 2.0;
     let soft = 1.5 / half;
@@ -37,7 +37,7 @@ pub(crate) fn creature(n: usize, spacing_mm: DVec3) -> Volume {
     Volume::with_spacing("creature", [n; 3], spacing_mm, Samples::U8(values)).expect("a valid volume")
 }
 
-/// Opacities from thin haze to nearly solid.
+/// Transfer function with opacities from thin haze to nearly solid.
 pub(crate) fn transfer() -> TransferFunction {
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     TransferFunction {
@@ -48,15 +48,15 @@ pub(crate) fn transfer() -> TransferFunction {
             point(170.0, [0.75, 0.75, 0.7], 0.5),
             point(250.0, [1.0, 0.9, 0.6], 0.8),
         ],
-        interpolation: Interpolation::Opacity,
+        interpolation: OpacityInterpolation::Opacity,
         ..TransferFunction::default()
     }
 }
 
-/// One light and a turned camera. Soft light is as coarse as it is asked for, however small the volume.
+/// Look with one light and a rotated camera. Soft light has the requested resolution, however small the volume.
 pub(crate) fn look() -> Settings {
     Settings {
-        shadows: Shadows { least_blocks: 1, ..Shadows::default() },
+        shadows: ShadowSettings { least_blocks: 1, ..ShadowSettings::default() },
         camera: Camera {
             azimuth_deg: 37.0,
             elevation_deg: 24.0,
@@ -64,26 +64,26 @@ pub(crate) fn look() -> Settings {
             distance: 4.4,
             ..Camera::default()
         },
-        lights: vec![light(LightKind::Parallel, [1.3, -0.8, 1.7])],
+        lights: vec![light(LightGeometry::Parallel, [1.3, -0.8, 1.7])],
         transfer: transfer(),
-        opacity_unit: Length::Voxels(1.0),
+        opacity_unit: OpacityLength::Voxels(1.0),
         ..Settings::default()
     }
 }
 
-/// A white light that casts shadows.
-pub(crate) fn light(kind: LightKind, position: [f64; 3]) -> Light {
-    Light { kind, position, ..Light::default() }
+/// White light that casts shadows.
+pub(crate) fn light(kind: LightGeometry, position: [f64; 3]) -> LightSettings {
+    LightSettings { kind, position, ..LightSettings::default() }
 }
 
-/// A homogeneous block: `inside` gives the voxels that are full.
+/// Homogeneous block: `inside` returns true for the full voxels.
 pub(crate) fn block(n: usize, inside: impl Fn([usize; 3]) -> bool) -> Volume {
     let values =
         (0..n * n * n).map(|at| if inside([at % n, at / n % n, at / n / n]) { 255 } else { 0 }).collect();
     Volume::with_spacing("block", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// A homogeneous ball with a soft edge one voxel wide.
+/// Homogeneous ball with a soft edge one voxel wide.
 pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
     let values = (0..n * n * n)
         .map(|at| {
@@ -94,17 +94,17 @@ pub(crate) fn ball(n: usize, centre: DVec3, radius: f64) -> Volume {
     Volume::with_spacing("ball", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// Extinction proportional to density: `per_voxel` where it is full.
+/// Transfer function with extinction proportional to density: `per_voxel` at full density.
 pub(crate) fn linear_extinction(per_voxel: f64) -> TransferFunction {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
         points: vec![point(0.0, 0.0), point(255.0, 1.0 - (-per_voxel).exp())],
-        interpolation: Interpolation::Extinction,
+        interpolation: OpacityInterpolation::Extinction,
         ..TransferFunction::default()
     }
 }
 
-/// A cloud of blobs of all densities, the same for the same seed.
+/// Cloud of blobs of all densities, reproducible by its seed.
 pub(crate) fn noise(n: usize, seed: u64) -> Volume {
     let wave = |phase: u64, at: usize| (0.9 * at as f64 + (seed * phase) as f64).sin();
     let of = |[x, y, z]: [usize; 3]| wave(3, x) * wave(5, y) + wave(7, z) * wave(11, x + y) + wave(13, y + z);
@@ -114,8 +114,8 @@ pub(crate) fn noise(n: usize, seed: u64) -> Volume {
     Volume::with_spacing("noise", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a valid volume")
 }
 
-/// A camera that looks along an axis of the volume from outside, without perspective.
-pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
+/// Orthographic camera that looks along an axis of the volume from outside.
+pub(crate) fn axis_camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera {
         projection: Projection::Orthographic,
         azimuth_deg,
@@ -125,9 +125,9 @@ pub(crate) fn straight(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     }
 }
 
-/// Puts the eye where every first look of earlier versions had it, and the key light 40° from the line of sight, as much
-/// to the left as up.
-pub(crate) fn seen_as_earlier(settings: &mut Settings) {
+/// Sets the camera of first looks in earlier versions, and the key light 40° from the line of sight, as much to the
+/// left as up.
+pub(crate) fn use_earlier_first_look(settings: &mut Settings) {
     (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (-60.0, 28.0);
     let side = 40f64.to_radians().sin() / std::f64::consts::SQRT_2;
     let place = DVec3::new(-side, side, 40f64.to_radians().cos());
@@ -135,18 +135,18 @@ pub(crate) fn seen_as_earlier(settings: &mut Settings) {
     settings.lights[0].position = (settings.camera.scene_from_view() * place * distance).into();
 }
 
-/// Light as the paper has it: the light volume alone, splatted back with the kernel of the light pass.
-pub(crate) fn paper(settings: &mut Settings) {
-    settings.shading.sides = Sides::Two;
+/// Sets the shadows of the paper: the light volume alone, back-projected with the kernel of the light pass.
+pub(crate) fn use_paper_shadows(settings: &mut Settings) {
+    settings.shading.sides = LitSides::Two;
     settings.shadows.reverse_kernel = ReverseKernel::Forward;
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
 }
 
-/// Material that answers to light evenly from all sides: no normals, no ambient.
-pub(crate) fn isotropic(settings: &mut Settings) {
+/// Sets a material that reflects light equally from all directions: no normals, no ambient light.
+pub(crate) fn make_isotropic(settings: &mut Settings) {
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.specular = 0.0;
-    // Above any gradient that a volume can have.
+    // Above the largest gradient that a volume can have.
     settings.shading.surface_gradient = 10.0;
 }

@@ -1,4 +1,5 @@
-//! What the host binds is what every entry point declares: number, name, kind, format and size, by reflection.
+//! Check of the bind group layouts: number, name, kind, format and size of every binding agree with the shaders, by
+//! reflection.
 
 use chiaroscuro::gpu::{SHADERS, shader_bindings};
 use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
@@ -10,15 +11,15 @@ use wgpu::{
 
 use crate::sources::variants;
 
-/// Formats of single channels, and of light volumes.
+/// Formats of single-channel storage textures, and of light volumes.
 const FORMATS: [(TextureFormat, TextureFormat); 3] = [
     (TextureFormat::R16Float, TextureFormat::R16Float),
     (TextureFormat::R16Float, TextureFormat::R8Unorm),
     (TextureFormat::R32Float, TextureFormat::R32Float),
 ];
 
-/// A shader's source, parsed.
-fn parsed(source: &str) -> (Module, ModuleInfo) {
+/// Parses and validates a shader's source.
+fn parse_shader(source: &str) -> (Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source).expect("a shader");
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
     (module, info.expect("a valid shader"))
@@ -47,8 +48,8 @@ fn format(format: naga::StorageFormat) -> TextureFormat {
     }
 }
 
-/// The binding that a global variable declares.
-fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> BindingType {
+/// Binding type that a global variable declares.
+fn declared_binding(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> BindingType {
     let inner = &module.types[variable.ty].inner;
     let size = || wgpu::BufferSize::new(u64::from(inner.size(module.to_ctx())));
     let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: size() };
@@ -83,12 +84,12 @@ fn declared(module: &Module, variable: &GlobalVariable, is_sampled: bool) -> Bin
     }
 }
 
-/// Group, number, name and kind of a binding.
+/// Group, number, name and type of a binding.
 type Binding = (u32, u32, String, BindingType);
 
-/// The bindings that an entry point uses.
-fn used_by(source: &str) -> Vec<Binding> {
-    let (module, info) = parsed(source);
+/// Bindings that an entry point uses.
+fn used_bindings(source: &str) -> Vec<Binding> {
+    let (module, info) = parse_shader(source);
     assert_eq!(module.entry_points.len(), 1, "a shader has one entry point");
     let entry = info.get_entry_point(0);
     let is_sampled =
@@ -99,19 +100,19 @@ fn used_by(source: &str) -> Vec<Binding> {
             continue;
         };
         let name = variable.name.clone().unwrap_or_default();
-        let kind = declared(&module, variable, is_sampled(handle));
+        let kind = declared_binding(&module, variable, is_sampled(handle));
         used.push((binding.group, binding.binding, name, kind));
     }
     used
 }
 
-/// The bindings that any of the variants of a shader uses: a texture is filtered if any filters it.
-fn used_by_any(sources: &[(String, String)]) -> Vec<Binding> {
+/// Bindings that any variant of a shader uses: a texture is filterable if any variant filters it.
+fn used_bindings_of_variants(sources: &[(String, String)]) -> Vec<Binding> {
     let filtered = TextureSampleType::Float { filterable: true };
     let is_filtered =
         |ty: &BindingType| matches!(ty, BindingType::Texture { sample_type, .. } if *sample_type == filtered);
     let mut all: Vec<Binding> = Vec::new();
-    for used in sources.iter().flat_map(|(_, source)| used_by(source)) {
+    for used in sources.iter().flat_map(|(_, source)| used_bindings(source)) {
         match all.iter_mut().find(|known| known.2 == used.2) {
             Some(known) if is_filtered(&used.3) => *known = used,
             Some(_) => {}
@@ -121,7 +122,7 @@ fn used_by_any(sources: &[(String, String)]) -> Vec<Binding> {
     all
 }
 
-/// Where the host's layout of a shader and what its variants use differ.
+/// Differences between the host's layout of a shader and the bindings of its variants.
 fn differences(groups: &[Vec<(&'static str, BindGroupLayoutEntry)>], used: &[Binding]) -> Vec<String> {
     let mut bound = Vec::new();
     for (group, slots) in (0..).zip(groups) {
@@ -136,7 +137,8 @@ fn differences(groups: &[Vec<(&'static str, BindGroupLayoutEntry)>], used: &[Bin
 fn every_binding_of_every_entry_point_is_bound_as_it_is_declared() {
     for (storage, attenuation) in FORMATS {
         for (shader, groups) in shader_bindings(storage, attenuation) {
-            let found = differences(&groups, &used_by_any(&variants(shader, storage, attenuation)));
+            let found =
+                differences(&groups, &used_bindings_of_variants(&variants(shader, storage, attenuation)));
             assert!(found.is_empty(), "{shader} ({storage:?}, {attenuation:?}):\n{}", found.join("\n"));
         }
     }
@@ -159,9 +161,9 @@ fn wrong_layouts_are_noticed() {
         .into_iter()
         .find(|(shader, _)| *shader == "light/march.wgsl")
         .expect("the march has a layout");
-    let used = used_by_any(&variants(shader, storage, storage));
-    type Damage = fn(&mut Vec<(&'static str, BindGroupLayoutEntry)>);
-    let damages: [(&str, Damage); 5] = [
+    let used = used_bindings_of_variants(&variants(shader, storage, storage));
+    type LayoutDamage = fn(&mut Vec<(&'static str, BindGroupLayoutEntry)>);
+    let damages: [(&str, LayoutDamage); 5] = [
         ("a name", |group| group[1].0 = "tables"),
         ("a number", |group| group[2].1.binding = 9),
         ("a size", |group| {

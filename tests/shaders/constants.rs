@@ -1,20 +1,19 @@
-//! Constants, tables and workgroups have the sizes that Rust counts on.
+//! Check that constants, table sizes and workgroup sizes agree between Rust and the shaders.
 
 use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
 use chiaroscuro::gpu::LISTED_PER_ROW;
-use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS, THIN_SLABS};
+use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS, MAX_SLAB_PARTS};
 use chiaroscuro::plan::{
     END_SLICE_BIT, MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT,
     TILE_ROW_BIT,
 };
 
-use crate::sources::{check, entry_shaders, joined};
+use crate::sources::{entry_shaders, shader_source, validate_shader};
 
-/// The value of a constant in a shader. The compiler drops constants without a type of their own, so
-/// it is asked for one with a type.
+/// Value of a constant in a shader. The compiler drops untyped constants, so a typed one is appended.
 fn constant(source: &str, name: &str) -> Option<f64> {
     let asked = format!("{source}\nconst ASKED_FOR: f32 = f32({name});\n");
-    let module = check(&asked).ok()?;
+    let module = validate_shader(&asked).ok()?;
     let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("ASKED_FOR"))?;
     match module.global_expressions[constant.init] {
         naga::Expression::Literal(naga::Literal::F32(value)) => Some(f64::from(value)),
@@ -27,23 +26,23 @@ fn constants_are_the_same_in_rust_and_in_the_shaders() {
     let expected: [(&str, f64, &[&str]); 6] = [
         ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/gather.wgsl"]),
         ("TABLE_SIZE", LUT_SIZE as f64, &["eye/gather.wgsl", "light/march.wgsl"]),
-        ("THIN_SLABS", f64::from(THIN_SLABS), &["eye/gather.wgsl"]),
+        ("THIN_SLABS", f64::from(MAX_SLAB_PARTS), &["eye/gather.wgsl"]),
         ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light/backproject.wgsl"]),
         ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light/backproject.wgsl"]),
         ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/gather.wgsl", "light/march.wgsl"]),
     ];
     for (name, value, shaders) in expected {
         for shader in shaders {
-            assert_eq!(constant(&joined(shader), name), Some(value), "{name} in {shader}");
+            assert_eq!(constant(&shader_source(shader), name), Some(value), "{name} in {shader}");
         }
     }
-    assert_eq!(constant(&joined("eye/gather.wgsl"), "NOT_THERE"), None);
+    assert_eq!(constant(&shader_source("eye/gather.wgsl"), "NOT_THERE"), None);
 }
 
 #[test]
 fn the_table_has_room_for_all_entries() {
     for shader in ["eye/gather.wgsl", "light/march.wgsl"] {
-        let module = check(&joined(shader)).expect("the shader is valid");
+        let module = validate_shader(&shader_source(shader)).expect("the shader is valid");
         let (_, table) = module
             .global_variables
             .iter()
@@ -62,7 +61,7 @@ fn the_table_has_room_for_all_entries() {
     }
 }
 
-/// What a workgroup fills: half a brick, or a tile. Others have sizes of their own.
+/// Workgroups cover half a brick, or a tile. Other passes have sizes of their own.
 #[test]
 fn workgroups_fill_bricks_and_tiles() {
     let (brick, tile) = (BRICK_EDGE as u32, TILE_EDGE);
@@ -71,13 +70,15 @@ fn workgroups_fill_bricks_and_tiles() {
     let tiles = ["eye/floor", "eye/gather", "light/march"];
     for (names, size) in [(&half_bricks[..], [brick, brick, brick / 2]), (&tiles, [tile, tile, 1])] {
         for name in names {
-            let module = check(&joined(&format!("{name}.wgsl"))).expect("the shader is valid");
+            let module =
+                validate_shader(&shader_source(&format!("{name}.wgsl"))).expect("the shader is valid");
             assert_eq!(module.entry_points[0].workgroup_size, size, "{name}");
         }
     }
 }
 
-/// Sizes in `common/sizes.wgsl`: their values in Rust, others with as many digits, and shaders that count on them.
+/// Constants of `common/sizes.wgsl`: name, value in Rust, another value of the same number of digits, and shaders
+/// that use it.
 const SIZES: [(&str, usize, usize, &[&str]); 9] = [
     ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
@@ -104,18 +105,18 @@ const SIZES: [(&str, usize, usize, &[&str]); 9] = [
 fn sizes_are_the_same_in_rust_and_in_the_shaders() {
     for (name, value, other, shaders) in SIZES {
         for shader in shaders {
-            let source = joined(&format!("{shader}.wgsl"));
+            let source = shader_source(&format!("{shader}.wgsl"));
             assert_eq!(constant(&source, name), Some(value as f64), "{name} in {shader}");
-            // What the shader does follows from it, and from no number that happens to be the same.
+            // The shader depends on the constant, and on no equal literal.
             let changed = source.replace(&format!("{name} = {value};"), &format!("{name} = {other};"));
             assert_ne!(statements(&source), statements(&changed), "{shader} does not use {name}");
         }
     }
 }
 
-/// What a shader does, as far as two shaders of the same length can be compared by it.
+/// Functions of a shader as text, comparable between two shaders of the same length.
 fn statements(source: &str) -> String {
-    let module = check(source).expect("the shader is valid");
+    let module = validate_shader(source).expect("the shader is valid");
     format!("{:?} {:?}", module.functions, module.entry_points)
 }
 
@@ -131,7 +132,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("bounces/sweep.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
         ("eye/gather.wgsl", [8, 8, 1]),
-        // What LANES says, which the parser leaves open.
+        // Size given by LANES, which the parser leaves open.
         ("light/average.wgsl", [8, 8, 4]),
         ("light/backproject.wgsl", [1, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),
@@ -165,10 +166,10 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =
-        entry_shaders().into_iter().filter(|name| joined(name).contains("@compute")).collect();
+        entry_shaders().into_iter().filter(|name| shader_source(name).contains("@compute")).collect();
     assert_eq!(passes, names, "a new pass: say its size here");
     for (name, size) in expected {
-        let module = check(&joined(name)).expect("the shader is valid");
+        let module = validate_shader(&shader_source(name)).expect("the shader is valid");
         let [entry] = &module.entry_points[..] else { panic!("{name} has one entry point") };
         assert_eq!(entry.name, "main", "{name}");
         assert_eq!(entry.stage, naga::ShaderStage::Compute, "{name}");

@@ -1,20 +1,20 @@
-//! What makes Mesa's software driver slow is not in the shaders.
+//! Check that shaders avoid constructs that make Mesa's software driver (llvmpipe) slow.
 
 use std::collections::BTreeSet;
 
 use wgpu::TextureFormat;
 
-use crate::sources::{check, code_of, entry_shaders, joined, variants};
+use crate::sources::{entry_shaders, shader_source, validate_shader, variants, without_comments};
 
-/// Uniforms that are not copied by the first statements of a shader's entry, or read from elsewhere.
+/// Uniforms that are not copied by the first statements of a shader's entry point, or are read elsewhere.
 fn uniforms_read_late(source: &str) -> Vec<String> {
-    let code = code_of(source);
+    let code = without_comments(source);
     let entry = code.split("@compute").nth(1).and_then(|rest| rest.split_once(") {\n"));
     let body = entry.map(|(_, body)| body).unwrap_or_default();
     let copies: BTreeSet<_> =
         body.lines().map(str::trim).take_while(|line| line.contains(" = bound_")).collect();
     let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
-    // Of an array whose index varies there is no copy.
+    // An array with a varying index cannot be copied.
     let reads = |name: &str| {
         let arrays = [".lights[i]", ".rays[i]", ".rays[id.z]"].map(|of| format!("{name}{of}"));
         arrays.iter().fold(code.clone(), |code, of| code.replace(of, "")).matches(name).count()
@@ -26,7 +26,7 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
     declared.filter(is_late).map(str::to_owned).collect()
 }
 
-/// A software driver reads them lane by lane behind a branch (density/volume.wgsl).
+/// Behind a branch, a software driver reads uniforms lane by lane (density/volume.wgsl).
 #[test]
 fn uniforms_are_copied_before_anything_branches() {
     let late: Vec<_> = entry_shaders()
@@ -44,7 +44,7 @@ fn uniforms_are_copied_before_anything_branches() {
 
 #[test]
 fn uniforms_read_late_are_noticed() {
-    let source = joined("eye/gather.wgsl");
+    let source = shader_source("eye/gather.wgsl");
     for (from, to, name) in [
         ("    grid = bound_grid;\n", "", "bound_grid"),
         ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),
@@ -56,26 +56,30 @@ fn uniforms_read_late_are_noticed() {
     }
 }
 
-/// Whether an expression is made of uniforms and constants alone, and of any uniform.
+/// Origin of an expression: constants, uniforms and constants, or others.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Origin {
+enum ExpressionOrigin {
     Constant,
     Uniform,
     Other,
 }
 
-fn origin_of(module: &naga::Module, function: &naga::Function, at: naga::Handle<naga::Expression>) -> Origin {
+fn origin_of(
+    module: &naga::Module,
+    function: &naga::Function,
+    at: naga::Handle<naga::Expression>,
+) -> ExpressionOrigin {
     use naga::Expression as E;
     let of = |at| origin_of(module, function, at);
     let join = |parts: &[naga::Handle<E>]| {
-        parts.iter().map(|&part| of(part)).fold(Origin::Constant, |all, part| match (all, part) {
-            (Origin::Other, _) | (_, Origin::Other) => Origin::Other,
-            (Origin::Uniform, _) | (_, Origin::Uniform) => Origin::Uniform,
-            _ => Origin::Constant,
+        parts.iter().map(|&part| of(part)).fold(ExpressionOrigin::Constant, |all, part| match (all, part) {
+            (ExpressionOrigin::Other, _) | (_, ExpressionOrigin::Other) => ExpressionOrigin::Other,
+            (ExpressionOrigin::Uniform, _) | (_, ExpressionOrigin::Uniform) => ExpressionOrigin::Uniform,
+            _ => ExpressionOrigin::Constant,
         })
     };
     match &function.expressions[at] {
-        E::Literal(_) | E::Constant(_) | E::Override(_) | E::ZeroValue(_) => Origin::Constant,
+        E::Literal(_) | E::Constant(_) | E::Override(_) | E::ZeroValue(_) => ExpressionOrigin::Constant,
         // Private variables are copies of uniforms.
         E::GlobalVariable(global)
             if matches!(
@@ -83,7 +87,7 @@ fn origin_of(module: &naga::Module, function: &naga::Function, at: naga::Handle<
                 naga::AddressSpace::Uniform | naga::AddressSpace::Private
             ) =>
         {
-            Origin::Uniform
+            ExpressionOrigin::Uniform
         }
         E::Load { pointer } => of(*pointer),
         E::AccessIndex { base, .. } => of(*base),
@@ -99,7 +103,7 @@ fn origin_of(module: &naga::Module, function: &naga::Function, at: naga::Handle<
             let all: Vec<_> = [Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten().collect();
             join(&all)
         }
-        _ => Origin::Other,
+        _ => ExpressionOrigin::Other,
     }
 }
 
@@ -110,7 +114,7 @@ fn branches_on_uniforms(module: &naga::Module, function: &naga::Function, block:
         .map(|statement| match statement {
             naga::Statement::Block(block) => inner(block),
             naga::Statement::If { condition, accept, reject } => {
-                let found = origin_of(module, function, *condition) == Origin::Uniform;
+                let found = origin_of(module, function, *condition) == ExpressionOrigin::Uniform;
                 usize::from(found) + inner(accept) + inner(reject)
             }
             naga::Statement::Loop { body, continuing, .. } => inner(body) + inner(continuing),
@@ -126,21 +130,21 @@ fn branches_on_uniforms_in(module: &naga::Module) -> usize {
     functions.chain(entries).map(|function| branches_on_uniforms(module, function, &function.body)).sum()
 }
 
-/// Mesa's software driver writes uniforms that alone decide a branch into the shader: it makes the shader
-/// anew for each dispatch, which takes time, and keeps it, which takes 150 KiB.
+/// Mesa's software driver specialises a shader on uniforms that alone decide a branch: it recompiles the shader for
+/// each dispatch, which takes time, and caches it, which takes 150 KiB.
 #[test]
 fn no_branch_depends_on_uniforms_alone() {
     for name in entry_shaders() {
         for (what, source) in variants(name, TextureFormat::R16Float, TextureFormat::R16Float) {
-            let module = check(&source).expect("the shader is valid");
+            let module = validate_shader(&source).expect("the shader is valid");
             assert_eq!(branches_on_uniforms_in(&module), 0, "{name}, {what}");
         }
     }
-    // And such branches are found.
-    let wrong = joined("output/display.wgsl").replacen(
+    // Guards the check itself: such a branch is detected.
+    let wrong = shader_source("output/display.wgsl").replacen(
         "    if (any(",
         "    if (display.clip + 1u > 1u) {\n        return;\n    }\n    if (any(",
         1,
     );
-    assert_eq!(branches_on_uniforms_in(&check(&wrong).expect("a valid shader")), 1);
+    assert_eq!(branches_on_uniforms_in(&validate_shader(&wrong).expect("a valid shader")), 1);
 }

@@ -1,11 +1,11 @@
-//! Every file is embedded, imported where it is needed, and there once.
+//! Check that every shader file is embedded, imported where needed, and included once.
 
 use std::collections::BTreeSet;
 
 use chiaroscuro::gpu::{SHADERS, ShaderLibrary};
 use wgpu::TextureFormat;
 
-use crate::sources::{entry_shaders, imports_of, joined};
+use crate::sources::{entry_shaders, imports_of, shader_source};
 
 #[test]
 fn every_shader_file_is_embedded_and_used() {
@@ -48,9 +48,9 @@ fn imports_of_missing_files_are_errors() {
 #[test]
 fn every_imported_file_appears_exactly_once() {
     for name in entry_shaders() {
-        let source = joined(name);
+        let source = shader_source(name);
         assert!(!source.contains("#import"), "{name}: an import was not resolved");
-        // What is to be there: the file and what it imports, directly or not.
+        // Expected files: the shader and its direct and indirect imports.
         let mut wanted = BTreeSet::from([name]);
         let mut open = vec![name];
         while let Some(next) = open.pop() {

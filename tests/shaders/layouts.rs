@@ -1,51 +1,51 @@
-//! How Rust lays out the structs that it shares with shaders.
+//! Memory layouts in Rust of the structs that it shares with shaders.
 
 use chiaroscuro::gpu::uniforms;
 
-/// A field: its name, offset and type as WGSL calls it, `[f32; 3]` for a vector.
+/// Field of a struct: its name, offset and type in Rust's terms, `[f32; 3]` for a vector.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Field {
+pub(crate) struct FieldLayout {
     pub(crate) name: String,
     pub(crate) offset: usize,
-    pub(crate) kind: String,
+    pub(crate) type_name: String,
 }
 
-/// A struct as one of the two languages lays it out.
+/// Memory layout of a struct in one of the two languages.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Layout {
+pub(crate) struct StructLayout {
     pub(crate) name: String,
     pub(crate) size: usize,
-    pub(crate) fields: Vec<Field>,
+    pub(crate) fields: Vec<FieldLayout>,
 }
 
-/// The type of a field, without the modules in which structs live.
-pub(crate) fn kind_of<Whole, F>(_field: fn(&Whole) -> &F) -> String {
+/// Type name of a field, without module paths.
+pub(crate) fn type_name_of<Whole, F>(_field: fn(&Whole) -> &F) -> String {
     let full = std::any::type_name::<F>();
     let (bracket, path) = full.split_at(usize::from(full.starts_with('[')));
     format!("{bracket}{}", path.rsplit("::").next().unwrap_or(path))
 }
 
-/// The Rust layout of a struct of `gpu::uniforms`. A field that is left out does not compile.
+/// Rust layout of a struct of `gpu::uniforms`. Omitting a field is a compile error.
 macro_rules! layout {
     ($name:ident { $($field:ident),+ $(,)? }) => {{
         let _all_fields = |whole: uniforms::$name| {
             let uniforms::$name { $($field: _),+ } = whole;
         };
-        Layout {
+        StructLayout {
             name: stringify!($name).to_owned(),
             size: size_of::<uniforms::$name>(),
-            fields: vec![$(Field {
+            fields: vec![$(FieldLayout {
                 name: stringify!($field).to_owned(),
                 offset: std::mem::offset_of!(uniforms::$name, $field),
-                kind: kind_of(|whole: &uniforms::$name| &whole.$field),
+                type_name: type_name_of(|whole: &uniforms::$name| &whole.$field),
             }),+],
         }
     }};
 }
 
-/// Every mirrored struct, with a shader in which it appears.
-pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
-    let frame = layout!(SheetFrame {
+/// All mirrored structs, each with a shader in which it appears.
+pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
+    let frame = layout!(SheetFrameUniform {
         origin,
         first_depth,
         origin_di,
@@ -63,17 +63,18 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         slope_dj,
         size,
     });
-    let grid = layout!(Grid { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cell_scale, pad2 });
-    let light = layout!(Light {
-        place,
+    let grid =
+        layout!(GridUniform { dims, dilation, density_scale, pad0, pyramid_scale, pad1, cell_scale, pad2 });
+    let light = layout!(LightUniform {
+        position_or_direction,
         perspective,
         color,
         extinction_scale,
         lookup,
-        hood_inner,
-        hood_axis,
-        hood_outer,
-        near_ahead,
+        cone_cos_inner,
+        cone_axis,
+        cone_cos_outer,
+        last_step_extension,
         points,
         shape,
         near_steps,
@@ -90,28 +91,28 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light/backproject.wgsl", frame),
         ("eye/gather.wgsl", grid.clone()),
         ("light/march.wgsl", grid),
-        ("eye/gather.wgsl", layout!(Cut { low, pad0, high, pad1, plane })),
+        ("eye/gather.wgsl", layout!(CutUniform { low, pad0, high, pad1, plane })),
         (
             "light/march.wgsl",
-            layout!(March {
+            layout!(MarchUniform {
                 frame,
                 begin,
                 end,
                 layers,
                 tiles,
                 extinction_scale,
-                hood_inner,
-                hood_outer,
+                cone_cos_inner,
+                cone_cos_outer,
                 reach,
-                hood_axis,
-                dark,
+                cone_axis,
+                min_transmittance,
                 shading_cut,
             }),
         ),
-        ("light/average.wgsl", layout!(Average { dims, bricks, share, pad0, pad1, pad2 })),
+        ("light/average.wgsl", layout!(AverageUniform { dims, bricks, share, pad0, pad1, pad2 })),
         (
             "light/floor_shadow.wgsl",
-            layout!(FloorShadow {
+            layout!(FloorShadowUniform {
                 origin,
                 size,
                 along_x,
@@ -131,7 +132,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         (
             "light/backproject.wgsl",
-            layout!(Backprojection {
+            layout!(BackprojectionUniform {
                 frame,
                 light_from_index_x,
                 light_from_index_y,
@@ -153,12 +154,22 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ("light/raycast.wgsl", light.clone()),
         (
             "light/raycast.wgsl",
-            layout!(Raycast { light, space, dims, bricks, voxel_step, ray_step, dark, pad0, shading_cut }),
+            layout!(RaycastUniform {
+                light,
+                space,
+                dims,
+                bricks,
+                voxel_step,
+                ray_step,
+                max_optical_depth,
+                pad0,
+                shading_cut
+            }),
         ),
         ("eye/gather.wgsl", light),
         (
             "eye/gather.wgsl",
-            layout!(Space {
+            layout!(SpaceUniform {
                 scene_from_index_x,
                 scene_from_index_y,
                 scene_from_index_z,
@@ -169,7 +180,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         (
             "eye/gather.wgsl",
-            layout!(Shading {
+            layout!(ShadingUniform {
                 emission,
                 ambient,
                 diffuse,
@@ -181,7 +192,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 gain,
                 bias,
                 ray_step,
-                dark_depth,
+                max_optical_depth,
                 anisotropy,
                 pad0,
                 pad1,
@@ -190,7 +201,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         (
             "eye/gather.wgsl",
-            layout!(Eye {
+            layout!(EyeUniform {
                 frame,
                 shading,
                 space,
@@ -198,29 +209,29 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 first_row,
                 end_row,
                 dilation,
-                dark,
+                min_transmittance,
                 gradient_pixels,
                 gradient_slabs,
                 runs,
-                near_edge,
+                voxel_edge,
                 combined_lookup,
                 pad0,
-                seen,
-                faces,
+                visible_cut,
+                face_cut,
                 shading_cut,
                 sky,
-                bounces,
+                scattered_light,
                 lights
             }),
         ),
         (
             "scatter/splat.wgsl",
-            layout!(Scatter {
+            layout!(ScatterSlabUniform {
                 frame,
                 sheets_from_index_x,
                 sheets_from_index_y,
                 sheets_from_index_z,
-                half,
+                half_extents,
                 stretch,
                 dims,
                 k,
@@ -243,12 +254,18 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 pad2,
             }),
         ),
-        ("scatter/footprints.wgsl", layout!(Phase { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 })),
-        ("eye/gather.wgsl", layout!(Bounces { lookup, ahead, share, pad0, pad1, pad2 })),
-        ("bounces/gather.wgsl", layout!(Bounce { dims, share, color, least })),
+        (
+            "scatter/footprints.wgsl",
+            layout!(FootprintPhaseUniform { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 }),
+        ),
+        (
+            "eye/gather.wgsl",
+            layout!(ScatteredLightUniform { lookup, lookup_distance, share, pad0, pad1, pad2 }),
+        ),
+        ("bounces/gather.wgsl", layout!(BounceUniform { dims, share, color, min_extinction })),
         (
             "bounces/first.wgsl",
-            layout!(First {
+            layout!(SingleScatteringUniform {
                 space,
                 block_scale,
                 voxel_step,
@@ -263,20 +280,26 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 lights
             }),
         ),
-        ("eye/gather.wgsl", layout!(Sky { red, green, blue, lookup, ahead })),
-        ("sky/blocks.wgsl", layout!(Blocks { dims, voxel_step, level, offset, edge, albedo, shading_cut })),
-        ("sky/floor_map.wgsl", layout!(FloorMap { origin, share, along_x, size, along_y, pad0, plane })),
+        ("eye/gather.wgsl", layout!(SkyUniform { red, green, blue, lookup, lookup_distance })),
+        (
+            "sky/blocks.wgsl",
+            layout!(BlocksUniform { dims, voxel_step, level, offset, edge, albedo, shading_cut }),
+        ),
+        (
+            "sky/floor_map.wgsl",
+            layout!(FloorSkyMapUniform { origin, share, along_x, size, along_y, pad0, plane }),
+        ),
         (
             "sky/sweep.wgsl",
-            layout!(SkyRays {
-                towards,
+            layout!(SweepRaysUniform {
+                direction_to_light,
                 step,
                 drift,
                 first,
                 size,
                 axis,
-                rises,
-                arriving,
+                is_ascending,
+                incoming_radiance,
                 layer,
                 weight,
                 first_tile,
@@ -284,11 +307,14 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 pad1
             }),
         ),
-        ("sky/sweep.wgsl", layout!(Sweep { dims, share, block_scale, has_sums, sheet_scale, pad0, rays })),
-        ("light/combine.wgsl", layout!(Combine { dims, bricks, voxel_step, pad0, pad1, pad2 })),
+        (
+            "sky/sweep.wgsl",
+            layout!(SweepUniform { dims, share, block_scale, has_sums, sheet_scale, pad0, rays }),
+        ),
+        ("light/combine.wgsl", layout!(CombineUniform { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
             "eye/floor.wgsl",
-            layout!(Floor {
+            layout!(FloorUniform {
                 frame,
                 space,
                 shading,
@@ -299,8 +325,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 color,
                 opacity,
                 radius,
-                fade,
-                light_share,
+                fade_width,
+                inverse_balance,
                 shadow_only,
                 first_row,
                 end_row,
@@ -314,7 +340,7 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
         ),
         (
             "output/display.wgsl",
-            layout!(Display {
+            layout!(DisplayUniform {
                 top,
                 bottom,
                 transparent,
@@ -327,8 +353,8 @@ pub(crate) fn mirrored() -> Vec<(&'static str, Layout)> {
                 floor_exposure
             }),
         ),
-        ("volume/prefilter.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
-        ("volume/downsample.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
-        ("volume/gradients.wgsl", layout!(Resample { bricks, spacing, pad0, pad1 })),
+        ("volume/prefilter.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
+        ("volume/downsample.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
+        ("volume/gradients.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
     ]
 }

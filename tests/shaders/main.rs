@@ -1,5 +1,5 @@
-//! Every shader is valid, and agrees with the Rust code about structs, constants and sizes. Needs no
-//! GPU: shaders are parsed and looked into.
+//! Tests of the shaders without a GPU: every shader is valid, and agrees with the Rust code about structs, constants
+//! and sizes.
 
 mod bindings;
 mod constants;

@@ -1,12 +1,12 @@
-//! Structs that Rust and shaders share have the same fields in the same places.
+//! Check that structs shared by Rust and shaders have the same fields at the same offsets.
 
 use std::collections::BTreeSet;
 
-use crate::layouts::{Field, Layout, mirrored};
-use crate::sources::{check, entry_shaders, joined};
+use crate::layouts::{FieldLayout, StructLayout, mirrored_structs};
+use crate::sources::{entry_shaders, shader_source, validate_shader};
 
-/// What Rust would call a WGSL type.
-fn kind_in(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
+/// Rust's name of a WGSL type.
+fn rust_type_name(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
     let scalar = |scalar: naga::Scalar| {
         let letter = match scalar.kind {
             naga::ScalarKind::Float => 'f',
@@ -21,32 +21,32 @@ fn kind_in(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
         naga::TypeInner::Scalar(kind) => scalar(*kind),
         naga::TypeInner::Vector { size, scalar: kind } => format!("[{}; {}]", scalar(*kind), *size as u32),
         naga::TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
-            format!("[{}; {count}]", kind_in(module, *base))
+            format!("[{}; {count}]", rust_type_name(module, *base))
         }
         naga::TypeInner::Struct { .. } => ty.name.clone().expect("structs have names"),
         other => format!("{other:?}"),
     }
 }
 
-/// The WGSL layout of a struct.
-fn layout_in(module: &naga::Module, name: &str) -> Option<Layout> {
+/// Layout of a struct in WGSL.
+fn wgsl_layout(module: &naga::Module, name: &str) -> Option<StructLayout> {
     let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
     let naga::TypeInner::Struct { members, span } = &ty.inner else { return None };
     let fields = members
         .iter()
-        .map(|member| Field {
+        .map(|member| FieldLayout {
             name: member.name.clone().unwrap_or_default(),
             offset: member.offset as usize,
-            kind: kind_in(module, member.ty),
+            type_name: rust_type_name(module, member.ty),
         })
         .collect();
-    Some(Layout { name: name.to_owned(), size: *span as usize, fields })
+    Some(StructLayout { name: name.to_owned(), size: *span as usize, fields })
 }
 
-/// All that differs between both layouts of a struct, one line each.
-fn differences(rust: &Layout, module: &naga::Module) -> Vec<String> {
+/// All differences between both layouts of a struct, one line each.
+fn differences(rust: &StructLayout, module: &naga::Module) -> Vec<String> {
     let name = &rust.name;
-    let Some(wgsl) = layout_in(module, name) else { return vec![format!("{name} is not in the shader")] };
+    let Some(wgsl) = wgsl_layout(module, name) else { return vec![format!("{name} is not in the shader")] };
     let mut found = Vec::new();
     if rust.size != wgsl.size {
         found.push(format!("{name}: {} bytes in Rust, {} in WGSL", rust.size, wgsl.size));
@@ -63,8 +63,8 @@ fn differences(rust: &Layout, module: &naga::Module) -> Vec<String> {
 #[test]
 fn shared_structs_have_the_same_fields_in_the_same_places() {
     let mut found = Vec::new();
-    for (shader, layout) in mirrored() {
-        let module = check(&joined(shader)).expect("the shader is valid");
+    for (shader, layout) in mirrored_structs() {
+        let module = validate_shader(&shader_source(shader)).expect("the shader is valid");
         found
             .extend(differences(&layout, &module).iter().map(|difference| format!("{shader}: {difference}")));
     }
@@ -85,15 +85,15 @@ fn every_shared_struct_is_compared() {
         .filter_map(|line| line.strip_prefix("pub struct "))
         .map(|rest| rest.trim_end_matches(" {").to_owned())
         .collect();
-    let compared: BTreeSet<_> = mirrored().into_iter().map(|(_, layout)| layout.name).collect();
+    let compared: BTreeSet<_> = mirrored_structs().into_iter().map(|(_, layout)| layout.name).collect();
     assert_eq!(declared, compared);
 
-    // And every buffer that a shader reads as a struct is one of them.
+    // Every buffer that a shader reads as a struct is compared as well.
     for name in entry_shaders() {
-        let module = check(&joined(name)).expect("the shader is valid");
+        let module = validate_shader(&shader_source(name)).expect("the shader is valid");
         for (_, global) in module.global_variables.iter() {
             if global.space == naga::AddressSpace::Uniform {
-                let kind = kind_in(&module, global.ty);
+                let kind = rust_type_name(&module, global.ty);
                 assert!(compared.contains(&kind), "{name}: uniform {kind} is not compared");
             }
         }
@@ -102,17 +102,17 @@ fn every_shared_struct_is_compared() {
 
 #[test]
 fn differing_structs_are_reported() {
-    let source = joined("light/march.wgsl");
+    let source = shader_source("light/march.wgsl");
     let layout_of = |name: &str| {
-        let found = mirrored()
+        let found = mirrored_structs()
             .into_iter()
             .find(|(shader, layout)| *shader == "light/march.wgsl" && layout.name == name);
         found.expect("it is compared").1
     };
-    let (march, grid) = (layout_of("March"), layout_of("Grid"));
-    let wrong = |layout: &Layout, from: &str, to: &str| {
+    let (march, grid) = (layout_of("MarchUniform"), layout_of("GridUniform"));
+    let wrong = |layout: &StructLayout, from: &str, to: &str| {
         assert!(source.contains(from), "{from}");
-        let module = check(&source.replacen(from, to, 1)).expect("a valid shader all the same");
+        let module = validate_shader(&source.replacen(from, to, 1)).expect("a valid shader all the same");
         differences(layout, &module)
     };
     assert_eq!(wrong(&march, "struct March", "struct March"), Vec::<String>::new());
@@ -122,7 +122,7 @@ fn differing_structs_are_reported() {
     assert_eq!(retyped.len(), 1, "{retyped:?}");
     let longer = wrong(&grid, "pad2: f32,\n}", "pad2: f32,\n    more: vec4f,\n}");
     assert_eq!(longer.len(), 2, "the size and the field: {longer:?}");
-    let absent = Layout { name: "Marsch".to_owned(), ..march.clone() };
-    let module = check(&source).expect("the shader is valid");
+    let absent = StructLayout { name: "Marsch".to_owned(), ..march.clone() };
+    let module = validate_shader(&source).expect("the shader is valid");
     assert_eq!(differences(&absent, &module), ["Marsch is not in the shader"]);
 }

@@ -1,11 +1,11 @@
-//! Every shader is valid for every storage format, and needs nothing that an adapter might lack.
+//! Check that every shader is valid for every storage format, and needs no optional capability.
 
 use std::fmt::Write as _;
 
 use chiaroscuro::gpu::ShaderLibrary;
 use wgpu::TextureFormat;
 
-use crate::sources::{FORMATS, check, entry_shaders, joined, variants};
+use crate::sources::{FORMATS, entry_shaders, shader_source, validate_shader, variants};
 
 #[test]
 fn every_shader_is_valid_for_both_storage_formats() {
@@ -13,7 +13,7 @@ fn every_shader_is_valid_for_both_storage_formats() {
     for name in entry_shaders() {
         for format in FORMATS {
             for (what, source) in variants(name, format, format) {
-                if let Err(err) = check(&source) {
+                if let Err(err) = validate_shader(&source) {
                     let line = writeln!(failures, "{name} with {format:?}, {what}:\n{err}");
                     line.expect("strings can be written to");
                 }
@@ -36,8 +36,8 @@ fn storage_formats_reach_the_shader() {
 
 #[test]
 fn broken_shaders_are_reported() {
-    let source = joined("output/display.wgsl");
-    assert!(check(&source).is_ok());
+    let source = shader_source("output/display.wgsl");
+    assert!(validate_shader(&source).is_ok());
     for (from, to, what) in [
         ("let w = 1.0 - SHOULDER;", "let w = 1.0 - SHOULDERS;", "an unknown name"),
         ("let w = 1.0 - SHOULDER;", "let w = 1.0 - SHOULDER", "a missing semicolon"),
@@ -45,6 +45,6 @@ fn broken_shaders_are_reported() {
         ("@group(0) @binding(1)", "@group(0) @binding(0)", "two things in one binding"),
     ] {
         assert!(source.contains(from), "{from}");
-        assert!(check(&source.replace(from, to)).is_err(), "{what} must be noticed");
+        assert!(validate_shader(&source.replace(from, to)).is_err(), "{what} must be noticed");
     }
 }

@@ -1,4 +1,4 @@
-//! Tools: windows over the picture, or docked beside it, where nothing hides anything.
+//! Tool windows: floating over the picture, or docked beside it without hiding anything.
 
 use std::collections::BTreeSet;
 
@@ -7,58 +7,58 @@ use eframe::egui::{
     vec2,
 };
 
-use super::frame;
+use super::overlay_windows;
 use super::theme;
 use crate::app::text;
 
-/// Width of the dock in points, before somebody drags its border.
+/// Default width of the dock, in points, until the user drags its border.
 const WIDTH: f32 = 470.0;
-/// The narrowest dock, in which the narrowest tool is not cut.
-const NARROWEST: f32 = 240.0;
-/// What the dock leaves of the picture.
-const PICTURE: f32 = 240.0;
-/// Least width of the picture beside the narrowest dock: where less is left, tools float over the picture.
-const LEAST_PICTURE: f32 = 160.0;
-/// Points of a docked tool's header.
+/// Minimum width of the dock, in points, at which the narrowest tool is not cut.
+const MIN_WIDTH: f32 = 240.0;
+/// Width of the picture beside the widest dock, in points.
+const MIN_PICTURE_BESIDE_WIDEST: f32 = 240.0;
+/// Minimum width of the picture beside the narrowest dock, in points; below it, tools float over the picture.
+const MIN_PICTURE: f32 = 160.0;
+/// Height of a docked tool's header, in points.
 const HEADER: f32 = 26.0;
-/// Points of the title bar of a window, from its right border, where the toolkit has its own button.
-const CLOSE: f32 = 30.0;
+/// Width of the toolkit's close button at the right end of a title bar, in points.
+const CLOSE_BUTTON_WIDTH: f32 = 30.0;
 
-/// Which tools are docked, and where they lie.
+/// State of the dock: the titles of the docked tools, and their layout.
 #[derive(Debug, Clone, Default)]
-struct Dock {
+struct DockState {
     docked: BTreeSet<String>,
-    /// Docked tools that were shown in the frame before, in this order from the top.
+    /// Docked tools shown in the previous frame, in order from the top.
     before: Vec<&'static str>,
-    /// Those of this frame.
+    /// Docked tools shown so far in this frame, in order from the top.
     now: Vec<&'static str>,
     area: Option<Rect>,
-    /// There is nothing but the picture.
+    /// True while only the picture is shown.
     is_hidden: bool,
-    /// The window is too narrow for tools beside the picture: they float over it.
+    /// True if the window is too narrow for a dock: tools float over the picture.
     is_too_narrow: bool,
-    /// Points of width that the dock may have.
+    /// Maximum width of the dock, in points.
     room: f32,
 }
 
-fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut Dock) -> R) -> R {
+fn change<R>(ctx: &egui::Context, change: impl FnOnce(&mut DockState) -> R) -> R {
     ctx.data_mut(|data| change(data.get_temp_mut_or_default(Id::unique("dock"))))
 }
 
-/// Which tools are docked, by their titles.
-pub(in crate::app) fn docked(ctx: &egui::Context) -> BTreeSet<String> {
+/// Returns the titles of the docked tools.
+pub(crate) fn docked_titles(ctx: &egui::Context) -> BTreeSet<String> {
     change(ctx, |dock| dock.docked.clone())
 }
 
-/// Docks tools, as they were left.
-pub(in crate::app) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
+/// Docks the tools that were docked in an earlier run.
+pub(crate) fn set_docked(ctx: &egui::Context, titles: &BTreeSet<String>) {
     change(ctx, |dock| dock.docked.clone_from(titles));
 }
 
-/// Keeps room beside the picture, if a docked tool is open.
-pub(in crate::app) fn reserve(ui: &mut Ui) {
-    let room = ui.available_width() - PICTURE;
-    let is_too_narrow = ui.available_width() < NARROWEST + LEAST_PICTURE;
+/// Reserves space beside the picture, if a docked tool is open.
+pub(crate) fn reserve_space(ui: &mut Ui) {
+    let room = ui.available_width() - MIN_PICTURE_BESIDE_WIDEST;
+    let is_too_narrow = ui.available_width() < MIN_WIDTH + MIN_PICTURE;
     let is_needed = change(ui.ctx(), |dock| {
         dock.before = std::mem::take(&mut dock.now);
         if is_too_narrow {
@@ -70,40 +70,40 @@ pub(in crate::app) fn reserve(ui: &mut Ui) {
     if !is_needed {
         return;
     }
-    let most = room.max(NARROWEST);
+    let most = room.max(MIN_WIDTH);
     let panel = Panel::left("dock").resizable(true).default_size(WIDTH.min(most));
-    let panel = panel.size_range(NARROWEST..=most).frame(theme::panel(ui));
+    let panel = panel.size_range(MIN_WIDTH..=most).frame(theme::panel(ui));
     let area = panel.show(ui, |ui| ui.allocate_rect(ui.available_rect_before_wrap(), Sense::hover()).rect);
     change(ui.ctx(), |dock| dock.area = Some(area.inner));
 }
 
-/// Hides the dock with all that is in it: there is nothing but the picture.
-pub(in crate::app) fn hide(ctx: &egui::Context) {
+/// Hides the dock with its tools, while only the picture is shown.
+pub(crate) fn hide(ctx: &egui::Context) {
     change(ctx, |dock| {
         dock.now.clear();
         (dock.area, dock.is_hidden) = (None, true);
     });
 }
 
-/// A tool.
+/// Tool window, identified by its title.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::app) struct Tool {
-    /// What it is called, and known by.
+pub(crate) struct ToolWindow {
+    /// Title of the tool, which also identifies it.
     pub title: &'static str,
-    /// Where its window is at first.
+    /// Initial position of the floating window, in points.
     pub default_pos: [f32; 2],
-    /// How wide its contents are at first.
+    /// Initial width of the floating window's contents, in points.
     pub default_width: f32,
 }
 
-impl Tool {
+impl ToolWindow {
     /// Shows the tool while it is open.
-    pub(in crate::app) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    pub(crate) fn show(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
         self.show_as(ctx, open, false, add);
     }
 
-    /// Shows a tool that asks something, while it is open: Escape closes it wherever the pointer is.
-    pub(in crate::app) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
+    /// Shows a dialog while it is open: Escape closes it wherever the pointer is.
+    pub(crate) fn show_dialog(self, ctx: &egui::Context, open: &mut bool, add: impl FnOnce(&mut Ui)) {
         self.show_as(ctx, open, true, add);
     }
 
@@ -114,39 +114,44 @@ impl Tool {
         if self.is_docked(ctx, is_dialog) {
             self.show_docked(ctx, open, is_dialog, add);
         } else {
-            self.show_floating(ctx, open, self.has_room(ctx, is_dialog), add);
+            self.show_floating(ctx, open, self.can_dock(ctx, is_dialog), add);
         }
     }
 
-    /// Whether a tool that asks something floats over the picture, be it for want of room.
-    pub(in crate::app) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
+    /// Returns true if a dialog floats over the picture, by choice or for lack of space.
+    pub(crate) fn is_floating_dialog(&self, ctx: &egui::Context) -> bool {
         !self.is_docked(ctx, true)
     }
 
     fn is_docked(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
-        self.has_room(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
+        self.can_dock(ctx, is_dialog) && change(ctx, |dock| dock.docked.contains(self.title))
     }
 
-    /// Whether it can be docked. Rows of a dialog are not cut: its buttons would be out of sight.
-    fn has_room(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
+    /// Returns true if the tool can be docked. A dialog needs its full width: cut rows would hide its buttons.
+    fn can_dock(&self, ctx: &egui::Context, is_dialog: bool) -> bool {
         change(ctx, |dock| !dock.is_too_narrow && (!is_dialog || dock.room >= self.default_width))
     }
 
     fn show_floating(self, ctx: &egui::Context, open: &mut bool, can_dock: bool, add: impl FnOnce(&mut Ui)) {
         let window = egui::Window::new(self.title).open(open).collapsible(false).resizable(true);
-        let window = window.constrain_to(frame::room(ctx)).default_pos(self.default_pos);
+        let window = window.constrain_to(overlay_windows::window_area(ctx)).default_pos(self.default_pos);
         let shown = window.default_width(self.default_width).show(ctx, add);
         let Some(shown) = shown else { return };
-        *open &= !frame::is_left(ctx, Some(&shown.response));
+        *open &= !overlay_windows::escape_closes(ctx, Some(&shown.response));
         if !can_dock {
             return;
         }
-        // Beside the button that closes it.
+        // Beside the close button of the window.
         let whole = shown.response.rect;
-        let middle = pos2(whole.right() - CLOSE - 12.0, whole.top() + 0.5 * HEADER + 2.0);
+        let middle = pos2(whole.right() - CLOSE_BUTTON_WIDTH - 12.0, whole.top() + 0.5 * HEADER + 2.0);
         let builder = UiBuilder::new().layer_id(shown.response.layer_id).max_rect(whole);
         let ui = Ui::new(ctx.clone(), Id::unique((self.title, "title")), builder);
-        if sign(&ui, Rect::from_center_size(middle, vec2(20.0, 18.0)), &text::dock::dock(self.title), true) {
+        if dock_button(
+            &ui,
+            Rect::from_center_size(middle, vec2(20.0, 18.0)),
+            &text::dock::dock_name(self.title),
+            true,
+        ) {
             change(ctx, |dock| dock.docked.insert(self.title.to_owned()));
             ctx.request_repaint();
         }
@@ -162,7 +167,7 @@ impl Tool {
             (dock.area, at, dock.before.len())
         });
         let Some((area, at)) = area.zip(at) else {
-            // Room is made in the next frame.
+            // The next frame reserves the space.
             return ctx.request_repaint();
         };
         let height = area.height() / count.max(1) as f32;
@@ -172,8 +177,8 @@ impl Tool {
         let builder = UiBuilder::new().layer_id(LayerId::background()).max_rect(place);
         let mut ui = Ui::new(ctx.clone(), Id::unique((self.title, "docked")), builder);
         ui.set_clip_rect(place);
-        // It lies below all windows, and belongs to the pointer that is over it.
-        if (is_dialog || ui.rect_contains_pointer(place)) && frame::is_for_picture(ctx) {
+        // It lies below all windows; Escape closes the tool under the pointer.
+        if (is_dialog || ui.rect_contains_pointer(place)) && overlay_windows::escape_for_picture(ctx) {
             *open = false;
         }
         ui.horizontal(|ui| {
@@ -184,7 +189,7 @@ impl Tool {
                     *open = false;
                 }
                 let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
-                if sign(ui, rect, &text::dock::float(self.title), false) {
+                if dock_button(ui, rect, &text::dock::undock_name(self.title), false) {
                     change(ctx, |dock| dock.docked.remove(self.title));
                     ctx.request_repaint();
                 }
@@ -196,8 +201,9 @@ impl Tool {
     }
 }
 
-/// A button with a window whose left part is filled, if it docks, or empty; whether it was clicked.
-fn sign(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
+/// Shows the icon of a window whose left part is filled (`docks`) or empty, as a button; returns true if it was
+/// clicked.
+fn dock_button(ui: &Ui, area: Rect, name: &str, docks: bool) -> bool {
     let response = ui.interact(area, ui.scope_id().with(("dock", docks)), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     let lit = response.hovered() || response.has_focus();

@@ -1,13 +1,14 @@
-//! Names that are too long for their place: what is left out is in the middle, so that beginnings and endings tell files
-//! apart. Widths are in points.
+//! Elision of long names in the middle, so that beginnings and file extensions still tell files apart.
+//!
+//! Widths are in points.
 
 use eframe::egui::{Color32, FontId, TextStyle, Ui};
 
-/// What stands for letters that are left out.
+/// Character in place of the omitted ones.
 const ELLIPSIS: char = '…';
 
-/// Points that words take in one line.
-pub(in crate::app) fn text_width(ui: &Ui, words: &str, style: &TextStyle) -> f32 {
+/// Returns the width of a text in one line, in points.
+pub(crate) fn text_width(ui: &Ui, words: &str, style: &TextStyle) -> f32 {
     width_of(ui, words, style.resolve(ui.style()))
 }
 
@@ -15,14 +16,14 @@ fn width_of(ui: &Ui, words: &str, font: FontId) -> f32 {
     ui.painter().layout_no_wrap(words.to_owned(), font, Color32::PLACEHOLDER).size().x
 }
 
-/// A name as it fits into a width: whole, or without as many letters of its middle as must go.
-pub(in crate::app) fn elide_middle(ui: &Ui, name: &str, style: &TextStyle, width: f32) -> String {
+/// Shortens a name to a width, by omitting as few characters of its middle as possible.
+pub(crate) fn elide_middle(ui: &Ui, name: &str, style: &TextStyle, width: f32) -> String {
     let font = style.resolve(ui.style());
-    elide_by(name, |words| width_of(ui, words, font.clone()) <= width)
+    elide_to_fit(name, |words| width_of(ui, words, font.clone()) <= width)
 }
 
-/// The longest form of a name that fits, of those without a part of its middle.
-fn elide_by(name: &str, fits: impl Fn(&str) -> bool) -> String {
+/// Finds the longest form that fits: the whole name, or the name without a part of its middle.
+fn elide_to_fit(name: &str, fits: impl Fn(&str) -> bool) -> String {
     if fits(name) {
         return name.to_owned();
     }
@@ -32,7 +33,7 @@ fn elide_by(name: &str, fits: impl Fn(&str) -> bool) -> String {
         let tail = &letters[letters.len() - count / 2..];
         head.iter().chain([&ELLIPSIS]).chain(tail).collect::<String>()
     };
-    // Between these numbers of letters is the largest that fits.
+    // Binary search for the number of characters that remain.
     let (mut least, mut most) = (0, letters.len().saturating_sub(1));
     while least < most {
         let middle = (least + most).div_ceil(2);
@@ -51,7 +52,7 @@ mod tests {
 
     #[test]
     fn names_keep_their_beginnings_and_endings() {
-        let elided = |name: &str, most: usize| elide_by(name, |words| words.chars().count() <= most);
+        let elided = |name: &str, most: usize| elide_to_fit(name, |words| words.chars().count() <= most);
         assert_eq!(elided("tooth.nrrd", 10), "tooth.nrrd");
         assert_eq!(elided("subject_042_run_3_T1w.nii.gz", 15), "subject….nii.gz");
         assert_eq!(elided("subject_042_run_3_T1w.nii.gz", 14), "subject…nii.gz");

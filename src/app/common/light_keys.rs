@@ -1,19 +1,19 @@
-//! Lights by the keyboard: arrows turn the selected one, and what commands do to it.
+//! Keyboard control of lights: turning by the arrow keys, and the operations of the light commands.
 
 use eframe::egui::{self, Key, Modifiers};
 use glam::{DQuat, DVec3};
 
 use super::shortcuts::is_typing;
-use crate::model::{Camera, Light, Settings};
+use crate::model::{Camera, LightSettings, Settings};
 
-/// Degrees per press of an arrow key.
+/// Angle per press of an arrow key, in degrees.
 const NUDGE_DEG: f64 = 1.0;
-/// Degrees per press of an arrow key with Shift.
+/// Angle per press of an arrow key with Shift, in degrees.
 const BIG_NUDGE_DEG: f64 = 10.0;
-/// Factor of the intensity per press.
+/// Factor of the intensity per step.
 const INTENSITY_STEP: f64 = 1.1;
 
-/// Turns the selected light by the arrow keys. Nothing else must want them: no widget has the focus.
+/// Turns the selected light by the arrow keys, unless a widget has the keyboard focus.
 pub(crate) fn nudge(ctx: &egui::Context, settings: &mut Settings, selected: usize) {
     if is_typing(ctx) || ctx.memory(egui::Memory::focused).is_some() {
         return;
@@ -35,30 +35,31 @@ pub(crate) fn nudge(ctx: &egui::Context, settings: &mut Settings, selected: usiz
     }
 }
 
-/// Turns a light about the middle of the volume, to the right and upwards as the eye sees it.
-pub(crate) fn turn(light: &mut Light, camera: &Camera, right_deg: f64, up_deg: f64) {
+/// Turns a light about the centre of the volume, to the right and upwards in view space.
+pub(crate) fn turn(light: &mut LightSettings, camera: &Camera, right_deg: f64, up_deg: f64) {
     let view = camera.scene_from_view();
     let turn = DQuat::from_axis_angle(view.y_axis, right_deg.to_radians())
         * DQuat::from_axis_angle(view.x_axis, -up_deg.to_radians());
-    let world = DVec3::from(light.in_scene(camera).position);
+    let world = DVec3::from(light.resolve(camera).position);
     light.set_scene_position(turn * world, camera);
 }
 
-/// Only this light shines; if it is so already, all do.
-pub(crate) fn solo(lights: &mut [Light], selected: usize) {
+/// Switches all lights off except one; if they are off already, switches all lights on.
+pub(crate) fn solo(lights: &mut [LightSettings], selected: usize) {
     let alone = lights.iter().enumerate().all(|(at, light)| light.on == (at == selected));
     for (at, light) in lights.iter_mut().enumerate() {
         light.on = alone || at == selected;
     }
 }
 
-/// A step brighter, or dimmer. From darkness it begins small.
-pub(crate) fn brighten(light: &mut Light, steps: i32) {
+/// Multiplies the intensity by [`INTENSITY_STEP`] per step, up to 1000. Brightening a light of intensity 0 starts
+/// from 0.05.
+pub(crate) fn brighten(light: &mut LightSettings, steps: i32) {
     let from = if light.intensity > 0.0 || steps < 0 { light.intensity } else { 0.05 };
     light.intensity = (from * INTENSITY_STEP.powi(steps)).min(1e3);
 }
 
-/// The light so many places further, around the end.
+/// Returns the index of the light `by` places further, wrapping around at both ends.
 pub(crate) fn cycle(count: usize, selected: usize, by: isize) -> usize {
     if count == 0 { 0 } else { (selected as isize + by).rem_euclid(count as isize) as usize }
 }
@@ -71,7 +72,7 @@ mod tests {
     fn lights_turn_as_the_eye_sees_it() {
         let camera = Camera::default();
         let view = camera.scene_from_view();
-        let mut light = Light { position: (view.z_axis * 3.0).into(), ..Light::default() };
+        let mut light = LightSettings { position: (view.z_axis * 3.0).into(), ..LightSettings::default() };
         turn(&mut light, &camera, 10.0, 0.0);
         let seen = view.transpose() * DVec3::from(light.position);
         assert!((seen.x - 3.0 * 10f64.to_radians().sin()).abs() < 1e-9, "{seen}: to the right");
@@ -83,8 +84,8 @@ mod tests {
 
     #[test]
     fn solo_twice_is_as_before() {
-        let mut lights = vec![Light::default(); 3];
-        let on = |lights: &[Light]| lights.iter().map(|light| light.on).collect::<Vec<_>>();
+        let mut lights = vec![LightSettings::default(); 3];
+        let on = |lights: &[LightSettings]| lights.iter().map(|light| light.on).collect::<Vec<_>>();
         solo(&mut lights, 1);
         assert_eq!(on(&lights), [false, true, false]);
         solo(&mut lights, 2);
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn brightness_goes_up_and_down_and_out_of_the_dark() {
-        let mut light = Light { intensity: 1.0, ..Light::default() };
+        let mut light = LightSettings { intensity: 1.0, ..LightSettings::default() };
         brighten(&mut light, 1);
         brighten(&mut light, -1);
         assert!((light.intensity - 1.0).abs() < 1e-12);

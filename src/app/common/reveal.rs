@@ -1,4 +1,4 @@
-//! Showing where something is set: its section opens, and its row comes into sight and glows for a moment.
+//! Revealing of a setting: its section opens, the panel scrolls to its row, and the row glows for a moment.
 
 use std::collections::BTreeMap;
 
@@ -6,60 +6,60 @@ use eframe::egui::{self, Align, Id, Rect, Ui};
 
 use super::theme;
 
-/// Where something is set.
+/// Location of a setting in the panels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
-    /// The title of its section.
+pub(crate) struct SettingPlace {
+    /// Title of the setting's section.
     pub section: &'static str,
-    /// The name of its row; none for the section as a whole.
+    /// Name of the setting's row; `None` for the section as a whole.
     pub row: Option<&'static str>,
-    /// It is among what is folded away there.
+    /// True if the row is in the advanced part of its section, which is collapsed at first.
     pub is_advanced: bool,
 }
 
-/// Seconds that a row glows.
+/// Duration for which a revealed row glows, in seconds.
 const GLOW_S: f64 = 2.0;
-/// Passes after which what is scrolled to has come to rest, if it lay in the same place in all of them: one finds out
-/// where it goes, and the next moves it.
+/// Number of passes at the same position after which scrolling has finished: one finds the destination, and the next
+/// moves there.
 const PASSES_AT_REST: u8 = 3;
-/// Points by which something moves that has not come to rest.
-const MOVED: f32 = 0.5;
+/// Movement between passes from which scrolling has not finished, in points.
+const MOVEMENT_TOLERANCE: f32 = 0.5;
 
-/// What is being shown.
+/// Place that is being revealed, with its progress.
 #[derive(Debug, Clone, Copy)]
-struct Shown {
-    place: Place,
+struct RevealState {
+    place: SettingPlace,
     since_s: f64,
-    /// The passes in which its section, and what is folded away in it, were told to open.
+    /// Passes in which the section and its advanced part were told to open.
     opened: [Option<u64>; 2],
-    /// The last pass that has come to what is folded away in its section.
+    /// Last pass in which an advanced part of the section was shown.
     unfolded: Option<u64>,
-    /// The last pass in which its row was there.
+    /// Last pass in which the row was shown.
     seen: Option<u64>,
-    way: Way,
+    way: ScrollProgress,
 }
 
-/// The way to what is scrolled to. It is followed by passes and not by time: where frames are slow, few of them fit into
-/// the seconds in which a quick window arrives.
+/// Progress of scrolling to a place. It is counted in passes, not in time: where frames are slow, few of them fit
+/// into the seconds in which a fast window arrives.
 #[derive(Debug, Clone, Copy, Default)]
-struct Way {
-    /// Where it was in the pass before: its upper edge in points of the window.
+struct ScrollProgress {
+    /// Upper edge of the place in the previous pass, in points of the window.
     top: f32,
-    /// Passes in which it has not moved since.
+    /// Number of passes since without movement.
     at_rest: u8,
     has_begun: bool,
 }
 
-impl Way {
+impl ScrollProgress {
     const END: Self = Self { top: 0.0, at_rest: PASSES_AT_REST, has_begun: true };
 
     fn is_over(self) -> bool {
         self.at_rest >= PASSES_AT_REST
     }
 
-    /// Scrolls on to an area. `may_rest`: what is around it does not move by itself. Whoever scrolls meanwhile is left
-    /// alone.
-    fn follow(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
+    /// Continues scrolling to an area. `may_rest`: the layout around it is not animated. Scrolling by the user's
+    /// wheel ends it.
+    fn advance(self, ui: &Ui, area: Rect, align: Align, may_rest: bool) -> Self {
         let is_wheel = |event: &egui::Event| matches!(event, egui::Event::MouseWheel { .. });
         let is_left = self.has_begun && ui.input(|input| input.events.iter().any(is_wheel));
         if self.is_over() || is_left {
@@ -67,7 +67,7 @@ impl Way {
         }
         ui.scroll_to_rect(area, Some(align));
         ui.ctx().request_repaint();
-        let rests = self.has_begun && may_rest && (area.top() - self.top).abs() < MOVED;
+        let rests = self.has_begun && may_rest && (area.top() - self.top).abs() < MOVEMENT_TOLERANCE;
         Self { top: area.top(), at_rest: if rests { self.at_rest + 1 } else { 0 }, has_begun: true }
     }
 }
@@ -80,22 +80,23 @@ fn now_s(ctx: &egui::Context) -> f64 {
     ctx.input(|input| input.time)
 }
 
-/// Begins to show a place.
-pub(crate) fn reveal(ctx: &egui::Context, place: Place) {
-    let way = Way::default();
-    let shown = Shown { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
+/// Starts to reveal a place.
+pub(crate) fn reveal(ctx: &egui::Context, place: SettingPlace) {
+    let way = ScrollProgress::default();
+    let shown =
+        RevealState { place, since_s: now_s(ctx), opened: [None; 2], unfolded: None, seen: None, way };
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     ctx.request_repaint();
 }
 
-fn shown(ctx: &egui::Context) -> Option<Shown> {
-    let shown: Shown = ctx.data(|data| data.get_temp(id()))?;
+fn shown(ctx: &egui::Context) -> Option<RevealState> {
+    let shown: RevealState = ctx.data(|data| data.get_temp(id()))?;
     (now_s(ctx) - shown.since_s < GLOW_S || !shown.way.is_over()).then_some(shown)
 }
 
-/// Whether a section, or what is folded away in it, is to open now. Says so during one pass: a section can have several
-/// parts that are folded away, and any of them may hold the row.
-pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: bool) -> bool {
+/// Returns true if a section, or an advanced part of it, is to open now. It does so during one pass: a section can
+/// have several advanced parts, and any of them may hold the row.
+pub(crate) fn should_open(ctx: &egui::Context, section: &str, is_advanced: bool) -> bool {
     let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
     if is_advanced && !shown.place.is_advanced {
         return false;
@@ -109,37 +110,37 @@ pub(in crate::app) fn opens(ctx: &egui::Context, section: &str, is_advanced: boo
     opened == pass
 }
 
-/// Scrolls to a section as a whole, its title at the top, if that is what is shown; also where the row that is sought in it
-/// is not there, since it belongs to something that is off. `is_open`: it has come to its full height. Whether it is being
+/// Scrolls to the title of a section, if the section as a whole is revealed, or if the row is not there because it
+/// belongs to a feature that is off. `is_open`: the section has its full height. Returns true while it is being
 /// scrolled to.
-pub(in crate::app) fn lead_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
+pub(crate) fn scroll_to_section(ui: &Ui, section: &str, title: Rect, is_open: bool) -> bool {
     let ctx = ui.ctx();
-    report(ctx, title, || section.to_owned());
+    report_area(ctx, title, || section.to_owned());
     let Some(mut shown) = shown(ctx).filter(|shown| shown.place.section == section) else { return false };
     let is_row_there = shown.seen == Some(ctx.cumulative_pass_nr());
     if is_row_there || shown.way.is_over() {
         return false;
     }
-    shown.way = shown.way.follow(ui, title, Align::TOP, is_open);
+    shown.way = shown.way.advance(ui, title, Align::TOP, is_open);
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     true
 }
 
-/// Lets a row glow, if it is that which is shown.
-pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
+/// Scrolls to a row and lets it glow, while it is being revealed.
+pub(crate) fn highlight_row(ui: &Ui, section: &str, row: &str, area: Rect) {
     let ctx = ui.ctx();
-    report(ctx, area, || format!("{section}/{row}"));
+    report_area(ctx, area, || format!("{section}/{row}"));
     let Some(mut shown) = shown(ctx) else { return };
     if shown.place.section != section || shown.place.row != Some(row) {
         return;
     }
     let pass = Some(ctx.cumulative_pass_nr());
     if shown.place.is_advanced && shown.unfolded != pass {
-        // Another row of that name, above what is folded away.
+        // Another row of that name, above the advanced part.
         return;
     }
     shown.seen = pass;
-    shown.way = shown.way.follow(ui, area, Align::Center, true);
+    shown.way = shown.way.advance(ui, area, Align::Center, true);
     ctx.data_mut(|data| data.insert_temp(id(), shown));
     let age = now_s(ctx) - shown.since_s;
     let strength = (1.0 - age / GLOW_S).max(0.0) as f32;
@@ -147,17 +148,17 @@ pub(in crate::app) fn glow(ui: &Ui, section: &str, row: &str, area: Rect) {
     ctx.request_repaint();
 }
 
-/// Opens a section and brings it into sight, if what it is about was switched on.
+/// Reveals a section if its feature was switched on.
 pub(crate) fn show_section(ctx: &egui::Context, section: &'static str, is_on: bool) {
     if is_on {
-        reveal(ctx, Place { section, row: None, is_advanced: false });
+        reveal(ctx, SettingPlace { section, row: None, is_advanced: false });
     }
 }
 
-/// Places of the panel in one pass: areas in points of the window, by section, by section and row (`Data/Spacing`), and by
-/// what the names of buttons are.
+/// Areas of the panel's parts in one pass, in points of the window: by section, by section and row (`Data/Spacing`),
+/// and by the names of buttons.
 #[derive(Debug, Clone, Default)]
-struct Reported {
+struct ReportedAreas {
     pass: u64,
     areas: BTreeMap<String, Rect>,
 }
@@ -166,24 +167,24 @@ fn reported_id() -> Id {
     Id::unique("reported places")
 }
 
-/// Notes where something is, for whoever watches the window from outside.
-pub(in crate::app) fn report(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
+/// Records the area of a part of the panel, for the status file.
+pub(crate) fn report_area(ctx: &egui::Context, area: Rect, name: impl FnOnce() -> String) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
-        // It is not there unless somebody watches.
-        let Some(mut reported) = data.get_temp::<Reported>(reported_id()) else { return };
+        // Absent unless the status file is in use.
+        let Some(mut reported) = data.get_temp::<ReportedAreas>(reported_id()) else { return };
         if reported.pass != pass {
-            reported = Reported { pass, ..Reported::default() };
+            reported = ReportedAreas { pass, ..ReportedAreas::default() };
         }
         reported.areas.insert(name(), area);
         data.insert_temp(reported_id(), reported);
     });
 }
 
-/// Where things were in this pass, from the second time on.
-pub(crate) fn reported(ctx: &egui::Context) -> BTreeMap<String, Rect> {
-    let reported: Reported =
-        ctx.data_mut(|data| data.get_temp_mut_or_default::<Reported>(reported_id()).clone());
+/// Returns the areas recorded in this pass; the first call returns none and starts the recording.
+pub(crate) fn reported_areas(ctx: &egui::Context) -> BTreeMap<String, Rect> {
+    let reported: ReportedAreas =
+        ctx.data_mut(|data| data.get_temp_mut_or_default::<ReportedAreas>(reported_id()).clone());
     reported.areas
 }
 
@@ -194,10 +195,10 @@ mod tests {
     const SECTION: &str = "Data";
     const ROW: &str = "Spacing";
 
-    /// Begins to show a row that is folded away, and runs two passes.
+    /// Reveals a row in an advanced part, and runs two passes.
     fn run(mut pass: impl FnMut(&mut Ui)) {
         let ctx = egui::Context::default();
-        reveal(&ctx, Place { section: SECTION, row: Some(ROW), is_advanced: true });
+        reveal(&ctx, SettingPlace { section: SECTION, row: Some(ROW), is_advanced: true });
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), &mut pass);
             output.textures_delta.clear();
@@ -208,8 +209,8 @@ mod tests {
     fn all_that_is_folded_away_in_a_section_opens_once() {
         let mut opened = Vec::new();
         run(|ui| {
-            assert!(!opens(ui.ctx(), "Lights", false), "another section stays as it is");
-            opened.push([false, true, true].map(|is_advanced| opens(ui.ctx(), SECTION, is_advanced)));
+            assert!(!should_open(ui.ctx(), "Lights", false), "another section stays as it is");
+            opened.push([false, true, true].map(|is_advanced| should_open(ui.ctx(), SECTION, is_advanced)));
         });
         assert_eq!(opened, [[true; 3], [false; 3]]);
     }
@@ -217,11 +218,11 @@ mod tests {
     #[test]
     fn a_row_that_is_folded_away_is_told_from_one_of_its_name_above() {
         run(|ui| {
-            glow(ui, SECTION, ROW, Rect::ZERO);
-            let is_led_to = |ui: &Ui| lead_to_section(ui, SECTION, Rect::ZERO, true);
+            highlight_row(ui, SECTION, ROW, Rect::ZERO);
+            let is_led_to = |ui: &Ui| scroll_to_section(ui, SECTION, Rect::ZERO, true);
             assert!(is_led_to(ui), "the section is, as long as its row is not there");
-            opens(ui.ctx(), SECTION, true);
-            glow(ui, SECTION, ROW, Rect::ZERO);
+            should_open(ui.ctx(), SECTION, true);
+            highlight_row(ui, SECTION, ROW, Rect::ZERO);
             assert!(!is_led_to(ui));
         });
     }

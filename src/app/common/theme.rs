@@ -1,111 +1,112 @@
-//! Colours, sizes and spacing: the one place for all of them.
+//! Theme of the window: all its colours, sizes and spacings.
 
 use eframe::egui::{self, Color32, FontId, TextStyle, Theme, Vec2};
 
 /// Width of the side panel in points.
 pub(crate) const SIDE_WIDTH: f32 = 316.0;
-/// Widths to which it can be dragged: narrower, sliders are too short to aim with.
+/// Widths to which the side panel can be dragged, in points: in a narrower one, sliders are too short to aim with.
 pub(crate) const SIDE_WIDTHS: std::ops::RangeInclusive<f32> = 300.0..=560.0;
 /// Height of the transfer function editor in points.
 pub(crate) const EDITOR_HEIGHT: f32 = 158.0;
-/// Height of the table of labels in points, which takes its place: six rows are seen.
+/// Height of the table of labels in points, which replaces the editor: six rows are visible.
 pub(crate) const LABEL_TABLE_HEIGHT: f32 = 230.0;
-/// Width of the labels in front of the controls.
+/// Width of the labels before the controls, in points.
 pub(crate) const LABEL_WIDTH: f32 = 106.0;
-/// How far what belongs to an entry of a list is indented.
+/// Indentation of the controls that belong to a list entry, in points.
 pub(crate) const INDENT: f32 = 12.0;
-/// Width of a typed value behind a slider.
+/// Width of the typed value behind a slider, in points.
 pub(crate) const VALUE_WIDTH: f32 = 62.0;
-/// Width of the button that puts a value back.
+/// Width of a reset button, in points.
 pub(crate) const RESET_WIDTH: f32 = 16.0;
 
-/// Height of letters in points.
-pub(crate) const LETTERS: f32 = 13.0;
+/// Font size of texts and buttons, in points.
+pub(crate) const FONT_SIZE: f32 = 13.0;
 
-/// Radius of a light's handle.
+/// Radius of a light's handle, in points.
 pub(crate) const HANDLE_RADIUS: f32 = 8.0;
-/// How far from the border of the picture a handle stays …
+/// Minimum distance of a handle from the border of the picture, in points.
 pub(crate) const HANDLE_INSET: f32 = 14.0;
-/// … and that of a light, which may have an arrow to where the light is outside.
+/// Minimum distance of a light's handle from the border of the picture, in points; it may have an arrow towards a
+/// light that is outside.
 pub(crate) const LIGHT_INSET: f32 = 22.0;
-/// Radius of a control point of a transfer function.
+/// Radius of a control point of a transfer function, in points.
 pub(crate) const POINT_RADIUS: f32 = 5.0;
-/// Seconds that handles take to appear and to go.
+/// Duration of fading handles in and out, in seconds.
 pub(crate) const FADE_S: f32 = 0.25;
 
-/// What is selected or active.
+/// Colour of selected or active elements.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(0xe9, 0xae, 0x4a);
-/// What is written over pictures, whatever the colours of the window.
-pub(crate) const EYE_CURVE: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
-/// What is little of something, in bars of the side panel.
-pub(crate) const HISTOGRAM: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
-/// Edge of a field of the checkerboard.
+/// Colour of text over pictures, whatever the theme of the window.
+pub(crate) const PICTURE_TEXT: Color32 = Color32::from_rgb(0xe8, 0xec, 0xf2);
+/// Colour of small shares in bars of the side panel, and of the histogram in the dark theme.
+pub(crate) const LOW_BAR: Color32 = Color32::from_rgb(0x4a, 0x52, 0x60);
+/// Edge length of a checkerboard field, in points.
 pub(crate) const CHECKER_EDGE: f32 = 8.0;
-/// The axes of the grid, x, y and z.
+/// Colours of the axes x, y and z of the grid.
 pub(crate) const AXES: [Color32; 3] = [
     Color32::from_rgb(0xf0, 0x6a, 0x5e),
     Color32::from_rgb(0x6c, 0xc9, 0x72),
     Color32::from_rgb(0x62, 0xa4, 0xf2),
 ];
-/// Around handles and points, so that they can be told from any picture.
+/// Colour around handles and points, which separates them from any picture.
 pub(crate) const OUTLINE: Color32 = Color32::from_rgb(0x0c, 0x0d, 0x10);
-/// Lines that help while a light is moved.
+/// Colour of the guide lines while a light is moved.
 pub(crate) const GUIDE: Color32 = Color32::from_rgb(0xc9, 0xd2, 0xe0);
-/// Where a light is lost on its way.
+/// Colour of the part of a light's path where material absorbs it.
 pub(crate) const BLOCKED: Color32 = Color32::from_rgb(0xf0, 0x5a, 0x4a);
-/// Behind the picture while there is none.
+/// Colour of the empty picture while no volume is open.
 pub(crate) const EMPTY_CANVAS: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x24);
 
-/// The inks of the transfer function's plot.
+/// Colours of the transfer function's plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PlotInk {
-    /// The two fields of the checkerboard behind colours.
+pub(crate) struct PlotColors {
+    /// Colours of the two kinds of checkerboard fields behind the curve's colours.
     pub checker: [Color32; 2],
-    /// Histogram bars.
+    /// Colour of the histogram bars.
     pub histogram: Color32,
-    /// The eye's curve, over its colours, and numbers.
+    /// Colour of the eye's curve, over its colours, and of numbers.
     pub eye: Color32,
-    /// The lighting curve.
+    /// Colour of the lighting curve.
     pub light: Color32,
-    /// Behind numbers, and around points.
-    pub ground: Color32,
+    /// Colour behind numbers and around points.
+    pub background: Color32,
 }
 
-impl PlotInk {
-    /// Those of a dark window.
+impl PlotColors {
+    /// Colours of the plot in the dark theme.
     pub(crate) const DARK: Self = Self {
         checker: [Color32::from_rgb(0x22, 0x25, 0x2b), Color32::from_rgb(0x2b, 0x2f, 0x36)],
-        histogram: HISTOGRAM,
-        eye: EYE_CURVE,
+        histogram: LOW_BAR,
+        eye: PICTURE_TEXT,
         light: Color32::from_rgb(0xff, 0xc1, 0x4d),
-        ground: OUTLINE,
+        background: OUTLINE,
     };
-    /// Those of a light one: each with at least the contrast that the dark one has.
+    /// Colours of the plot in the light theme: each has at least the contrast of its dark counterpart.
     const LIGHT: Self = Self {
         checker: [Color32::from_rgb(0xf6, 0xf7, 0xf9), Color32::from_rgb(0xe7, 0xe9, 0xee)],
         histogram: Color32::from_rgb(0xb3, 0xbb, 0xc8),
         eye: Color32::from_rgb(0x20, 0x26, 0x30),
         light: Color32::from_rgb(0xa8, 0x5c, 0x00),
-        ground: Color32::from_rgb(0xff, 0xff, 0xff),
+        background: Color32::from_rgb(0xff, 0xff, 0xff),
     };
 
-    /// Those of a window.
-    pub(crate) fn of(visuals: &egui::Visuals) -> Self {
+    /// Returns the plot colours of the window's theme.
+    pub(crate) fn for_visuals(visuals: &egui::Visuals) -> Self {
         if visuals.dark_mode { Self::DARK } else { Self::LIGHT }
     }
 }
 
-/// The frame of a panel, through which the background of the window is seen: that is filled at once and cheaply.
+/// Frame of a panel without a fill of its own: the window's background is filled once, and cheaply.
 pub(crate) fn panel(ui: &egui::Ui) -> egui::Frame {
     egui::Frame::side_top_panel(ui.style()).fill(Color32::TRANSPARENT)
 }
 
-/// What is selected or active, as text on a panel: 4.5:1 on light ones, too.
+/// Colour of selected or active text on a panel, with a contrast of 4.5:1 on light ones, too.
 pub(crate) fn accent(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { ACCENT } else { Color32::from_rgb(0x85, 0x52, 0x00) }
 }
 
-/// What is as it must be, as text on a panel: 4.5:1 on both.
+/// Colour of text on a panel that confirms a valid input, with a contrast of 4.5:1 in both themes.
 pub(crate) fn good(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { Color32::from_rgb(0x7c, 0xcf, 0x86) } else { Color32::from_rgb(0x1d, 0x6b, 0x2b) }
 }
@@ -118,7 +119,7 @@ const WELL: Color32 = Color32::from_rgb(0x14, 0x16, 0x1a);
 const TEXT: Color32 = Color32::from_rgb(0xd4, 0xd8, 0xe0);
 const WEAK_TEXT: Color32 = Color32::from_rgb(0x98, 0xa0, 0xae);
 
-/// Gives the window its looks: dark unless the user says otherwise.
+/// Applies fonts, spacing and colours to the window: dark unless the user chooses otherwise.
 pub(crate) fn apply(ctx: &egui::Context) {
     ctx.set_theme(egui::ThemePreference::Dark);
     ctx.style_mut_of(Theme::Dark, |style| {
@@ -144,14 +145,14 @@ pub(crate) fn apply(ctx: &egui::Context) {
     ctx.all_styles_mut(|style| {
         style.spacing.item_spacing = Vec2::new(6.0, 5.0);
         style.spacing.interact_size.y = 20.0;
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(LETTERS));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(LETTERS));
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(FONT_SIZE));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(FONT_SIZE));
         style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
         style.visuals.slider_trailing_fill = true;
     });
 }
 
-/// An sRGB colour of the settings for the painter.
+/// Converts an sRGB colour of the settings, 0 to 1, for the painter.
 pub(crate) fn color(srgb: [f32; 3]) -> Color32 {
     let [r, g, b] = srgb.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
     Color32::from_rgb(r, g, b)

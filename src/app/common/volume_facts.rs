@@ -1,90 +1,90 @@
-//! What the panels and the transfer function editor know of the open volume.
+//! Facts about the open volume, for the panels and the transfer function editor.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::text::common::LengthUnit;
-use crate::app::worker::loader::Reading;
-use crate::data::load::Held;
+use crate::app::worker::loader::ReadChoices;
+use crate::data::load::FileContents;
 use crate::data::{
-    CountedLabel, DataKind, Dataset, Histogram, Shown, ValueRange, ValueRanges, Volume, VoxelType,
+    CountedLabel, DataKind, Dataset, DensityMapping, Histogram, ValueRange, ValueRanges, Volume, VoxelType,
 };
 use crate::math::SceneSpace;
 use crate::model::{LabelTable, Settings};
 
-/// Facts about a volume; all of them fixed, but for what of its values is shown.
+/// Facts about a volume, all fixed except for the range of values that is shown.
 #[derive(Debug, Clone)]
 pub(crate) struct VolumeFacts {
-    /// What the user calls it.
+    /// Name of the volume for display.
     pub name: String,
-    /// What was opened: a path or the name of a built-in volume.
+    /// Path of the file, or name of a built-in volume.
     pub source: PathBuf,
-    /// How the volume was read.
-    pub reading: Reading,
-    /// What else the file holds.
-    pub held: Held,
-    /// Voxels along x, y, z.
+    /// Options with which the volume was read.
+    pub reading: ReadChoices,
+    /// Series, channels, time steps and components of the file.
+    pub held: FileContents,
+    /// Number of voxels along x, y and z.
     pub dims: [usize; 3],
-    /// Voxels along x, y, z in the file, before any were averaged.
+    /// Number of voxels along x, y and z in the file, before averaging.
     pub file_dims: [usize; 3],
-    /// The type of the voxels, such as `uint8`.
+    /// Name of the voxel type, such as `uint8`.
     pub voxel_type: &'static str,
-    /// The volume, which knows what its file says.
-    pub of: Arc<Volume>,
-    /// Millimetres between voxel centres along x, y, z.
+    /// Volume itself, with the metadata of its file.
+    pub volume: Arc<Volume>,
+    /// Distance between voxel centres along x, y and z, in mm.
     pub spacing_mm: [f64; 3],
-    /// They are no millimetres: nobody knows how large voxels are.
+    /// True if the voxel size is unknown, so that the spacing is not in mm.
     pub has_unknown_scale: bool,
-    /// All values of the file, and those that matter.
+    /// Full and robust ranges of the values.
     pub ranges: ValueRanges,
-    /// What densities stand for in the picture and in the histogram.
-    pub shown: Shown,
-    /// The values that the picture shows.
+    /// Quantity that densities stand for in the picture and in the histogram.
+    pub shown: DensityMapping,
+    /// Range of values that the picture shows.
     pub range: ValueRange,
-    /// How many different values there can be, for integers.
+    /// Number of integers in the range shown; `None` for floating-point voxels.
     pub levels: Option<usize>,
-    /// Voxels that are not finite.
+    /// Number of voxels that are NaN or infinite.
     pub non_finite_voxels: usize,
-    /// Bytes of the voxels.
+    /// Memory of the voxels, in bytes.
     pub bytes: u64,
-    /// How the grid lies in scene space.
+    /// Placement of the grid in scene space.
     pub scene: SceneSpace,
-    /// What kind of data it holds.
+    /// Kind of data that the volume holds.
     pub kind: DataKind,
-    /// Whether +x, +y and +z are a body's right, front and head.
+    /// True if +x, +y and +z are a body's right, front and head.
     pub is_anatomical: bool,
-    /// The labels of a label map, by number; of other data none.
+    /// Labels of a label map, by number; empty for other data.
     pub labels: Arc<[LabelRow]>,
-    /// How often each value occurs.
+    /// Histogram of the values that are shown.
     pub histogram: Arc<Histogram>,
 }
 
-/// How many whole numbers there are from one end of a range to the other, however far apart somebody has typed them.
+/// Counts the integers in a range; saturates, since typed ranges may be of any length.
 fn levels_in(range: ValueRange) -> usize {
     (range.span() as usize).saturating_add(1)
 }
 
-/// A label of the volume.
+/// Label of the volume, with its number of voxels.
 #[derive(Debug, Clone)]
 pub(crate) struct LabelRow {
-    /// What voxels hold.
+    /// Value of the voxels with this label.
     pub number: i64,
-    /// The number whose look it has: its own, unless there are more labels than looks.
-    pub stands_for: i64,
-    /// How many voxels hold it.
+    /// Number of the label whose look it has: its own, unless there are more labels than classes.
+    pub look_number: i64,
+    /// Number of voxels with this label.
     pub voxels: u64,
-    /// What the file calls it; empty if it does not say.
+    /// Name of the label in the file; empty if there is none.
     in_file: String,
 }
 
 impl LabelRow {
-    /// What a label is called: in the table, or else in the file.
+    /// Returns the name of the label in the table, or else in the file.
     pub(crate) fn name(&self, table: &LabelTable) -> String {
         let own = table.get(self.number).map_or("", |look| &look.name);
         if own.is_empty() { self.in_file.clone() } else { own.to_owned() }
     }
 
-    /// The labels of a volume that are known, or that it shows.
+    /// Lists the labels of a label map, or those by which the volume is shown.
     fn all_of(volume: &Volume) -> Arc<[Self]> {
         let is_known = matches!(volume.kind().kind, DataKind::LabelMap { .. });
         let Some(labels) = (if is_known { volume.labels() } else { volume.shown_labels() }) else {
@@ -92,17 +92,21 @@ impl LabelRow {
         };
         let row = |label: &CountedLabel| Self {
             number: label.number,
-            stands_for: labels.standing_for(label.number),
+            look_number: labels.representative_of(label.number),
             voxels: label.voxels,
-            in_file: volume.hints().labels.get(label.number).map_or_else(String::new, |own| own.name.clone()),
+            in_file: volume
+                .metadata()
+                .labels
+                .get(label.number)
+                .map_or_else(String::new, |own| own.name.clone()),
         };
         labels.labels().iter().map(row).collect()
     }
 }
 
 impl VolumeFacts {
-    /// Collects the facts.
-    pub(crate) fn of(source: PathBuf, reading: Reading, dataset: &Dataset) -> Self {
+    /// Collects the facts about a dataset.
+    pub(crate) fn new(source: PathBuf, reading: ReadChoices, dataset: &Dataset) -> Self {
         let volume = dataset.volume();
         let voxel_type = volume.samples().voxel_type();
         let range = volume.shown_range();
@@ -111,15 +115,15 @@ impl VolumeFacts {
             name: volume.name().to_owned(),
             source,
             reading,
-            held: volume.held().clone(),
+            held: volume.contents().clone(),
             dims: volume.dims(),
             file_dims: volume.file_dims(),
             voxel_type: voxel_type.name(),
-            of: Arc::clone(volume),
+            volume: Arc::clone(volume),
             spacing_mm: volume.spacing_mm().into(),
             has_unknown_scale: volume.has_unknown_scale(),
             ranges: volume.ranges(),
-            shown: volume.shown(),
+            shown: volume.density_mapping(),
             range,
             levels: whole.then(|| levels_in(range)),
             non_finite_voxels: volume.non_finite_voxels(),
@@ -132,31 +136,31 @@ impl VolumeFacts {
         }
     }
 
-    /// The unit that suits lengths in the scene.
+    /// Unit of length that suits the size of the volume.
     pub(crate) fn length_unit(&self) -> LengthUnit {
-        LengthUnit::of(self.of.length_unit())
+        LengthUnit::from_spacing_unit(self.volume.length_unit())
     }
 
-    /// The label that voxels of a value hold, in label maps.
+    /// Finds the label of the voxels with a value, in label maps.
     pub(crate) fn label_of(&self, value: f64) -> Option<&LabelRow> {
         self.labels.iter().find(|label| label.number as f64 == value)
     }
 
-    /// Whether pictures with these settings show labels, which have looks by their numbers.
+    /// Returns true if pictures with these settings show labels, whose looks are in a table.
     pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
         !settings.labels.is_empty() && !self.labels.is_empty()
     }
 
-    /// Takes over what of the values is shown from now on.
-    pub(crate) fn follow(&mut self, dataset: &Dataset) {
-        let fresh = Self::of(std::mem::take(&mut self.source), std::mem::take(&mut self.reading), dataset);
+    /// Updates the facts for a dataset that shows other values or is corrected.
+    pub(crate) fn update(&mut self, dataset: &Dataset) {
+        let fresh = Self::new(std::mem::take(&mut self.source), std::mem::take(&mut self.reading), dataset);
         *self = fresh;
     }
 }
 
-/// Digits behind the point with which values of a range are told apart: a thousand of them, and whole ones of data that
-/// have so many.
-pub(crate) fn decimals(range: ValueRange) -> usize {
+/// Number of decimals, 0 to 6, that resolves a range into 100 to 1000 steps; ranges of at least 100 have whole
+/// numbers.
+pub(crate) fn range_decimals(range: ValueRange) -> usize {
     let span = range.span().abs().max(1e-300);
     (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize
 }

@@ -1,8 +1,8 @@
-//! How the window is laid out: which panels are there. Their sizes, sections that are open, and how large everything is,
-//! the window toolkit keeps by itself.
+//! Layout of the main window: which panels and tool windows are shown. egui itself stores their sizes, the open
+//! sections, and the zoom factor.
 
-mod around;
-mod over;
+mod outer_panels;
+mod overlay_windows;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -13,48 +13,49 @@ use serde::{Deserialize, Serialize};
 use super::App;
 use super::common::dock;
 use crate::app::text;
-use crate::app::windows::slices::plane::Convention;
+use crate::app::windows::slices::plane::ViewingConvention;
 
-/// The name under which it is kept beside what the window toolkit keeps.
-const NAME: &str = "layout";
+/// Key under which the layout is stored in egui's persistent storage.
+const LAYOUT_KEY: &str = "layout";
 
-/// Which panels are there.
+/// Panels and tool windows that are shown, as stored between runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub(crate) struct Layout {
-    /// The side panel is there.
+pub(crate) struct WindowLayout {
+    /// True if the side panel is shown.
     pub side: bool,
-    /// The transfer function editor is there.
+    /// True if the transfer function editor is shown.
     pub transfer: bool,
-    /// The strip of kept views and looks is there.
+    /// True if the strip of kept views and looks is shown.
     pub kept: bool,
-    /// Tools that are docked beside the picture when they are open.
+    /// Titles of the tools that are docked beside the picture while they are open.
     pub docked: BTreeSet<String>,
-    /// Cuts through the data are shown, and those through light volumes.
+    /// True if the window "Slices" is open.
     pub slices: bool,
+    /// True if the window with slices of light volumes is open.
     pub light_slice: bool,
-    /// Side on which cuts through a body show its right.
-    pub slice_convention: Convention,
-    /// The folder where the last export went.
+    /// Side of the screen on which slices of a body show its right side.
+    pub slice_convention: ViewingConvention,
+    /// Folder of the last export, where the next one is proposed.
     pub exports: Option<PathBuf>,
-    /// Dark, light, or as the system is.
+    /// Colour theme: dark, light, or that of the system.
     theme: ThemePreference,
-    /// Nothing but the picture, until the user leaves that.
+    /// True while only the picture is shown, until the user leaves that mode; not stored.
     #[serde(skip)]
     pub picture_only: bool,
 }
 
-impl Default for Layout {
+impl Default for WindowLayout {
     fn default() -> Self {
         Self {
             side: true,
             transfer: true,
             kept: false,
-            // Over the picture it would lie on what is exported.
+            // As a floating window it would cover the picture that is exported.
             docked: [text::export::TITLE.to_owned()].into(),
             slices: false,
             light_slice: false,
-            slice_convention: Convention::default(),
+            slice_convention: ViewingConvention::default(),
             exports: None,
             theme: ThemePreference::Dark,
             picture_only: false,
@@ -62,35 +63,35 @@ impl Default for Layout {
     }
 }
 
-impl Layout {
-    /// As it was left, and the usual one where none is kept or what is kept is damaged.
-    pub(crate) fn kept(storage: Option<&dyn eframe::Storage>) -> Self {
-        storage.and_then(|storage| eframe::get_value(storage, NAME)).unwrap_or_default()
+impl WindowLayout {
+    /// Restores the layout of the last run; the default layout if none is stored or the stored one is damaged.
+    pub(crate) fn restore(storage: Option<&dyn eframe::Storage>) -> Self {
+        storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default()
     }
 
-    /// Gives the window the colours that were chosen.
+    /// Applies the chosen colour theme and the docked tools to the window.
     pub(crate) fn apply(&self, ctx: &egui::Context) {
         ctx.set_theme(self.theme);
         dock::set_docked(ctx, &self.docked);
     }
 
-    /// Keeps it for the next run.
-    pub(crate) fn keep(&self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, NAME, self);
+    /// Stores the layout for the next run.
+    pub(crate) fn store(&self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, LAYOUT_KEY, self);
     }
 }
 
 impl App {
-    /// Shows the picture alone, or the panels again; says how to come back.
-    pub(in crate::app) fn toggle_picture_only(&mut self) {
+    /// Switches between the picture alone and the panels, and notes which key brings the panels back.
+    pub(crate) fn toggle_picture_only(&mut self) {
         self.layout.picture_only ^= true;
         if self.layout.picture_only {
             self.messages.note(text::messages::PICTURE_ONLY);
         }
     }
 
-    /// Leaves the picture alone when Escape was pressed, and nothing else has taken that.
-    pub(in crate::app) fn leave_picture_only(&mut self, ctx: &egui::Context) {
+    /// Leaves the picture-only mode if Escape was pressed and no drag or widget has consumed the key.
+    pub(crate) fn leave_picture_only(&mut self, ctx: &egui::Context) {
         let is_free = self.layout.picture_only && ctx.dragged_id().is_none();
         if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
             self.layout.picture_only = false;
@@ -103,17 +104,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_of_a_layout_is_found_again() {
-        let mut layout = Layout { side: false, slices: true, ..Layout::default() };
+    fn stored_layout_is_restored() {
+        let mut layout = WindowLayout { side: false, slices: true, ..WindowLayout::default() };
         layout.picture_only = true;
         let text = serde_json::to_string(&layout).unwrap();
-        let again: Layout = serde_json::from_str(&text).unwrap();
+        let again: WindowLayout = serde_json::from_str(&text).unwrap();
         assert_eq!(
             again,
-            Layout { side: false, slices: true, ..Layout::default() },
+            WindowLayout { side: false, slices: true, ..WindowLayout::default() },
             "and the panels are there"
         );
-        let newer: Layout = serde_json::from_str(r#"{"transfer": false, "more": 1}"#).unwrap();
+        let newer: WindowLayout = serde_json::from_str(r#"{"transfer": false, "more": 1}"#).unwrap();
         assert!(newer.side && !newer.transfer);
     }
 }

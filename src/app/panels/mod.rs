@@ -1,9 +1,9 @@
-//! The side panel. Panels see settings and read-only facts, never the renderer.
+//! Side panel of the main window. Panels see settings and read-only facts, never the renderer.
 
 mod camera;
+mod clipping;
 mod compare;
 pub(super) mod controls;
-mod cuts;
 mod data;
 mod floor;
 mod lights;
@@ -12,16 +12,16 @@ mod scattering;
 mod sections;
 mod shading;
 mod shadows;
-mod sky;
+mod sky_light;
 
 use eframe::egui;
 
-use self::controls::{Header, SceneUnit};
-use super::common::commands::Command;
+use self::controls::{SceneUnit, SectionHeader};
+use super::common::commands::AppCommand;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
 use super::text::common::LengthUnit;
-use super::viewport::Facts;
+use super::viewport::RendererStatus;
 use super::viewport::compare::Compare;
 use crate::data::KindName;
 use crate::model::Settings;
@@ -29,62 +29,64 @@ use crate::model::Settings;
 pub(super) use lights::add_light;
 pub(super) use shadows::set_linked;
 
-/// What panels work with.
-pub(super) struct Panels<'a> {
-    /// The look.
+/// Context of the panels: the settings that they edit, and facts that they show.
+pub(super) struct PanelContext<'a> {
+    /// Current settings, edited in place.
     pub settings: &'a mut Settings,
-    /// What reset buttons put back.
-    pub defaults: &'a Settings,
-    /// The open volume.
+    /// First look, which the reset buttons restore.
+    pub first_look: &'a Settings,
+    /// Facts about the open volume, if there is one.
     pub volume: Option<&'a VolumeFacts>,
-    /// The kind of data that it is treated as, if not its own.
+    /// Kind of data that the volume is treated as, if not its own.
     pub treated_as: Option<KindName>,
-    /// The light whose handle is marked.
+    /// Index of the light whose handle is marked.
     pub selected_light: &'a mut usize,
-    /// Two looks in one picture.
+    /// State of the comparison of two looks.
     pub compare: &'a mut Compare,
-    /// What is known of the renderer's work.
-    pub facts: &'a Facts,
-    /// A balance is being measured.
-    pub balancing: bool,
-    /// What the user asks for.
-    pub commands: &'a mut Vec<Command>,
+    /// Figures about the renderer's work: adapter, costs, memory.
+    pub facts: &'a RendererStatus,
+    /// True while a balance is being measured.
+    pub is_balancing: bool,
+    /// Commands that the user has given in this frame.
+    pub commands: &'a mut Vec<AppCommand>,
 }
 
-impl Panels<'_> {
-    /// The unit in which lengths are shown.
+impl PanelContext<'_> {
+    /// Unit in which lengths are shown: that of the volume, or voxels where its scale is unknown.
     fn scene_unit(&self) -> SceneUnit {
         let per_mm = |unit: LengthUnit, mm: f64| SceneUnit { per_scene: mm / unit.mm, suffix: unit.suffix };
         match self.volume {
             Some(volume) => per_mm(volume.length_unit(), volume.scene.mm_per_unit),
-            None => per_mm(LengthUnit::showing(1.0, true), 1.0),
+            None => per_mm(LengthUnit::for_length(1.0, true), 1.0),
         }
     }
 }
 
-/// Shows all sections, in the order in which people work. Whatever they hold, the panel is as wide as it was made.
-pub(super) fn show(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
+/// Shows all sections, in the usual order of work. The panel keeps its width, whatever its contents need.
+pub(super) fn show(ui: &mut egui::Ui, panels: &mut PanelContext<'_>) {
     let room = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
     inside.shrink_clip_rect(room);
-    sections::tabs::show(&mut inside, |title| sections::is_active(title, panels.settings, panels.compare.on));
+    sections::tabs::show(&mut inside, |title| {
+        sections::is_section_active(title, panels.settings, panels.compare.on)
+    });
     inside.separator();
     all_sections(&mut inside, panels);
     ui.allocate_rect(room, egui::Sense::hover());
 }
 
-fn all_sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
+fn all_sections(ui: &mut egui::Ui, panels: &mut PanelContext<'_>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
         section(ui, text::sections::LIGHTS, true, panels, lights::show);
         section(ui, text::sections::SHADOWS, true, panels, shadows::show);
         section(ui, text::sections::SOFT_LIGHT, false, panels, |ui, panels| {
-            sky::show(ui, panels);
+            sky_light::show(ui, panels);
             ui.separator();
             scattering::show(ui, panels);
         });
         section(ui, text::sections::SHADING, false, panels, shading::show);
-        section(ui, text::sections::CUTS, false, panels, cuts::show);
+        section(ui, text::sections::CUTS, false, panels, clipping::show);
         section(ui, text::sections::FLOOR, false, panels, floor::show);
         section(ui, text::sections::CAMERA, false, panels, camera::show);
         section(ui, text::sections::COMPARE, false, panels, |ui, panels| {
@@ -94,20 +96,20 @@ fn all_sections(ui: &mut egui::Ui, panels: &mut Panels<'_>) {
     });
 }
 
-/// A section with what its header says.
+/// Shows a section and the state of its header, and resets it on request.
 fn section(
     ui: &mut egui::Ui,
     title: &'static str,
     open: bool,
-    panels: &mut Panels<'_>,
-    show: impl FnOnce(&mut egui::Ui, &mut Panels<'_>),
+    panels: &mut PanelContext<'_>,
+    show: impl FnOnce(&mut egui::Ui, &mut PanelContext<'_>),
 ) {
-    let header = Header {
+    let header = SectionHeader {
         open,
-        is_active: sections::is_active(title, panels.settings, panels.compare.on),
-        can_reset: sections::differs(title, panels.settings, panels.defaults),
+        is_active: sections::is_section_active(title, panels.settings, panels.compare.on),
+        can_reset: sections::can_reset(title, panels.settings, panels.first_look),
     };
     if controls::section(ui, title, header, |ui| show(ui, panels)) {
-        sections::put_back(title, panels.settings, panels.defaults);
+        sections::reset_section(title, panels.settings, panels.first_look);
     }
 }

@@ -3,39 +3,39 @@
 use eframe::egui::Ui;
 
 use super::super::text;
-use super::super::text::common::TIMES;
-use super::Panels;
-use super::controls::{Number, advanced};
-use super::shadows::soft_resolution;
+use super::super::text::common::FACTOR_SUFFIX;
+use super::PanelContext;
+use super::controls::{NumberRow, advanced_group};
+use super::shadows::soft_light_resolution;
 use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
 
-/// Shows the section.
-pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
-    let (scattering, defaults) = (&mut panels.settings.scattering, &panels.defaults.scattering);
+/// Shows the rows of multiple scattering in the section "Sky and scattering".
+pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
+    let (scattering, defaults) = (&mut panels.settings.scattering, &panels.first_look.scattering);
     let mut bounces = f64::from(scattering.bounces);
-    let number = Number::new(text::scattering::BOUNCES, 0.0..=f64::from(MAX_BOUNCES)).decimals(0);
+    let number = NumberRow::new(text::scattering::BOUNCES, 0.0..=f64::from(MAX_BOUNCES)).decimals(0);
     number.show(ui, &mut bounces, f64::from(defaults.bounces));
     scattering.bounces = bounces.round().clamp(0.0, f64::from(MAX_BOUNCES)) as u32;
     ui.add_enabled_ui(scattering.bounces > 0, |ui| {
-        let albedo = Number::new(text::scattering::ALBEDO, 0.0..=1.0);
+        let albedo = NumberRow::new(text::scattering::ALBEDO, 0.0..=1.0);
         albedo.show(ui, &mut scattering.albedo, defaults.albedo);
-        let density = Number::new(text::scattering::DENSITY, 0.01..=4.0).unit(TIMES).log();
+        let density = NumberRow::new(text::scattering::DENSITY, 0.01..=4.0).unit(FACTOR_SUFFIX).logarithmic();
         density.show(ui, &mut scattering.density_scale, defaults.density_scale);
-        let strength = Number::new(text::scattering::STRENGTH, 0.0..=4.0).unit(TIMES);
+        let strength = NumberRow::new(text::scattering::STRENGTH, 0.0..=4.0).unit(FACTOR_SUFFIX);
         strength.show(ui, &mut scattering.strength, defaults.strength);
     });
-    let anisotropy = Number::new(text::scattering::ANISOTROPY, -MAX_ANISOTROPY..=MAX_ANISOTROPY);
+    let anisotropy = NumberRow::new(text::scattering::ANISOTROPY, -MAX_ANISOTROPY..=MAX_ANISOTROPY);
     anisotropy.show(ui, &mut scattering.anisotropy, defaults.anisotropy);
     ui.add_enabled_ui(scattering.bounces > 0, |ui| {
-        advanced(ui, "scattering", |ui| {
+        advanced_group(ui, "scattering", |ui| {
             let (least, most) = (f64::from(*SKY_DIRECTIONS.start()), f64::from(*SKY_DIRECTIONS.end()));
             let mut directions = f64::from(scattering.directions);
-            let number = Number::new(text::scattering::DIRECTIONS, least..=most).decimals(0);
+            let number = NumberRow::new(text::scattering::DIRECTIONS, least..=most).decimals(0);
             number.show(ui, &mut directions, f64::from(defaults.directions));
             scattering.directions = directions.round().clamp(least, most) as u32;
             let (shadows, dims) = (&panels.settings.shadows, panels.volume.map(|volume| volume.dims));
-            let used = |resolution| Some(shadows.soft(resolution, dims?));
-            soft_resolution(ui, &mut scattering.resolution, panels.facts.bounces_cost(), used);
+            let used = |resolution| Some(shadows.soft_resolution(resolution, dims?));
+            soft_light_resolution(ui, &mut scattering.resolution, panels.facts.bounces_cost(), used);
         });
     });
 }

@@ -1,25 +1,26 @@
-//! Changes that the window makes by itself: when they have to wait for somebody's hands, and how values get to their
-//! ends. Times are in seconds, of any clock that does not go back.
+//! Easing of automatic changes: detection of input that delays them, and interpolation.
+//!
+//! Times are in seconds of any monotonic clock.
 
 use eframe::egui;
 
-/// How long a change takes: seen as a movement, and not as a jump.
+/// Duration of a change in seconds: long enough to be seen as motion, not as a jump.
 pub(super) const EASE_S: f64 = 0.3;
 
-/// Whether somebody holds a button of the pointer or a key, or writes.
-pub(super) fn is_held(ctx: &egui::Context) -> bool {
+/// Returns true while the user holds a pointer button or a key, or edits text.
+pub(super) fn is_user_active(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
 }
 
-/// The share of its way at which a change is that began at a time: slow at both ends, and 1 when it is there.
-pub(super) fn share(since_s: f64, now_s: f64) -> f64 {
+/// Returns the eased progress, from 0 to 1, of a change that began at `since_s`.
+pub(super) fn eased_progress(since_s: f64, now_s: f64) -> f64 {
     let t = ((now_s - since_s) / EASE_S).clamp(0.0, 1.0);
-    // The cubic that is level at both ends.
+    // Smoothstep: the cubic with zero slope at both ends.
     t * t * (3.0 - 2.0 * t)
 }
 
-/// A factor on its way: equal ratios are equal steps for the eye.
-pub(super) fn towards(from: f64, to: f64, share: f64) -> f64 {
+/// Interpolates a positive factor geometrically, since equal ratios look like equal steps.
+pub(super) fn interpolate_factor(from: f64, to: f64, share: f64) -> f64 {
     if share >= 1.0 { to } else { from * (to / from).powf(share) }
 }
 
@@ -29,8 +30,11 @@ mod tests {
 
     #[test]
     fn changes_end_where_they_should() {
-        assert_eq!((share(5.0, 4.0), share(5.0, 5.0), share(5.0, 5.0 + EASE_S)), (0.0, 0.0, 1.0));
-        assert!((share(5.0, 5.0 + EASE_S / 2.0) - 0.5).abs() < 1e-9);
-        assert_eq!((towards(2.0, 8.0, 0.5), towards(2.0, 0.3, 1.0)), (4.0, 0.3));
+        assert_eq!(
+            (eased_progress(5.0, 4.0), eased_progress(5.0, 5.0), eased_progress(5.0, 5.0 + EASE_S)),
+            (0.0, 0.0, 1.0)
+        );
+        assert!((eased_progress(5.0, 5.0 + EASE_S / 2.0) - 0.5).abs() < 1e-9);
+        assert_eq!((interpolate_factor(2.0, 8.0, 0.5), interpolate_factor(2.0, 0.3, 1.0)), (4.0, 0.3));
     }
 }

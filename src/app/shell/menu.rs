@@ -1,64 +1,67 @@
-//! The menu bar.
+//! Menu bar with the commands, the name of the open volume and its channels.
 
 use eframe::egui::{self, Button, ThemePreference};
 
-use crate::app::common::aspect::Alternatives;
-use crate::app::common::commands::Command;
+use crate::app::common::alternatives::Alternatives;
+use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::{elide_middle, text_width};
-use crate::app::common::{frame, theme};
-use crate::app::memory::{EarlierRun, RecentFile, RecentPictures};
+use crate::app::common::{overlay_windows, theme};
+use crate::app::persistence::{EarlierRun, RecentFile, RecentThumbnails};
 use crate::app::text;
 use crate::app::windows::recovery;
-use crate::data::load::{Aspect, Dimension, Held};
-use crate::data::{plain, synthetic};
-use crate::model::{MAX_LIGHTS, MAX_NAME, ObjectTurn, Projection, Rig, Settings, StandardView};
+use crate::data::load::{ChoiceAspect, FileContents, FileDimension};
+use crate::data::{sanitised, synthetic};
+use crate::model::{
+    LightingRig, MAX_LIGHTS, MAX_NAME_CHARS, ObjectRotation, Projection, Settings, StandardView,
+};
 
-/// Characters of a path under the pointer: the longest that there are.
-const LONGEST_PATH: usize = 4096;
+/// Maximum number of characters of a path in a tooltip: the longest path that systems allow.
+const MAX_PATH_CHARS: usize = 4096;
 
-/// Points of a file's name in a menu: menus stay narrower than the smallest window.
-const LONGEST_NAME: f32 = 300.0;
+/// Maximum width of a file name in a menu, in points: menus stay narrower than the smallest window.
+const MAX_NAME_WIDTH: f32 = 300.0;
 
-/// Points of the longer edge of a recent file's picture: what it is of can be told, and the list fits on low screens.
-const RECENT_EDGE: f32 = 48.0;
+/// Longer edge of a recent file's thumbnail, in points: its subject is recognisable, and the list fits on low
+/// screens.
+const THUMBNAIL_EDGE: f32 = 48.0;
 
-/// What the menu shows as chosen.
-pub(crate) struct Menu<'a> {
-    /// The look.
+/// Inputs of the menu bar: the state that it shows, and the values that it changes.
+pub(crate) struct MenuInputs<'a> {
+    /// Settings of the current look.
     pub settings: &'a mut Settings,
-    /// The open volume's name, and its voxels and their size, for the right end of the bar.
-    pub title: Option<Title>,
-    /// What a step back changes, or one forward; `None` where there is none.
-    pub step: &'a dyn Fn(bool) -> Option<String>,
-    /// What is on screen.
-    pub shown: Shown,
-    /// What the open file holds.
-    pub several: Option<&'a Held>,
-    /// Files that were opened, the latest first.
+    /// Name, dimensions and spacing of the open volume, for the right end of the bar.
+    pub title: Option<VolumeTitle>,
+    /// Describes the next undo (`true`) or redo (`false`); `None` where there is none.
+    pub describe_step: &'a dyn Fn(bool) -> Option<String>,
+    /// Visibility of the parts of the window.
+    pub parts: WindowParts,
+    /// Series, channels, time steps and components of the open file.
+    pub alternatives: Option<&'a FileContents>,
+    /// Recently opened files, the latest first.
     pub recent: &'a [RecentFile],
-    /// What they look like.
-    pub recent_pictures: &'a mut RecentPictures,
-    /// Whether the next volume is shown as this one.
+    /// Thumbnails of the recent files.
+    pub recent_pictures: &'a mut RecentThumbnails,
+    /// True if the next volume keeps the current look.
     pub keeps_look: bool,
-    /// Runs that have ended, the latest first.
-    pub earlier: &'a [EarlierRun],
-    /// Milliseconds that a frame may take while something moves.
+    /// Looks of earlier runs, the latest first.
+    pub earlier_runs: &'a [EarlierRun],
+    /// Time budget of a preview frame, in ms; `None` is automatic.
     pub frame_ms: &'a mut Option<f64>,
-    /// What the user asks for.
-    pub commands: &'a mut Vec<Command>,
+    /// Queue of the commands that the user issues.
+    pub commands: &'a mut Vec<AppCommand>,
 }
 
-/// What is written of the open volume.
+/// Description of the open volume at the right end of the bar.
 #[derive(Debug, Clone)]
-pub(crate) struct Title {
-    /// The volume's name.
+pub(crate) struct VolumeTitle {
+    /// Name of the open volume.
     pub name: String,
-    /// Its voxels, and their size.
+    /// Dimensions of the volume, and its voxel spacing.
     pub facts: String,
 }
 
-impl Title {
-    /// Shows it in what is left of the bar: the facts are whole, and the middle of a long name is left out.
+impl VolumeTitle {
+    /// Shows the title in the space left in the bar: the facts in full, a long name elided in the middle.
     fn show(&self, ui: &mut egui::Ui) {
         let facts = text::menu::title("", &self.facts);
         let room = ui.available_width() - text_width(ui, &facts, &egui::TextStyle::Body);
@@ -71,46 +74,46 @@ impl Title {
     }
 }
 
-/// Parts of the window that can be switched off.
+/// Visibility of the parts of the window that can be switched off.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Shown {
-    /// The side panel.
+pub(crate) struct WindowParts {
+    /// Visibility of the side panel.
     pub side: bool,
-    /// The transfer function editor.
+    /// Visibility of the transfer function editor.
     pub transfer: bool,
-    /// The strip of kept views and looks.
-    pub kept: bool,
-    /// The handles of the lights.
+    /// Visibility of the strip of saved views and looks.
+    pub strip: bool,
+    /// Visibility of the light handles.
     pub handles: bool,
-    /// Two looks instead of one.
-    pub compares: bool,
-    /// Chips of the lights, box, scale bar and cube.
+    /// True while two looks are compared.
+    pub comparison: bool,
+    /// Visibility of the light chips, bounding box, scale bar and orientation cube.
     pub overlay: bool,
-    /// What is under the pointer.
+    /// True while the probe explains the sample under the pointer.
     pub probe: bool,
 }
 
-/// Shows the bar.
-pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+/// Shows the menu bar at the top of the window.
+pub(crate) fn show(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     egui::Panel::top("menu").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         egui::MenuBar::new().ui(ui, |ui| {
-            frame::scrolling_menu(ui, text::menu::FILE, |ui| file(ui, menu));
-            frame::scrolling_menu(ui, text::menu::EDIT, |ui| {
-                step(ui, menu, Command::Undo, true);
-                step(ui, menu, Command::Redo, false);
-                item(ui, menu, Command::ToggleHistory, true);
+            overlay_windows::scrolling_menu(ui, text::menu::FILE, |ui| file(ui, menu));
+            overlay_windows::scrolling_menu(ui, text::menu::EDIT, |ui| {
+                history_item(ui, menu, AppCommand::Undo, true);
+                history_item(ui, menu, AppCommand::Redo, false);
+                item(ui, menu, AppCommand::ToggleHistory, true);
                 ui.separator();
-                item(ui, menu, Command::ShowPalette, true);
+                item(ui, menu, AppCommand::ShowPalette, true);
             });
-            frame::scrolling_menu(ui, text::menu::VIEW, |ui| view(ui, menu));
-            frame::scrolling_menu(ui, text::menu::LIGHT, |ui| light(ui, menu));
-            frame::scrolling_menu(ui, text::menu::HELP, |ui| {
-                item(ui, menu, Command::ShowHelp, true);
-                item(ui, menu, Command::ToggleMessages, true);
-                item(ui, menu, Command::ShowAbout, true);
+            overlay_windows::scrolling_menu(ui, text::menu::VIEW, |ui| view(ui, menu));
+            overlay_windows::scrolling_menu(ui, text::menu::LIGHT, |ui| light(ui, menu));
+            overlay_windows::scrolling_menu(ui, text::menu::HELP, |ui| {
+                item(ui, menu, AppCommand::ShowHelp, true);
+                item(ui, menu, AppCommand::ToggleMessages, true);
+                item(ui, menu, AppCommand::ShowAbout, true);
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                several(ui, menu);
+                alternatives(ui, menu);
                 if let Some(title) = &menu.title {
                     title.show(ui);
                 }
@@ -119,117 +122,120 @@ pub(crate) fn show(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
 }
 
-/// What of a file of several volumes is shown, where nobody can miss it: beside its name.
-fn several(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
-    let Some(held) = menu.several else { return };
-    for aspect in Aspect::ALL.into_iter().rev() {
-        let Some(all) = Alternatives::of(held, aspect) else { continue };
-        let at = all.at();
+/// Shows the current series, channel, time step or component beside the file name, where it cannot be missed.
+fn alternatives(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
+    let Some(held) = menu.alternatives else { return };
+    for aspect in ChoiceAspect::ALL.into_iter().rev() {
+        let Some(all) = Alternatives::new(held, aspect) else { continue };
+        let at = all.current();
         let named = match aspect {
-            Aspect::Component => Some(all.name(at)),
-            // Series and time steps have long names, or none.
-            Aspect::Of(Dimension::Channel | Dimension::Array) => all.name_in_file(at).map(str::to_owned),
-            Aspect::Of(_) => None,
+            ChoiceAspect::Component => Some(all.name(at)),
+            // Names of series and time steps are long or missing.
+            ChoiceAspect::Dimension(FileDimension::Channel | FileDimension::Array) => {
+                all.name_in_file(at).map(str::to_owned)
+            }
+            ChoiceAspect::Dimension(_) => None,
         };
-        let label = text::chooser::beside_title(aspect, at, all.count(), named.as_deref());
+        let label = text::chooser::title_suffix(aspect, at, all.count(), named.as_deref());
         if ui.button(label).on_hover_text(text::chooser::command(aspect)).clicked() {
-            menu.commands.push(Command::Choose(aspect));
+            menu.commands.push(AppCommand::ShowChooser(aspect));
         }
     }
 }
 
-fn item(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, enabled: bool) {
+fn item(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>, command: AppCommand, enabled: bool) {
     let button = Button::new(&*command.label()).shortcut_text(command.shortcut_text(ui.ctx()));
     if ui.add_enabled(enabled, button).clicked() {
         menu.commands.push(command);
     }
 }
 
-/// A step of the history, with what it changes.
-fn step(ui: &mut egui::Ui, menu: &mut Menu<'_>, command: Command, is_back: bool) {
-    let what = (menu.step)(is_back);
-    let label = text::menu::step(&command.label(), what.as_deref());
+/// Shows the entry of undo or redo, with the change that it affects.
+fn history_item(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>, command: AppCommand, is_back: bool) {
+    let what = (menu.describe_step)(is_back);
+    let label = text::menu::history_entry(&command.label(), what.as_deref());
     let button = Button::new(label).shortcut_text(command.shortcut_text(ui.ctx()));
     if ui.add_enabled(what.is_some(), button).clicked() {
         menu.commands.push(command);
     }
 }
 
-fn file(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
-    item(ui, menu, Command::OpenDialog, true);
-    item(ui, menu, Command::OpenFolder, true);
-    item(ui, menu, Command::OpenPath, true);
-    item(ui, menu, Command::NextFile, true);
-    item(ui, menu, Command::PreviousFile, true);
+fn file(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
+    item(ui, menu, AppCommand::OpenDialog, true);
+    item(ui, menu, AppCommand::OpenFolder, true);
+    item(ui, menu, AppCommand::OpenPath, true);
+    item(ui, menu, AppCommand::NextFile, true);
+    item(ui, menu, AppCommand::PreviousFile, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
-        frame::scrolling_menu(ui, text::menu::OPEN_RECENT, |ui| {
+        overlay_windows::scrolling_menu(ui, text::menu::OPEN_RECENT, |ui| {
             for recent in menu.recent {
                 let path = &recent.path;
                 let whole = path.to_string_lossy();
                 let name = path.file_name().map(|name| name.to_string_lossy());
-                let name = plain(name.as_ref().unwrap_or(&whole), MAX_NAME);
-                let name = elide_middle(ui, &name, &egui::TextStyle::Button, LONGEST_NAME);
+                let name = sanitised(name.as_ref().unwrap_or(&whole), MAX_NAME_CHARS);
+                let name = elide_middle(ui, &name, &egui::TextStyle::Button, MAX_NAME_WIDTH);
                 let picture = menu.recent_pictures.get(path, ui.ctx());
                 let button = match &picture {
                     Some(picture) => {
                         let size = picture.size_vec2();
-                        let size = size * (RECENT_EDGE / size.max_elem());
+                        let size = size * (THUMBNAIL_EDGE / size.max_elem());
                         Button::image_and_text((picture.id(), size), &name)
                     }
                     None => Button::new(&name),
                 };
                 let button = ui.add(button.image_tint_follows_text_color(false));
                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-                if button.on_hover_text(plain(&whole, LONGEST_PATH)).clicked() {
-                    menu.commands.push(Command::OpenAgain(path.clone(), recent.choice.clone()));
+                if button.on_hover_text(sanitised(&whole, MAX_PATH_CHARS)).clicked() {
+                    menu.commands.push(AppCommand::OpenAgain(path.clone(), recent.choice.clone()));
                 }
             }
         });
     });
-    item(ui, menu, Command::GoOn, !menu.earlier.is_empty());
-    ui.add_enabled_ui(!menu.earlier.is_empty(), |ui| {
-        frame::scrolling_menu(ui, text::menu::EARLIER_LOOKS, |ui| {
-            for run in menu.earlier {
-                let name = elide_middle(ui, &recovery::name(run), &egui::TextStyle::Button, LONGEST_NAME);
+    item(ui, menu, AppCommand::ReopenLast, !menu.earlier_runs.is_empty());
+    ui.add_enabled_ui(!menu.earlier_runs.is_empty(), |ui| {
+        overlay_windows::scrolling_menu(ui, text::menu::EARLIER_LOOKS, |ui| {
+            for run in menu.earlier_runs {
+                let name =
+                    elide_middle(ui, &recovery::run_name(run), &egui::TextStyle::Button, MAX_NAME_WIDTH);
                 if ui.button(name).on_hover_text(&run.source).clicked() {
-                    menu.commands.push(Command::Open(run.look.clone()));
+                    menu.commands.push(AppCommand::Open(run.look.clone()));
                 }
             }
         });
     });
-    frame::scrolling_menu(ui, text::commands::OPEN_BUILT_IN, |ui| {
-        for name in synthetic::NAMES {
+    overlay_windows::scrolling_menu(ui, text::commands::OPEN_BUILT_IN, |ui| {
+        for name in synthetic::BUILTIN_NAMES {
             if ui.button(name).clicked() {
-                menu.commands.push(Command::Open(format!("builtin:{name}").into()));
+                menu.commands.push(AppCommand::Open(format!("builtin:{name}").into()));
             }
         }
     });
     ui.separator();
-    item(ui, menu, Command::SaveSettings, true);
-    item(ui, menu, Command::LoadSettings, true);
+    item(ui, menu, AppCommand::SaveSettings, true);
+    item(ui, menu, AppCommand::LoadSettings, true);
     ui.separator();
     let mut keeps_look = menu.keeps_look;
-    let switch = ui.checkbox(&mut keeps_look, &*Command::KeepLook.label());
+    let switch = ui.checkbox(&mut keeps_look, &*AppCommand::ToggleKeepLook.label());
     if switch.on_hover_text(text::menu::KEEP_LOOK_TIP).clicked() {
-        menu.commands.push(Command::KeepLook);
+        menu.commands.push(AppCommand::ToggleKeepLook);
     }
     ui.separator();
-    item(ui, menu, Command::Export, true);
-    item(ui, menu, Command::CopyPicture, true);
+    item(ui, menu, AppCommand::Export, true);
+    item(ui, menu, AppCommand::CopyPicture, true);
     ui.separator();
-    item(ui, menu, Command::Quit, true);
+    item(ui, menu, AppCommand::Quit, true);
 }
 
-fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
-    item(ui, menu, Command::TryLooks, true);
+fn view(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
+    item(ui, menu, AppCommand::TryLooks, true);
     ui.separator();
-    item(ui, menu, Command::ResetView, true);
-    item(ui, menu, Command::FrameAll, true);
-    item(ui, menu, Command::TurnObject(ObjectTurn::Over), true);
-    item(ui, menu, Command::TurnRound, true);
-    frame::scrolling_menu(ui, text::menu::LOOK_FROM, |ui| {
+    item(ui, menu, AppCommand::ResetView, true);
+    item(ui, menu, AppCommand::FrameAll, true);
+    item(ui, menu, AppCommand::TurnObject(ObjectRotation::TipBack), true);
+    item(ui, menu, AppCommand::RotateObject, true);
+    overlay_windows::scrolling_menu(ui, text::menu::LOOK_FROM, |ui| {
         for view in StandardView::ALL {
-            let command = Command::LookFrom(view);
+            let command = AppCommand::LookFrom(view);
             let button = Button::new(view.name(menu.settings.camera.up))
                 .shortcut_text(command.shortcut_text(ui.ctx()));
             if ui.add(button).clicked() {
@@ -237,25 +243,25 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
             }
         }
     });
-    frame::scrolling_menu(ui, text::menu::KEPT, |ui| {
-        item(ui, menu, Command::KeepView, true);
-        item(ui, menu, Command::KeepInStrip, true);
-        item(ui, menu, Command::ExportKept, !menu.settings.kept.is_empty());
+    overlay_windows::scrolling_menu(ui, text::menu::SAVED_VIEWS, |ui| {
+        item(ui, menu, AppCommand::SaveView, true);
+        item(ui, menu, AppCommand::SaveLookInStrip, true);
+        item(ui, menu, AppCommand::ExportContactSheet, !menu.settings.kept.is_empty());
         if !menu.settings.kept.is_empty() {
             ui.separator();
         }
         for (at, kept) in menu.settings.kept.iter().enumerate() {
-            let key = kept.digit.map(text::kept::key).unwrap_or_default();
-            let name = text::kept::go_to(&kept.name);
+            let key = kept.digit.map(text::saved_views::shortcut).unwrap_or_default();
+            let name = text::saved_views::thumbnail_name(&kept.name);
             if ui.add(Button::new(name).shortcut_text(key)).clicked() {
-                menu.commands.push(Command::GoToKept(at, false));
+                menu.commands.push(AppCommand::GoToSaved(at, false));
             }
         }
     });
-    item(ui, menu, Command::ToggleFullScreen, true);
+    item(ui, menu, AppCommand::ToggleFullScreen, true);
     ui.separator();
-    item(ui, menu, Command::ShowSlices, true);
-    item(ui, menu, Command::FacePlane, true);
+    item(ui, menu, AppCommand::ShowSlices, true);
+    item(ui, menu, AppCommand::FacePlane, true);
     ui.separator();
     let projection = &mut menu.settings.camera.projection;
     ui.radio_value(projection, Projection::Perspective, text::menu::PERSPECTIVE);
@@ -263,17 +269,17 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     ui.separator();
     let cuts = &menu.settings.cuts;
     let switches = [
-        (Command::ToggleCrop, cuts.crop.on),
-        (Command::TogglePlane, cuts.plane.on),
-        (Command::ToggleFloor, menu.settings.floor.on),
-        (Command::ToggleSide, menu.shown.side),
-        (Command::ToggleTransfer, menu.shown.transfer),
-        (Command::ToggleKept, menu.shown.kept),
-        (Command::TogglePictureOnly, false),
-        (Command::ToggleHandles, menu.shown.handles),
-        (Command::ToggleOverlay, menu.shown.overlay),
-        (Command::ToggleProbe, menu.shown.probe),
-        (Command::ToggleCompare, menu.shown.compares),
+        (AppCommand::ToggleCrop, cuts.crop.on),
+        (AppCommand::TogglePlane, cuts.plane.on),
+        (AppCommand::ToggleFloor, menu.settings.floor.on),
+        (AppCommand::ToggleSide, menu.parts.side),
+        (AppCommand::ToggleTransfer, menu.parts.transfer),
+        (AppCommand::ToggleStrip, menu.parts.strip),
+        (AppCommand::TogglePictureOnly, false),
+        (AppCommand::ToggleHandles, menu.parts.handles),
+        (AppCommand::ToggleOverlay, menu.parts.overlay),
+        (AppCommand::ToggleProbe, menu.parts.probe),
+        (AppCommand::ToggleCompare, menu.parts.comparison),
     ];
     for (command, mut shown) in switches {
         let label = text::menu::with_key(&command.label(), &command.shortcut_text(ui.ctx()));
@@ -282,22 +288,22 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
         }
     }
     ui.separator();
-    frame::scrolling_menu(ui, text::menu::WHILE_MOVING, |ui| {
+    overlay_windows::scrolling_menu(ui, text::menu::PREVIEW_BUDGET, |ui| {
         for (choice, name) in FRAME_MS {
             ui.radio_value(menu.frame_ms, choice, name);
         }
     });
     ui.separator();
-    frame::scrolling_menu(ui, text::menu::SIZE, |ui| {
+    overlay_windows::scrolling_menu(ui, text::menu::SIZE, |ui| {
         for by in [1, -1, 0] {
-            item(ui, menu, Command::Scale(by), true);
+            item(ui, menu, AppCommand::Scale(by), true);
         }
     });
-    frame::scrolling_menu(ui, text::menu::THEME, |ui| {
+    overlay_windows::scrolling_menu(ui, text::menu::THEME, |ui| {
         let mut theme = ui.ctx().options(|options| options.theme_preference);
         for (choice, name) in [
             (ThemePreference::Dark, text::menu::DARK),
-            (ThemePreference::Light, text::menu::BRIGHT),
+            (ThemePreference::Light, text::menu::LIGHT_THEME),
             (ThemePreference::System, text::menu::AS_SYSTEM),
         ] {
             if ui.radio_value(&mut theme, choice, name).changed() {
@@ -307,7 +313,7 @@ fn view(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
     });
 }
 
-/// What a frame may take: 60, 30, 15 and 5 per second.
+/// Time budgets of a frame, in ms: 60, 30, 15 and 5 frames per second.
 const FRAME_MS: [(Option<f64>, &str); 5] = [
     (None, text::menu::AUTOMATIC),
     (Some(16.0), text::menu::SMOOTH),
@@ -316,26 +322,26 @@ const FRAME_MS: [(Option<f64>, &str); 5] = [
     (Some(200.0), text::menu::SHARPEST),
 ];
 
-fn light(ui: &mut egui::Ui, menu: &mut Menu<'_>) {
+fn light(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     let room = menu.settings.lights.len() < MAX_LIGHTS;
-    item(ui, menu, Command::AddLight, room);
-    frame::scrolling_menu(ui, text::menu::USE_RIG, |ui| {
-        for rig in Rig::ALL {
+    item(ui, menu, AppCommand::AddLight, room);
+    overlay_windows::scrolling_menu(ui, text::menu::USE_RIG, |ui| {
+        for rig in LightingRig::ALL {
             if ui.button(rig.name()).clicked() {
-                menu.commands.push(Command::UseRig(rig));
+                menu.commands.push(AppCommand::UseRig(rig));
             }
         }
     });
-    item(ui, menu, Command::TryLights, true);
+    item(ui, menu, AppCommand::TryLights, true);
     let has_light = !menu.settings.lights.is_empty();
-    item(ui, menu, Command::SuggestLight, has_light);
-    item(ui, menu, Command::UseSurroundings, true);
-    item(ui, menu, Command::NextLight, true);
-    item(ui, menu, Command::Solo, true);
-    item(ui, menu, Command::Mute, true);
+    item(ui, menu, AppCommand::SuggestLight, has_light);
+    item(ui, menu, AppCommand::UseEnvironmentMap, true);
+    item(ui, menu, AppCommand::NextLight, true);
+    item(ui, menu, AppCommand::Solo, true);
+    item(ui, menu, AppCommand::Mute, true);
     ui.separator();
-    item(ui, menu, Command::Balance, true);
-    item(ui, menu, Command::ShowLightVolume, true);
+    item(ui, menu, AppCommand::Balance, true);
+    item(ui, menu, AppCommand::ShowLightVolume, true);
     ui.separator();
     for light in &mut menu.settings.lights {
         ui.checkbox(&mut light.on, &light.name);

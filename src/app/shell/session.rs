@@ -1,67 +1,67 @@
-//! The session file: what Ctrl+S writes, and what it does not overwrite.
+//! Session file of Ctrl+S, and its protection from being overwritten.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use crate::app::text;
-use crate::app::windows::files;
-use crate::model::{Record, SCHEMA, Settings, VolumeRecord};
+use crate::app::windows::file_dialogs;
+use crate::model::{LookRecord, SCHEMA, Settings, VolumeRecord};
 
-/// A file that the look is saved to.
+/// Session file to which the look is saved.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub(crate) struct SessionFile {
     path: PathBuf,
-    /// What it says that this version does not know, which is written again.
+    /// Fields of the file that this version does not know; they are written back.
     unknown: Value,
-    /// Why it is not overwritten.
-    protected: Option<&'static str>,
+    /// Reason why the file must not be overwritten, if any.
+    protection: Option<&'static str>,
 }
 
-impl Session {
-    /// A file that was named when the program was started: what is there has to be read first.
-    pub(crate) fn named(path: PathBuf) -> Self {
-        let protected = path.symlink_metadata().is_ok().then_some(text::memory::NOT_READ_YET);
-        Self { path, unknown: Value::Null, protected }
+impl SessionFile {
+    /// Creates a session named on the command line; an existing file is protected until it has been read.
+    pub(crate) fn from_command_line(path: PathBuf) -> Self {
+        let protected = path.symlink_metadata().is_ok().then_some(text::persistence::NOT_READ_YET);
+        Self { path, unknown: Value::Null, protection: protected }
     }
 
-    /// A file that was just written.
-    fn written(path: &Path) -> Self {
-        Self { path: path.to_owned(), unknown: Value::Null, protected: None }
+    /// Creates the session of a file that was just written.
+    fn just_written(path: &Path) -> Self {
+        Self { path: path.to_owned(), unknown: Value::Null, protection: None }
     }
 
-    /// Where it is.
+    /// Path of the session file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where it is and why it must stay as it is, if it must.
+    /// Path of the file and the reason for its protection, if it is protected.
     pub(crate) fn protection(&self) -> Option<(&Path, &'static str)> {
-        Some((&self.path, self.protected?))
+        Some((&self.path, self.protection?))
     }
 
-    /// What was found there.
-    pub(crate) fn found(&mut self, record: Option<&Record>) {
+    /// Decides on the protection by the record found in the file, and keeps its unknown fields.
+    pub(crate) fn set_record(&mut self, record: Option<&LookRecord>) {
         let Some(record) = record else {
-            self.protected = Some(text::memory::NO_SESSION);
+            self.protection = Some(text::persistence::NOT_A_SESSION);
             return;
         };
-        self.unknown = record.unknown();
+        self.unknown = record.unknown_content();
         let is_json = self.path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        self.protected = match record.schema() {
-            Some(schema) if schema > u64::from(SCHEMA) => Some(text::memory::NEWER_SESSION),
-            Some(_) if record.was_cut() => Some(text::memory::NOT_UNDERSTOOD),
+        self.protection = match record.schema() {
+            Some(schema) if schema > u64::from(SCHEMA) => Some(text::persistence::NEWER_SESSION),
+            Some(_) if record.was_cut() => Some(text::persistence::UNKNOWN_CONTENT),
             Some(_) if is_json => None,
-            _ => Some(text::memory::NO_SESSION),
+            _ => Some(text::persistence::NOT_A_SESSION),
         };
     }
 
-    /// A record was read there, but cannot be laid over the settings.
-    pub(crate) fn not_understood(&mut self) {
-        self.protected = Some(text::memory::NOT_UNDERSTOOD);
+    /// Protects a file whose record cannot be applied to the settings.
+    pub(crate) fn protect_invalid(&mut self) {
+        self.protection = Some(text::persistence::UNKNOWN_CONTENT);
     }
 
-    /// Writes a look to a file: over the session itself with what that says beside the settings.
+    /// Writes a look to a file. Over the session itself, its unknown fields are preserved.
     pub(crate) fn save(
         session: &mut Option<Self>,
         path: &Path,
@@ -69,11 +69,11 @@ impl Session {
         volume: Option<&VolumeRecord>,
     ) -> Result<(), String> {
         let unknown = session.as_ref().filter(|session| session.path == path).map(|session| &session.unknown);
-        let text = Record::text_with(settings, volume, None, unknown.unwrap_or(&Value::Null));
-        files::write_with_backup(path, text.as_bytes())?;
+        let text = LookRecord::to_json_with_unknown(settings, volume, None, unknown.unwrap_or(&Value::Null));
+        file_dialogs::write_with_backup(path, text.as_bytes())?;
         match session {
-            Some(session) if session.path == path => session.protected = None,
-            _ => *session = Some(Self::written(path)),
+            Some(session) if session.path == path => session.protection = None,
+            _ => *session = Some(Self::just_written(path)),
         }
         Ok(())
     }

@@ -1,80 +1,85 @@
-//! The status bar: what the user waits for, what was undone, and behind a click what pictures cost.
+//! Status bar: progress of picture and tasks, the last undo step, and render statistics behind a button.
 
 use std::path::Path;
 
 use eframe::egui::{self, ProgressBar, RichText, TextStyle};
 
-use super::messages::Messages;
-use crate::app::common::commands::Command;
+use super::messages::MessageLog;
+use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::elide_middle;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::viewport::{Doing, Facts};
-use crate::app::windows::export::Unseen;
+use crate::app::viewport::{RendererActivity, RendererStatus};
+use crate::app::windows::export::ExportProgress;
 use crate::app::worker::loader::LoadProgress;
-use crate::data::plain;
+use crate::data::sanitised;
 
-/// Characters of a path in the bar: more than the widest screen shows.
-const LONGEST_PATH: usize = 500;
+/// Maximum number of characters of a path in the bar: more than the widest screen shows.
+const MAX_PATH_CHARS: usize = 500;
 
-/// Points of the last step back or forward: a name of a light may be long.
-const LONGEST_STEP: f32 = 260.0;
+/// Maximum width of the last undo step, in points: names of lights may be long.
+const MAX_STEP_WIDTH: f32 = 260.0;
 
-/// Points for the buttons at the right of the bar.
-const BUTTONS: f32 = 200.0;
+/// Width reserved for the buttons at the right end of the bar, in points.
+const BUTTONS_WIDTH: f32 = 200.0;
 
-/// Work that can be cancelled in the bar.
+/// Tasks that can be cancelled in the bar.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Busy<'a> {
-    /// The volume that is being opened.
+pub(crate) struct CancellableTasks<'a> {
+    /// Progress of the volume that is being opened.
     pub opening: Option<LoadProgress<'a>>,
-    /// Another file that is being read.
+    /// Path of another file that is being read.
     pub reading: Option<&'a Path>,
-    /// The export whose window is closed.
-    pub exporting: Option<Unseen>,
+    /// Progress of the export, while its window is closed.
+    pub exporting: Option<ExportProgress>,
 }
 
-/// What the status bar shows.
+/// Contents of the status bar.
 #[derive(Clone, Copy)]
-pub(crate) struct Status<'a> {
-    /// What is known of the renderer's work.
-    pub facts: &'a Facts,
-    /// Work that can be cancelled.
-    pub busy: Busy<'a>,
-    /// What else is being made, and is waited for.
-    pub making: Option<&'static str>,
-    /// The last step back or forward.
-    pub went: Option<&'a str>,
+pub(crate) struct StatusBar<'a> {
+    /// Statistics and state of the renderer.
+    pub facts: &'a RendererStatus,
+    /// Tasks in progress that can be cancelled.
+    pub busy: CancellableTasks<'a>,
+    /// Name of another task in progress, such as placing lights.
+    pub background_task: Option<&'static str>,
+    /// Description of the last undo or redo.
+    pub last_step: Option<&'a str>,
 }
 
-/// Shows the bar.
+/// Shows the bar at the bottom of the window.
 pub(crate) fn show(
     ui: &mut egui::Ui,
-    status: Status<'_>,
-    messages: &mut Messages,
-    commands: &mut Vec<Command>,
+    status: StatusBar<'_>,
+    messages: &mut MessageLog,
+    commands: &mut Vec<AppCommand>,
 ) {
-    let Status { facts, busy: Busy { opening, reading, exporting }, making, went } = status;
+    let StatusBar {
+        facts,
+        busy: CancellableTasks { opening, reading, exporting },
+        background_task: making,
+        last_step: went,
+    } = status;
     egui::Panel::bottom("status").resizable(false).frame(theme::panel(ui)).show(ui, |ui| {
         ui.horizontal(|ui| {
             if let Some(opening) = opening {
                 progress_of_opening(ui, &opening, commands);
             } else if let Some(path) = reading {
                 ui.spinner();
-                let path = plain(&path.to_string_lossy(), LONGEST_PATH);
-                let words = text::status::opening(text::opening::READING, None, &path);
-                let room = ui.available_width() - BUTTONS;
+                let path = sanitised(&path.to_string_lossy(), MAX_PATH_CHARS);
+                let words = text::status::opening_progress(text::opening::READING, None, &path);
+                let room = ui.available_width() - BUTTONS_WIDTH;
                 let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
                 response.on_hover_text(words);
                 cancel(ui, commands);
             } else {
-                doing(ui, facts.doing, making);
+                picture_state(ui, facts.activity, making);
                 if let Some(went) = went {
                     ui.separator();
-                    let words = elide_middle(ui, went, &TextStyle::Body, LONGEST_STEP);
+                    let words = elide_middle(ui, went, &TextStyle::Body, MAX_STEP_WIDTH);
                     let link = ui.add(egui::Link::new(words));
-                    if link.on_hover_text(text::status::WENT_TIP).clicked() {
-                        commands.push(Command::ToggleHistory);
+                    if link.on_hover_text(text::status::HISTORY_TIP).clicked() {
+                        commands.push(AppCommand::ToggleHistory);
                     }
                 }
             }
@@ -82,13 +87,13 @@ pub(crate) fn show(
                 export(ui, exporting, commands);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                figures(ui, facts);
+                statistics(ui, facts);
                 let (count, left) = messages.unread();
                 if count > 0 {
                     ui.ctx().request_repaint_after(left);
                     let button = ui.small_button(text::messages::count(count));
                     if button.on_hover_text(text::messages::LIST_TIP).clicked() {
-                        messages.lists ^= true;
+                        messages.list_open ^= true;
                     }
                 }
             });
@@ -96,34 +101,39 @@ pub(crate) fn show(
     });
 }
 
-/// How far a volume is that is being opened.
-fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<Command>) {
+/// Shows the progress of a volume that is being opened.
+fn progress_of_opening(ui: &mut egui::Ui, opening: &LoadProgress<'_>, commands: &mut Vec<AppCommand>) {
     let &LoadProgress { source, reading: _, phase, fraction, bytes } = opening;
     match fraction {
         Some(share) => ui.add(ProgressBar::new(share).desired_width(120.0).desired_height(8.0)),
-        // A bar that stays empty looks stuck.
+        // A spinner, since an empty progress bar looks stuck.
         None => ui.spinner(),
     };
-    let words = text::status::opening(phase, bytes, &plain(&source.to_string_lossy(), LONGEST_PATH));
-    let room = ui.available_width() - BUTTONS;
+    let words =
+        text::status::opening_progress(phase, bytes, &sanitised(&source.to_string_lossy(), MAX_PATH_CHARS));
+    let room = ui.available_width() - BUTTONS_WIDTH;
     let response = ui.label(elide_middle(ui, &words, &TextStyle::Body, room));
     response.on_hover_text(words);
     cancel(ui, commands);
 }
 
-/// The button that ends reading and opening.
-fn cancel(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    if ui.small_button(&*Command::CancelOpening.label()).clicked() {
-        commands.push(Command::CancelOpening);
+/// Shows the button that cancels reading and opening.
+fn cancel(ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
+    if ui.small_button(&*AppCommand::CancelOpening.label()).clicked() {
+        commands.push(AppCommand::CancelOpening);
     }
 }
 
-/// How far an export is, whose window may be closed.
-fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mut Vec<Command>) {
+/// Shows the progress of an export whose window may be closed.
+fn export(
+    ui: &mut egui::Ui,
+    ExportProgress { done, total, remaining: left }: ExportProgress,
+    commands: &mut Vec<AppCommand>,
+) {
     ui.separator();
-    // First, so that it stays where it is while pictures are counted.
+    // First, so that the button does not move while the count changes.
     if ui.small_button(text::common::CANCEL).clicked() {
-        commands.push(Command::CancelExport);
+        commands.push(AppCommand::CancelExport);
     }
     if total > 1 {
         let bar = ProgressBar::new(done as f32 / total as f32).desired_width(80.0).desired_height(8.0);
@@ -131,30 +141,30 @@ fn export(ui: &mut egui::Ui, Unseen { done, total, left }: Unseen, commands: &mu
     } else {
         ui.spinner();
     }
-    let words = text::status::exporting(done, total);
-    let words = left.map_or(words.clone(), |left| format!("{words}, {}", text::export::left(left)));
+    let words = text::status::export_progress(done, total);
+    let words = left.map_or(words.clone(), |left| format!("{words}, {}", text::export::time_left(left)));
     if ui.link(words).on_hover_text(text::status::EXPORTING_TIP).clicked() {
-        commands.push(Command::Export);
+        commands.push(AppCommand::Export);
     }
 }
 
-/// The button behind which it says how fast pictures are made, with how much memory, and on what.
-fn figures(ui: &mut egui::Ui, facts: &Facts) {
+/// Shows the button with a popup of statistics: render times, memory and graphics device.
+fn statistics(ui: &mut egui::Ui, facts: &RendererStatus) {
     let named = text::status::PERFORMANCE;
     let button = ui.small_button(named.name);
     egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.strong(named.name);
         egui::Grid::new("performance").num_columns(2).show(ui, |ui| {
-            for (name, value) in text::status::figures(&text::status::Figures {
+            for (name, value) in text::status::statistics(&text::status::RenderStatisticsText {
                 full_ms: facts.full_ms,
                 preview_ms: facts.preview_ms,
-                splats: facts.splats,
+                splats: facts.splat_count,
                 cached_light_volumes: facts.cached_light_volumes,
-                light_rebuilds: facts.light_rebuilds,
+                light_rebuilds: facts.light_fill_count,
                 gpu_mebibytes: facts.gpu_mebibytes,
                 adapter: &facts.adapter,
                 driver: &facts.driver,
-                is_software: facts.software,
+                is_software: facts.is_software,
             }) {
                 ui.weak(name);
                 ui.label(value);
@@ -162,30 +172,30 @@ fn figures(ui: &mut egui::Ui, facts: &Facts) {
             }
         });
     });
-    button.on_hover_text(named.tip);
+    button.on_hover_text(named.tooltip);
 }
 
-/// What is on screen, or what it waits for.
-fn doing(ui: &mut egui::Ui, doing: Doing, making: Option<&'static str>) {
+/// Shows the state of the picture, or the task in progress.
+fn picture_state(ui: &mut egui::Ui, doing: RendererActivity, making: Option<&'static str>) {
     match (doing, making) {
-        (Doing::Refining(what, share), _) => {
+        (RendererActivity::Refining(what, share), _) => {
             let bar = ProgressBar::new(share).desired_width(80.0).desired_height(8.0);
             ui.add(bar.fill(theme::ACCENT));
-            ui.label(text::status::refining(share, what))
+            ui.label(text::status::refinement_progress(share, what))
         }
-        (Doing::Failed, _) => {
+        (RendererActivity::Failed, _) => {
             ui.label(RichText::new(text::status::NOT_RENDERED).color(ui.visuals().error_fg_color))
         }
-        (Doing::Lost, _) => {
+        (RendererActivity::DeviceLost, _) => {
             ui.label(RichText::new(text::status::DEVICE_LOST).color(ui.visuals().error_fg_color))
         }
         (_, Some(making)) => {
             ui.spinner();
             ui.label(making)
         }
-        (Doing::Nothing, None) => ui.weak(text::status::NO_VOLUME),
-        (Doing::FullQuality, None) => ui.label(text::status::SHARP),
-        (Doing::Preview, None) => {
+        (RendererActivity::Idle, None) => ui.weak(text::status::NO_VOLUME),
+        (RendererActivity::FullQuality, None) => ui.label(text::status::FULL_QUALITY),
+        (RendererActivity::Preview, None) => {
             ui.label(RichText::new(text::status::PREVIEW).color(theme::accent(ui.visuals())))
         }
     };

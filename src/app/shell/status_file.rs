@@ -1,14 +1,14 @@
-//! The state of the window for test automation.
+//! Status file: state of the window as JSON, for test automation.
 //!
-//! With `CHIAROSCURO_STATUS=PATH` in the environment this small JSON file is rewritten whenever it
-//! changes: `{"state": "idle" | "refining" | "loading", "viewport": {"x", "y", "width", "height"},
-//! "light_handles": [{"x", "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "response_ms":
-//! {"count": n, "mean": n, "worst": n}, "errors": […], "path_window": TITLE | null, "places": {NAME: {"x", "y", "width",
-//! "height"}, …}}`. A response is from the frame that reads an input to the
-//! one that shows its effect, preview or not. The path window is that in which a path is typed; places are sections of the
-//! side panel by their titles, their rows as `Data/Spacing`, and the drawings above as `Go to Data`.
-//! Lengths are physical pixels from the window's inner top left. `idle` means that the full-quality picture of the
-//! current settings is on screen, and that their balance will not change by itself.
+//! With `CHIAROSCURO_STATUS=PATH` in the environment this small JSON file is rewritten whenever it changes:
+//! `{"state": "idle" | "refining" | "loading", "viewport": {"x", "y", "width", "height"}, "light_handles": [{"x",
+//! "y"}, …], "light_rebuilds": n, "longest_ui_ms": n, "response_ms": {"count": n, "mean": n, "worst": n}, "errors":
+//! […], "path_window": TITLE | null, "places": {NAME: {"x", "y", "width", "height"}, …}}`. A response is the time
+//! from the frame that reads an input to the one that shows its effect, preview or not. The path window is the dialog
+//! in which a path is typed; places are sections of the side panel by their titles, rows as `Data/Spacing`, and the
+//! icons above them as `Go to Data`. Lengths are physical pixels from the window's inner top left. `idle` means that
+//! the full-quality picture of the current settings is on screen, and that their balance is not going to change
+//! automatically.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,40 +16,40 @@ use std::path::PathBuf;
 use eframe::egui::{Pos2, Rect};
 use serde_json::{Map, Value, json};
 
-use crate::app::viewport::Response;
+use crate::app::viewport::ResponseTimes;
 use crate::app::viewport::canvas::Canvas;
 
-/// Names the file.
-const VARIABLE: &str = "CHIAROSCURO_STATUS";
+/// Environment variable that names the file.
+const STATUS_PATH_VARIABLE: &str = "CHIAROSCURO_STATUS";
 
-/// What the file says.
+/// Contents of the status file.
 #[derive(Debug)]
-pub(crate) struct State<'a> {
-    /// A volume is being opened.
+pub(crate) struct WindowStatus<'a> {
+    /// True while a volume is being opened.
     pub loading: bool,
-    /// The full-quality picture is on screen.
+    /// True if the full-quality picture is on screen.
     pub idle: bool,
-    /// Where the picture is.
+    /// Area of the picture in the window.
     pub canvas: Option<Canvas>,
-    /// Where the handles are, in points.
+    /// Positions of the light handles, in points.
     pub handles: &'a [Pos2],
-    /// How often light volumes were filled.
+    /// Number of times light volumes were filled.
     pub light_rebuilds: u64,
-    /// The longest that one frame of the window kept its thread, in milliseconds.
+    /// Longest time that one frame has occupied the window's thread, in ms.
     pub longest_ui_ms: f64,
-    /// How long pictures took to show what was done.
-    pub response: Response,
-    /// Errors so far.
+    /// Statistics of the response times, in ms.
+    pub response: ResponseTimes,
+    /// Errors since the last volume was opened.
     pub errors: &'a [String],
-    /// Title of the window in which a path is typed, if it is open.
+    /// Title of the dialog in which a path is typed, if it is open.
     pub path_window: Option<&'static str>,
-    /// Where things of the side panel are, in points.
+    /// Areas of the side panel's sections, rows and buttons by name, in points.
     pub places: BTreeMap<String, Rect>,
-    /// Physical pixels per point.
+    /// Number of physical pixels per point.
     pub pixels_per_point: f32,
 }
 
-impl State<'_> {
+impl WindowStatus<'_> {
     fn json(&self) -> Value {
         let pixels = |points: f32| (points * self.pixels_per_point).round() as i64;
         let viewport = self.canvas.map(|canvas| {
@@ -80,7 +80,7 @@ impl State<'_> {
             "response_ms": {
                 "count": self.response.count,
                 "mean": self.response.mean_ms.round(),
-                "worst": self.response.worst_ms.round(),
+                "worst": self.response.max_ms.round(),
             },
             "errors": self.errors,
             "path_window": self.path_window,
@@ -89,7 +89,7 @@ impl State<'_> {
     }
 }
 
-/// The file, if the environment names one.
+/// Writer of the status file, if the environment names one.
 #[derive(Debug)]
 pub(crate) struct StatusFile {
     path: Option<PathBuf>,
@@ -97,24 +97,24 @@ pub(crate) struct StatusFile {
 }
 
 impl StatusFile {
-    /// The file named in the environment.
+    /// Creates the writer for the path in the environment.
     pub(crate) fn from_environment() -> Self {
-        Self { path: std::env::var_os(VARIABLE).map(PathBuf::from), written: String::new() }
+        Self { path: std::env::var_os(STATUS_PATH_VARIABLE).map(PathBuf::from), written: String::new() }
     }
 
-    /// Whether somebody watches.
+    /// True if the environment names a status file.
     pub(crate) fn is_on(&self) -> bool {
         self.path.is_some()
     }
 
-    /// Rewrites the file if anything changed.
-    pub(crate) fn update(&mut self, state: &State<'_>) {
+    /// Rewrites the file if anything has changed.
+    pub(crate) fn update(&mut self, state: &WindowStatus<'_>) {
         let Some(path) = &self.path else { return };
         let text = state.json().to_string();
         if text != self.written {
-            // Readers must never see half of it.
+            // Atomic write: readers never see half of it.
             if let Err(err) = crate::export::write_atomically(path, text.as_bytes()) {
-                log::warn!("{VARIABLE}: {err}");
+                log::warn!("{STATUS_PATH_VARIABLE}: {err}");
                 self.path = None;
             }
             self.written = text;

@@ -1,24 +1,24 @@
-//! What can keep a window from opening.
+//! Errors that keep a window from opening.
 
 use crate::gpu::GpuError;
 
-/// Why there is no window.
+/// Error of a start without a window.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
-    /// No device that can be used.
+    /// Failure to find a usable graphics device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The window system refused.
-    #[error("the window could not be opened: {}; a running desktop session is needed", cause(.0))]
+    /// Failure of the window system.
+    #[error("the window could not be opened: {}; a running desktop session is needed", window_error_reason(.0))]
     Window(#[from] eframe::Error),
-    /// The operating system gave no thread.
+    /// Failure of the operating system to start a thread.
     #[error("no thread could be started: {0}")]
     Thread(#[from] std::io::Error),
 }
 
-/// The window system's reason, without the place in the sources of its library where it was found, which is a path of the
-/// machine that has built the program: `winit EventLoopError: os error at FILE:LINE: REASON`.
-fn cause(error: &eframe::Error) -> String {
+/// Returns the window system's reason, without the source location in its library, which is a path on the build
+/// machine: `winit EventLoopError: os error at FILE:LINE: REASON`.
+fn window_error_reason(error: &eframe::Error) -> String {
     let text = error.to_string();
     let reason = text.split_once(".rs:").and_then(|(_, rest)| {
         let (line, reason) = rest.split_once(": ")?;

@@ -1,10 +1,10 @@
-//! The window's icon.
+//! Icon of the window: a ball lit from one side.
 
 use eframe::{egui, icon_data};
 
-/// A ball half in the light.
+/// Decodes the icon from its PNG file.
 pub(crate) fn icon() -> egui::IconData {
-    // A picture that cannot be read leaves the window without an icon; a test reads it.
+    // An unreadable icon leaves the window without one; a test reads it.
     icon_data::from_png_bytes(include_bytes!("../../../assets/icon.png")).unwrap_or_default()
 }
 
@@ -12,7 +12,7 @@ pub(crate) fn icon() -> egui::IconData {
 mod tests {
     use super::*;
 
-    /// The radius of the ball is 1, the edge of the icon 2.2.
+    /// Colour of the ball at a point; its radius is 1, and the edge of the icon is 2.2.
     fn texel(x: f64, y: f64) -> [u8; 4] {
         let depth = 1.0 - x * x - y * y;
         if depth <= 0.0 {
@@ -30,7 +30,7 @@ mod tests {
         for (i, found) in icon.rgba.chunks(4).enumerate() {
             let [x, y] = [i % 64, i / 64].map(|n| (n as f64 + 0.5) / 64.0 * 2.2 - 1.1);
             let expected = texel(x, y);
-            // Not every library rounds powf alike.
+            // The rounding of `powf` differs between libraries.
             assert!(
                 found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1),
                 "{i}: {found:?} {expected:?}"

@@ -1,10 +1,9 @@
-//! How a window begins and ends: what it is opened with, and what goes into the next one when its graphics device is
-//! lost.
+//! Start and end of a window: its options, its construction, and the hand-over of its state after a lost device.
 
-mod begin;
-pub(super) mod carried;
+pub(super) mod desktop_error;
 pub(super) mod error;
+pub(super) mod handover;
 mod icon;
-pub(super) mod no_adapter;
+pub(super) mod main_loop;
+mod new_window;
 pub(super) mod options;
-pub(super) mod run;

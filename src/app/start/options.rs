@@ -1,33 +1,34 @@
-//! What a window is opened with.
+//! Options with which a window is opened.
 
 use std::path::PathBuf;
 
 use crate::data::load::LoadOptions;
 use crate::model::Settings;
 
-/// Changes settings once.
-pub type Adjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
+/// Function that changes settings once.
+pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 
-/// What the command line says about the window.
+/// Options of the window, from the command line.
 #[derive(Default)]
-pub struct Options {
-    /// A volume: a file or `builtin:NAME[:N]`; or a session or an exported picture. The built-in scene when not given.
+pub struct WindowOptions {
+    /// Source to open: a volume file, `builtin:NAME[:N]`, a session or an exported picture. The built-in scene if
+    /// `None`.
     pub source: Option<PathBuf>,
-    /// How files are read.
+    /// Options for reading volume files.
     pub load: LoadOptions,
-    /// Where settings are saved; laid over the first look if the file exists.
+    /// Session file of Ctrl+S; applied to the first look if the file exists.
     pub session: Option<PathBuf>,
-    /// The volume of the look that `source` or `session` is, instead of the one that it names.
+    /// Volume for the look in `source` or `session`, in place of the one that it names.
     pub volume: Option<PathBuf>,
-    /// Whether the volumes of looks are opened wherever they are, without a question.
+    /// True if looks may open volumes anywhere without a confirmation.
     pub trust_paths: bool,
-    /// Applied to the first volume's settings, after the session.
-    pub adjust: Option<Adjustment>,
-    /// Where things are kept from one run to the next; see [`super::run::storage_folder`].
+    /// Change of the first volume's settings, after the session.
+    pub adjust: Option<SettingsAdjustment>,
+    /// Storage folder for the state that outlives a run; see [`super::main_loop::storage_folder`].
     pub storage: Option<PathBuf>,
 }
 
-impl std::fmt::Debug for Options {
+impl std::fmt::Debug for WindowOptions {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Options")
             .field("source", &self.source)

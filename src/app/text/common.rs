@@ -1,39 +1,43 @@
-//! What many parts of the window say.
+//! Texts that several parts of the window share: buttons, units and tooltips of reset buttons.
 
 use crate::data::SpacingUnit;
 
-/// What is rarely needed, folded away.
+/// Caption of a collapsed group of rarely needed settings.
 pub(crate) const ADVANCED: &str = "Advanced";
 
-/// Behind a factor.
-pub(crate) const TIMES: &str = " ×";
+/// Suffix of a field that holds a factor.
+pub(crate) const FACTOR_SUFFIX: &str = " ×";
 
-/// Leaves what is being done or asked.
+/// Caption of the button that abandons a running task or closes a question.
 pub(crate) const CANCEL: &str = "Cancel";
 
-/// Behind a length in voxels.
-pub(crate) const VOX: &str = " vox";
+/// Suffix of a length in voxels.
+pub(crate) const VOXELS_SUFFIX: &str = " vox";
 
-/// A unit of lengths.
+/// Unit of length for display, with its suffix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LengthUnit {
-    /// How many millimetres it is long; 1 where nobody knows.
+    /// Length of the unit in millimetres; 1 where the voxel size is unknown.
     pub mm: f64,
-    /// Behind a number.
+    /// Suffix behind a number, with the leading space where there is one.
     pub suffix: &'static str,
 }
 
 impl LengthUnit {
-    /// The one in which a length has digits in front of the point: millimetres where they do, and shorter ones where not.
-    /// Where nobody knows how large voxels are, these.
-    pub(crate) fn showing(length_mm: f64, has_unknown_scale: bool) -> Self {
-        Self::of(if has_unknown_scale { SpacingUnit::Voxels } else { SpacingUnit::showing(length_mm) })
+    /// Returns the unit in which a length has digits before the decimal point: millimetres from 1 mm, micrometres
+    /// from 1 µm, nanometres below; voxels where the voxel size is unknown.
+    pub(crate) fn for_length(length_mm: f64, has_unknown_scale: bool) -> Self {
+        Self::from_spacing_unit(if has_unknown_scale {
+            SpacingUnit::Voxels
+        } else {
+            SpacingUnit::suiting_length(length_mm)
+        })
     }
 
-    /// That of distances between voxels.
-    pub(crate) fn of(unit: SpacingUnit) -> Self {
+    /// Converts the unit of a voxel spacing into a unit for display.
+    pub(crate) fn from_spacing_unit(unit: SpacingUnit) -> Self {
         let suffix = match unit {
-            SpacingUnit::Voxels => VOX,
+            SpacingUnit::Voxels => VOXELS_SUFFIX,
             SpacingUnit::Nm => " nm",
             SpacingUnit::Um => " µm",
             SpacingUnit::Mm => " mm",
@@ -43,29 +47,29 @@ impl LengthUnit {
         Self { mm: unit.mm(), suffix }
     }
 
-    /// How it is written by itself.
+    /// Returns the symbol without the leading space of the suffix.
     pub(crate) fn symbol(self) -> &'static str {
         self.suffix.trim_start()
     }
 }
 
-/// Behind an angle.
+/// Suffix of an angle in degrees.
 pub(crate) const DEGREES: &str = "°";
 
-/// What the button that puts a value back is called.
-pub(crate) fn reset(label: &str) -> String {
+/// Accessible name of the button that resets a setting.
+pub(crate) fn reset_name(label: &str) -> String {
     format!("Reset {label}")
 }
 
-/// The tip of a button that puts a value back.
-pub(crate) fn reset_to(value: &str) -> String {
+/// Tooltip of the button that resets a number.
+pub(crate) fn reset_tooltip(value: &str) -> String {
     format!("Reset to {value}")
 }
 
-/// What is put back that is no number.
+/// Value to which a reset button goes back where the setting is not a number.
 pub(crate) const FIRST_LOOK: &str = "the first look";
 
-/// The tip of the button that puts a section back.
-pub(crate) fn reset_to_first_look(section: &str) -> String {
-    format!("{} to {FIRST_LOOK}", reset(section))
+/// Tooltip of the button that resets a section of the side panel.
+pub(crate) fn reset_section_tooltip(section: &str) -> String {
+    format!("{} to {FIRST_LOOK}", reset_name(section))
 }

@@ -1,13 +1,13 @@
-//! Tools that are docked beside the picture.
+//! Texts of tool windows that can be docked beside the picture.
 
 pub(crate) const CLOSE: &str = "Close";
 
-/// Puts a tool beside the picture.
-pub(crate) fn dock(title: &str) -> String {
+/// Accessible name of the button that docks a tool beside the picture.
+pub(crate) fn dock_name(title: &str) -> String {
     format!("Dock {title} beside the picture")
 }
 
-/// Makes a window of a tool again.
-pub(crate) fn float(title: &str) -> String {
+/// Accessible name of the button that turns a docked tool into a window again.
+pub(crate) fn undock_name(title: &str) -> String {
     format!("Make {title} a window")
 }

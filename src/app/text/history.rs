@@ -1,11 +1,11 @@
-//! The list of steps.
+//! Texts of the undo history window.
 
 pub(crate) const TITLE: &str = "History";
 
-/// Before anything was changed.
+/// Label of the state before the first change.
 pub(crate) const START: &str = "Start";
 
-/// A step, and what it has done.
+/// Row of the list: number of a step and its description, with a capital first letter.
 pub(crate) fn step(number: usize, what: &str) -> String {
     let mut letters = what.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();

@@ -1,40 +1,42 @@
-//! What the window says, in one place: for whoever reads it all at once, corrects or translates it.
+//! All texts of the window in one place, for proofreading and translation.
 //!
-//! One file per part of the window. Plain texts are constants; texts with figures in them are functions,
-//! because other languages put the figures elsewhere. The look of a text stays where it is shown. The names of
-//! presets, colour maps, views and sets of lights are with them in `src/model`; errors word themselves.
+//! One file per part of the window. Plain texts are constants; texts with figures in them are functions, because
+//! other languages put the figures elsewhere. Fonts and colours are chosen where a text is shown. The names of
+//! presets, colour maps, views and light rigs are with these in `src/model`; errors have their messages where they
+//! are defined.
 
 pub(super) mod common;
 pub(super) mod dock;
 pub(super) mod history;
-pub(super) mod kept;
 mod panels;
+pub(super) mod saved_views;
 mod shell;
+pub(super) mod thread_errors;
 pub(super) mod transfer;
 mod viewport;
 mod windows;
-pub(super) mod work;
 
 pub(super) use self::panels::{
-    camera, corrections, cuts, data, floor, found, labels, lights, sampling, scattering, sections, shading,
-    shadows, sky,
+    camera, corrections, cuts, data, floor, labels, lights, sampling, scattering, sections, shading, shadows,
+    sky, synonyms,
 };
-pub(super) use self::shell::{changes, commands, memory, menu, messages, opening, status};
-pub(super) use self::viewport::{compared, cut_handles, picture, probe};
+pub(super) use self::shell::{change_descriptions, commands, menu, messages, opening, persistence, status};
+pub(super) use self::viewport::{comparison, cut_handles, picture, probe};
 pub(super) use self::windows::{
-    chooser, contact_sheet, export, files, foreign_path, help, light_volume, palette, raw, roomy, slices,
+    chooser, contact_sheet, export, files, foreign_path, help, large_volume, light_volume, palette_synonyms,
+    raw, slices,
 };
 
-/// A control's name, and its tip.
+/// Name of a control, with its tooltip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Named {
-    /// Beside the control or on it; also what screen readers call it.
+pub(super) struct ControlText {
+    /// Label beside or on the control; also its accessible name for screen readers.
     pub name: &'static str,
-    /// A sentence without a full stop.
-    pub tip: &'static str,
+    /// Tooltip: a sentence without a full stop.
+    pub tooltip: &'static str,
 }
 
-/// A name and its tip.
-const fn named(name: &'static str, tip: &'static str) -> Named {
-    Named { name, tip }
+/// Makes a [`ControlText`] in a constant expression.
+const fn control_text(name: &'static str, tip: &'static str) -> ControlText {
+    ControlText { name, tooltip: tip }
 }

@@ -1,20 +1,20 @@
-//! The transfer function editor.
+//! Texts of the transfer function editor.
 
-use super::{Named, named};
+use super::{ControlText, control_text};
 
-/// What the editor as a whole is called, where its controls are sought.
+/// Section name of the editor in the command palette.
 pub(crate) const TITLE: &str = "Transfer function";
 
-/// What screen readers call the plot.
+/// Accessible name of the plot.
 pub(crate) const PLOT: &str = "Transfer function plot";
 
-pub(crate) const EYE: Named = named("Eye", "Edit what the eye sees");
-pub(crate) const LIGHT: Named = named("Light", "Edit what light meets");
-/// Instead of the tip, while light meets what the eye sees.
+pub(crate) const EYE: ControlText = control_text("Eye", "Edit what the eye sees");
+pub(crate) const LIGHT: ControlText = control_text("Light", "Edit what light meets");
+/// Tooltip of the light tab while both curves are linked.
 pub(crate) const LINKED_TIP: &str =
     "Light meets the opacity that the eye sees; a click gives it a curve of its own";
-/// The chain between them.
-pub(crate) const LINK: Named = named(
+/// Chain button that links the two curves, between their tabs.
+pub(crate) const LINK: ControlText = control_text(
     "Link the curves of eye and light",
     "Lets light meet the opacity that the eye sees again; its own curve is kept",
 );
@@ -22,92 +22,95 @@ pub(crate) const UNLINK_TIP: &str =
     "Light meets the opacity that the eye sees. A click gives it a curve of its own";
 pub(crate) const HINT: &str = "Click adds a point, a drag selects, the wheel zooms";
 
-/// What screen readers call the points of either curve, before their number.
+/// Accessible name of a control point of either curve, before its number.
 pub(crate) const EYE_POINT: &str = "Eye point";
 pub(crate) const LIGHT_POINT: &str = "Light point";
 
-pub(crate) const AUTOMATIC: Named = named("Automatic", "Puts the automatic transfer function back");
-pub(crate) const LOG_HISTOGRAM: Named = named("Log histogram", "Raises rare values in the histogram");
-pub(crate) const SHOW_ALL: Named = named("Show all", "Shows all values again");
+pub(crate) const AUTOMATIC: ControlText =
+    control_text("Automatic", "Puts the automatic transfer function back");
+pub(crate) const LOG_HISTOGRAM: ControlText =
+    control_text("Log histogram", "Raises rare values in the histogram");
+pub(crate) const SHOW_ALL: ControlText = control_text("Show all", "Shows all values again");
 
-/// At the upper end of the plot.
+/// Label of the upper end of the plot.
 pub(crate) const OPACITY_ONE: &str = "opacity 1";
 
 pub(crate) const PRESETS: &str = "Presets";
 pub(crate) const TRY_PRESETS_TIP: &str = "Shows each on your volume";
-/// Of a preset that is for another kind of data.
+/// Explanation beside a CT preset while the data are not in Hounsfield units.
 pub(crate) const FOR_CT: &str = "For Hounsfield units of CT, which these data are not in; where they count from 1024, \
                                  Data › Corrections › Values can shift them";
 
-/// What a preset is for, if it is for another kind of data.
-pub(crate) fn not_for_these(about: &str) -> String {
+/// Tooltip of a preset that is made for another kind of data.
+pub(crate) fn other_data_tooltip(about: &str) -> String {
     format!("{about}. {FOR_CT}")
 }
 
-/// What a preset is for, if it is the one in use.
-pub(crate) fn in_use(about: &str) -> String {
+/// Tooltip of the preset that is in use.
+pub(crate) fn in_use_tooltip(about: &str) -> String {
     format!("{about} (in use)")
 }
 
 pub(crate) const COLORS: &str = "Transfer function";
 pub(crate) const COLOR_MAP_TIP: &str = "Colours the visible values";
 pub(crate) const REVERSED: &str = "Reversed";
-/// Of reading a transfer function from a file and writing it.
+/// Tooltip of the buttons that import and export a transfer function.
 pub(crate) const FILES_TIP: &str =
     "ParaView, Slicer, Inviwo, MRIcroGL and ImageJ; Voreen and AGAVE can be read";
-pub(crate) const MIX_AS_SEEN: Named = named(
+pub(crate) const PERCEPTUAL_BLENDING: ControlText = control_text(
     "Perceptual blending",
     "Mixes colours between points in Oklab: lightness is even, and blue to yellow has no glare",
 );
-pub(crate) const INVERT: Named = named("Invert opacities", "What is dense becomes clear");
+pub(crate) const INVERT: ControlText = control_text("Invert opacities", "What is dense becomes clear");
 
-/// Of the whole curve.
-pub(crate) const OPACITY: Named = named("Opacity", "The highest opacity: all others keep their share of it");
-pub(crate) const LEVEL: Named = named("Level", "Moves all points along the values");
-pub(crate) const WINDOW: Named = named("Window", "Spreads all points around their middle");
+/// Fields that act on the whole curve.
+pub(crate) const OPACITY: ControlText =
+    control_text("Opacity", "The highest opacity: all others keep their share of it");
+pub(crate) const LEVEL: ControlText = control_text("Level", "Moves all points along the values");
+pub(crate) const WINDOW: ControlText = control_text("Window", "Spreads all points around their middle");
 
 pub(crate) const SHAPE: &str = "Shape";
-pub(crate) const FIT: Named = named("Fit", "Spreads the points over the values that occur");
-pub(crate) const BUMP: Named = named("Bump", "Adds a smooth bump of opacity: a band of values");
-pub(crate) const BOX: Named = named("Box", "Adds a band of values with sharp ends");
+pub(crate) const FIT: ControlText = control_text("Fit", "Spreads the points over the values that occur");
+pub(crate) const BUMP: ControlText = control_text("Bump", "Adds a smooth bump of opacity: a band of values");
+pub(crate) const BOX: ControlText = control_text("Box", "Adds a band of values with sharp ends");
 
 pub(crate) const POINT_VALUE: &str = "Value";
 pub(crate) const POINT_OPACITY: &str = "Opacity";
 pub(crate) const POINT_COLOR: &str = "Colour of the point";
 pub(crate) const REMOVE: &str = "Remove";
 
-pub(crate) const AS_SEEN: Named =
-    named("OKLCH…", "Lightness, chroma and hue: equal steps look equally large");
+pub(crate) const OKLCH: ControlText =
+    control_text("OKLCH…", "Lightness, chroma and hue: equal steps look equally large");
 pub(crate) const LIGHTNESS: &str = "Lightness";
 pub(crate) const CHROMA: &str = "Chroma";
 pub(crate) const HUE: &str = "Hue";
 
-pub(crate) const WAY_TIP: &str = "Interpolation to the next point";
-pub(crate) const STRAIGHT: &str = "Linear";
+pub(crate) const INTERPOLATION_TIP: &str = "Interpolation to the next point";
+pub(crate) const LINEAR: &str = "Linear";
 pub(crate) const SMOOTH: &str = "Smooth";
 pub(crate) const STEP: &str = "Step";
 
-/// A point of either curve, by its number from 1.
-pub(crate) fn point(of: &str, number: usize) -> String {
+/// Accessible name of a control point of either curve, numbered from 1.
+pub(crate) fn point_name(of: &str, number: usize) -> String {
     format!("{of} {number}")
 }
 
-/// Instead of a value, where several points are selected.
-pub(crate) fn several(count: usize) -> String {
+/// Text in place of a value while several points are selected.
+pub(crate) fn point_count(count: usize) -> String {
     format!("{count} points")
 }
 
-/// The tip of the button that colours the values by a map the other way round.
+/// Tooltip of the button that applies a colour map reversed.
 pub(crate) fn reversed_tip(map: &str) -> String {
     format!("{map} from the high end")
 }
 
-/// What is under the pointer: a value with its digits, and how opaque that is.
-pub(crate) fn at_pointer(value: &str, opacity: f64) -> String {
+/// Readout under the pointer: a formatted value and its opacity.
+pub(crate) fn pointer_readout(value: &str, opacity: f64) -> String {
     format!("{value} · opacity {opacity:.2}")
 }
 
-/// Draws a curve by hand.
-pub(crate) const FREEHAND: Named =
-    named("Draw", "Draw the curve by hand: a stroke becomes few points. Escape ends it");
+/// Button that starts drawing a curve by hand.
+pub(crate) const FREEHAND: ControlText =
+    control_text("Draw", "Draw the curve by hand: a stroke becomes few points. Escape ends it");
 pub(crate) const DRAW_HINT: &str = "Drag to draw; Escape takes a stroke back, and then ends drawing";

@@ -1,11 +1,11 @@
-//! What lies behind the curves of the plot: a checkerboard, the histogram, and the colours under the eye's curve.
+//! Backdrop of the plot, behind its curves: a checkerboard, the histogram, and the colours under the eye's curve.
 //!
-//! It is composed into one picture, when anything of it changes: painted as shapes, three layers over an eighth of
-//! the window, it took a software driver more than the whole rest of the window.
+//! It is composed into one picture whenever one of its inputs changes: painted as shapes, three layers over an eighth
+//! of the window, it took a software driver longer than the rest of the window.
 
 use eframe::egui::{Color32, Rgba, Shape, pos2};
 
-use super::plot::Axes;
+use super::plot::PlotAxes;
 use super::theme;
 use crate::app::viewport::canvas::Canvas;
 use crate::app::viewport::paint_callback;
@@ -13,25 +13,25 @@ use crate::data::ValueRange;
 use crate::gpu::{WindowPainter, WindowPicture};
 use crate::model::TransferFunction;
 
-/// Even where nearly nothing is opaque the colour can be told.
-const LEAST_FILL: f32 = 0.25;
+/// Smallest opacity of the fill under the curve, so that its colour is seen even where it is nearly transparent.
+const MIN_FILL_OPACITY: f32 = 0.25;
 
-/// Bars of a histogram.
+/// Bars of the histogram, with equal widths.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bars {
-    /// The values that they share evenly.
+pub(super) struct HistogramBars {
+    /// Values that the bars cover.
     pub range: ValueRange,
-    /// Voxels in each.
+    /// Number of voxels in each bar.
     pub counts: Vec<u64>,
-    /// Rare values are raised so that they can be seen.
+    /// True for logarithmic heights, so that rare values are visible.
     pub log: bool,
 }
 
-impl Bars {
-    /// Heights as shares of the plot's.
+impl HistogramBars {
+    /// Heights of the bars, as shares of the plot's height.
     fn heights(&self) -> Vec<f32> {
         let height = |count: u64| if self.log { (count as f64).ln_1p() } else { count as f64 };
-        // The background would dwarf everything else on a linear scale.
+        // The bin of the background would dwarf all others on a linear scale.
         let mut sorted = self.counts.clone();
         sorted.sort_unstable();
         let columns = sorted.len();
@@ -40,78 +40,79 @@ impl Bars {
         self.counts.iter().map(|&count| (height(count) / full).min(1.0) as f32).collect()
     }
 
-    /// The bar of a value.
-    fn at(&self, value: f64) -> Option<usize> {
+    /// Index of the bar that contains a value.
+    fn bar_of(&self, value: f64) -> Option<usize> {
         let span = if self.range.high > self.range.low { self.range.high - self.range.low } else { 1.0 };
         let place = ((value - self.range.low) / span * self.counts.len() as f64).floor();
         (place >= 0.0 && place < self.counts.len() as f64).then_some(place as usize)
     }
 }
 
-/// What it is composed from.
+/// Inputs of the composed picture, compared to detect changes.
 #[derive(Debug, Clone, PartialEq)]
-struct Key {
+struct BackdropKey {
     canvas: Canvas,
-    axes: Axes,
-    bars: Bars,
+    axes: PlotAxes,
+    bars: HistogramBars,
     function: TransferFunction,
 }
 
-/// The picture as it was composed last.
+/// Cached picture of the backdrop, with the inputs that it was composed from.
 #[derive(Debug)]
-pub(super) struct Backdrop {
+pub(super) struct PlotBackdrop {
     window: WindowPainter,
-    composed: Option<(Key, WindowPicture)>,
+    cached_picture: Option<(BackdropKey, WindowPicture)>,
 }
 
-impl Backdrop {
-    /// For a window.
+impl PlotBackdrop {
+    /// Creates an empty backdrop for a window.
     pub(super) fn new(window: WindowPainter) -> Self {
-        Self { window, composed: None }
+        Self { window, cached_picture: None }
     }
 
-    /// What is to be painted first.
+    /// Returns the shape to paint first, below the curves; recomposes the picture if its inputs have changed.
     pub(super) fn shape(
         &mut self,
-        axes: &Axes,
+        axes: &PlotAxes,
         pixels_per_point: f32,
-        bars: Bars,
+        bars: HistogramBars,
         function: &TransferFunction,
     ) -> Shape {
-        let canvas = Canvas::within(axes.area, pixels_per_point);
+        let canvas = Canvas::inscribed(axes.area, pixels_per_point);
         if canvas.size.contains(&0) || bars.counts.is_empty() {
             return Shape::Noop;
         }
-        let key = Key { canvas, axes: *axes, bars, function: function.clone() };
-        if self.composed.as_ref().is_none_or(|(before, _)| *before != key) {
-            let before = self.composed.take().map(|(_, picture)| picture);
+        let key = BackdropKey { canvas, axes: *axes, bars, function: function.clone() };
+        if self.cached_picture.as_ref().is_none_or(|(before, _)| *before != key) {
+            let before = self.cached_picture.take().map(|(_, picture)| picture);
             let bytes = compose(&key, pixels_per_point);
-            self.composed = Some((key, self.window.place(before, canvas.size, &bytes, true)));
+            self.cached_picture = Some((key, self.window.upload(before, canvas.size, &bytes, true)));
         }
-        let picture =
-            |(_, picture): &(Key, WindowPicture)| paint_callback::picture(canvas.rect, picture, u8::MAX);
-        self.composed.as_ref().map_or(Shape::Noop, picture)
+        let picture = |(_, picture): &(BackdropKey, WindowPicture)| {
+            paint_callback::picture_shape(canvas.rect, picture, u8::MAX)
+        };
+        self.cached_picture.as_ref().map_or(Shape::Noop, picture)
     }
 }
 
-/// Pixels from the upper left, row by row: sRGB, four bytes each.
-fn compose(key: &Key, pixels_per_point: f32) -> Vec<u8> {
-    let Key { canvas, axes, bars, function } = key;
+/// Composes the backdrop: pixels from the upper left, row by row; sRGB, four bytes each.
+fn compose(key: &BackdropKey, pixels_per_point: f32) -> Vec<u8> {
+    let BackdropKey { canvas, axes, bars, function } = key;
     let [width, height] = canvas.size.map(|n| n as usize);
     let heights = bars.heights();
-    // Middles of pixels, in points.
+    // Centres of pixels, in points.
     let point = |pixel: usize| (pixel as f32 + 0.5) / pixels_per_point;
     let floor = axes.position(axes.range.low, 0.0).y;
     let tall = floor - axes.position(axes.range.low, 1.0).y;
     let mut pixels = vec![Color32::BLACK; width * height];
     for column in 0..width {
         let x = canvas.rect.min.x + point(column);
-        let value = axes.is_within(x).then(|| axes.values(pos2(x, floor)).0);
-        let bar = value.and_then(|value| bars.at(value)).map_or(0.0, |bar| heights[bar] * tall);
+        let value = axes.contains_x(x).then(|| axes.value_and_opacity_at(pos2(x, floor)).0);
+        let bar = value.and_then(|value| bars.bar_of(value)).map_or(0.0, |bar| heights[bar] * tall);
         let (curve, fill) = value.map_or((0.0, Color32::TRANSPARENT), |value| {
             let opacity = function.opacity_at(value) as f32;
-            let [r, g, b] = function.at(value).0.map(|c| c as f32);
-            let share = LEAST_FILL + (1.0 - LEAST_FILL) * opacity;
+            let [r, g, b] = function.sample(value).0.map(|c| c as f32);
+            let share = MIN_FILL_OPACITY + (1.0 - MIN_FILL_OPACITY) * opacity;
             (opacity * tall, Color32::from(Rgba::from_rgb(r, g, b)).gamma_multiply(share))
         });
         for row in 0..height {
@@ -142,9 +143,12 @@ mod tests {
     #[test]
     fn bars_and_colours_stand_on_the_floor() {
         let area = Rect::from_min_size(pos2(3.0, 400.0), vec2(116.0, 64.0));
-        let axes =
-            Axes::new(area, ShownValues { low: 0.0, high: 10.0, is_whole: true }, theme::PlotInk::DARK);
-        let bars = Bars {
+        let axes = PlotAxes::new(
+            area,
+            ShownValues { low: 0.0, high: 10.0, is_whole: true },
+            theme::PlotColors::DARK,
+        );
+        let bars = HistogramBars {
             range: ValueRange::new(0.0, 10.0),
             counts: vec![0, 8, 4, 0, 0, 0, 0, 0, 0, 0],
             log: false,
@@ -153,16 +157,16 @@ mod tests {
         let points = [(0.0, 0.0), (6.0, 0.0), (6.0, 1.0), (10.0, 1.0)];
         let points = points.map(|(value, opacity)| ControlPoint::new(value, [1.0; 3], opacity)).to_vec();
         let function = TransferFunction { points, ..TransferFunction::default() };
-        let key = Key { canvas: Canvas::within(area, 1.0), axes, bars, function };
+        let key = BackdropKey { canvas: Canvas::inscribed(area, 1.0), axes, bars, function };
         let picture = compose(&key, 1.0);
         let at = |value: f64, share: f64| {
             let place = axes.position(value, share) - key.canvas.rect.min;
             let pixel = place.y as usize * 116 + place.x as usize;
             Color32::from_rgb(picture[4 * pixel], picture[4 * pixel + 1], picture[4 * pixel + 2])
         };
-        let is_checker = |color| theme::PlotInk::DARK.checker.contains(&color);
-        assert_eq!(at(1.5, 0.9), theme::PlotInk::DARK.histogram);
-        assert_eq!(at(2.5, 0.4), theme::PlotInk::DARK.histogram);
+        let is_checker = |color| theme::PlotColors::DARK.checker.contains(&color);
+        assert_eq!(at(1.5, 0.9), theme::PlotColors::DARK.histogram);
+        assert_eq!(at(2.5, 0.4), theme::PlotColors::DARK.histogram);
         assert!(is_checker(at(2.5, 0.6)), "the bar is half as tall");
         assert!(is_checker(at(0.5, 0.9)) && is_checker(at(5.5, 0.1)), "nothing is there");
         assert_eq!(at(7.5, 0.1), Color32::WHITE);

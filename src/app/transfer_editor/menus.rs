@@ -1,58 +1,59 @@
-//! Menus of the transfer function editor: colour maps, and what moves the whole curve.
+//! Menus of the transfer function editor: colour maps, shapes, and fields that transform the whole curve.
 
 use eframe::egui::{self, Color32, DragValue, Mesh, Rect, Response, Sense, Ui, vec2};
 
-use super::super::text::{self, Named};
+use super::super::text::{self, ControlText};
 use super::zoom::ShownValues;
-use crate::app::common::commands::Command;
-use crate::app::common::volume_facts::{VolumeFacts, decimals};
-use crate::app::common::{frame, reveal, theme};
+use crate::app::common::commands::AppCommand;
+use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
+use crate::app::common::{overlay_windows, reveal, theme};
 use crate::data::ValueRange;
-use crate::model::{COLOR_MAPS, ColorMap, ControlPoint, Easing, Mixing, TransferFunction};
+use crate::model::{COLOR_MAPS, ColorMap, ColorMixing, ControlPoint, Easing, TransferFunction};
 
-/// Size of the strip that shows a colour map.
-const STRIP: egui::Vec2 = vec2(96.0, 14.0);
+/// Size of the swatch of a colour map, in points.
+const SWATCH_SIZE: egui::Vec2 = vec2(96.0, 14.0);
 
-/// Colour maps, with their colours.
-pub(super) fn colors(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<Command>) {
-    frame::scrolling_menu(ui, text::transfer::COLORS, |ui| {
+/// Menu of the colour maps, with swatches, and of transfer function files.
+pub(super) fn color_map_menu(ui: &mut Ui, function: &mut TransferFunction, commands: &mut Vec<AppCommand>) {
+    overlay_windows::scrolling_menu(ui, text::transfer::COLORS, |ui| {
         for (at, map) in COLOR_MAPS.iter().enumerate() {
             ui.horizontal(|ui| {
-                strip(ui, map);
+                color_map_swatch(ui, map);
                 if ui.button(map.name).on_hover_text(text::transfer::COLOR_MAP_TIP).clicked() {
-                    commands.push(Command::UseColors(at, false));
+                    commands.push(AppCommand::UseColors(at, false));
                 }
                 let reversed = ui.small_button(text::transfer::REVERSED);
                 if reversed.on_hover_text(text::transfer::reversed_tip(map.name)).clicked() {
-                    commands.push(Command::UseColors(at, true));
+                    commands.push(AppCommand::UseColors(at, true));
                 }
             });
         }
         ui.separator();
-        for command in [Command::ImportTransfer, Command::ExportTransfer] {
+        for command in [AppCommand::ImportTransfer, AppCommand::ExportTransfer] {
             let button = ui.button(&*command.label()).on_hover_text(text::transfer::FILES_TIP);
             if button.clicked() {
                 commands.push(command);
             }
         }
-        let mut seen = function.mixing == Mixing::Seen;
-        let mix = text::transfer::MIX_AS_SEEN;
-        if ui.checkbox(&mut seen, mix.name).on_hover_text(mix.tip).changed() {
-            function.mixing = if seen { Mixing::Seen } else { Mixing::Light };
+        let mut seen = function.mixing == ColorMixing::Seen;
+        let mix = text::transfer::PERCEPTUAL_BLENDING;
+        if ui.checkbox(&mut seen, mix.name).on_hover_text(mix.tooltip).changed() {
+            function.mixing = if seen { ColorMixing::Seen } else { ColorMixing::Light };
         }
         let invert = text::transfer::INVERT;
-        if ui.button(invert.name).on_hover_text(invert.tip).clicked() {
-            commands.push(Command::InvertTransfer);
+        if ui.button(invert.name).on_hover_text(invert.tooltip).clicked() {
+            commands.push(AppCommand::InvertTransfer);
         }
     });
 }
 
-fn strip(ui: &mut Ui, map: &ColorMap) {
-    let (area, _) = ui.allocate_exact_size(STRIP, Sense::hover());
+fn color_map_swatch(ui: &mut Ui, map: &ColorMap) {
+    let (area, _) = ui.allocate_exact_size(SWATCH_SIZE, Sense::hover());
     let mut mesh = Mesh::default();
     for i in 0..8 {
-        let left = area.min.x + STRIP.x * i as f32 / 8.0;
-        let part = Rect::from_min_size(egui::pos2(left, area.min.y), vec2(STRIP.x / 8.0, STRIP.y));
+        let left = area.min.x + SWATCH_SIZE.x * i as f32 / 8.0;
+        let part =
+            Rect::from_min_size(egui::pos2(left, area.min.y), vec2(SWATCH_SIZE.x / 8.0, SWATCH_SIZE.y));
         let ink = |stop: i32| -> Color32 { theme::color(map.at(f64::from(stop) / 8.0)) };
         let base = mesh.vertices.len() as u32;
         for (corner, color) in [
@@ -69,58 +70,64 @@ fn strip(ui: &mut Ui, map: &ColorMap) {
     ui.painter().add(mesh);
 }
 
-/// Lets a control glow that was sought.
-pub(super) fn found(ui: &Ui, named: Named, control: &Response) {
-    reveal::glow(ui, text::transfer::TITLE, named.name, control.rect);
+/// Highlights a control for a moment if the user has searched for it.
+pub(super) fn highlight_if_searched(ui: &Ui, named: ControlText, control: &Response) {
+    reveal::highlight_row(ui, text::transfer::TITLE, named.name, control.rect);
 }
 
-/// Moves the whole curve, or spreads it. The limits keep every point near the volume's values.
-pub(super) fn whole_curve(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
+/// Fields that move the whole curve, stretch it, or scale its opacity. Limits keep points near the volume's values.
+pub(super) fn curve_fields(ui: &mut Ui, function: &mut TransferFunction, range: ValueRange) {
     let (Some(&first), Some(&last)) = (function.points.first(), function.points.last()) else { return };
     let span = (range.high - range.low).max(1e-12);
     let (middle, width) = (f64::midpoint(first.value, last.value), last.value - first.value);
-    let (mut to, mut wide) = (middle, width);
-    let most = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
-    let mut opacity = most;
+    let (mut new_middle, mut new_width) = (middle, width);
+    let max_opacity = function.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
+    let mut opacity = max_opacity;
     let label = ui.label(text::transfer::OPACITY.name);
     let field = DragValue::new(&mut opacity).speed(0.005).range(0.001..=1.0).fixed_decimals(3);
-    // What a file brought stays until somebody changes it.
+    // A value from a file stays until the user changes it.
     let field = field.clamp_existing_to_range(false);
-    let field = ui.add_enabled(most > 0.0, field).labelled_by(label.id);
-    found(ui, text::transfer::OPACITY, &field.on_hover_text(text::transfer::OPACITY.tip));
-    if opacity != most && most > 0.0 {
+    let field = ui.add_enabled(max_opacity > 0.0, field).labelled_by(label.id);
+    highlight_if_searched(ui, text::transfer::OPACITY, &field.on_hover_text(text::transfer::OPACITY.tooltip));
+    if opacity != max_opacity && max_opacity > 0.0 {
         for point in &mut function.points {
-            point.opacity = (point.opacity * opacity / most).min(1.0);
+            point.opacity = (point.opacity * opacity / max_opacity).min(1.0);
         }
     }
     let label = ui.label(text::transfer::LEVEL.name);
-    let level = DragValue::new(&mut to)
+    let level = DragValue::new(&mut new_middle)
         .speed(span / 400.0)
         .range(range.low - span..=range.high + span)
-        .max_decimals(decimals(range))
+        .max_decimals(range_decimals(range))
         .clamp_existing_to_range(false);
-    let level = ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tip);
-    found(ui, text::transfer::LEVEL, &level);
+    let level = ui.add(level).labelled_by(label.id).on_hover_text(text::transfer::LEVEL.tooltip);
+    highlight_if_searched(ui, text::transfer::LEVEL, &level);
     let label = ui.label(text::transfer::WINDOW.name);
-    let window = DragValue::new(&mut wide)
+    let window = DragValue::new(&mut new_width)
         .speed(span / 400.0)
         .range(span / 1000.0..=4.0 * span)
-        .max_decimals(decimals(range))
+        .max_decimals(range_decimals(range))
         .clamp_existing_to_range(false);
-    let window = ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tip);
-    found(ui, text::transfer::WINDOW, &window);
-    if to != middle || (wide != width && width > 0.0) {
-        let stretch = if width > 0.0 { wide / width } else { 1.0 };
-        function.shift_and_stretch(to - middle, stretch);
+    let window = ui.add(window).labelled_by(label.id).on_hover_text(text::transfer::WINDOW.tooltip);
+    highlight_if_searched(ui, text::transfer::WINDOW, &window);
+    if new_middle != middle || (new_width != width && width > 0.0) {
+        let stretch = if width > 0.0 { new_width / width } else { 1.0 };
+        function.shift_and_stretch(new_middle - middle, stretch);
     }
 }
 
-/// What changes the shape of the curve. `shown`: the values that the plot shows.
-pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &VolumeFacts, shown: ShownValues) {
-    frame::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
-        let clicked = |ui: &mut Ui, named: Named| ui.button(named.name).on_hover_text(named.tip).clicked();
+/// Menu of changes to the curve's shape. `shown`: values that the plot shows.
+pub(super) fn shape_menu(
+    ui: &mut Ui,
+    function: &mut TransferFunction,
+    volume: &VolumeFacts,
+    shown: ShownValues,
+) {
+    overlay_windows::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
+        let clicked =
+            |ui: &mut Ui, named: ControlText| ui.button(named.name).on_hover_text(named.tooltip).clicked();
         if clicked(ui, text::transfer::FIT) {
-            fit(function, volume);
+            fit_to_values(function, volume);
         }
         if clicked(ui, text::transfer::BUMP) {
             add_bump(function, shown);
@@ -131,9 +138,9 @@ pub(super) fn shapes(ui: &mut Ui, function: &mut TransferFunction, volume: &Volu
     });
 }
 
-/// Spreads the points over the values that occur: all but two hundredths of the voxels at either end, since most
-/// volumes have much that is empty.
-fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
+/// Stretches the points over the values that occur: without 2 % of the voxels at the low end, since most volumes have
+/// much empty space, and 0.2 % at the high end.
+fn fit_to_values(function: &mut TransferFunction, volume: &VolumeFacts) {
     let value = |share: f64| {
         volume.range.low + volume.histogram.percentile(share) * (volume.range.high - volume.range.low)
     };
@@ -148,13 +155,13 @@ fn fit(function: &mut TransferFunction, volume: &VolumeFacts) {
     }
 }
 
-/// A smooth bump of opacity around the middle of the window that is shown.
+/// Adds a smooth bump of opacity in the middle of the shown values.
 fn add_bump(function: &mut TransferFunction, shown: ShownValues) {
     let (middle, width) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 10.0);
     let (first, last) = (middle - 1.25 * width, middle + 1.25 * width);
-    cut_out(function, first, last);
+    clear_band(function, first, last);
     let before = function.clone();
-    // A Gaussian, by its values at multiples of half its standard deviation.
+    // A Gaussian, sampled at multiples of half its standard deviation.
     for step in -4_i32..=4 {
         let at = f64::from(step) * 0.5;
         let point = before.point_at(middle + at * width * 0.5);
@@ -164,20 +171,20 @@ fn add_bump(function: &mut TransferFunction, shown: ShownValues) {
     }
 }
 
-/// A band of opacity with sharp ends around the middle of the window that is shown.
+/// Adds a band of constant opacity with sharp ends in the middle of the shown values.
 fn add_box(function: &mut TransferFunction, shown: ShownValues) {
     let (middle, half) = (f64::midpoint(shown.low, shown.high), (shown.high - shown.low) / 20.0);
-    let first = cut_out(function, middle - half, middle + half);
+    let first = clear_band(function, middle - half, middle + half);
     let begin = function.points[first];
     let inside = ControlPoint { opacity: begin.opacity.max(0.7), easing: Easing::Step, ..begin };
     function.points.insert(first + 1, inside);
 }
 
-/// Sets points on the curve at both ends of a band, and removes those in it: the rest stays as it is. Returns the
-/// index of the first end, from which it goes straight to the second.
-fn cut_out(function: &mut TransferFunction, low: f64, high: f64) -> usize {
-    function.cut_at(high);
-    function.cut_at(low);
+/// Cuts a band out of the curve: sets points on it at both ends of the band and removes those between. Returns the
+/// index of the first end, from which a straight line leads to the second.
+fn clear_band(function: &mut TransferFunction, low: f64, high: f64) -> usize {
+    function.split_at(high);
+    function.split_at(low);
     function.points.retain(|point| point.value <= low || point.value >= high);
     let first = function.points.partition_point(|point| point.value <= low) - 1;
     function.points[first].easing = Easing::Linear;
@@ -189,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_is_a_box() {
+    fn added_box_is_rectangular() {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let mut function = TransferFunction {
             points: vec![point(0.0, 0.0), point(49.0, 0.1), point(100.0, 0.2)],
@@ -208,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bump_is_a_bump() {
+    fn added_bump_is_symmetric() {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let mut function = TransferFunction {
             points: vec![point(0.0, 0.0), point(100.0, 0.2)],

@@ -1,29 +1,29 @@
-//! The transfer function editor: wide and low, values run horizontally and need room.
+//! Transfer function editor: wide and low, because values run horizontally and need room.
 //!
-//! Both curves share one plot: the eye's, filled with its colours, and the lighting one as a single
-//! amber line, dashed while it follows the eye's.
+//! Both curves share one plot: the eye's, filled with its colours, and the lighting curve as a single amber line,
+//! dashed while it is linked to the eye's.
 
 mod backdrop;
-mod fields;
 mod freehand;
 mod label_table;
-mod link;
+mod link_button;
 mod menus;
 mod plot;
+mod point_fields;
 mod preset_menu;
-mod preset_pictures;
+mod preset_thumbnails;
 mod selection;
 mod zoom;
 
 use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
 
-use self::backdrop::{Backdrop, Bars};
-use self::freehand::Freehand;
-use self::plot::Axes;
+use self::backdrop::{HistogramBars, PlotBackdrop};
+use self::freehand::FreehandDrawing;
+use self::plot::PlotAxes;
 use self::preset_menu::PresetMenu;
-use self::selection::{Selection, Shift};
-use self::zoom::{Span, Zoom, limits};
-use super::common::commands::Command;
+use self::selection::{PointSelection, PointShift};
+use self::zoom::{AxisSpan, PlotZoom, point_limits};
+use super::common::commands::AppCommand;
 use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
@@ -32,82 +32,81 @@ use crate::data::ValueRange;
 use crate::gpu::WindowPainter;
 use crate::model::{Settings, TransferFunction};
 
-/// Which curve is edited.
+/// Curve that the editor edits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Curve {
-    /// What the eye sees.
+enum EditedCurve {
+    /// Transfer function that the eye sees.
     #[default]
     Eye,
-    /// What light meets.
+    /// Lighting curve: opacity for the light pass.
     Light,
 }
 
 /// State of the editor between frames.
 #[derive(Debug)]
 pub(super) struct TransferEditor {
-    curve: Curve,
-    selection: Selection,
-    /// The curve as it was left: the selection means its points.
-    left: TransferFunction,
-    /// Rare values are raised so that they can be seen.
+    curve: EditedCurve,
+    selection: PointSelection,
+    /// Curve as the last frame left it; the selection refers to its points.
+    last_curve: TransferFunction,
+    /// True for a logarithmic histogram, so that rare values are visible.
     log_histogram: bool,
-    /// Values that are shown, if not all.
-    zoom: Zoom,
-    span: Span,
-    backdrop: Backdrop,
-    freehand: Freehand,
+    /// Range of values that the plot shows, if not all.
+    zoom: PlotZoom,
+    axis_span: AxisSpan,
+    backdrop: PlotBackdrop,
+    freehand: FreehandDrawing,
     presets: PresetMenu,
 }
 
 impl TransferEditor {
-    /// The editor of a window.
+    /// Creates the editor for a window.
     pub(super) fn new(window: WindowPainter) -> Self {
         Self {
-            backdrop: Backdrop::new(window),
-            curve: Curve::Eye,
-            selection: Selection::default(),
-            left: TransferFunction::default(),
+            backdrop: PlotBackdrop::new(window),
+            curve: EditedCurve::Eye,
+            selection: PointSelection::default(),
+            last_curve: TransferFunction::default(),
             log_histogram: true,
-            zoom: Zoom::default(),
-            span: Span::default(),
-            freehand: Freehand::default(),
+            zoom: PlotZoom::default(),
+            axis_span: AxisSpan::default(),
+            freehand: FreehandDrawing::default(),
             presets: PresetMenu::default(),
         }
     }
 }
 
-/// The steps of the arrow keys: shares of the axes.
-const NUDGE: [f64; 2] = [1.0 / 256.0, 0.01];
+/// Steps of the arrow keys along value and opacity, as shares of the axes.
+const KEY_STEP: [f64; 2] = [1.0 / 256.0, 0.01];
 
-/// Points of width in which all tools have room side by side: those of the curve take 590 at most, the others
-/// 510.
-const WIDE: f32 = 1100.0;
+/// Width at which all tools fit side by side, in points: those of the curve take at most 590, the others 510.
+const WIDE_LAYOUT_WIDTH: f32 = 1100.0;
 
 impl TransferEditor {
-    /// Shows the editor in the whole of `ui`.
+    /// Shows the editor in the whole of `ui`. `marked`: value that the probe marks, if any.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
         volume: &VolumeFacts,
         marked: Option<f64>,
-        commands: &mut Vec<Command>,
+        commands: &mut Vec<AppCommand>,
     ) {
         if volume.is_shown_by_label(settings) {
             return label_table::show(ui, settings, volume, commands);
         }
         if settings.lighting.linked {
-            self.curve = Curve::Eye;
+            self.curve = EditedCurve::Eye;
         }
-        if *self.edited(settings) != self.left {
-            // Somebody else has changed it: its points may be others.
+        if *self.edited_curve(settings) != self.last_curve {
+            // The curve was changed elsewhere: its points may be others.
             self.selection.clear();
         }
-        // In the frame of the release, too, in which the last movement counts.
+        // Held also in the frame of the release, in which the last movement counts.
         let is_held = ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
-        let span = self.span.of(is_held, volume.ranges, volume.range);
-        let letters = egui::TextStyle::Button.resolve(ui.style()).size / theme::LETTERS;
-        let is_wide = ui.available_width() >= WIDE * letters;
+        let span = self.axis_span.update(is_held, volume.ranges, volume.range);
+        let letters = egui::TextStyle::Button.resolve(ui.style()).size / theme::FONT_SIZE;
+        let is_wide = ui.available_width() >= WIDE_LAYOUT_WIDTH * letters;
         let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
         ui.horizontal(|ui| {
             let is_whole = self.curve_tools(ui, settings, volume, span);
@@ -115,7 +114,7 @@ impl TransferEditor {
                 ui.with_layout(from_the_right, |ui| {
                     self.plot_tools(ui, settings, volume, commands);
                     if is_whole {
-                        self.hint(ui);
+                        self.show_hint(ui);
                     }
                 });
             }
@@ -130,27 +129,32 @@ impl TransferEditor {
         let (area, response) = ui.allocate_exact_size(size.max(Vec2::splat(20.0)), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::transfer::PLOT));
         self.zoom.ui(ui, &response, area, span);
-        let axes = Axes::new(area, self.zoom.shown(span), theme::PlotInk::of(ui.visuals()));
+        let axes =
+            PlotAxes::new(area, self.zoom.visible_range(span), theme::PlotColors::for_visuals(ui.visuals()));
         self.paint(ui, &axes, settings, volume);
-        let name =
-            if self.curve == Curve::Light { text::transfer::LIGHT_POINT } else { text::transfer::EYE_POINT };
-        let function = self.edited(settings);
-        if self.freehand.on {
+        let name = if self.curve == EditedCurve::Light {
+            text::transfer::LIGHT_POINT
+        } else {
+            text::transfer::EYE_POINT
+        };
+        let function = self.edited_curve(settings);
+        if self.freehand.is_active {
             self.selection.clear();
             self.freehand.draw(ui, &response, &axes, function);
         } else {
             self.add_point(&response, &axes, function);
-            self.selection.frame(ui, &response, &axes, function);
+            self.selection.rubber_band(ui, &response, &axes, function);
             self.select_by_keys(ui, &response, function.points.len());
-            let limits = limits(volume.ranges, span);
+            let limits = point_limits(volume.ranges, span);
             self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
         }
-        self.left = self.edited(settings).clone();
-        plot::readout(ui, &axes, &response, settings);
-        plot::mark(ui, &axes, marked);
+        self.last_curve = self.edited_curve(settings).clone();
+        plot::paint_readout(ui, &axes, &response, settings);
+        plot::paint_value_mark(ui, &axes, marked);
     }
 
-    /// What edits the curve; whether that is the whole of it. `span`: what the axis of values spans.
+    /// Shows the tools that edit the curve or the selected points; returns true if no point is selected. `span`:
+    /// values that the axis spans.
     fn curve_tools(
         &mut self,
         ui: &mut Ui,
@@ -159,120 +163,123 @@ impl TransferEditor {
         span: ValueRange,
     ) -> bool {
         let before = self.curve;
-        let eye = ui.selectable_value(&mut self.curve, Curve::Eye, text::transfer::EYE.name);
-        eye.on_hover_text(text::transfer::EYE.tip);
-        link::show(ui, settings);
-        let light = ui.selectable_value(&mut self.curve, Curve::Light, text::transfer::LIGHT.name);
+        let eye = ui.selectable_value(&mut self.curve, EditedCurve::Eye, text::transfer::EYE.name);
+        eye.on_hover_text(text::transfer::EYE.tooltip);
+        link_button::show(ui, settings);
+        let light = ui.selectable_value(&mut self.curve, EditedCurve::Light, text::transfer::LIGHT.name);
         let is_linked = settings.lighting.linked;
-        let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tip };
+        let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tooltip };
         if light.on_hover_text(tip).clicked() && is_linked {
-            // Whoever wants to edit it wants it to be another.
+            // Selecting the lighting curve to edit it implies a separate curve.
             set_linked(settings, false);
         }
         if self.curve != before {
             self.selection.clear();
         }
         ui.separator();
-        // Light passes matter that has a hue where shadows are coloured.
-        let has_colors = self.curve == Curve::Eye || settings.has_colored_shadows();
-        let function = self.edited(settings);
-        let selected = self.selection.within(function.points.len());
+        // With coloured shadows, light that passes material takes its hue.
+        let has_colors = self.curve == EditedCurve::Eye || settings.has_colored_shadows();
+        let function = self.edited_curve(settings);
+        let selected = self.selection.retained_indices(function.points.len());
         if selected.is_empty() {
-            menus::whole_curve(ui, function, span);
-            menus::shapes(ui, function, volume, self.zoom.shown(span));
+            menus::curve_fields(ui, function, span);
+            menus::shape_menu(ui, function, volume, self.zoom.visible_range(span));
             let draw = text::transfer::FREEHAND;
-            let draws = ui.toggle_value(&mut self.freehand.on, draw.name).on_hover_text(draw.tip);
-            menus::found(ui, draw, &draws);
-        } else if fields::points(
+            let draws = ui.toggle_value(&mut self.freehand.is_active, draw.name).on_hover_text(draw.tooltip);
+            menus::highlight_if_searched(ui, draw, &draws);
+        } else if point_fields::point_fields(
             ui,
             function,
             &selected,
-            fields::Values { span, limits: limits(volume.ranges, span) },
+            point_fields::PointFieldRanges { span, limits: point_limits(volume.ranges, span) },
             has_colors,
         ) {
-            self.selection.remove(function);
+            self.selection.remove_points(function);
         }
         selected.is_empty()
     }
 
-    /// What can be done in the plot, as far as there is room to say so.
-    fn hint(&self, ui: &mut Ui) {
-        let hint = if self.freehand.on { text::transfer::DRAW_HINT } else { text::transfer::HINT };
+    /// Shows the hint for the plot's gestures, truncated to the width that is left.
+    fn show_hint(&self, ui: &mut Ui) {
+        let hint = if self.freehand.is_active { text::transfer::DRAW_HINT } else { text::transfer::HINT };
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.add(egui::Label::new(egui::RichText::new(hint).weak()).truncate());
         });
     }
 
-    /// The curve that is edited.
-    fn edited<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
+    /// Returns the curve that is being edited.
+    fn edited_curve<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
         match self.curve {
-            Curve::Eye => &mut settings.transfer,
-            Curve::Light => &mut settings.lighting.curve,
+            EditedCurve::Eye => &mut settings.transfer,
+            EditedCurve::Light => &mut settings.lighting.curve,
         }
     }
 
-    /// What replaces the whole curve, and how the plot shows it.
+    /// Shows the tools that replace the whole curve, and the options of the plot.
     fn plot_tools(
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
         volume: &VolumeFacts,
-        commands: &mut Vec<Command>,
+        commands: &mut Vec<AppCommand>,
     ) {
-        let function = self.edited(settings);
+        let function = self.edited_curve(settings);
         let automatic = text::transfer::AUTOMATIC;
-        if ui.button(automatic.name).on_hover_text(automatic.tip).clicked() {
+        if ui.button(automatic.name).on_hover_text(automatic.tooltip).clicked() {
             self.selection.clear();
-            commands.push(Command::AutomaticTransfer);
+            commands.push(AppCommand::AutomaticTransfer);
         }
         let log = text::transfer::LOG_HISTOGRAM;
-        let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tip);
-        menus::found(ui, log, &tick);
-        menus::colors(ui, function, commands);
+        let tick = ui.checkbox(&mut self.log_histogram, log.name).on_hover_text(log.tooltip);
+        menus::highlight_if_searched(ui, log, &tick);
+        menus::color_map_menu(ui, function, commands);
         self.presets.show(ui, settings, volume, commands);
-        self.zoom.button(ui);
+        self.zoom.show_reset_button(ui);
     }
 
-    /// With the pointer over the plot, Ctrl+A selects all points, and Escape none.
+    /// With the pointer over the plot, Ctrl+A selects all points, and Escape clears the selection.
     fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
         if !response.contains_pointer() || ui.ctx().text_edit_focused() {
             return;
         }
         if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::A)) {
-            self.selection.all(count);
+            self.selection.select_all(count);
         } else if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.selection.clear();
         }
     }
 
-    fn paint(&mut self, ui: &Ui, axes: &Axes, settings: &Settings, volume: &VolumeFacts) {
+    fn paint(&mut self, ui: &Ui, axes: &PlotAxes, settings: &Settings, volume: &VolumeFacts) {
         let painter = ui.painter_at(axes.area);
-        let counts =
-            plot::bars(&volume.histogram, volume.levels, axes.width() * self.zoom.factor(volume.range));
-        let bars = Bars { range: volume.range, counts, log: self.log_histogram };
+        let counts = plot::histogram_bars(
+            &volume.histogram,
+            volume.levels,
+            axes.width() * self.zoom.zoom_factor(volume.range),
+        );
+        let bars = HistogramBars { range: volume.range, counts, log: self.log_histogram };
         painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.transfer));
-        plot::eye_curve(&painter, axes, &settings.transfer, self.curve == Curve::Eye);
-        plot::light_curve(&painter, axes, settings, self.curve == Curve::Light);
-        plot::labels(&painter, axes);
+        plot::paint_eye_curve(&painter, axes, &settings.transfer, self.curve == EditedCurve::Eye);
+        plot::paint_light_curve(&painter, axes, settings, self.curve == EditedCurve::Light);
+        plot::paint_axis_labels(&painter, axes);
     }
 
-    fn add_point(&mut self, response: &Response, axes: &Axes, function: &mut TransferFunction) {
+    fn add_point(&mut self, response: &Response, axes: &PlotAxes, function: &mut TransferFunction) {
         if !response.clicked() {
             return;
         }
         if let Some(at) = response.interact_pointer_pos() {
-            let (value, opacity) = axes.values(at);
+            let (value, opacity) = axes.value_and_opacity_at(at);
             let index = function.add_point(value, opacity, axes.range);
-            self.selection.only(index);
+            self.selection.select_only(index);
         }
     }
 
-    /// Shows the points and lets the user move and remove them. `range`: the values to which they can be moved; `hovered`: the
-    /// pointer is on the plot.
+    /// Shows the points and handles their selection, movement and removal. `range`: values within which they can be
+    /// moved; `hovered`: the pointer is on the plot.
     fn edit_points(
         &mut self,
         ui: &Ui,
-        axes: &Axes,
+        axes: &PlotAxes,
         function: &mut TransferFunction,
         name: &str,
         range: ValueRange,
@@ -284,10 +291,10 @@ impl TransferEditor {
         let on_point = (0..function.points.len()).any(|index| focused == Some(id_of(index)));
         let deletes =
             |input: &egui::InputState| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace);
-        // Somebody may be typing, or working elsewhere.
+        // The user may be typing in a field, or working elsewhere.
         let mut removes = (on_point || (focused.is_none() && hovered)) && ui.input(deletes);
         for index in 0..function.points.len() {
-            if !axes.shows(function.points[index].value) {
+            if !axes.contains_value(function.points[index].value) {
                 continue;
             }
             let at = axes.position(function.points[index].value, function.points[index].opacity);
@@ -295,41 +302,43 @@ impl TransferEditor {
             let id = id_of(index);
             let response = ui.interact(area, id, Sense::click_and_drag());
             response.widget_info(|| {
-                WidgetInfo::labeled(Role::Slider, true, text::transfer::point(name, index + 1))
+                WidgetInfo::labeled(Role::Slider, true, text::transfer::point_name(name, index + 1))
             });
             let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
             if response.clicked() && adds {
                 self.selection.toggle(index);
-            } else if response.clicked() || (response.drag_started() && !self.selection.has(index)) {
-                self.selection.only(index);
+            } else if response.clicked() || (response.drag_started() && !self.selection.contains(index)) {
+                self.selection.select_only(index);
             }
-            let is_focused = self.selection.wants_focus && self.selection.has(index);
-            if ((response.clicked() || response.drag_started()) && self.selection.has(index)) || is_focused {
+            let is_focused = self.selection.wants_focus && self.selection.contains(index);
+            if ((response.clicked() || response.drag_started()) && self.selection.contains(index))
+                || is_focused
+            {
                 self.selection.wants_focus = false;
                 response.request_focus();
-            } else if response.gained_focus() && !self.selection.has(index) {
-                // Reached by the keyboard.
-                self.selection.only(index);
+            } else if response.gained_focus() && !self.selection.contains(index) {
+                // Focused by the keyboard.
+                self.selection.select_only(index);
             }
             if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-                let (value, opacity) = axes.values(pointer);
+                let (value, opacity) = axes.value_and_opacity_at(pointer);
                 let point = function.points[index];
-                let by = Shift { value: value - point.value, opacity: opacity - point.opacity };
-                self.selection.shift(function, range, by);
+                let by = PointShift { value: value - point.value, opacity: opacity - point.opacity };
+                self.selection.move_points(function, range, by);
             }
             if response.has_focus() {
-                self.nudge(ui, id, axes, function, range);
+                self.nudge_selected(ui, id, axes, function, range);
             }
-            let selected = self.selection.has(index);
+            let selected = self.selection.contains(index);
             if response.double_clicked() {
-                self.selection.only(index);
+                self.selection.select_only(index);
                 removes = true;
             }
             if response.hovered() || response.dragged() {
                 ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
             }
             let point = function.points[index];
-            plot::point(
+            plot::paint_point(
                 &painter,
                 &axes.ink,
                 (
@@ -341,16 +350,16 @@ impl TransferEditor {
             );
         }
         if removes {
-            self.selection.remove(function);
+            self.selection.remove_points(function);
         }
     }
 
-    /// Arrow keys move what is selected.
-    fn nudge(
+    /// Moves the selected points by the arrow keys.
+    fn nudge_selected(
         &mut self,
         ui: &Ui,
         id: egui::Id,
-        axes: &Axes,
+        axes: &PlotAxes,
         function: &mut TransferFunction,
         range: ValueRange,
     ) {
@@ -363,8 +372,8 @@ impl TransferEditor {
         let (right, up) = (presses(Key::ArrowLeft, Key::ArrowRight), presses(Key::ArrowDown, Key::ArrowUp));
         if right != 0.0 || up != 0.0 {
             let span = axes.range.high - axes.range.low;
-            let by = Shift { value: right * NUDGE[0] * span, opacity: up * NUDGE[1] };
-            self.selection.shift(function, range, by);
+            let by = PointShift { value: right * KEY_STEP[0] * span, opacity: up * KEY_STEP[1] };
+            self.selection.move_points(function, range, by);
         }
     }
 }

@@ -1,46 +1,46 @@
-//! What the transfer function editor paints.
+//! Painting of the transfer function plot: axes, curves, control points, labels and readout.
 
 use eframe::egui::{
     self, Align2, Color32, FontId, Painter, Pos2, Rect, Response, Shape, Stroke, Ui, Vec2, pos2,
 };
 
 use super::text;
-use super::theme::{self, PlotInk};
+use super::theme::{self, PlotColors};
 use super::zoom::ShownValues;
-use crate::app::common::volume_facts::decimals;
+use crate::app::common::volume_facts::range_decimals;
 use crate::data::Histogram;
 use crate::data::ValueRange;
 use crate::model::{Settings, TransferFunction};
 
-/// Points between two samples of a curve.
+/// Distance between two samples of a curve, in points.
 const SAMPLE_STEP: f32 = 2.0;
-/// Room around the plot, so that points at its borders can be grabbed.
+/// Margin around the plot, in points, so that control points at its borders can be grabbed.
 const MARGIN: Vec2 = Vec2::new(8.0, 7.0);
 
-/// Value and opacity as places in the window.
+/// Mapping from value and opacity to positions in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Axes {
-    /// The whole area, with its margin.
+pub(super) struct PlotAxes {
+    /// Whole area, including the margin.
     pub area: Rect,
-    /// The smallest and the largest value.
+    /// Values at the left and right end.
     pub range: ValueRange,
-    /// Whether all of the volume's values are shown.
+    /// True if all of the volume's values are shown.
     is_whole: bool,
     plot: Rect,
-    /// What everything is painted with.
-    pub ink: PlotInk,
+    /// Colours of lines, texts and grounds.
+    pub ink: PlotColors,
 }
 
-impl Axes {
-    /// Axes over an area.
-    pub(super) fn new(area: Rect, shown: ShownValues, ink: PlotInk) -> Self {
+impl PlotAxes {
+    /// Creates axes over an area, for the values that are shown.
+    pub(super) fn new(area: Rect, shown: ShownValues, ink: PlotColors) -> Self {
         let ShownValues { low, high, is_whole } = shown;
-        // A volume with a single value still needs an axis.
+        // A volume of a single value still needs an axis.
         let range = ValueRange::new(low, if high > low { high } else { low + 1.0 });
         Self { area, range, is_whole, plot: area.shrink2(MARGIN), ink }
     }
 
-    /// Where a value and an opacity are.
+    /// Position of a value and an opacity in the window, clamped to the plot.
     pub(super) fn position(&self, value: f64, opacity: f64) -> Pos2 {
         let x = ((value - self.range.low) / (self.range.high - self.range.low)).clamp(0.0, 1.0) as f32;
         pos2(
@@ -49,32 +49,32 @@ impl Axes {
         )
     }
 
-    /// Value and opacity at a place, within the axes.
-    pub(super) fn values(&self, at: Pos2) -> (f64, f64) {
+    /// Value and opacity at a position, clamped to the axes.
+    pub(super) fn value_and_opacity_at(&self, at: Pos2) -> (f64, f64) {
         let x = f64::from(((at.x - self.plot.min.x) / self.plot.width()).clamp(0.0, 1.0));
         let y = f64::from(((self.plot.max.y - at.y) / self.plot.height()).clamp(0.0, 1.0));
         (self.range.low + x * (self.range.high - self.range.low), y)
     }
 
-    /// Whether a value lies within what is shown.
-    pub(super) fn shows(&self, value: f64) -> bool {
-        // A volume's outermost points may lie beyond it, at the border.
+    /// Returns true if a value lies within the shown range.
+    pub(super) fn contains_value(&self, value: f64) -> bool {
+        // With all values shown, points beyond them are drawn at the border.
         let slack = 1e-9 * (self.range.high - self.range.low);
         (self.range.low - slack..=self.range.high + slack).contains(&value) || self.is_whole
     }
 
-    /// Whether a place across the window is over the plot.
-    pub(super) fn is_within(&self, x: f32) -> bool {
+    /// Returns true if a horizontal position is over the plot.
+    pub(super) fn contains_x(&self, x: f32) -> bool {
         self.plot.x_range().contains(x)
     }
 
-    /// Where a value is along the plot, also beyond it.
-    fn x(&self, value: f64) -> f32 {
+    /// Horizontal position of a value, also beyond the plot.
+    fn x_of(&self, value: f64) -> f32 {
         self.plot.min.x
             + ((value - self.range.low) / (self.range.high - self.range.low)) as f32 * self.plot.width()
     }
 
-    /// Places along the value axis at which curves are sampled.
+    /// Horizontal positions at which curves are sampled, with their values.
     fn samples(&self) -> impl Iterator<Item = (f32, f64)> + use<> {
         let Self { plot, range, .. } = *self;
         let count = (plot.width() / SAMPLE_STEP).ceil().max(1.0) as usize;
@@ -84,21 +84,21 @@ impl Axes {
         })
     }
 
-    /// Width of the plot in points.
+    /// Width of the plot, in points.
     pub(super) fn width(&self) -> f32 {
         self.plot.width()
     }
 
-    fn y(&self, opacity: f64) -> f32 {
+    fn y_of(&self, opacity: f64) -> f32 {
         self.plot.max.y - opacity.clamp(0.0, 1.0) as f32 * self.plot.height()
     }
 }
 
-/// Voxels per bar: at most one bar per point of width, and one per value where those are fewer.
-pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> Vec<u64> {
+/// Number of voxels per bar: at most one bar per point of width, or one per distinct value if there are fewer.
+pub(super) fn histogram_bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> Vec<u64> {
     let bins = histogram.counts.len();
     if let Some(levels) = levels.filter(|&levels| levels <= bins && levels <= width as usize) {
-        // Each value has a bin of its own; those between are empty.
+        // Each value has a bin of its own; the bins between are empty.
         let bin = |level: usize| (level * bins / (levels - 1).max(1)).min(bins - 1);
         return (0..levels).map(|level| histogram.counts[bin(level)]).collect();
     }
@@ -107,21 +107,21 @@ pub(super) fn bars(histogram: &Histogram, levels: Option<usize>, width: f32) -> 
     (0..columns).map(|column| histogram.counts[first(column)..first(column + 1)].iter().sum()).collect()
 }
 
-/// The eye's curve.
-pub(super) fn eye_curve(painter: &Painter, axes: &Axes, function: &TransferFunction, edited: bool) {
-    let line = axes.samples().map(|(x, value)| pos2(x, axes.y(function.opacity_at(value)))).collect();
+/// Paints the eye's curve, dimmed if it is not edited.
+pub(super) fn paint_eye_curve(painter: &Painter, axes: &PlotAxes, function: &TransferFunction, edited: bool) {
+    let line = axes.samples().map(|(x, value)| pos2(x, axes.y_of(function.opacity_at(value)))).collect();
     let strength = if edited { 1.0 } else { 0.5 };
     painter.add(Shape::line(line, Stroke::new(1.5, axes.ink.eye.gamma_multiply(strength))));
 }
 
-/// The lighting curve: a line, dashed while it follows the eye's.
-pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, edited: bool) {
+/// Paints the lighting curve, dashed while it is linked to the eye's.
+pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, settings: &Settings, edited: bool) {
     let linked = settings.lighting.linked;
     let function = if linked { &settings.transfer } else { &settings.lighting.curve };
     let scale = settings.lighting.scale;
     // The scale multiplies the extinction, not the opacity.
-    let scaled = |value: f64| 1.0 - (-function.at(value).1 * scale).exp();
-    let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y(scaled(value)))).collect();
+    let scaled = |value: f64| 1.0 - (-function.sample(value).1 * scale).exp();
+    let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y_of(scaled(value)))).collect();
     let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, axes.ink.light);
     if linked {
         painter.extend(Shape::dashed_line(&line, stroke, 5.0, 5.0));
@@ -130,64 +130,70 @@ pub(super) fn light_curve(painter: &Painter, axes: &Axes, settings: &Settings, e
     }
 }
 
-/// The ends of the axes.
-pub(super) fn labels(painter: &Painter, axes: &Axes) {
+/// Paints the labels at the ends of the axes.
+pub(super) fn paint_axis_labels(painter: &Painter, axes: &PlotAxes) {
     let ink = axes.ink.eye.gamma_multiply(0.75);
     let plot = axes.plot;
     let write = |at: Pos2, align: Align2, text: String| {
-        over_anything(painter, axes, (at, align), text, ink);
+        paint_text_on_ground(painter, axes, (at, align), text, ink);
     };
-    write(plot.left_bottom(), Align2::LEFT_BOTTOM, number(axes.range.low, axes.range));
-    write(plot.right_bottom(), Align2::RIGHT_BOTTOM, number(axes.range.high, axes.range));
+    write(plot.left_bottom(), Align2::LEFT_BOTTOM, format_value(axes.range.low, axes.range));
+    write(plot.right_bottom(), Align2::RIGHT_BOTTOM, format_value(axes.range.high, axes.range));
     write(plot.left_top(), Align2::LEFT_TOP, text::transfer::OPACITY_ONE.to_owned());
 }
 
-/// A value with as many digits as the range deserves.
-fn number(value: f64, range: ValueRange) -> String {
-    let decimals = decimals(range);
+/// Formats a value with as many digits as the range needs.
+fn format_value(value: f64, range: ValueRange) -> String {
+    let decimals = range_decimals(range);
     format!("{value:.decimals$}")
 }
 
-/// A control point.
-pub(super) fn point(
+/// Paints a control point: a disc of its colour in a ring.
+pub(super) fn paint_point(
     painter: &Painter,
-    ink: &PlotInk,
+    ink: &PlotColors,
     (at, radius): (Pos2, f32),
     color: Color32,
     selected: bool,
 ) {
-    painter.circle_filled(at, radius + 1.5, ink.ground);
+    painter.circle_filled(at, radius + 1.5, ink.background);
     let ring = if selected { theme::ACCENT } else { ink.eye };
     painter.circle(at, radius, color, Stroke::new(if selected { 2.0 } else { 1.5 }, ring));
 }
 
-/// Value and opacity under the pointer.
-pub(super) fn readout(ui: &Ui, axes: &Axes, response: &Response, settings: &Settings) {
+/// Paints value and opacity under the pointer.
+pub(super) fn paint_readout(ui: &Ui, axes: &PlotAxes, response: &Response, settings: &Settings) {
     let Some(at) = response.hover_pos() else { return };
-    let (value, _) = axes.values(at);
+    let (value, _) = axes.value_and_opacity_at(at);
     let painter = ui.painter_at(axes.area);
     let line = Stroke::new(1.0, axes.ink.eye.gamma_multiply(0.35));
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
     let opacity = settings.transfer.opacity_at(value);
-    let words = text::transfer::at_pointer(&number(value, axes.range), opacity);
+    let words = text::transfer::pointer_readout(&format_value(value, axes.range), opacity);
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
     let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
-    over_anything(&painter, axes, (place, align), words, axes.ink.eye);
+    paint_text_on_ground(&painter, axes, (place, align), words, axes.ink.eye);
 }
 
-/// Writes on a ground of its own: curves and what fills them have any colour.
-fn over_anything(painter: &Painter, axes: &Axes, (at, align): (Pos2, Align2), text: String, ink: Color32) {
+/// Paints text on a ground of its own, legible over curves and fills of any colour.
+fn paint_text_on_ground(
+    painter: &Painter,
+    axes: &PlotAxes,
+    (at, align): (Pos2, Align2),
+    text: String,
+    ink: Color32,
+) {
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.0), ink);
     let area = align.anchor_size(at, galley.size());
-    painter.rect_filled(area.expand2(Vec2::new(3.0, 1.0)), 3.0, axes.ink.ground.gamma_multiply(0.75));
+    painter.rect_filled(area.expand2(Vec2::new(3.0, 1.0)), 3.0, axes.ink.background.gamma_multiply(0.75));
     painter.galley(area.min, galley, ink);
 }
 
-/// The value that another view marks.
-pub(super) fn mark(ui: &Ui, axes: &Axes, marked: Option<f64>) {
-    let Some(value) = marked.filter(|&value| axes.shows(value)) else { return };
-    let x = axes.x(value);
+/// Marks the value that the light probe reads in another view.
+pub(super) fn paint_value_mark(ui: &Ui, axes: &PlotAxes, marked_value: Option<f64>) {
+    let Some(value) = marked_value.filter(|&value| axes.contains_value(value)) else { return };
+    let x = axes.x_of(value);
     let painter = ui.painter_at(axes.area);
     painter.vline(x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), Stroke::new(1.5, theme::ACCENT));
     let head =
@@ -202,17 +208,17 @@ mod tests {
 
     #[test]
     fn places_and_values_agree() {
-        let axes = Axes::new(
+        let axes = PlotAxes::new(
             Rect::from_min_size(pos2(7.0, 400.0), vec2(900.0, 120.0)),
             ShownValues { low: -1000.0, high: 3000.0, is_whole: true },
-            PlotInk::DARK,
+            PlotColors::DARK,
         );
         let at = axes.position(250.0, 0.37);
-        let (value, opacity) = axes.values(at);
+        let (value, opacity) = axes.value_and_opacity_at(at);
         assert!((value - 250.0).abs() < 0.5 && (opacity - 0.37).abs() < 1e-3, "{value} {opacity}");
-        assert_eq!(axes.values(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
+        assert_eq!(axes.value_and_opacity_at(pos2(-50.0, 9000.0)), (-1000.0, 0.0));
         assert!(
-            Axes::new(axes.area, ShownValues { low: 5.0, high: 5.0, is_whole: true }, PlotInk::DARK)
+            PlotAxes::new(axes.area, ShownValues { low: 5.0, high: 5.0, is_whole: true }, PlotColors::DARK)
                 .position(5.0, 0.0)
                 .x
                 .is_finite()
@@ -224,19 +230,19 @@ mod tests {
         use crate::data::{Samples, Volume};
         let values = Samples::U8((0..=199).chain(0..=55).collect());
         let volume = Volume::with_spacing("ramp", [16, 4, 4], glam::DVec3::ONE, values).unwrap();
-        let histogram = Histogram::of(&volume);
-        let per_value = bars(&histogram, Some(200), 900.0);
+        let histogram = Histogram::from_volume(&volume);
+        let per_value = histogram_bars(&histogram, Some(200), 900.0);
         assert_eq!(per_value.len(), 200);
         assert!(per_value.iter().enumerate().all(|(value, &count)| count == if value <= 55 { 2 } else { 1 }));
         for width in [0.0, 150.0, 900.0, 5000.0] {
-            assert_eq!(bars(&histogram, None, width).iter().sum::<u64>(), 256);
+            assert_eq!(histogram_bars(&histogram, None, width).iter().sum::<u64>(), 256);
         }
     }
 
     #[test]
     fn numbers_have_sensible_digits() {
-        assert_eq!(number(1024.0, ValueRange::new(0.0, 4095.0)), "1024");
-        assert_eq!(number(0.5, ValueRange::new(0.0, 1.0)), "0.50");
-        assert_eq!(number(0.00125, ValueRange::new(0.0, 0.004)), "0.00125");
+        assert_eq!(format_value(1024.0, ValueRange::new(0.0, 4095.0)), "1024");
+        assert_eq!(format_value(0.5, ValueRange::new(0.0, 1.0)), "0.50");
+        assert_eq!(format_value(0.00125, ValueRange::new(0.0, 0.004)), "0.00125");
     }
 }

@@ -1,5 +1,5 @@
-//! Menu of the presets: a small picture of each, by domain. Those for another kind of data are dim, and those in use have
-//! a frame.
+//! Menu of transfer function presets: a thumbnail of each, by domain. Presets for another kind of data are dimmed,
+//! and those in use are framed.
 
 use eframe::egui::{
     self, Align2, Color32, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2,
@@ -7,32 +7,33 @@ use eframe::egui::{
 };
 
 use super::super::text;
-use super::preset_pictures::PresetPictures;
-use crate::app::common::commands::Command;
-use crate::app::common::preset_use::PresetUse;
+use super::preset_thumbnails::PresetThumbnails;
+use crate::app::common::commands::AppCommand;
+use crate::app::common::preset_match::PresetMatchCache;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::model::{PRESETS, Preset, Settings};
 
-/// Points of a picture: half of its pixels.
-const PICTURE: Vec2 = vec2(88.0, 58.0);
-/// Points around a picture, and of the title below it.
-const MARGIN: f32 = 4.0;
-const TITLE: f32 = 17.0;
-/// Pictures side by side: the largest domain, of seven, takes two rows.
+/// Size of a thumbnail in points: half of its pixels.
+const THUMBNAIL_SIZE: Vec2 = vec2(88.0, 58.0);
+/// Margin around a thumbnail, in points.
+const THUMBNAIL_MARGIN: f32 = 4.0;
+/// Height of the title below a thumbnail, in points.
+const TITLE_HEIGHT: f32 = 17.0;
+/// Number of thumbnails side by side: the largest domain, of seven, takes two rows.
 const COLUMNS: f32 = 4.0;
-/// Points above the menu's button that the list leaves: the command at its top, and the bar of the window.
-const ABOVE: f32 = 90.0;
-/// Points of height of the list at least, where two rows are seen.
-const LEAST_HEIGHT: f32 = 200.0;
-/// Opacity of pictures of presets for another kind of data.
-const DIM: u8 = 90;
+/// Height above the menu's button that the list leaves free, in points: the command at its top, and the menu bar.
+const SPACE_ABOVE: f32 = 90.0;
+/// Smallest height of the list, in points, at which two rows are visible.
+const MIN_LIST_HEIGHT: f32 = 200.0;
+/// Opacity of the thumbnails of presets for another kind of data, 0 to 255.
+const DIMMED_OPACITY: u8 = 90;
 
-/// What the menu shows, kept between frames.
+/// State of the preset menu between frames.
 #[derive(Debug, Default)]
 pub(super) struct PresetMenu {
-    pictures: PresetPictures,
-    in_use: PresetUse,
+    pictures: PresetThumbnails,
+    in_use: PresetMatchCache,
 }
 
 impl PresetMenu {
@@ -42,22 +43,23 @@ impl PresetMenu {
         ui: &mut Ui,
         settings: &Settings,
         volume: &VolumeFacts,
-        commands: &mut Vec<Command>,
+        commands: &mut Vec<AppCommand>,
     ) {
-        // It opens upwards: below lies the plot.
-        let height = (ui.cursor().top() - ABOVE).max(LEAST_HEIGHT);
+        // The menu opens upwards, because the plot is below.
+        let height = (ui.cursor().top() - SPACE_ABOVE).max(MIN_LIST_HEIGHT);
         ui.menu_button(text::transfer::PRESETS, |ui| {
-            let all = ui.button(&*Command::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
+            let all =
+                ui.button(&*AppCommand::TryPresets.label()).on_hover_text(text::transfer::TRY_PRESETS_TIP);
             if all.clicked() {
-                commands.push(Command::TryPresets);
+                commands.push(AppCommand::TryPresets);
             }
             ui.separator();
-            self.in_use.look_at(ui, settings, &volume.ranges);
+            self.in_use.update(ui, settings, &volume.ranges);
             let list = ScrollArea::vertical().id_salt("presets").max_height(height);
             list.min_scrolled_height(height).show(ui, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::splat(2.0);
-                ui.set_width(COLUMNS * (PICTURE.x + 2.0 * MARGIN + 2.0));
-                // The one of the benchmarks is for the command line.
+                ui.set_width(COLUMNS * (THUMBNAIL_SIZE.x + 2.0 * THUMBNAIL_MARGIN + 2.0));
+                // The preset of the benchmarks is for the command line only.
                 let listed: Vec<Preset> =
                     PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
                 for domain in listed.chunk_by(|a, b| a.domain() == b.domain()) {
@@ -65,8 +67,8 @@ impl PresetMenu {
                     ui.weak(domain.first().map_or("", Preset::domain_title));
                     ui.horizontal_wrapped(|ui| {
                         for preset in domain {
-                            if self.card(ui, preset, preset.suits(&volume.kind)).clicked() {
-                                commands.push(Command::UsePreset(*preset));
+                            if self.preset_card(ui, preset, preset.suits_data(&volume.kind)).clicked() {
+                                commands.push(AppCommand::UsePreset(*preset));
                             }
                         }
                     });
@@ -75,21 +77,21 @@ impl PresetMenu {
         });
     }
 
-    /// A preset: its picture, and its title below.
-    fn card(&mut self, ui: &mut Ui, preset: &Preset, suits: bool) -> Response {
-        let size = PICTURE + vec2(2.0 * MARGIN, 2.0 * MARGIN + TITLE);
+    /// Shows a preset: its thumbnail, and its title below.
+    fn preset_card(&mut self, ui: &mut Ui, preset: &Preset, suits: bool) -> Response {
+        let size = THUMBNAIL_SIZE + vec2(2.0 * THUMBNAIL_MARGIN, 2.0 * THUMBNAIL_MARGIN + TITLE_HEIGHT);
         let (area, response) = ui.allocate_exact_size(size, Sense::click());
-        let is_used = self.in_use.has(preset);
+        let is_used = self.in_use.is_in_use(preset);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_used, preset.title));
         let visuals = ui.style().interact_selectable(&response, is_used);
         let painter = ui.painter();
         if response.hovered() || response.has_focus() {
             painter.rect_filled(area, 4.0, visuals.weak_bg_fill);
         }
-        let picture = Rect::from_min_size(area.min + Vec2::splat(MARGIN), PICTURE);
+        let picture = Rect::from_min_size(area.min + Vec2::splat(THUMBNAIL_MARGIN), THUMBNAIL_SIZE);
         match self.pictures.get(ui.ctx(), preset) {
             Some(texture) => {
-                let tint = if suits { Color32::WHITE } else { Color32::from_white_alpha(DIM) };
+                let tint = if suits { Color32::WHITE } else { Color32::from_white_alpha(DIMMED_OPACITY) };
                 let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                 painter.image(texture.id(), picture, whole, tint);
             }
@@ -108,17 +110,20 @@ impl PresetMenu {
         };
         let font = TextStyle::Small.resolve(ui.style());
         let mut title = egui::text::LayoutJob::simple_singleline(preset.title.to_owned(), font, ink);
-        title.wrap = egui::text::TextWrapping::truncate_at_width(PICTURE.x + MARGIN);
+        title.wrap = egui::text::TextWrapping::truncate_at_width(THUMBNAIL_SIZE.x + THUMBNAIL_MARGIN);
         let title = painter.layout_job(title);
-        let middle = pos2(picture.center().x, picture.bottom() + MARGIN + 0.5 * (TITLE - MARGIN));
+        let middle = pos2(
+            picture.center().x,
+            picture.bottom() + THUMBNAIL_MARGIN + 0.5 * (TITLE_HEIGHT - THUMBNAIL_MARGIN),
+        );
         let place = Align2::CENTER_CENTER.anchor_size(middle, title.size());
         painter.galley(place.min, title, ink);
-        let mut about = preset.about();
+        let mut about = preset.description();
         if is_used {
-            about = text::transfer::in_use(&about);
+            about = text::transfer::in_use_tooltip(&about);
         }
         if !suits {
-            about = text::transfer::not_for_these(&about);
+            about = text::transfer::other_data_tooltip(&about);
         }
         response.on_hover_text(about)
     }

@@ -1,87 +1,93 @@
-//! Which points are selected, and what moves them together.
+//! Selection of control points: by click, by rubber band, and moving the selected points together.
 
 use std::collections::BTreeSet;
 
 use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
 
-use super::plot::Axes;
+use super::plot::PlotAxes;
 use super::theme;
 use crate::data::ValueRange;
 use crate::model::TransferFunction;
 
-/// Indices of points, and a frame that is being drawn around more of them.
+/// Indices of the selected points, and the rubber band that selects more of them.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Selection {
+pub(super) struct PointSelection {
     points: BTreeSet<usize>,
-    /// The keyboard is to go to the first of them.
+    /// True if the first selected point is to take the keyboard focus.
     pub wants_focus: bool,
-    /// Where the frame began.
-    frame: Option<Pos2>,
+    /// Corner at which the rubber band began.
+    rubber_band_start: Option<Pos2>,
 }
 
-/// How far points are moved.
+/// Distance by which points are moved, along both axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shift {
-    /// Along the values.
+pub(super) struct PointShift {
+    /// Distance along the value axis, in data units.
     pub value: f64,
-    /// Towards opaque.
+    /// Distance along the opacity axis, positive towards opaque.
     pub opacity: f64,
 }
 
-impl Selection {
-    /// Nothing but one point.
-    pub(super) fn only(&mut self, index: usize) {
+impl PointSelection {
+    /// Selects one point and no other.
+    pub(super) fn select_only(&mut self, index: usize) {
         self.points = [index].into();
     }
 
-    /// One point more, or one less.
+    /// Adds a point to the selection, or removes it.
     pub(super) fn toggle(&mut self, index: usize) {
         if !self.points.remove(&index) {
             self.points.insert(index);
         }
     }
 
-    /// All of so many.
-    pub(super) fn all(&mut self, count: usize) {
+    /// Selects all of `count` points.
+    pub(super) fn select_all(&mut self, count: usize) {
         self.points = (0..count).collect();
         self.wants_focus = true;
     }
 
-    /// None.
+    /// Clears the selection of points.
     pub(super) fn clear(&mut self) {
         self.points.clear();
     }
 
-    /// Whether it has a point.
-    pub(super) fn has(&self, index: usize) -> bool {
+    /// Returns true if a point is selected.
+    pub(super) fn contains(&self, index: usize) -> bool {
         self.points.contains(&index)
     }
 
-    /// Those that are left of so many points, in ascending order.
-    pub(super) fn within(&mut self, count: usize) -> Vec<usize> {
+    /// Returns the selected indices below `count` in ascending order, and drops the others.
+    pub(super) fn retained_indices(&mut self, count: usize) -> Vec<usize> {
         self.points.retain(|&index| index < count);
         self.points.iter().copied().collect()
     }
 
-    /// Selects what a frame surrounds that is drawn with the mouse; with Shift, what was selected stays.
-    pub(super) fn frame(&mut self, ui: &Ui, response: &Response, axes: &Axes, function: &TransferFunction) {
+    /// Selects the points inside a rubber band drawn with the mouse; with Shift, the previous selection is kept.
+    pub(super) fn rubber_band(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        axes: &PlotAxes,
+        function: &TransferFunction,
+    ) {
         let primary = PointerButton::Primary;
         if response.drag_started_by(primary) {
-            self.frame = ui.input(|input| input.pointer.press_origin());
+            self.rubber_band_start = ui.input(|input| input.pointer.press_origin());
         }
-        let Some((start, now)) = self.frame.zip(ui.ctx().pointer_latest_pos()) else { return };
+        let Some((start, now)) = self.rubber_band_start.zip(ui.ctx().pointer_latest_pos()) else { return };
         let frame = Rect::from_two_pos(start, now);
         if response.dragged_by(primary) {
-            paint(&ui.painter_at(axes.area), frame);
+            paint_rubber_band(&ui.painter_at(axes.area), frame);
         } else {
-            self.frame = None;
+            self.rubber_band_start = None;
         }
         if response.dragged_by(primary) || response.drag_stopped_by(primary) {
             if !ui.input(|input| input.modifiers.shift) {
                 self.points.clear();
             }
             let inside = |point: &crate::model::ControlPoint| {
-                axes.shows(point.value) && frame.contains(axes.position(point.value, point.opacity))
+                axes.contains_value(point.value) && frame.contains(axes.position(point.value, point.opacity))
             };
             let found = function.points.iter().enumerate().filter(|(_, point)| inside(point));
             self.points.extend(found.map(|(index, _)| index));
@@ -89,9 +95,9 @@ impl Selection {
         }
     }
 
-    /// Removes its points, but for the last of a function: without any it would be invisible for good.
-    pub(super) fn remove(&mut self, function: &mut TransferFunction) {
-        for index in self.within(function.points.len()).into_iter().rev() {
+    /// Removes the selected points, but always leaves one: a function without points could never be seen again.
+    pub(super) fn remove_points(&mut self, function: &mut TransferFunction) {
+        for index in self.retained_indices(function.points.len()).into_iter().rev() {
             if function.points.len() > 1 {
                 function.points.remove(index);
             }
@@ -99,23 +105,23 @@ impl Selection {
         self.points.clear();
     }
 
-    /// Moves its points by as much as none of them passes another that stays, leaves the values, or becomes more
-    /// than opaque or less than clear.
-    pub(super) fn shift(&mut self, function: &mut TransferFunction, range: ValueRange, by: Shift) {
-        let Shift { value, opacity } = by;
-        let selected = self.within(function.points.len());
+    /// Moves the selected points together, by at most the distance at which none of them passes an unselected
+    /// neighbour, leaves the values, or leaves the opacities 0 to 1.
+    pub(super) fn move_points(&mut self, function: &mut TransferFunction, range: ValueRange, by: PointShift) {
+        let PointShift { value, opacity } = by;
+        let selected = self.retained_indices(function.points.len());
         let points = &function.points;
         let (mut left, mut right, mut down, mut up) =
             (f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
         let mut bounds = Vec::with_capacity(selected.len());
         for &index in &selected {
             let point = points[index];
-            // Points from a preset may lie beyond this volume's values, and stay where they are.
+            // Points from a preset may lie beyond this volume's values, and may stay there.
             let (mut low, mut high) = (range.low.min(point.value), range.high.max(point.value));
-            if let Some(before) = index.checked_sub(1).filter(|&before| !self.has(before)) {
+            if let Some(before) = index.checked_sub(1).filter(|&before| !self.contains(before)) {
                 low = points[before].value;
             }
-            if let Some(after) = points.get(index + 1).filter(|_| !self.has(index + 1)) {
+            if let Some(after) = points.get(index + 1).filter(|_| !self.contains(index + 1)) {
                 high = after.value;
             }
             (left, right) = (left.max(low - point.value), right.min(high - point.value));
@@ -124,14 +130,14 @@ impl Selection {
         }
         for (index, low, high) in bounds {
             let point = &mut function.points[index];
-            // Rounding must not carry it past its neighbour.
+            // Rounding must not carry a point past its neighbour.
             point.value = (point.value + value.max(left).min(right)).clamp(low, high);
             point.opacity = (point.opacity + opacity.max(down).min(up)).clamp(0.0, 1.0);
         }
     }
 }
 
-fn paint(painter: &Painter, frame: Rect) {
+fn paint_rubber_band(painter: &Painter, frame: Rect) {
     painter.rect_filled(frame, 0.0, theme::ACCENT.gamma_multiply(0.12));
     painter.rect_stroke(frame, 0.0, Stroke::new(1.0, theme::ACCENT), eframe::egui::StrokeKind::Inside);
 }
@@ -149,35 +155,50 @@ mod tests {
         }
     }
 
-    fn moved(selected: &[usize], value: f64, opacity: f64) -> Vec<(f64, f64)> {
-        let (mut function, mut selection) = (function(), Selection::default());
+    fn points_after_shift(selected: &[usize], value: f64, opacity: f64) -> Vec<(f64, f64)> {
+        let (mut function, mut selection) = (function(), PointSelection::default());
         for &index in selected {
             selection.toggle(index);
         }
-        selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value, opacity });
+        selection.move_points(&mut function, ValueRange::new(0.0, 100.0), PointShift { value, opacity });
         function.points.iter().map(|point| (point.value, (point.opacity * 1e6).round() / 1e6)).collect()
     }
 
     #[test]
     fn points_move_together_and_pass_none() {
-        assert_eq!(moved(&[1, 2], 10.0, 0.1), [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]);
-        assert_eq!(moved(&[1, 2], 70.0, 0.9)[1..3], [(70.0, 0.5), (90.0, 1.0)], "up to what stays");
-        assert_eq!(moved(&[1], -50.0, -0.9)[1], (0.0, 0.0));
-        assert_eq!(moved(&[3], 50.0, 0.0)[3], (100.0, 1.0), "up to the values' end");
-        assert_eq!(moved(&[], 5.0, 0.5), moved(&[1], 0.0, 0.0));
-        assert_eq!(moved(&[7], 5.0, 0.5), moved(&[], 0.0, 0.0), "points that are gone");
+        assert_eq!(
+            points_after_shift(&[1, 2], 10.0, 0.1),
+            [(0.0, 0.0), (30.0, 0.4), (50.0, 0.9), (90.0, 1.0)]
+        );
+        assert_eq!(
+            points_after_shift(&[1, 2], 70.0, 0.9)[1..3],
+            [(70.0, 0.5), (90.0, 1.0)],
+            "up to what stays"
+        );
+        assert_eq!(points_after_shift(&[1], -50.0, -0.9)[1], (0.0, 0.0));
+        assert_eq!(points_after_shift(&[3], 50.0, 0.0)[3], (100.0, 1.0), "up to the values' end");
+        assert_eq!(points_after_shift(&[], 5.0, 0.5), points_after_shift(&[1], 0.0, 0.0));
+        assert_eq!(
+            points_after_shift(&[7], 5.0, 0.5),
+            points_after_shift(&[], 0.0, 0.0),
+            "points that are gone"
+        );
     }
 
     #[test]
     fn rounding_carries_no_point_past_another() {
         let mut function = function();
-        let mut selection = Selection::default();
-        selection.only(1);
+        let mut selection = PointSelection::default();
+        selection.select_only(1);
         for i in 1..2000 {
             let low = 12.3 + f64::from(i) * 0.001_7;
             function.points[0].value = low;
             function.points[1].value = 20.0 + f64::from(i) * 0.009;
-            selection.shift(&mut function, ValueRange::new(0.0, 100.0), Shift { value: -1e3, opacity: 0.0 });
+            selection.move_points(
+                &mut function,
+                ValueRange::new(0.0, 100.0),
+                PointShift { value: -1e3, opacity: 0.0 },
+            );
             let found = function.points[1].value;
             assert!(found >= low && found - low < 1e-9, "{found} at {low}");
         }
@@ -185,10 +206,10 @@ mod tests {
 
     #[test]
     fn one_point_always_stays() {
-        let (mut function, mut selection) = (function(), Selection::default());
-        selection.all(4);
-        selection.remove(&mut function);
+        let (mut function, mut selection) = (function(), PointSelection::default());
+        selection.select_all(4);
+        selection.remove_points(&mut function);
         assert_eq!(function.points.len(), 1);
-        assert!(!selection.has(0));
+        assert!(!selection.contains(0));
     }
 }

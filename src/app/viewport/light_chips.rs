@@ -1,26 +1,26 @@
-//! The lights as chips at the top of the picture: which there are, which shine, which one is selected.
+//! Light chips at the top of the picture: one per light, showing its name, whether it is on and which is selected.
 
 use eframe::egui::{self, Rect, Sense, Ui, UiBuilder, vec2};
 
-use super::Facts;
-use crate::app::common::commands::Command;
+use super::RendererStatus;
+use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::elide_middle;
 use crate::app::common::light_keys::solo;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{Light, MAX_LIGHTS, Settings};
+use crate::model::{LightSettings, MAX_LIGHTS, Settings};
 
-/// Width of a name: of longer ones the middle is left out, and they are whole in the chip's tip.
-const LONGEST_NAME: f32 = 140.0;
+/// Width of the widest name, in points; longer names are elided in the middle and complete in the chip's tooltip.
+const MAX_NAME_WIDTH: f32 = 140.0;
 
-/// Shows the chips. Where they are.
+/// Shows the light chips and returns the rectangle that they cover.
 pub(crate) fn show(
     ui: &mut Ui,
     picture: Rect,
     settings: &mut Settings,
     selected: &mut usize,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
+    facts: &RendererStatus,
+    commands: &mut Vec<AppCommand>,
 ) -> Rect {
     let area =
         Rect::from_min_size(picture.min + vec2(8.0, 8.0), vec2((picture.width() - 130.0).max(80.0), 24.0));
@@ -54,40 +54,41 @@ pub(crate) fn show(
             solo(&mut settings.lights, at);
         }
         if settings.lights.len() < MAX_LIGHTS {
-            let plus = egui::RichText::new(text::lights::ADD_CHIP).color(theme::EYE_CURVE);
-            let add = ui.add(egui::Button::new(plus).small().fill(fill(false)));
+            let plus = egui::RichText::new(text::lights::ADD_CHIP).color(theme::PICTURE_TEXT);
+            let add = ui.add(egui::Button::new(plus).small().fill(chip_background(false)));
             let cost = facts.light_cost().map(|cost| text::shadows::cost(cost.ms, cost.mebibytes));
             if add.on_hover_text(text::lights::add_tip(cost.as_deref())).clicked() {
-                commands.push(Command::AddLight);
+                commands.push(AppCommand::AddLight);
             }
         }
-        // The row itself is as wide as it may become.
+        // The row itself extends over the full available width.
         ui.min_rect()
     });
     shown.inner
 }
 
-fn fill(selected: bool) -> egui::Color32 {
+fn chip_background(selected: bool) -> egui::Color32 {
     theme::OUTLINE.gamma_multiply(if selected { 0.9 } else { 0.6 })
 }
 
-/// A dot in the light's colour, dimmed with its intensity and hollow when it is off; and its name.
-fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
+/// Shows one chip: a dot in the light's colour, dimmed with its intensity and hollow if it is off, and the light's
+/// name.
+fn chip(ui: &mut Ui, light: &LightSettings, selected: bool) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let name = if light.name.is_empty() { text::lights::UNNAMED } else { &light.name };
     let ink = match (selected, light.on) {
         (true, _) => theme::ACCENT,
-        (false, true) => theme::EYE_CURVE,
+        (false, true) => theme::PICTURE_TEXT,
         (false, false) => theme::GUIDE.gamma_multiply(0.6),
     };
-    let shown = elide_middle(ui, name, &egui::TextStyle::Button, LONGEST_NAME);
+    let shown = elide_middle(ui, name, &egui::TextStyle::Button, MAX_NAME_WIDTH);
     let galley = ui.painter().layout_no_wrap(shown, font, ink);
     let size = vec2(galley.size().x + 30.0, 20.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let spoken = text::lights::chip(name, light.on);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, selected, &spoken));
     let painter = ui.painter();
-    painter.rect_filled(rect, 10.0, fill(selected || response.hovered()));
+    painter.rect_filled(rect, 10.0, chip_background(selected || response.hovered()));
     if selected || response.has_focus() {
         let stroke = egui::Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.8));
         painter.rect_stroke(rect, 10.0, stroke, egui::StrokeKind::Inside);
@@ -104,14 +105,14 @@ fn chip(ui: &mut Ui, light: &Light, selected: bool) -> egui::Response {
     response
 }
 
-/// The tip of a light's chip: what it is, and what its shadows cost.
-fn chip_tip(light: &Light, volume: Option<super::LightFigures>) -> String {
+/// Returns the tooltip of a light's chip: name, intensity, and the cost of its shadows.
+fn chip_tip(light: &LightSettings, volume: Option<super::LightVolumeStatistics>) -> String {
     let shadows = match volume {
         _ if !light.casts_shadows => text::lights::NO_SHADOWS.to_owned(),
-        None => text::lights::NOT_FILLED.to_owned(),
+        None => text::lights::SHADOWS_PENDING.to_owned(),
         Some(volume) => {
             let mebibytes = volume.bytes as f64 / f64::from(1 << 20);
-            text::lights::light_volume(volume.complete, volume.fill_ms, mebibytes)
+            text::lights::light_volume(volume.is_complete, volume.fill_ms, mebibytes)
         }
     };
     text::lights::chip_tip(&light.name, light.intensity, &shadows)

@@ -1,4 +1,4 @@
-//! Pictures and backgrounds of the window as shapes of egui, drawn by pipelines of our own
+//! Paint callbacks: pictures and backgrounds of the window as egui shapes, drawn by the viewer's own pipelines
 //! (`shaders/output/window.wgsl` says why).
 
 use eframe::egui::{Color32, PaintCallbackInfo, Rect, Shape};
@@ -7,13 +7,13 @@ use eframe::wgpu;
 
 use crate::gpu::{WindowPainter, WindowPicture};
 
-enum Drawing {
-    /// With an opacity, and moved to the right by so many pixels.
+enum PictureCallback {
+    /// Picture with its opacity (0 to 255) and its shift to the right in pixels.
     Picture(WindowPicture, u8, i16),
     Fill(WindowPainter, [u8; 3]),
 }
 
-impl CallbackTrait for Drawing {
+impl CallbackTrait for PictureCallback {
     fn paint(&self, _: PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
         match self {
             Self::Picture(picture, opacity, moved) => picture.draw(pass, *opacity, *moved),
@@ -22,23 +22,24 @@ impl CallbackTrait for Drawing {
     }
 }
 
-/// A picture, stretched over a rectangle.
-pub(in crate::app) fn picture(rect: Rect, picture: &WindowPicture, opacity: u8) -> Shape {
-    drawing(rect, Drawing::Picture(picture.clone(), opacity, 0))
+/// Returns the shape of a picture that is stretched over a rectangle.
+pub(crate) fn picture_shape(rect: Rect, picture: &WindowPicture, opacity: u8) -> Shape {
+    callback_shape(rect, PictureCallback::Picture(picture.clone(), opacity, 0))
 }
 
-/// A picture, stretched over a rectangle and moved within it to the right by a share of its width.
-pub(in crate::app) fn moved_picture(rect: Rect, picture: &WindowPicture, share: f32) -> Shape {
+/// Returns the shape of a picture that is stretched over a rectangle and shifted to the right by a fraction of its
+/// width.
+pub(crate) fn shifted_picture_shape(rect: Rect, picture: &WindowPicture, share: f32) -> Shape {
     let pixels = (share * picture.width() as f32).round() as i16;
-    drawing(rect, Drawing::Picture(picture.clone(), u8::MAX, pixels))
+    callback_shape(rect, PictureCallback::Picture(picture.clone(), u8::MAX, pixels))
 }
 
-fn drawing(rect: Rect, drawing: Drawing) -> Shape {
+fn callback_shape(rect: Rect, drawing: PictureCallback) -> Shape {
     Shape::Callback(Callback::new_paint_callback(rect, drawing))
 }
 
-/// A rectangle of one opaque colour.
-pub(in crate::app) fn fill(rect: Rect, painter: &WindowPainter, color: Color32) -> Shape {
+/// Returns the shape of a rectangle in one opaque colour.
+pub(crate) fn fill_shape(rect: Rect, painter: &WindowPainter, color: Color32) -> Shape {
     let [red, green, blue, _] = color.to_array();
-    drawing(rect, Drawing::Fill(painter.clone(), [red, green, blue]))
+    callback_shape(rect, PictureCallback::Fill(painter.clone(), [red, green, blue]))
 }

@@ -1,16 +1,16 @@
-//! From the scene to the window and back: the camera over the picture's rectangle.
+//! View projection: mapping from the scene to the window and back, for a camera over the picture's rectangle.
 
 use eframe::egui::{Pos2, Rect, vec2};
 use glam::DVec3;
 
 use crate::model::Camera;
 
-/// The camera over the picture's rectangle, in points.
+/// Camera together with the picture's rectangle in the window, in points.
 #[derive(Debug, Clone)]
 pub(crate) struct ViewProjection {
-    /// Where the eye is.
+    /// Camera that the picture is seen through.
     pub camera: Camera,
-    /// In points.
+    /// Rectangle of the picture, in points.
     pub picture: Rect,
 }
 
@@ -19,26 +19,27 @@ impl ViewProjection {
         (f64::from(self.picture.width()), f64::from(self.picture.height()).max(1.0))
     }
 
-    /// Where a scene point is seen; `None` behind the eye.
-    pub(crate) fn point(&self, scene: DVec3) -> Option<Pos2> {
+    /// Projects a scene point to the window, in points; `None` behind the eye.
+    pub(crate) fn project(&self, scene: DVec3) -> Option<Pos2> {
         let (width, height) = self.size();
         let (x, y, _) = self.camera.pixel_from_scene(scene, width, height)?;
         Some(self.picture.min + vec2(x as f32, y as f32))
     }
 
-    /// The line of sight through a point of the window: origin and unit direction, in scene space.
+    /// Returns the viewing ray through a point of the window: origin and unit direction, in scene space.
     pub(crate) fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
         let (width, height) = self.size();
         let offset = at - self.picture.min;
         self.camera.ray_through(f64::from(offset.x), f64::from(offset.y), width, height)
     }
 
-    /// How far along a line (in lengths of `along`) it comes nearest to what is under a point of the window;
-    /// `None` where the eye looks along the line.
-    pub(crate) fn along(&self, at: Pos2, from: DVec3, along: DVec3) -> Option<f64> {
+    /// Returns the position on a line, in lengths of `along`, that is nearest to the viewing ray through a point of
+    /// the window; `None` if the line is parallel to the ray.
+    pub(crate) fn nearest_on_line(&self, at: Pos2, from: DVec3, along: DVec3) -> Option<f64> {
         let (origin, direction) = self.ray(at);
         let between = from - origin;
-        // The line's own part across the line of sight: with its length goes how well the place is known.
+        // Component of the line's direction perpendicular to the ray; the shorter it is, the less accurate the
+        // position.
         let across = along - direction * along.dot(direction);
         let sharpness = across.dot(along);
         (sharpness > 1e-4 * along.length_squared()).then(|| -across.dot(between) / sharpness)
@@ -59,12 +60,12 @@ mod tests {
                 ViewProjection { camera: Camera { projection, ..Camera::default() }, picture };
             let (from, along) = (DVec3::new(0.2, -0.3, 0.1), DVec3::new(0.0, 0.4, 0.5));
             for share in [-0.7, 0.0, 1.2] {
-                let at = view_projection.point(from + along * share).unwrap();
-                let found = view_projection.along(at, from, along).unwrap();
+                let at = view_projection.project(from + along * share).unwrap();
+                let found = view_projection.nearest_on_line(at, from, along).unwrap();
                 assert!((found - share).abs() < 1e-4, "{projection:?}: {found}, expected {share}");
             }
             let (_, direction) = view_projection.ray(pos2(330.0, 260.0));
-            assert_eq!(view_projection.along(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
+            assert_eq!(view_projection.nearest_on_line(pos2(330.0, 260.0), DVec3::ZERO, direction), None);
         }
     }
 }

@@ -1,84 +1,90 @@
-//! The window that looks into a light volume: a slice in false colours, and its export.
+//! Window that shows a slice of a light volume in false colours, and exports it.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
-use crate::app::common::dock::Tool;
+use crate::app::common::dock::ToolWindow;
 use crate::app::text;
-use crate::app::worker::task::Work;
+use crate::app::worker::background_task::BackgroundTask;
 use crate::data::{Dataset, Volume};
 use crate::export::write_atomically;
-use crate::gpu::{Attenuation, Context, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd};
+use crate::gpu::{
+    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd,
+};
 use crate::math::false_color;
 use crate::model::{LightStorage, Settings};
-use crate::plan::{LightKey, Request};
+use crate::plan::{LightKey, RenderRequest};
 
 /// Longest edge of the slice on screen, in points.
-const EDGE: f32 = 360.0;
+const SLICE_EDGE: f32 = 360.0;
 
-/// What a worker brings back: of which light volume, and its values.
-type Filled = (LightKey, Attenuation);
+/// Result of the worker: key of the light volume, and its attenuation.
+type FilledLightVolume = (LightKey, AttenuationData);
 
-/// A slice that is shown.
+/// Slice that the texture shows.
 #[derive(Debug, Clone, PartialEq)]
-struct Drawn {
-    /// The light volume.
+struct LightSliceTexture {
+    /// Key of the light volume.
     key: LightKey,
-    /// The axis across which it is cut.
+    /// Axis across which it is cut.
     axis: usize,
-    /// The voxel along that axis.
-    at: usize,
+    /// Index of the slice along that axis, in voxels.
+    index: usize,
 }
 
-/// The window.
+/// State of the window, and the light volume that it shows.
 #[derive(Default)]
-pub(crate) struct LightSlice {
-    /// Whether it is there.
+pub(crate) struct LightSliceWindow {
+    /// True while the window is open.
     pub open: bool,
     light: usize,
     axis: usize,
-    /// Slice along each axis; the middle until the user moves it.
-    at: [Option<usize>; 3],
-    work: Option<Work<Result<Option<Filled>, GpuError>>>,
-    filled: Option<(LightKey, Arc<Attenuation>)>,
-    /// Of the look as it is.
-    wanted: Option<LightKey>,
-    /// The key that could not be filled: it is not tried again.
-    failed: Option<LightKey>,
+    /// Index of the slice along each axis; the middle until the user moves it.
+    slice_indices: [Option<usize>; 3],
+    work: Option<BackgroundTask<Result<Option<FilledLightVolume>, GpuError>>>,
+    filled: Option<(LightKey, Arc<AttenuationData>)>,
+    /// Key of the light volume under the current settings.
+    wanted_key: Option<LightKey>,
+    /// Key that could not be filled; it is not tried again.
+    failed_key: Option<LightKey>,
     texture: Option<TextureHandle>,
-    /// What the texture shows.
-    drawn: Option<Drawn>,
+    /// Slice that the texture shows.
+    texture_slice: Option<LightSliceTexture>,
 }
 
-impl std::fmt::Debug for LightSlice {
+impl std::fmt::Debug for LightSliceWindow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("LightSlice").field("open", &self.open).finish_non_exhaustive()
     }
 }
 
-/// What the window works with.
-pub(crate) struct Scene<'a> {
-    /// The look.
+/// Context of the window: settings, volume and device.
+pub(crate) struct LightSliceContext<'a> {
+    /// Current settings, for the light's key.
     pub settings: &'a Settings,
-    /// The open volume.
+    /// Open volume, if there is one.
     pub dataset: Option<Dataset>,
-    /// A device beside which the worker may open its own.
-    pub context: &'a Context,
-    /// Nothing moves: a light volume that is filled now will be used.
-    pub at_rest: bool,
+    /// Window's device; the worker opens a sibling of it.
+    pub context: &'a GpuContext,
+    /// True when the scene is idle, so that a light volume filled now will be used.
+    pub is_idle: bool,
 }
 
-impl LightSlice {
-    /// Shows the window if it is open. `true` when the user wants to export.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<bool, String> {
+impl LightSliceWindow {
+    /// Shows the window if it is open; returns true if the user wants to export.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<bool, String> {
         if !self.open {
             return Ok(false);
         }
         let result = self.collect(ctx, scene);
         let (mut open, mut export) = (true, false);
-        let tool = Tool { title: text::light_volume::TITLE, default_pos: [24.0, 60.0], default_width: EDGE };
+        let tool = ToolWindow {
+            title: text::light_volume::TITLE,
+            default_pos: [24.0, 60.0],
+            default_width: SLICE_EDGE,
+        };
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 let casting =
@@ -91,41 +97,50 @@ impl LightSlice {
                 }
             });
             ui.horizontal(|ui| {
-                for (axis, name) in text::light_volume::ACROSS.into_iter().enumerate() {
+                for (axis, name) in text::light_volume::SLICE_ORIENTATIONS.into_iter().enumerate() {
                     ui.selectable_value(&mut self.axis, axis, name);
                 }
             });
             let Some((key, attenuation)) = self.filled.clone() else {
-                // One that is being filled is not said to be none.
-                let is_coming = self.work.is_some() || !scene.at_rest;
-                ui.weak(if is_coming { text::light_volume::FILLING } else { text::light_volume::NONE });
+                // While a volume is being filled, the window does not claim that there is none.
+                let is_filling = self.work.is_some() || !scene.is_idle;
+                ui.weak(if is_filling {
+                    text::light_volume::FILLING
+                } else {
+                    text::light_volume::NO_LIGHT_VOLUME
+                });
                 return;
             };
-            let is_old = self.wanted.as_ref() != Some(&key);
+            let is_outdated = self.wanted_key.as_ref() != Some(&key);
             let count = attenuation.dims[self.axis];
-            let mut at = self.at[self.axis].unwrap_or(count / 2).min(count - 1);
-            ui.spacing_mut().slider_width = EDGE - 80.0;
+            let mut at = self.slice_indices[self.axis].unwrap_or(count / 2).min(count - 1);
+            ui.spacing_mut().slider_width = SLICE_EDGE - 80.0;
             let slider = egui::Slider::new(&mut at, 0..=count - 1);
             if ui.name_inputs(text::light_volume::SLICE, |ui| ui.add(slider)).changed() {
-                self.at[self.axis] = Some(at);
+                self.slice_indices[self.axis] = Some(at);
             }
-            self.picture(ui, &attenuation, Drawn { key, axis: self.axis, at }, is_old);
-            scale(ui);
+            self.picture(
+                ui,
+                &attenuation,
+                LightSliceTexture { key, axis: self.axis, index: at },
+                is_outdated,
+            );
+            color_legend(ui);
             let button = text::light_volume::EXPORT;
-            export = ui.button(button.name).on_hover_text(button.tip).clicked();
+            export = ui.button(button.name).on_hover_text(button.tooltip).clicked();
         });
         self.open = open;
         result.map(|()| export)
     }
 
-    /// Writes what is shown: the slice if the name ends in .png, else the whole.
+    /// Writes the shown slice if the name ends in .png, else the whole light volume.
     pub(crate) fn export(&self, path: &Path, volume: &Volume) -> Result<(), String> {
         let Some((_, attenuation)) = &self.filled else {
             return Err(text::light_volume::NOTHING_TO_EXPORT.to_owned());
         };
         let is_slice = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
         let written = if is_slice {
-            let at = self.at[self.axis].unwrap_or(attenuation.dims[self.axis] / 2);
+            let at = self.slice_indices[self.axis].unwrap_or(attenuation.dims[self.axis] / 2);
             let slice = attenuation.slice(self.axis, at).ok_or(text::light_volume::NO_SUCH_SLICE)?;
             export_slice(&slice, path)
         } else {
@@ -134,71 +149,78 @@ impl LightSlice {
         written.map_err(|err| err.to_string())
     }
 
-    /// Takes in what the worker has filled, and sends it again when something else is to be shown.
-    fn collect(&mut self, ctx: &egui::Context, scene: &Scene<'_>) -> Result<(), String> {
-        if let Some(result) = self.work.as_ref().and_then(Work::take) {
+    /// Takes the result of the worker, and starts it again if another light volume is to be shown.
+    fn collect(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<(), String> {
+        if let Some(result) = self.work.as_ref().and_then(BackgroundTask::take_result) {
             self.work = None;
             match result {
                 Ok(Ok(Some((key, attenuation)))) => {
                     self.filled = Some((key, Arc::new(attenuation)));
-                    self.failed = None;
+                    self.failed_key = None;
                 }
                 Ok(Ok(None)) => self.filled = None,
                 Ok(Err(err)) => return Err(err.to_string()),
                 Err(panic) => return Err(panic),
             }
         }
-        self.wanted = None;
+        self.wanted_key = None;
         let Some(dataset) = &scene.dataset else { return Ok(()) };
-        let is_there =
-            |index: usize| scene.settings.lights.get(index).is_some_and(crate::model::Light::needs_volume);
+        let is_there = |index: usize| {
+            scene.settings.lights.get(index).is_some_and(crate::model::LightSettings::needs_volume)
+        };
         if !is_there(self.light) {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
         }
-        let mut request = Request {
+        let mut request = RenderRequest {
             volume: dataset.volume().id(),
             settings: scene.settings.clone(),
             size: [16, 16],
-            coarse: None,
+            preview_resolution: None,
         };
-        self.wanted = LightKey::of(&request, self.light);
-        let Some(key) = self.wanted.clone() else {
+        self.wanted_key = LightKey::new(&request, self.light);
+        let Some(key) = self.wanted_key.clone() else {
             self.filled = None;
             return Ok(());
         };
         let known = self.filled.as_ref().is_some_and(|(filled, _)| *filled == key);
-        if known || self.work.is_some() || !scene.at_rest || self.failed.as_ref() == Some(&key) {
+        if known || self.work.is_some() || !scene.is_idle || self.failed_key.as_ref() == Some(&key) {
             return Ok(());
         }
-        self.failed = Some(key.clone());
+        self.failed_key = Some(key.clone());
         let (context, dataset) = (scene.context.clone(), dataset.clone());
         let light = self.light;
         let task = move || {
-            let mut renderer = Renderer::new(&context.sibling()?)?;
-            // Combined, it would be gone.
+            let mut renderer = Renderer::new(&context.second_device()?)?;
+            // With combined storage there would be no volume for this light.
             request.settings.shadows.storage = LightStorage::PerLight;
-            let options = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+            let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
             renderer.draw(&dataset, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
         };
-        self.work = Some(Work::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
+        self.work = Some(BackgroundTask::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
         Ok(())
     }
 
-    fn picture(&mut self, ui: &mut egui::Ui, attenuation: &Attenuation, what: Drawn, is_old: bool) {
-        if self.drawn.as_ref() != Some(&what) {
-            let Some(slice) = attenuation.slice(what.axis, what.at) else { return };
+    fn picture(
+        &mut self,
+        ui: &mut egui::Ui,
+        attenuation: &AttenuationData,
+        what: LightSliceTexture,
+        is_old: bool,
+    ) {
+        if self.texture_slice.as_ref() != Some(&what) {
+            let Some(slice) = attenuation.slice(what.axis, what.index) else { return };
             let image = ColorImage::from_rgb(slice.size, &slice.colors());
             match &mut self.texture {
                 Some(texture) => texture.set(image, TextureOptions::NEAREST),
                 empty => *empty = Some(ui.ctx().load_texture("light slice", image, TextureOptions::NEAREST)),
             }
-            self.drawn = Some(what);
+            self.texture_slice = Some(what);
         }
         let Some(texture) = &self.texture else { return };
         let size = texture.size_vec2();
-        let image = egui::Image::new((texture.id(), size * (EDGE / size.max_elem())));
-        // Another is on its way.
+        let image = egui::Image::new((texture.id(), size * (SLICE_EDGE / size.max_elem())));
+        // Dimmed while another slice is in progress.
         let tint = if is_old { egui::Color32::from_gray(0x70) } else { egui::Color32::WHITE };
         let shown = ui.add(image.tint(tint));
         if is_old {
@@ -209,11 +231,11 @@ impl LightSlice {
     }
 }
 
-/// What the colours mean.
-fn scale(ui: &mut egui::Ui) {
+/// Legend of the false colours, from dark to fully lit.
+fn color_legend(ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
         ui.weak(text::light_volume::DARK);
-        let (rect, _) = ui.allocate_exact_size(Vec2::new(EDGE - 110.0, 10.0), egui::Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(SLICE_EDGE - 110.0, 10.0), egui::Sense::hover());
         let mut mesh = egui::Mesh::default();
         const STEPS: u32 = 32;
         for step in 0..=STEPS {

@@ -1,128 +1,135 @@
-//! Measures how bright pictures are, and exposes previews so that they are as bright as those at full quality.
+//! Brightness of pictures: measurement, and exposure compensation that makes previews as bright as full quality.
 
 use std::time::{Duration, Instant};
 
-use super::exposure::{Exposures, Kind};
+use super::exposure_compensation::{ExposureCompensation, PreviewClass};
 use super::quality::QualityLevel;
-use super::request::{FrameRequest, Scene};
-use crate::gpu::{GpuError, RenderOptions, Report, dark_share, is_empty_light, mean_luminance};
+use super::request::{FrameRequest, RenderScene};
+use crate::gpu::{GpuError, RenderOptions, RenderReport, dark_fraction, is_empty_light, mean_luminance};
 use crate::model::Settings;
-use crate::plan::{EyeKey, Request};
+use crate::plan::{EyeKey, RenderRequest};
 
-/// Largest previews whose brightness is measured: two milliseconds for a software adapter.
-const EXPOSED_PIXELS: u64 = 1 << 18;
+/// Largest number of pixels of a preview whose brightness is measured: 2 ms on a software adapter.
+const MAX_MEASURED_PIXELS: u64 = 1 << 18;
 
-/// How often darkness is measured while something moves on an adapter that previews at full quality:
-/// it reads back sixteen bytes per pixel.
+/// Interval between measurements of dark areas during interaction, on an adapter that previews at full quality: each
+/// reads back 16 bytes per pixel.
 const MEASURING_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What is known of the brightness of pictures of one volume.
+/// Measured brightness of the pictures of one volume.
 #[derive(Debug)]
-pub(super) struct Brightness {
-    exposures: Exposures,
-    /// When darkness was measured.
-    measured: Instant,
-    /// Whose light was measured then, and how it was exposed.
-    measured_eye: Option<(EyeKey, f64)>,
-    /// Nothing of the volume is seen in that light.
+pub(super) struct BrightnessTracker {
+    exposures: ExposureCompensation,
+    /// Time of the last measurement of dark areas.
+    last_measurement: Instant,
+    /// Key light and exposure of the last measurement.
+    measured_key: Option<(EyeKey, f64)>,
+    /// True if nothing of the volume was visible in the last measurement.
     is_empty: bool,
-    /// The last preview that was measured.
+    /// Request of the last preview that was measured.
     last_preview: Option<FrameRequest>,
 }
 
-impl Brightness {
-    /// Nothing is known.
+impl BrightnessTracker {
+    /// Starts without any measurement.
     pub(super) fn new() -> Self {
         Self {
-            exposures: Exposures::default(),
-            measured: Instant::now(),
-            measured_eye: None,
+            exposures: ExposureCompensation::default(),
+            last_measurement: Instant::now(),
+            measured_key: None,
             is_empty: false,
             last_preview: None,
         }
     }
 
-    /// Forgets everything, as with another volume.
-    pub(super) fn forget(&mut self) {
-        *self = Self { measured: self.measured, ..Self::new() };
+    /// Discards all measurements, after a change of volume.
+    pub(super) fn reset(&mut self) {
+        *self = Self { last_measurement: self.last_measurement, ..Self::new() };
     }
 
-    /// Whether the last picture at full quality whose light was measured shows nothing of the volume.
+    /// Returns true if the last measured full-quality picture shows nothing of the volume.
     pub(super) fn is_picture_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// How long to expose a picture; `None` where that is not compensated.
+    /// Returns the exposure factor for a picture; `None` if it is not compensated.
     pub(super) fn exposure(
         &self,
         frame_request: &FrameRequest,
         quality: QualityLevel,
-        report: &Report,
+        report: &RenderReport,
     ) -> Option<f32> {
         is_compensated(frame_request, quality)
-            .then(|| self.exposures.of(kind_of(quality, report)).unwrap_or(1.0) as f32)
+            .then(|| self.exposures.factor(preview_class(quality, report)).unwrap_or(1.0) as f32)
     }
 
-    /// The share of a picture at full quality that is nearly black; `None` if it was not measured. Every picture is
-    /// measured that is at rest (`is_at_rest`), others now and then; none whose light is that of the one before, as
-    /// after a change of the background.
+    /// Measures the share of a full-quality picture that is nearly black; `None` if it was not measured. Pictures at
+    /// rest (`is_at_rest`) are always measured, others at intervals; a picture whose light equals that of the one
+    /// before is not, for example after a change of the background.
     pub(super) fn measure_full(
         &mut self,
-        scene: &Scene,
+        scene: &RenderScene,
         frame_request: &FrameRequest,
         is_at_rest: bool,
     ) -> Result<Option<f64>, GpuError> {
         let exposure = frame_request.looks.left.output.exposure;
         let measured = (frame_request.keys().eye.clone(), exposure);
-        let is_known = scene.renderer.report().runs.eye == 0 && self.measured_eye.as_ref() == Some(&measured);
-        if is_known || (!is_at_rest && self.measured.elapsed() < MEASURING_INTERVAL) {
+        let is_known =
+            scene.renderer.report().step_counts.eye == 0 && self.measured_key.as_ref() == Some(&measured);
+        if is_known || (!is_at_rest && self.last_measurement.elapsed() < MEASURING_INTERVAL) {
             return Ok(None);
         }
-        self.measured = Instant::now();
-        self.measured_eye = Some(measured);
+        self.last_measurement = Instant::now();
+        self.measured_key = Some(measured);
         let light = scene.renderer.read_light()?;
         self.is_empty = is_empty_light(&light);
         if frame_request.looks.right.is_none() {
             let is_of_last_preview = self.last_preview.as_ref() == Some(frame_request);
-            self.exposures.settle(mean_luminance(&light), is_of_last_preview);
+            self.exposures.learn_full_quality(mean_luminance(&light), is_of_last_preview);
         }
-        Ok(Some(dark_share(&light, exposure)))
+        Ok(Some(dark_fraction(&light, exposure)))
     }
 
-    /// Learns from a preview, and shows it again with the exposure that makes it as bright as the last picture at full
-    /// quality (`settled`).
+    /// Learns from a preview, and displays it again with the exposure that makes it as bright as the last
+    /// full-quality picture (`last_full`).
     pub(super) fn measure_preview(
         &mut self,
-        scene: &mut Scene,
+        scene: &mut RenderScene,
         frame_request: &FrameRequest,
         quality: QualityLevel,
-        request: &Request,
+        request: &RenderRequest,
         options: &RenderOptions,
-        settled: Option<&Settings>,
+        full_quality_settings: Option<&Settings>,
     ) -> Result<(), GpuError> {
         let [width, height] = request.size;
-        let is_small = u64::from(width) * u64::from(height) <= EXPOSED_PIXELS;
-        // What changes more than a movement may change the brightness, and should be seen to.
-        let moves = settled.is_some_and(|settled| is_movement(settled, &frame_request.looks.left));
+        let is_small = u64::from(width) * u64::from(height) <= MAX_MEASURED_PIXELS;
+        // Changes other than movements may alter the brightness, which should then be visible.
+        let moves =
+            full_quality_settings.is_some_and(|last_full| is_movement(last_full, &frame_request.looks.left));
         if !(is_compensated(frame_request, quality) && moves && is_small) {
             return Ok(());
         }
         let mean = mean_luminance(&scene.renderer.read_light()?);
         self.last_preview = Some(frame_request.clone());
-        let kind = kind_of(quality, scene.renderer.report());
-        if let Some(exposure) = self.exposures.preview(kind, mean) {
-            expose(scene, request, &RenderOptions { exposure: exposure as f32, ..options.clone() })?;
+        let kind = preview_class(quality, scene.renderer.report());
+        if let Some(exposure) = self.exposures.learn_preview(kind, mean) {
+            redisplay_with_exposure(
+                scene,
+                request,
+                &RenderOptions { exposure: exposure as f32, ..options.clone() },
+            )?;
         }
         Ok(())
     }
 }
 
-/// Whether it is a preview whose brightness is compensated: not of two looks, whose difference counts.
+/// Returns true for previews whose brightness is compensated; comparisons are excluded, since their difference
+/// matters.
 fn is_compensated(frame_request: &FrameRequest, quality: QualityLevel) -> bool {
     quality != QualityLevel::FULL && frame_request.looks.right.is_none()
 }
 
-/// Whether only the camera and the places of lights differ.
+/// Returns true if two looks differ only in the camera and the positions of lights.
 fn is_movement(from: &Settings, to: &Settings) -> bool {
     let mut moved = from.clone();
     moved.camera = to.camera.clone();
@@ -132,13 +139,21 @@ fn is_movement(from: &Settings, to: &Settings) -> bool {
     moved == *to
 }
 
-/// What decides how far the brightness of a preview is off.
-fn kind_of(quality: QualityLevel, report: &Report) -> Kind {
-    Kind { scale: quality.scale, quick_eye: quality.quick_eye, light_divisor: report.light_divisor }
+/// Returns the class of a preview, which determines its brightness error.
+fn preview_class(quality: QualityLevel, report: &RenderReport) -> PreviewClass {
+    PreviewClass {
+        scale: quality.scale,
+        quick_eye: quality.prefiltered_eye,
+        light_divisor: report.light_divisor,
+    }
 }
 
-/// Shows a picture again with another exposure: a display pass.
-fn expose(scene: &mut Scene, request: &Request, options: &RenderOptions) -> Result<(), GpuError> {
+/// Displays a picture again with another exposure: a display pass only.
+fn redisplay_with_exposure(
+    scene: &mut RenderScene,
+    request: &RenderRequest,
+    options: &RenderOptions,
+) -> Result<(), GpuError> {
     let mut job = scene.renderer.begin(&scene.dataset, request.clone(), options)?;
     while job.step()? {}
     scene.renderer.context().wait()

@@ -1,37 +1,37 @@
-//! How much two pictures differ.
+//! Difference image of two pictures, and their distance.
 
 use eframe::egui::{Color32, ColorImage};
 
-use crate::gpu::Distance;
+use crate::gpu::PictureDistance;
 
-/// Differences are shown so many times as bright: one step in eight bits is just seen.
-const AMPLIFIED: i32 = 8;
+/// Amplification of the displayed difference: makes one step in eight bits just visible.
+const AMPLIFICATION: i32 = 8;
 
-/// What lies between two pictures of one size.
+/// Difference of two pictures of equal size.
 #[derive(Debug, Clone)]
-pub(crate) struct Difference {
-    /// The distance of every channel, amplified.
+pub(crate) struct PictureDifference {
+    /// Absolute difference of every channel, amplified.
     pub image: ColorImage,
-    /// How large it is.
-    pub distance: Distance,
+    /// Measured distance of the two pictures.
+    pub distance: PictureDistance,
 }
 
-impl Difference {
+impl PictureDifference {
     /// Compares two pictures, channel by channel as displayed.
-    pub(crate) fn of(left: &ColorImage, right: &ColorImage) -> Self {
+    pub(crate) fn between(left: &ColorImage, right: &ColorImage) -> Self {
         let pixels = left
             .pixels
             .iter()
             .zip(&right.pixels)
             .map(|(a, b)| {
                 let [r, g, b] =
-                    [0, 1, 2].map(|at| (i32::from(a[at].abs_diff(b[at])) * AMPLIFIED).min(255) as u8);
+                    [0, 1, 2].map(|at| (i32::from(a[at].abs_diff(b[at])) * AMPLIFICATION).min(255) as u8);
                 Color32::from_rgb(r, g, b)
             })
             .collect();
         Self {
             image: ColorImage::new(left.size, pixels),
-            distance: Distance::between(left.as_raw(), right.as_raw()),
+            distance: PictureDistance::between_bytes(left.as_raw(), right.as_raw()),
         }
     }
 }
@@ -43,11 +43,11 @@ mod tests {
     #[test]
     fn differences_are_measured_and_amplified() {
         let even = |grey: u8| ColorImage::new([2, 1], vec![Color32::from_gray(grey); 2]);
-        let same = Difference::of(&even(90), &even(90));
-        assert_eq!(same.distance, Distance { rmse: 0.0, largest: 0.0 });
+        let same = PictureDifference::between(&even(90), &even(90));
+        assert_eq!(same.distance, PictureDistance { rmse: 0.0, max: 0.0 });
         let mut other = even(90);
         other.pixels[1] = Color32::from_rgb(90, 90, 93);
-        let found = Difference::of(&even(90), &other);
-        assert_eq!((found.distance.largest, found.image.pixels[1]), (3.0, Color32::from_rgb(0, 0, 24)));
+        let found = PictureDifference::between(&even(90), &other);
+        assert_eq!((found.distance.max, found.image.pixels[1]), (3.0, Color32::from_rgb(0, 0, 24)));
     }
 }

@@ -1,4 +1,4 @@
-//! Opens volumes on a thread of their own, up to the first look.
+//! Loader of volumes: opens files on a separate thread, up to the first look.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -6,125 +6,125 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
-use super::task::Work;
-use super::warm_up::WarmUp;
-use super::weighing::{Question, Weighed, weighing};
-use crate::app::memory::{FileStamp, Remembered};
+use super::background_task::BackgroundTask;
+use super::memory_estimate::{MemoryEstimate, PendingMemoryDecision, memory_checking_control};
+use super::warm_up::PipelineWarmUp;
+use crate::app::persistence::{CorrectedFile, FileStamp};
 use crate::app::text;
 use crate::data::load::{
-    self, Choice, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, Several,
-    memory_budget_bytes,
+    self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, VolumeAlternatives,
+    VolumeChoice, memory_budget_bytes,
 };
 use crate::data::{self, Dataset, Volume};
-use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, Renderer, ShaderLibrary, first_look_upright, fitted};
+use crate::fault::{FaultThread, panic_if_injected};
+use crate::gpu::{GpuContext, GpuError, Renderer, ShaderLibrary, downsample_to_fit, first_look_upright};
 use crate::model::{SceneAxis, Settings};
 
-/// How a volume is read, where the user has said it.
+/// Options for reading a volume that the user has chosen.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Reading {
-    /// How a file of bare voxels is stored.
+pub(crate) struct ReadChoices {
+    /// Format of the voxels in a headerless (raw) file.
     pub raw: Option<RawFormat>,
-    /// Which of several volumes is opened, and how much of it.
-    pub choice: Option<Choice>,
-    /// It may take all memory that is free.
+    /// Choice among several volumes of a file, and of the portion that is read.
+    pub choice: Option<VolumeChoice>,
+    /// True if the volume may use all free memory.
     pub takes_all_memory: bool,
-    /// Of a folder, the files that are opened.
-    pub among: Option<Arc<[PathBuf]>>,
+    /// Subset of a folder's files that are opened.
+    pub subset: Option<Arc<[PathBuf]>>,
 }
 
-/// What is known of a file from earlier times.
+/// Settings of a file that were remembered from earlier sessions.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Known {
-    /// The axis of the scene that points up, unless the file says what does.
+pub(crate) struct RememberedFileSettings {
+    /// Axis of the scene that points up, unless the file defines one.
     pub up: SceneAxis,
-    /// How it was corrected.
-    pub corrected: Option<Remembered>,
+    /// Corrections that were applied to the volume.
+    pub corrections: Option<CorrectedFile>,
 }
 
-/// A volume that is ready to be shown.
+/// Opened volume that is ready to be displayed.
 #[derive(Debug)]
-pub(crate) struct Opened {
-    /// What was asked for: a path or the name of a built-in volume.
+pub(crate) struct OpenedVolume {
+    /// Path of the file, or name of a built-in volume.
     pub source: PathBuf,
-    /// How it was read.
-    pub reading: Reading,
-    /// The voxels: with as few averaged as the adapter needs.
+    /// Options with which the volume was read.
+    pub reading: ReadChoices,
+    /// Dataset of the volume, downsampled no more than the adapter requires.
     pub dataset: Dataset,
-    /// How many there were along x, y and z, if the adapter could not hold them.
-    pub too_many: Option<[usize; 3]>,
-    /// A renderer that has the volume on the GPU.
+    /// Original number of voxels along x, y and z, if the volume was downsampled to fit the adapter.
+    pub original_dims: Option<[usize; 3]>,
+    /// Renderer that has the volume on the GPU.
     pub renderer: Renderer,
-    /// A first look at it.
+    /// Settings of the first look.
     pub settings: Settings,
-    /// What the file was before it was read.
+    /// Size and modification time of the file before it was read.
     pub stamp: FileStamp,
 }
 
-/// How an attempt to open a volume ended.
+/// Result of an attempt to open a volume.
 #[derive(Debug)]
-pub(crate) enum Outcome {
-    /// With a volume.
-    Opened(Box<Opened>),
-    /// The user stopped it.
+pub(crate) enum LoadOutcome {
+    /// The volume was opened.
+    Opened(Box<OpenedVolume>),
+    /// The user cancelled the attempt.
     Cancelled,
-    /// It is a file of bare voxels, and how these are stored is not known, or not right.
-    NotDescribed { path: PathBuf, why: String, guess: RawGuess },
-    /// It has hardly room, or none, and nobody has said how much of it is to be read.
-    Weighed { source: PathBuf, reading: Box<Reading>, weighed: Weighed },
-    /// A volume that was open in an earlier window is on the device of this one.
-    Shown { renderer: Box<Renderer>, dataset: Dataset },
-    /// With a message: what, and all that is known.
+    /// A file of bare voxels whose format is unknown or does not match.
+    UnknownRawFormat { path: PathBuf, why: String, guess: RawGuess },
+    /// The volume barely fits into memory, or does not, and the user must choose a portion of it.
+    NeedsMemoryDecision { source: PathBuf, reading: Box<ReadChoices>, weighed: MemoryEstimate },
+    /// A volume that was open in an earlier window has been uploaded to the device of this one.
+    Uploaded { renderer: Box<Renderer>, dataset: Dataset },
+    /// Loading failed: message in one line, and all details.
     Failed { short: String, details: String },
 }
 
 #[derive(Debug)]
-struct Running {
+struct RunningLoad {
     source: PathBuf,
-    reading: Reading,
+    reading: ReadChoices,
     control: Arc<LoadControl>,
     phase: Arc<AtomicU8>,
-    work: Work<Outcome>,
+    work: BackgroundTask<LoadOutcome>,
 }
 
-/// How far a volume is that is being opened.
+/// Progress of the volume that is being opened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoadProgress<'a> {
-    /// What is being opened, and how it is read.
+    /// Path of the volume, and the options for reading it.
     pub source: &'a Path,
-    pub reading: &'a Reading,
-    /// What is being done, in words.
+    pub reading: &'a ReadChoices,
+    /// Description of the current phase.
     pub phase: &'static str,
-    /// The share of the phase that is done, where it is known.
+    /// Completed fraction of the phase, 0 to 1, if it is known.
     pub fraction: Option<f32>,
-    /// Bytes of voxels that have been read, and of all that are, where that is the phase.
+    /// Bytes of voxels read so far and in total, during the reading phase.
     pub bytes: Option<[u64; 2]>,
 }
 
-/// Opens one volume at a time; a new request replaces the one before.
+/// Loader that opens one volume at a time; a new request replaces the previous one.
 #[derive(Debug)]
 pub(crate) struct Loader {
-    context: Context,
-    /// The pipelines of that device, for every volume's renderer.
+    context: GpuContext,
+    /// Shader pipelines of the device, shared by the renderers of all volumes.
     shaders: ShaderLibrary,
     options: LoadOptions,
-    running: Option<Running>,
-    warm_up: WarmUp,
+    running: Option<RunningLoad>,
+    warm_up: PipelineWarmUp,
 }
 
-/// The words for each phase, in the status bar.
+/// Names of the phases, for the status bar.
 const PHASES: [&str; 5] = [
     text::opening::READING,
-    text::opening::FITTING,
+    text::opening::MEASURING_ADAPTER,
     text::opening::COUNTING,
     text::opening::UPLOADING,
     text::opening::FIRST_LOOK,
 ];
 
 impl Loader {
-    /// A loader for volumes that a device will show. Begins to make its pipelines.
+    /// Creates a loader for volumes to be displayed on a device, and begins to compile its pipelines.
     pub(crate) fn new(
-        context: Context,
+        context: GpuContext,
         options: LoadOptions,
         storage: Option<&Path>,
     ) -> std::io::Result<Self> {
@@ -132,49 +132,49 @@ impl Loader {
             || ShaderLibrary::new(&context),
             |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
         );
-        let mut warm_up = WarmUp::default();
+        let mut warm_up = PipelineWarmUp::default();
         warm_up.start(&shaders, ShaderLibrary::warm_up)?;
         Ok(Self { context, shaders, options, running: None, warm_up })
     }
 
-    /// The pipelines of the device of pictures.
+    /// Returns the shader pipelines of the device that renders pictures.
     pub(crate) fn shaders(&self) -> &ShaderLibrary {
         &self.shaders
     }
 
-    /// Makes pipelines that may be needed later, once; to be called when nothing else is to be done.
-    pub(crate) fn prepare(&mut self) {
-        if self.warm_up.count() < 2
-            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_rest)
+    /// Compiles pipelines that may be needed later, once; to be called when the window is idle.
+    pub(crate) fn warm_up_rest(&mut self) {
+        if self.warm_up.thread_count() < 2
+            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_optional)
         {
             log::warn!("pipelines will be made when they are needed: {err}");
         }
     }
 
-    /// Starts to open a file or a built-in volume, which is corrected and stood up as is known of it.
-    pub(crate) fn open(
+    /// Starts to open a file or a built-in volume, with the corrections and the up axis that are remembered for it.
+    pub(crate) fn open_on_thread(
         &mut self,
         source: &Path,
-        reading: Reading,
-        known: Known,
+        reading: ReadChoices,
+        known: RememberedFileSettings,
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
         let phase = Arc::new(AtomicU8::new(0));
         let mut options = self.options.clone();
-        // As much as is free now.
+        // Limited to the memory that is free now.
         options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
-        let question = Question::default();
+        let question = PendingMemoryDecision::default();
         let control = Arc::new(if reading.takes_all_memory {
             options.memory_budget_bytes = options.memory_budget_bytes / 3 * 4;
             LoadControl::new()
         } else {
-            weighing(self.context.clone(), options.memory_budget_bytes, question.clone())
+            memory_checking_control(self.context.clone(), options.memory_budget_bytes, question.clone())
         });
         options.raw = reading.raw.unwrap_or(options.raw);
         options.choice = reading.choice.clone().unwrap_or(options.choice);
-        options.among.clone_from(&reading.among);
-        let opening = Opening {
+        options.only_files.clone_from(&reading.subset);
+        let opening = LoadJob {
             source: source.to_owned(),
             reading: reading.clone(),
             known,
@@ -187,64 +187,64 @@ impl Loader {
         };
         let task = move || {
             let control = Arc::clone(&opening.control);
-            control.during(|| open(opening))
+            control.run(|| open(opening))
         };
-        let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        self.running = Some(Running { source: source.to_owned(), reading, control, phase, work });
+        let work = BackgroundTask::start("loader", ctx, task).map_err(text::opening::no_thread)?;
+        self.running = Some(RunningLoad { source: source.to_owned(), reading, control, phase, work });
         Ok(())
     }
 
-    /// Shows a volume that has been read already, on this device.
-    pub(crate) fn show(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
+    /// Displays a volume that is already in memory on this device.
+    pub(crate) fn upload(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
         self.cancel();
         let (context, shaders) = (self.context.clone(), self.shaders.clone());
         let source = PathBuf::from(dataset.volume().name());
-        let name = source.clone();
+        let short = text::opening::not_shown(&source);
         let task = move || match Renderer::with_shaders(&context, shaders) {
-            Ok(renderer) => Outcome::Shown { renderer: Box::new(renderer), dataset },
-            Err(err) => Outcome::Failed { short: text::opening::not_shown(&name), details: err.to_string() },
+            Ok(renderer) => LoadOutcome::Uploaded { renderer: Box::new(renderer), dataset },
+            Err(err) => LoadOutcome::Failed { short, details: err.to_string() },
         };
-        let work = Work::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        // The last phases alone.
+        let work = BackgroundTask::start("loader", ctx, task).map_err(text::opening::no_thread)?;
+        // Only the last phases remain.
         let (control, phase) = (Arc::new(LoadControl::new()), Arc::new(AtomicU8::new(3)));
-        self.running = Some(Running { source, reading: Reading::default(), control, phase, work });
+        self.running = Some(RunningLoad { source, reading: ReadChoices::default(), control, phase, work });
         Ok(())
     }
 
-    /// How files are read.
+    /// Returns the options with which files are read.
     pub(crate) fn options(&self) -> &LoadOptions {
         &self.options
     }
 
-    /// Stops opening; what is open stays.
+    /// Cancels opening; the current volume stays.
     pub(crate) fn cancel(&self) {
         if let Some(running) = &self.running {
             running.control.cancel();
         }
     }
 
-    /// What became of it, once.
-    pub(crate) fn take(&mut self) -> Option<Outcome> {
+    /// Takes the result, if the attempt has ended; returns it only once.
+    pub(crate) fn take_outcome(&mut self) -> Option<LoadOutcome> {
         let running = self.running.as_ref()?;
         if running.control.is_cancelled() {
-            // Its thread ends by itself, with the next piece of its work.
+            // Its thread notices the cancellation at the next piece of work and ends.
             self.running = None;
-            return Some(Outcome::Cancelled);
+            return Some(LoadOutcome::Cancelled);
         }
-        let outcome = running.work.take()?.unwrap_or_else(|panic| Outcome::Failed {
-            short: text::opening::failed(&running.source),
-            details: text::opening::stopped(&panic),
+        let outcome = running.work.take_result()?.unwrap_or_else(|panic| LoadOutcome::Failed {
+            short: text::opening::loader_panicked(&running.source),
+            details: text::opening::panic_details(&panic),
         });
         self.running = None;
         Some(outcome)
     }
 
-    /// How far the volume is that is being opened.
+    /// Returns the progress of the volume that is being opened.
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
         let running = self.running.as_ref()?;
         let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
         let read = running.control.bytes().filter(|_| phase == 0);
-        // When the last byte is there, the values are looked at.
+        // After the last byte has been read, the values are counted.
         let bytes = read.filter(|[done, total]| done < total);
         let phase = if read.is_some() && bytes.is_none() { 2 } else { phase };
         Some(LoadProgress {
@@ -257,52 +257,56 @@ impl Loader {
     }
 }
 
-/// Endings of files that hold bare voxels.
-const BARE: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
+/// File name extensions of headerless volumes.
+const RAW_EXTENSIONS: [&str; 8] = [".raw", ".raw.gz", ".bin", ".dat", ".vol", ".img", ".bytes", ".u8"];
 
-/// Whether a file could be opened if it were said how it is stored.
-fn not_described(source: &Path, err: &LoadError) -> Option<Outcome> {
+/// Returns an outcome that asks for the voxel format, if the file is headerless and could be opened with it.
+fn ask_for_raw_format(source: &Path, err: &LoadError) -> Option<LoadOutcome> {
     let LoadError::BadInput(explanation) = err else { return None };
     let name = source.to_string_lossy().to_lowercase();
-    let path = source.to_owned();
     let guess = RawLayout::guess(source).ok()??;
-    let is_bare = BARE.iter().any(|ending| name.ends_with(ending));
+    let is_bare = RAW_EXTENSIONS.iter().any(|ending| name.ends_with(ending));
     if is_bare && guess.file_bytes == 0 {
-        let short = text::opening::empty(source);
-        return Some(Outcome::Failed { details: short.clone(), short });
+        let short = text::opening::empty_file(source);
+        return Some(LoadOutcome::Failed { details: short.clone(), short });
     }
-    is_bare.then(|| Outcome::NotDescribed { path, why: explanation.why.clone(), guess })
+    is_bare.then(|| LoadOutcome::UnknownRawFormat {
+        path: source.to_owned(),
+        why: explanation.why.clone(),
+        guess,
+    })
 }
 
-/// A volume to be opened, and what that takes.
-struct Opening {
+/// Input of the loader's thread for one volume.
+struct LoadJob {
     source: PathBuf,
-    reading: Reading,
-    known: Known,
+    reading: ReadChoices,
+    known: RememberedFileSettings,
     options: LoadOptions,
-    context: Context,
+    context: GpuContext,
     shaders: ShaderLibrary,
     control: Arc<LoadControl>,
-    /// Why it is not read before somebody has said how much of it.
-    question: Question,
-    /// Index of what is being done, in [`PHASES`].
+    /// Memory estimate that requires a decision of the user before the volume is read.
+    question: PendingMemoryDecision,
+    /// Index of the current phase in [`PHASES`].
     phase: Arc<AtomicU8>,
 }
 
-/// Opens a volume; of several the first where nobody has said which, of which the user is told.
+/// Opens a volume. Of several, it opens the first unless the user has chosen one, and adds a remark about that.
 fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let options = LoadOptions { choice: options.choice.clone().or_first(), ..options.clone() };
+    let options = LoadOptions { choice: options.choice.clone().with_first_as_fallback(), ..options.clone() };
     let volume = data::open(source, &options, control)?;
-    let is_unsaid =
-        |several: &&Several| several.missed.is_some() || options.choice.said(several.dimension).is_none();
-    let told = volume.held().several.iter().filter(is_unsaid).map(text::opening::first_of_several);
+    let is_unsaid = |several: &&VolumeAlternatives| {
+        several.unmatched_selection.is_some() || options.choice.selected_key(several.dimension).is_none()
+    };
+    let told = volume.contents().alternatives.iter().filter(is_unsaid).map(text::opening::first_of_several);
     let remarks = volume.remarks().iter().cloned().chain(told).collect();
     Ok(volume.with_remarks(remarks))
 }
 
-/// A volume as it was corrected the last time, if it is the same.
-fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Volume {
-    let by = known.and_then(|known| known.of(stamp, volume.opened_id()));
+/// Applies the remembered corrections to a volume, if it is still the same.
+fn apply_remembered_corrections(volume: Volume, known: Option<&CorrectedFile>, stamp: FileStamp) -> Volume {
+    let by = known.and_then(|known| known.corrections_for(stamp, volume.opened_id()));
     match by.map(|by| volume.corrected(&by)) {
         Some(Ok(corrected)) => corrected,
         Some(Err(err)) => {
@@ -313,49 +317,46 @@ fn corrected(volume: Volume, known: Option<&Remembered>, stamp: FileStamp) -> Vo
     }
 }
 
-fn open(opening: Opening) -> Outcome {
-    let Opening { source, reading, known, options, context, shaders, control, question, phase } = opening;
-    may_panic(Place::Loader);
-    let stamp = FileStamp::of(&source);
+fn open(opening: LoadJob) -> LoadOutcome {
+    let LoadJob { source, reading, known, options, context, shaders, control, question, phase } = opening;
+    panic_if_injected(FaultThread::Loader);
+    let stamp = FileStamp::read(&source);
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
         Err(load::LoadError::Cancelled) => {
-            let asked = question.take();
-            return asked.map_or(Outcome::Cancelled, |weighed| {
-                let reading = Box::new(reading);
-                Outcome::Weighed { source, reading, weighed }
-            });
+            let Some(weighed) = question.take() else { return LoadOutcome::Cancelled };
+            return LoadOutcome::NeedsMemoryDecision { source, reading: Box::new(reading), weighed };
         }
         Err(err) => {
-            if let Some(asked) = not_described(&source, &err) {
+            if let Some(asked) = ask_for_raw_format(&source, &err) {
                 return asked;
             }
             let short =
                 err.explanation().map_or_else(|| err.to_string(), |why| format!("{}: {}", why.what, why.why));
-            return Outcome::Failed { short, details: err.to_string() };
+            return LoadOutcome::Failed { short, details: err.to_string() };
         }
     };
     phase.store(1, Ordering::Relaxed);
-    let not_shown = |err: &GpuError| Outcome::Failed {
+    let not_shown = |err: &GpuError| LoadOutcome::Failed {
         short: text::opening::not_shown(&source),
         details: err.to_string(),
     };
     let dims = volume.dims();
-    let fit = fitted(&context, volume);
+    let fit = downsample_to_fit(&context, volume);
     if control.is_cancelled() {
-        return Outcome::Cancelled;
+        return LoadOutcome::Cancelled;
     }
     let volume = match fit {
         Ok(volume) => volume,
         Err(err) => return not_shown(&err),
     };
-    let too_many = (volume.dims() != dims).then_some(dims);
-    // It is read in the same way again.
-    let reading = Reading { choice: Some(volume.held().choice()), ..reading };
+    let original_dims = (volume.dims() != dims).then_some(dims);
+    // The resulting choice is stored, so that reloading reads the same volume.
+    let reading = ReadChoices { choice: Some(volume.contents().choice()), ..reading };
     phase.store(2, Ordering::Relaxed);
-    let dataset = Dataset::new(corrected(volume, known.corrected.as_ref(), stamp));
+    let dataset = Dataset::new(apply_remembered_corrections(volume, known.corrections.as_ref(), stamp));
     if control.is_cancelled() {
-        return Outcome::Cancelled;
+        return LoadOutcome::Cancelled;
     }
     phase.store(3, Ordering::Relaxed);
     let look = Renderer::with_shaders(&context, shaders).and_then(|mut renderer| {
@@ -364,12 +365,12 @@ fn open(opening: Opening) -> Outcome {
         Ok((renderer, settings))
     });
     if control.is_cancelled() {
-        return Outcome::Cancelled;
+        return LoadOutcome::Cancelled;
     }
     match look {
         Ok((renderer, settings)) => {
-            let opened = Opened { source, reading, dataset, too_many, renderer, settings, stamp };
-            Outcome::Opened(Box::new(opened))
+            let opened = OpenedVolume { source, reading, dataset, original_dims, renderer, settings, stamp };
+            LoadOutcome::Opened(Box::new(opened))
         }
         Err(err) => not_shown(&err),
     }
@@ -388,11 +389,11 @@ mod tests {
         let first = "The first of 3 time steps is shown";
         let cases = [(None, 0, first), (Some(2), 2, ""), (Some(7), 0, "7 is none of the 3 time steps")];
         for (frame, shown, words) in cases {
-            let choice = Choice { frame, ..Choice::default() };
+            let choice = VolumeChoice { frame, ..VolumeChoice::default() };
             let options = LoadOptions { choice, ..LoadOptions::default() };
             let volume = open_first(&file, &options, &LoadControl::new()).unwrap();
             let said = volume.remarks().join("; ");
-            assert_eq!(volume.held().choice().frame, Some(shown));
+            assert_eq!(volume.contents().choice().frame, Some(shown));
             assert!(said.contains(words) && said.contains("time steps") != words.is_empty(), "{said}");
         }
     }

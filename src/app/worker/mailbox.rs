@@ -1,89 +1,91 @@
-//! The mailbox in which the window leaves requests and its render thread finished pictures; the latest counts.
+//! Mailbox in which the window leaves requests and the render thread finished pictures; only the latest of each
+//! counts.
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use eframe::egui::ColorImage;
 
-use super::difference::Difference;
+use super::difference::PictureDifference;
 use super::quality::QualityLevel;
-use super::request::{FrameRequest, Scene};
+use super::request::{FrameRequest, RenderScene};
 use crate::data::Dataset;
-use crate::gpu::{GpuError, LightFigures, Stage};
+use crate::gpu::{GpuError, LightVolumeStatistics, RenderStage};
 use crate::model::Settings;
 
-/// A finished picture.
-pub(crate) struct Frame {
-    /// What it shows.
+/// Finished picture, with its request and quality.
+pub(crate) struct FinishedFrame {
+    /// Request that the picture answers.
     pub(crate) request: FrameRequest,
     pub(crate) quality: QualityLevel,
-    /// The volume, with the values at densities 0 and 1 that it shows.
+    /// Dataset that the picture shows, with its range of values for densities 0 to 1.
     pub(crate) dataset: Dataset,
     pub(crate) image: ColorImage,
-    /// The picture that it is compared with, and what lies between them.
-    pub(crate) other: Option<(ColorImage, Difference)>,
+    /// Right picture of a comparison, and the difference of both.
+    pub(crate) compared: Option<(ColorImage, PictureDifference)>,
 }
 
-/// Figures about the work, for display.
+/// Statistics of the render thread, for display.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Figures {
-    /// Milliseconds of the last full-quality picture.
+pub(crate) struct RenderStatistics {
+    /// Time of the last full-quality picture, in milliseconds.
     pub(crate) full_ms: Option<f64>,
-    /// Milliseconds of the last preview.
+    /// Time of the last preview, in milliseconds.
     pub(crate) preview_ms: Option<f64>,
     pub(crate) light_rebuilds: u64,
     pub(crate) cached_light_volumes: usize,
     pub(crate) gpu_bytes: u64,
     pub(crate) light_bytes: u64,
-    /// The light volume of each light, if it has one.
-    pub(crate) light_volumes: Vec<Option<LightFigures>>,
-    /// The volume of the sky, if there is one.
-    pub(crate) sky: Option<LightFigures>,
-    /// That of light that has bounced.
-    pub(crate) bounces: Option<LightFigures>,
-    /// Footprints that the last full-quality picture has splatted; 0 of one that gathers.
+    /// Statistics of each light's volume; `None` for lights without one.
+    pub(crate) light_volumes: Vec<Option<LightVolumeStatistics>>,
+    /// Statistics of the sky-visibility volume, if there is one.
+    pub(crate) sky: Option<LightVolumeStatistics>,
+    /// Statistics of the volume of multiply scattered light, if there is one.
+    pub(crate) bounces: Option<LightVolumeStatistics>,
+    /// Number of footprints splatted for the last full-quality picture; 0 if it was gathered.
     pub(crate) splats: u64,
-    /// Share of what the last full-quality picture shows that is nearly black.
+    /// Share of the visible part of the last full-quality picture that is nearly black, 0 to 1.
     pub(crate) dark_share: Option<f64>,
-    /// The last picture, or the left one of two, shows nothing of the volume.
+    /// True if nothing of the volume is visible in the last picture, or in the left one of a comparison.
     pub(crate) shows_nothing: bool,
-    /// Pictures at full quality that were made after previews.
+    /// Number of full-quality pictures that followed previews.
     pub(crate) refinements: u64,
-    /// A refinement under way: what is done now, and the share that is done.
-    pub(crate) refining: Option<(Stage, f32)>,
+    /// Refinement in progress: its current stage, and the completed fraction.
+    pub(crate) refinement_progress: Option<(RenderStage, f32)>,
 }
 
-/// A balance that the window wants to know.
+/// Request to measure the balance of a look.
 #[derive(Debug, Clone)]
-pub(crate) struct Measurement {
-    /// Counts up.
+pub(crate) struct BalanceRequest {
+    /// Number of the measurement, counting up.
     pub(crate) id: u64,
     pub(crate) settings: Box<Settings>,
 }
 
-/// What passes between the window and its render thread.
+/// Messages between the window and the render thread.
 #[derive(Default)]
 pub(crate) struct Mailbox {
-    pub(crate) scene: Option<Scene>,
-    /// Takes the place of the volume, and leaves the renderer.
+    pub(crate) scene: Option<RenderScene>,
+    /// New dataset, for the renderer of the present scene.
     pub(crate) dataset: Option<Dataset>,
     pub(crate) frame_request: Option<FrameRequest>,
     pub(crate) closed: bool,
-    /// Milliseconds per frame while something moves, if the user asked for other than usual.
+    /// Time budget per frame during interaction, in milliseconds; `None` for the adapter's default.
     pub(crate) frame_ms: Option<f64>,
-    pub(crate) frame: Option<Frame>,
+    pub(crate) frame: Option<FinishedFrame>,
     pub(crate) error: Option<GpuError>,
-    pub(crate) figures: Figures,
-    /// The look is about to change by itself: refinements stop when light volumes are filled, before the picture is drawn.
+    pub(crate) figures: RenderStatistics,
+    /// True while the look is about to change automatically: refinements stop after filling light volumes, before
+    /// drawing.
     pub(crate) holds_refinement: bool,
-    /// Waits until pictures leave time for it.
-    pub(crate) measurement: Option<Measurement>,
-    /// The balance of the last measurement, and which one that was.
-    pub(crate) measured: Option<(u64, Result<f64, GpuError>)>,
+    /// Pending measurement, which starts when no picture is due.
+    pub(crate) balance_request: Option<BalanceRequest>,
+    /// Result of the last measurement, with its number.
+    pub(crate) balance_result: Option<(u64, Result<f64, GpuError>)>,
 }
 
 impl Mailbox {
-    /// Whether the window has left something that the thread has not read.
-    pub(super) fn has_news(&self, is_frame_pending: bool) -> bool {
+    /// Returns true if the window has left something that the render thread has not read.
+    pub(super) fn has_changes(&self, is_frame_pending: bool) -> bool {
         let is_taken = is_frame_pending && self.frame.is_none();
         self.closed
             || self.scene.is_some()
@@ -93,17 +95,17 @@ impl Mailbox {
     }
 }
 
-/// The mailbox, and how each side hears of the other.
+/// Mailbox with the condition variables that signal changes to either side.
 #[derive(Default)]
-pub(crate) struct Shared {
+pub(crate) struct SharedMailbox {
     mailbox: Mutex<Mailbox>,
-    /// The window has put something into the mailbox, or taken it away.
+    /// Signalled after the window has put something into the mailbox or taken it out.
     pub(crate) changed: Condvar,
-    /// The render thread has put something into the mailbox.
+    /// Signalled after the render thread has put something into the mailbox.
     pub(crate) finished: Condvar,
 }
 
-impl Shared {
+impl SharedMailbox {
     pub(crate) fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
         self.mailbox.lock().unwrap_or_else(PoisonError::into_inner)
     }

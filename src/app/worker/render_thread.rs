@@ -1,4 +1,4 @@
-//! The window's end of the thread that renders its pictures.
+//! Render thread: the window's handle to the thread that renders its pictures.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,20 +8,20 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use super::mailbox::{Figures, Frame, Mailbox, Measurement, Shared};
+use super::background_task::panic_message;
+use super::mailbox::{BalanceRequest, FinishedFrame, Mailbox, RenderStatistics, SharedMailbox};
 use super::render_worker::RenderWorker;
-use super::request::{FrameRequest, Scene};
-use super::task::panic_message;
+use super::request::{FrameRequest, RenderScene};
 use crate::data::Dataset;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::model::Settings;
 
-/// The window's end of the thread, which ends with it.
+/// Handle to the render thread, which ends when the handle is dropped.
 pub(crate) struct RenderThread {
-    shared: Arc<Shared>,
+    shared: Arc<SharedMailbox>,
     thread: Option<JoinHandle<()>>,
-    /// How many balances have been asked for.
-    measurements: Cell<u64>,
+    /// Number of balance measurements requested so far.
+    balance_request_count: Cell<u64>,
 }
 
 impl std::fmt::Debug for RenderThread {
@@ -34,7 +34,7 @@ impl Drop for RenderThread {
     fn drop(&mut self) {
         self.shared.mailbox().closed = true;
         self.shared.changed.notify_one();
-        // A driver must not be unloaded while a thread is in it. Panics were caught.
+        // A driver must not be unloaded while a thread executes in it. Panics have been caught.
         if let Some(thread) = self.thread.take() {
             drop(thread.join());
         }
@@ -42,55 +42,55 @@ impl Drop for RenderThread {
 }
 
 impl RenderThread {
-    /// Starts the thread.
-    pub(crate) fn start(context: Context, ctx: egui::Context) -> std::io::Result<Self> {
-        let shared = Arc::<Shared>::default();
-        let theirs = Arc::clone(&shared);
+    /// Starts the render thread.
+    pub(crate) fn start(context: GpuContext, ctx: egui::Context) -> std::io::Result<Self> {
+        let shared = Arc::<SharedMailbox>::default();
+        let worker_shared = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("renderer".to_owned()).spawn(move || {
-            let mut worker = RenderWorker::new(&context, ctx, theirs);
+            let mut worker = RenderWorker::new(&context, ctx, worker_shared);
             // wgpu panics when a device is lost in the middle of a call.
-            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.work())) {
-                worker.report(GpuError::Lost(panic_message(&*panic)));
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.run())) {
+                worker.report(GpuError::DeviceLost(panic_message(&*panic)));
             }
         })?;
-        Ok(Self { shared, thread: Some(thread), measurements: Cell::new(0) })
+        Ok(Self { shared, thread: Some(thread), balance_request_count: Cell::new(0) })
     }
 
-    /// Renders this from now on.
-    pub(crate) fn set_scene(&self, scene: Scene) {
+    /// Replaces the scene, and discards requests and results of the previous one.
+    pub(crate) fn set_scene(&self, scene: RenderScene) {
         let mut mailbox = self.shared.mailbox();
         mailbox.dataset = None;
         (mailbox.scene, mailbox.frame_request, mailbox.frame) = (Some(scene), None, None);
-        (mailbox.measurement, mailbox.measured) = (None, None);
+        (mailbox.balance_request, mailbox.balance_result) = (None, None);
         self.shared.changed.notify_one();
     }
 
-    /// Renders another volume from now on, with the renderer that there is.
+    /// Replaces the dataset, keeping the renderer, and discards requests and results of the previous one.
     pub(crate) fn set_dataset(&self, dataset: Dataset) {
         let mut mailbox = self.shared.mailbox();
         (mailbox.dataset, mailbox.frame_request, mailbox.frame) = (Some(dataset), None, None);
-        (mailbox.measurement, mailbox.measured) = (None, None);
+        (mailbox.balance_request, mailbox.balance_result) = (None, None);
         self.shared.changed.notify_one();
     }
 
-    /// Renders this way from now on.
-    pub(crate) fn set_request(&self, frame_request: FrameRequest) {
+    /// Posts a request, which replaces the previous one.
+    pub(crate) fn post_request(&self, frame_request: FrameRequest) {
         self.shared.mailbox().frame_request = Some(frame_request);
         self.shared.changed.notify_one();
     }
 
-    /// Measures the balance of a look with the light volumes that are there, when its picture is finished; what was to
-    /// be measured before is not. Returns the number of the measurement.
+    /// Requests the balance of a look, measured with its light volumes once its picture is finished; it replaces a
+    /// pending measurement. Returns the number of the measurement.
     pub(crate) fn measure_balance(&self, settings: &Settings) -> u64 {
         let mut mailbox = self.shared.mailbox();
-        self.measurements.set(self.measurements.get() + 1);
-        let id = self.measurements.get();
-        mailbox.measurement = Some(Measurement { id, settings: Box::new(settings.clone()) });
+        self.balance_request_count.set(self.balance_request_count.get() + 1);
+        let id = self.balance_request_count.get();
+        mailbox.balance_request = Some(BalanceRequest { id, settings: Box::new(settings.clone()) });
         self.shared.changed.notify_one();
         id
     }
 
-    /// Whether the look is about to change by itself: until then, nothing is drawn at full quality.
+    /// Holds full-quality pictures while `holds`, since the look is about to change automatically.
     pub(crate) fn hold_refinement(&self, holds: bool) {
         let mut mailbox = self.shared.mailbox();
         if mailbox.holds_refinement != holds {
@@ -99,20 +99,25 @@ impl RenderThread {
         }
     }
 
-    /// The balance of a measurement, once.
+    /// Takes the result of a measurement; returns it only once.
     pub(crate) fn take_balance(&self, id: u64) -> Option<Result<f64, GpuError>> {
-        let measured = self.shared.mailbox().measured.take_if(|(measured, _)| *measured == id);
+        let measured = self.shared.mailbox().balance_result.take_if(|(measured, _)| *measured == id);
         measured.map(|(_, balance)| balance)
     }
 
-    /// What previews may take from now on.
+    /// Sets the time budget of a frame with a preview, in milliseconds.
     pub(crate) fn set_frame_ms(&self, frame_ms: Option<f64>) {
         self.shared.mailbox().frame_ms = frame_ms;
     }
 
-    /// The latest finished picture, once. Waits at most so long for one, or for that of a request.
-    pub(crate) fn take_frame(&self, awaited: Option<&FrameRequest>, longest_wait: Duration) -> Option<Frame> {
-        let is_it = |frame: &Frame| awaited.is_none_or(|awaited| frame.request == *awaited);
+    /// Takes the latest finished picture. Waits for at most `longest_wait` until there is one, or one of the request
+    /// `awaited`.
+    pub(crate) fn take_frame(
+        &self,
+        awaited: Option<&FrameRequest>,
+        longest_wait: Duration,
+    ) -> Option<FinishedFrame> {
+        let is_it = |frame: &FinishedFrame| awaited.is_none_or(|awaited| frame.request == *awaited);
         let is_due =
             |mailbox: &mut Mailbox| mailbox.error.is_none() && !mailbox.frame.as_ref().is_some_and(is_it);
         let (mut mailbox, _) = self
@@ -127,13 +132,13 @@ impl RenderThread {
         frame
     }
 
-    /// What went wrong, once.
+    /// Takes the last error; returns it only once.
     pub(crate) fn take_error(&self) -> Option<GpuError> {
         self.shared.mailbox().error.take()
     }
 
-    /// Figures about the work.
-    pub(crate) fn figures(&self) -> Figures {
+    /// Returns a copy of the render thread's statistics.
+    pub(crate) fn statistics(&self) -> RenderStatistics {
         self.shared.mailbox().figures.clone()
     }
 }

@@ -1,87 +1,87 @@
-//! What the thread that renders the window's pictures does.
+//! Render worker: renders the window's pictures on the render thread.
 //!
-//! It works on the latest request, one job at a time: a preview at once, full quality when nothing has
-//! changed for a moment. A preview is always finished, so that a hand that never rests sees pictures; a
-//! refinement is dropped as soon as something else is requested.
+//! It works on the latest request, one job at a time: a preview at once, full quality when nothing has changed for a
+//! moment. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
+//! something else is requested.
 
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
-use super::agenda::{Agenda, Due, Purpose};
-use super::brightness::Brightness;
-use super::difference::Difference;
-use super::mailbox::{Figures, Frame, Measurement, Shared};
-use super::quality::{Missing, QualityController, QualityLevel};
-use super::request::{FrameRequest, Scene};
+use super::brightness::BrightnessTracker;
+use super::difference::PictureDifference;
+use super::mailbox::{BalanceRequest, FinishedFrame, RenderStatistics, SharedMailbox};
+use super::quality::{MissingLightVolumes, QualityController, QualityLevel};
+use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
+use super::request::{FrameRequest, RenderScene};
 use crate::data::Dataset;
-use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, RenderOptions, Stage, balance_quickly};
+use crate::fault::{FaultThread, panic_if_injected};
+use crate::gpu::{GpuContext, GpuError, RenderOptions, RenderStage, measure_balance_fast};
 use crate::model::Settings;
-use crate::plan::{FrameKeys, Request};
+use crate::plan::{FrameKeys, RenderRequest};
 
-/// How often a refinement reports how far it is: each time the window is drawn, where the driver is software by the
-/// same processors.
+/// Interval at which a refinement reports progress: each report redraws the window, on the same processors if the
+/// driver is software.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(400);
 
-/// A picture to be made now.
+/// Picture to be rendered next, with its purpose and quality.
 #[derive(Debug, Clone)]
-struct Task {
+struct RenderTask {
     frame_request: FrameRequest,
-    purpose: Purpose,
+    purpose: RenderPurpose,
     quality: QualityLevel,
 }
 
-/// A finished picture of one look.
-struct Made {
+/// Finished picture of one look.
+struct RenderedLook {
     image: ColorImage,
     dataset: Dataset,
     shows_nothing: bool,
-    request: Request,
+    request: RenderRequest,
     total_ms: f64,
 }
 
-/// The thread's own side.
+/// State of the render thread.
 pub(super) struct RenderWorker {
     ctx: egui::Context,
-    shared: Arc<Shared>,
-    agenda: Agenda,
+    shared: Arc<SharedMailbox>,
+    agenda: RenderSchedule,
     controller: QualityController,
-    brightness: Brightness,
-    scene: Option<Scene>,
-    /// The last request that was rendered at full quality: its light volumes are likely there.
-    last_full: Option<(Request, FrameKeys)>,
+    brightness: BrightnessTracker,
+    scene: Option<RenderScene>,
+    /// Last request that was rendered at full quality: its light volumes are probably still cached.
+    last_full_request: Option<(RenderRequest, FrameKeys)>,
     last_progress: Instant,
 }
 
 impl RenderWorker {
-    pub(super) fn new(context: &Context, ctx: egui::Context, shared: Arc<Shared>) -> Self {
+    pub(super) fn new(context: &GpuContext, ctx: egui::Context, shared: Arc<SharedMailbox>) -> Self {
         Self {
             ctx,
             shared,
-            agenda: Agenda::new(),
+            agenda: RenderSchedule::new(),
             controller: QualityController::new(context.is_software()),
-            brightness: Brightness::new(),
+            brightness: BrightnessTracker::new(),
             scene: None,
-            last_full: None,
+            last_full_request: None,
             last_progress: Instant::now(),
         }
     }
 
-    /// Renders what is requested until the window closes.
-    pub(super) fn work(&mut self) {
+    /// Renders requests until the window closes or the device is lost.
+    pub(super) fn run(&mut self) {
         while let Some((mut scene, purpose, frame_request)) = self.wait_for_work() {
-            may_panic(Place::Worker);
-            let result = self.make(&mut scene, purpose, frame_request);
-            let lost = matches!(result, Err(GpuError::Lost(_)));
+            panic_if_injected(FaultThread::Worker);
+            let result = self.render_request(&mut scene, purpose, frame_request);
+            let lost = matches!(result, Err(GpuError::DeviceLost(_)));
             if result.is_err() && !lost {
-                scene.renderer.forget_everything();
-                self.last_full = None;
+                scene.renderer.drop_all();
+                self.last_full_request = None;
             }
             self.scene = Some(scene);
             if let Err(err) = result {
-                self.agenda.give_up();
+                self.agenda.mark_failed();
                 self.report(err);
                 if lost {
                     return;
@@ -90,8 +90,8 @@ impl RenderWorker {
         }
     }
 
-    /// Waits until something is to be drawn. `None` when the window closed.
-    fn wait_for_work(&mut self) -> Option<(Scene, Purpose, FrameRequest)> {
+    /// Waits until a picture is due. Returns `None` when the window has closed.
+    fn wait_for_work(&mut self) -> Option<(RenderScene, RenderPurpose, FrameRequest)> {
         let shared = Arc::clone(&self.shared);
         loop {
             self.read_mailbox();
@@ -99,30 +99,30 @@ impl RenderWorker {
                 return None;
             }
             if let Some(scene) = self.agenda.take_scene() {
-                self.controller.forget();
-                self.brightness.forget();
-                self.last_full = None;
+                self.controller.reset();
+                self.brightness.reset();
+                self.last_full_request = None;
                 self.scene = Some(scene);
             }
             if let Some(dataset) = self.agenda.take_dataset()
                 && let Some(scene) = &mut self.scene
             {
-                self.brightness.forget();
-                self.last_full = None;
+                self.brightness.reset();
+                self.last_full_request = None;
                 scene.dataset = dataset;
             }
             self.measure_balance();
-            let due = if self.scene.is_some() { self.agenda.due() } else { Due::WithNews };
+            let due = if self.scene.is_some() { self.agenda.due() } else { NextRender::OnMailboxChange };
             let rest = match due {
-                Due::Now(purpose, frame_request) => {
+                NextRender::Now(purpose, frame_request) => {
                     return self.scene.take().map(|scene| (scene, purpose, *frame_request));
                 }
-                Due::After(rest) => Some(rest),
-                Due::WithNews => None,
+                NextRender::After(rest) => Some(rest),
+                NextRender::OnMailboxChange => None,
             };
             let mailbox = shared.mailbox();
-            // Something may have come since it was read.
-            if self.agenda.has_news(&mailbox) || mailbox.measurement.is_some() && self.can_measure() {
+            // The mailbox may have changed since it was read.
+            if self.agenda.has_news(&mailbox) || mailbox.balance_request.is_some() && self.can_measure() {
                 continue;
             }
             match rest {
@@ -134,50 +134,53 @@ impl RenderWorker {
         }
     }
 
-    /// Whether there is time to measure a balance: pictures come first.
+    /// Returns true if a balance can be measured now: pictures have priority.
     fn can_measure(&self) -> bool {
-        self.scene.is_some() && self.agenda.is_at_rest()
+        self.scene.is_some() && self.agenda.is_idle()
     }
 
-    /// Measures the balance that the window wants to know: three small pictures with the light volumes that are there.
+    /// Measures the balance requested by the window: three small pictures with the light volumes that are present.
     fn measure_balance(&mut self) {
         if !self.can_measure() {
             return;
         }
-        let Some(Measurement { id, settings }) = self.shared.mailbox().measurement.take() else { return };
+        let Some(BalanceRequest { id, settings }) = self.shared.mailbox().balance_request.take() else {
+            return;
+        };
         let Some(scene) = &mut self.scene else { return };
-        let balance = balance_quickly(&mut scene.renderer, &scene.dataset, &settings);
-        self.shared.mailbox().measured = Some((id, balance));
+        let balance = measure_balance_fast(&mut scene.renderer, &scene.dataset, &settings);
+        self.shared.mailbox().balance_result = Some((id, balance));
         self.ctx.request_repaint();
     }
 
-    /// Takes note of what the window requests now.
+    /// Takes new requests and options out of the mailbox.
     fn read_mailbox(&mut self) {
         let mut mailbox = self.shared.mailbox();
         if let Some(scene) = &mailbox.scene {
-            mailbox.figures = Figures { gpu_bytes: scene.renderer.gpu_bytes(), ..Figures::default() };
+            mailbox.figures =
+                RenderStatistics { gpu_bytes: scene.renderer.gpu_bytes(), ..RenderStatistics::default() };
         }
         self.agenda.read(&mut mailbox);
         self.controller.set_frame_ms(mailbox.frame_ms);
     }
 
-    /// Makes the picture that is requested, or both of two that are compared, and publishes it.
-    fn make(
+    /// Renders the requested picture, or both pictures of a comparison, and publishes it.
+    fn render_request(
         &mut self,
-        scene: &mut Scene,
-        purpose: Purpose,
+        scene: &mut RenderScene,
+        purpose: RenderPurpose,
         frame_request: FrameRequest,
     ) -> Result<(), GpuError> {
         let quality = match purpose {
-            Purpose::Preview => self.preview_quality(scene, &frame_request),
-            Purpose::Refinement => QualityLevel::FULL,
+            RenderPurpose::Preview => self.preview_quality(scene, &frame_request),
+            RenderPurpose::Refinement => QualityLevel::FULL,
         };
-        let task = Task { frame_request, purpose, quality };
+        let task = RenderTask { frame_request, purpose, quality };
         let looks = &task.frame_request.looks;
-        let Some(left) = self.render(scene, &task, &looks.left, true)? else { return Ok(()) };
+        let Some(left) = self.render_look(scene, &task, &looks.left, true)? else { return Ok(()) };
         let mut right = None;
         if let Some(settings) = &looks.right {
-            right = self.render(scene, &task, settings, false)?;
+            right = self.render_look(scene, &task, settings, false)?;
             if right.is_none() {
                 return Ok(());
             }
@@ -186,25 +189,25 @@ impl RenderWorker {
         Ok(())
     }
 
-    /// How a preview is rendered: in full where that takes no more than a display pass.
-    fn preview_quality(&self, scene: &Scene, frame_request: &FrameRequest) -> QualityLevel {
+    /// Chooses the quality level of a preview: the full one if only a display pass is needed.
+    fn preview_quality(&self, scene: &RenderScene, frame_request: &FrameRequest) -> QualityLevel {
         let options = self.options(QualityLevel::FULL);
         let FrameRequest { looks, size, .. } = frame_request;
         let is_drawn = |settings: &Settings| {
-            let request = request_of(scene, settings, *size, QualityLevel::FULL);
+            let request = renderer_request(scene, settings, *size, QualityLevel::FULL);
             scene.renderer.is_drawn(&request, &options)
         };
         if is_drawn(&looks.left) && looks.right.as_ref().is_none_or(is_drawn) {
             return QualityLevel::FULL;
         }
-        // Two pictures have twice the pixels.
+        // A comparison has twice the pixels.
         let [width, height] = *size;
         let pixels = if looks.right.is_some() { [2 * width, height] } else { *size };
-        let settled = self.last_full.as_ref().map(|(_, keys)| keys);
-        self.controller.preview(pixels, missing(settled, frame_request.keys()))
+        let last_full_keys = self.last_full_request.as_ref().map(|(_, keys)| keys);
+        self.controller.preview_level(pixels, missing_light_volumes(last_full_keys, frame_request.keys()))
     }
 
-    /// How the renderer is to go about a quality.
+    /// Returns the renderer's options for a quality level.
     fn options(&self, quality: QualityLevel) -> RenderOptions {
         RenderOptions {
             light_parts: self.controller.light_parts(quality),
@@ -214,31 +217,33 @@ impl RenderWorker {
     }
 
     /// Renders one look of a task; `None` if the task was dropped meanwhile.
-    fn render(
+    fn render_look(
         &mut self,
-        scene: &mut Scene,
-        task: &Task,
+        scene: &mut RenderScene,
+        task: &RenderTask,
         settings: &Settings,
         is_left: bool,
-    ) -> Result<Option<Made>, GpuError> {
-        let Task { frame_request, purpose, quality } = task;
-        let request = request_of(scene, settings, frame_request.size, *quality);
+    ) -> Result<Option<RenderedLook>, GpuError> {
+        let RenderTask { frame_request, purpose, quality } = task;
+        let request = renderer_request(scene, settings, frame_request.size, *quality);
         let mut options = self.options(*quality);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
-        let (mut total_ms, mut light_ms, mut around_ms) = (0.0, 0.0, 0.0);
+        let (mut total_ms, mut light_ms, mut indirect_ms) = (0.0, 0.0, 0.0);
         let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
-        job.set_band(self.controller.rows(*quality, request.size));
+        job.set_band(self.controller.band_rows(*quality, request.size));
         if let Some(exposure) = self.brightness.exposure(frame_request, *quality, job.report()) {
             options.exposure = exposure;
             job.set_exposure(exposure);
         }
         loop {
             let stage = job.stage();
-            if self.agenda.is_held(*purpose) && matches!(stage, Some(Stage::Eye | Stage::Display)) {
-                // What the volume and lights need is kept.
-                self.agenda.prepare(frame_request.clone());
-                self.shared.mailbox().figures.refining = None;
+            if self.agenda.is_on_hold(*purpose)
+                && matches!(stage, Some(RenderStage::Eye | RenderStage::Display))
+            {
+                // The products for volume and lights stay cached.
+                self.agenda.mark_prepared(frame_request.clone());
+                self.shared.mailbox().figures.refinement_progress = None;
                 return Ok(None);
             }
             let start = Instant::now();
@@ -247,8 +252,8 @@ impl RenderWorker {
             let took_ms = start.elapsed().as_secs_f64() * 1000.0;
             total_ms += took_ms;
             match stage {
-                Some(Stage::LightMarch | Stage::LightBackproject) => light_ms += took_ms,
-                Some(Stage::Sky | Stage::Bounces) => around_ms += took_ms,
+                Some(RenderStage::LightMarch | RenderStage::LightBackproject) => light_ms += took_ms,
+                Some(RenderStage::Sky | RenderStage::ScatteredLight) => indirect_ms += took_ms,
                 _ => {}
             }
             if !more {
@@ -256,9 +261,9 @@ impl RenderWorker {
             }
             if self.last_progress.elapsed() >= PROGRESS_INTERVAL {
                 self.last_progress = Instant::now();
-                let refining = job.stage().filter(|_| *purpose == Purpose::Refinement);
+                let refining = job.stage().filter(|_| *purpose == RenderPurpose::Refinement);
                 let progress = job.progress().clamp(0.0, 1.0);
-                self.shared.mailbox().figures.refining = refining.map(|stage| (stage, progress));
+                self.shared.mailbox().figures.refinement_progress = refining.map(|stage| (stage, progress));
                 self.ctx.request_repaint();
             }
             self.read_mailbox();
@@ -270,49 +275,55 @@ impl RenderWorker {
         let is_full = *quality == QualityLevel::FULL;
         let mut dark_share = None;
         if is_full && is_left {
-            let is_at_rest = *purpose == Purpose::Refinement;
+            let is_at_rest = *purpose == RenderPurpose::Refinement;
             dark_share = self.brightness.measure_full(scene, frame_request, is_at_rest)?;
         } else if !is_full {
-            let settled = self.last_full.as_ref().map(|(request, _)| &request.settings);
-            self.brightness.measure_preview(scene, frame_request, *quality, &request, &options, settled)?;
+            let last_full = self.last_full_request.as_ref().map(|(request, _)| &request.settings);
+            self.brightness.measure_preview(scene, frame_request, *quality, &request, &options, last_full)?;
         }
-        let bytes = scene.renderer.read_shown()?;
+        let bytes = scene.renderer.read_display()?;
         let image = ColorImage::from_rgba_premultiplied(request.size.map(|n| n as usize), &bytes);
-        let splats = if is_full && is_left { Some(scene.renderer.splats()?) } else { None };
+        let splats = if is_full && is_left { Some(scene.renderer.splat_count()?) } else { None };
         total_ms += start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
         let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
-        let runs = &scene.renderer.report().runs;
-        // How long a volume takes to be uploaded says nothing of the next picture.
+        let runs = &scene.renderer.report().step_counts;
+        // The time to upload a volume does not predict the next picture's.
         if runs.eye > 0 && runs.volume == 0 {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
-            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - around_ms);
+            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - indirect_ms);
         }
         if fills > fills_before {
             self.controller.learn_build(*quality, light_ms / (fills - fills_before) as f64);
         }
         if is_full && is_left {
-            self.last_full = Some((request.clone(), FrameKeys::of(&request, &options)));
+            self.last_full_request = Some((request.clone(), FrameKeys::new(&request, &options)));
         }
         if let Some(dataset) = scene.renderer.dataset() {
-            // For the next picture nothing of it must be found again.
+            // Keeps what the renderer computed for the dataset, so that the next picture does not repeat it.
             scene.dataset = dataset.clone();
         }
         let dataset = scene.dataset.clone();
-        let shows_nothing = scene.renderer.shows_nothing() || self.brightness.is_picture_empty();
+        let shows_nothing = scene.renderer.is_volume_transparent() || self.brightness.is_picture_empty();
         let mut mailbox = self.shared.mailbox();
         mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);
         mailbox.figures.splats = splats.unwrap_or(mailbox.figures.splats);
-        Ok(Some(Made { image, dataset, shows_nothing, request, total_ms }))
+        Ok(Some(RenderedLook { image, dataset, shows_nothing, request, total_ms }))
     }
 
-    /// Leaves what is complete in the mailbox.
-    fn publish(&mut self, scene: &Scene, task: Task, left: Made, right: Option<Made>) {
-        let Task { frame_request, purpose, quality } = task;
-        let Made { image, dataset, shows_nothing, request, total_ms } = left;
+    /// Puts a finished picture and the statistics into the mailbox.
+    fn publish(
+        &mut self,
+        scene: &RenderScene,
+        task: RenderTask,
+        left: RenderedLook,
+        right: Option<RenderedLook>,
+    ) {
+        let RenderTask { frame_request, purpose, quality } = task;
+        let RenderedLook { image, dataset, shows_nothing, request, total_ms } = left;
         let total_ms = right.as_ref().map_or(total_ms, |right| right.total_ms);
         let other = right.map(|right| {
-            let difference = Difference::of(&image, &right.image);
+            let difference = PictureDifference::between(&image, &right.image);
             (right.image, difference)
         });
         self.agenda.publish(frame_request.clone(), quality);
@@ -321,23 +332,24 @@ impl RenderWorker {
         let figures = &mut mailbox.figures;
         let time = if quality == QualityLevel::FULL { &mut figures.full_ms } else { &mut figures.preview_ms };
         *time = Some(total_ms);
-        figures.refinements += u64::from(purpose == Purpose::Refinement);
+        figures.refinements += u64::from(purpose == RenderPurpose::Refinement);
         figures.light_rebuilds = renderer.light_rebuilds().iter().sum();
         figures.cached_light_volumes = renderer.cached_light_volumes();
         figures.light_bytes = renderer.light_bytes();
-        figures.light_volumes = renderer.light_figures(&request);
-        figures.sky = renderer.sky_figures(&request);
-        figures.bounces = renderer.bounces_figures(&request);
+        figures.light_volumes = renderer.light_statistics(&request);
+        figures.sky = renderer.sky_statistics(&request);
+        figures.bounces = renderer.scattered_light_statistics(&request);
         figures.gpu_bytes = renderer.gpu_bytes();
         figures.shows_nothing = shows_nothing;
-        figures.refining = None;
-        mailbox.frame = Some(Frame { request: frame_request, quality, dataset, image, other });
+        figures.refinement_progress = None;
+        mailbox.frame =
+            Some(FinishedFrame { request: frame_request, quality, dataset, image, compared: other });
         drop(mailbox);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
     }
 
-    /// Leaves an error in the mailbox.
+    /// Puts an error into the mailbox.
     pub(super) fn report(&self, err: GpuError) {
         self.shared.mailbox().error = Some(err);
         self.shared.finished.notify_one();
@@ -345,25 +357,30 @@ impl RenderWorker {
     }
 }
 
-/// What to ask of the renderer for a look.
-fn request_of(scene: &Scene, settings: &Settings, size: [u32; 2], quality: QualityLevel) -> Request {
+/// Returns the renderer's request for a look at a quality level.
+fn renderer_request(
+    scene: &RenderScene,
+    settings: &Settings,
+    size: [u32; 2],
+    quality: QualityLevel,
+) -> RenderRequest {
     let volume = scene.dataset.volume();
-    Request {
+    RenderRequest {
         volume: volume.id(),
         settings: quality.settings(settings, &volume.scene(), size),
         size: quality.size(size),
-        coarse: quality.coarse,
+        preview_resolution: quality.light_resolution,
     }
 }
 
-/// Light volumes of full quality that a picture would have to fill; what is open of a sky takes about as long as one, and
-/// light that bounces as four.
-fn missing(settled: Option<&FrameKeys>, full: &FrameKeys) -> Missing {
-    // The first look has filled them all.
-    let Some(settled) = settled else { return Missing::default() };
-    let lights = full.lights_missing_in(settled);
-    let sky = usize::from(full.sky.is_some() && full.sky != settled.sky);
-    let bounces = 4 * usize::from(full.bounces.is_some() && full.bounces != settled.bounces);
+/// Counts the full-quality light volumes that a picture would have to fill; sky visibility counts as one, since it
+/// takes about as long, and multiple scattering as four.
+fn missing_light_volumes(last_full: Option<&FrameKeys>, full: &FrameKeys) -> MissingLightVolumes {
+    // The first look has filled all of them.
+    let Some(last_full) = last_full else { return MissingLightVolumes::default() };
+    let lights = full.count_lights_missing_in(last_full);
+    let sky = usize::from(full.sky.is_some() && full.sky != last_full.sky);
+    let bounces = 4 * usize::from(full.bounces.is_some() && full.bounces != last_full.bounces);
     let count = lights + sky + bounces;
-    Missing { count, others: full.lights.iter().flatten().count() > lights }
+    MissingLightVolumes { count, has_usable: full.lights.iter().flatten().count() > lights }
 }

@@ -1,4 +1,4 @@
-//! Pipelines that are made before they are needed.
+//! Warm-up: compiling shader pipelines in the background, before they are needed.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,21 +6,21 @@ use std::thread::JoinHandle;
 
 use crate::gpu::{GpuError, ShaderLibrary};
 
-/// Threads that make pipelines ahead of time. Dropping this waits for them: a driver must not be unloaded while a
-/// thread is in it.
+/// Threads that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a
+/// thread executes in it.
 #[derive(Debug, Default)]
-pub(super) struct WarmUp {
+pub(super) struct PipelineWarmUp {
     stop: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
 }
 
-impl WarmUp {
-    /// How many of them were begun.
-    pub(super) fn count(&self) -> usize {
+impl PipelineWarmUp {
+    /// Number of threads that were started.
+    pub(super) fn thread_count(&self) -> usize {
         self.threads.len()
     }
 
-    /// Begins to make some of them.
+    /// Starts a thread that compiles pipelines by calling `what`.
     pub(super) fn start(
         &mut self,
         shaders: &ShaderLibrary,
@@ -40,11 +40,11 @@ impl WarmUp {
     }
 }
 
-impl Drop for WarmUp {
+impl Drop for PipelineWarmUp {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         for thread in self.threads.drain(..) {
-            // That it panicked is logged where it did.
+            // A panic was logged by its thread.
             drop(thread.join());
         }
     }

@@ -1,39 +1,41 @@
-//! What the first picture of a volume is like, in figures: how much of it the object covers, how bright it is, how much
-//! of it shadows darken with the lights that were found, how much of what is shown is the volume's box, whether a patient
-//! is seen from the front, and what finding all that takes.
+//! Benchmark of the first look, in figures: the object's coverage and brightness, the share that shadows of the
+//! chosen lights darken, the visible share of the volume's box, whether a patient is seen from the front, and the CPU
+//! time to find the look.
 
 use serde_json::{Value, json};
 
-use super::report::round;
-use super::{Bench, MOST_SIZE};
+use super::report::round_to_microsecond;
+use super::{MAX_FIGURE_SIZE, VolumeBenchmark};
 use crate::cli::CliError;
 use crate::cli::process::process_cpu_ms;
 use crate::data::DataKind;
 use crate::gpu::{
-    LightSearch, RenderOptions, Sought, dark_share, first_look, mean_luminance, seen_share, shadowed_share,
+    LightSearch, RenderOptions, SearchedLight, dark_fraction, first_look, mean_luminance, shadowed_fraction,
+    visible_fraction,
 };
-use crate::model::{ShadowAlgorithm, auto};
+use crate::model::{ShadowAlgorithm, first_look};
 
-impl Bench<'_> {
-    /// Figures of the first look, whatever look the benchmark has.
+impl VolumeBenchmark<'_> {
+    /// Measures the first look, independently of the look of the benchmark.
     pub(super) fn first_look(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let volume = self.loaded.volume();
         let mut cpu_ms = CpuClock::start();
-        auto::first_settings(volume, self.loaded.histogram());
+        first_look::first_settings(volume, self.loaded.histogram());
         let found_ms = cpu_ms.lap();
         let first = first_look(&mut self.renderer, self.loaded)?;
         let first_ms = cpu_ms.lap();
         let found =
-            LightSearch::new(self.renderer.shaders(), self.loaded, &first, Sought::KeyAndFill)?.run()?;
+            LightSearch::new(self.renderer.shaders(), self.loaded, &first, SearchedLight::KeyAndFill)?
+                .run()?;
         let search_ms = cpu_ms.lap();
         let settings = found.as_ref().map_or_else(|| first.clone(), |found| found.apply(&first));
         let mut unshadowed = settings.clone();
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
-        let size = within(self.args.size, MOST_SIZE);
+        let size = fit_size(self.args.size, MAX_FIGURE_SIZE);
         let mut light = |settings| {
             self.renderer
                 .render(self.loaded, settings, size, &RenderOptions::default())
-                .map(|seen| seen.light)
+                .map(|seen| seen.linear)
         };
         let (with, without) = (light(&settings)?, light(&unshadowed)?);
         let towards_eye = settings.camera.scene_from_view().z_axis;
@@ -44,17 +46,17 @@ impl Bench<'_> {
             "found_cpu_ms": found_ms,
             "first_cpu_ms": first_ms,
             "search_cpu_ms": search_ms,
-            "seen_share": round(seen_share(&with)),
-            "exposure": round(settings.output.exposure),
-            "mean_luminance": round(settings.output.exposure * mean_luminance(&with)),
-            "dark_share": round(dark_share(&with, settings.output.exposure)),
+            "seen_share": round_to_microsecond(visible_fraction(&with)),
+            "exposure": round_to_microsecond(settings.output.exposure),
+            "mean_luminance": round_to_microsecond(settings.output.exposure * mean_luminance(&with)),
+            "dark_share": round_to_microsecond(dark_fraction(&with, settings.output.exposure)),
             "lights_moved": settings.lights != first.lights,
             "floor": settings.floor.on,
-            "shadowed_share": round(shadowed_share(&with, &without)),
-            "blockness": round(auto::blockness(&settings, volume)),
+            "shadowed_share": round_to_microsecond(shadowed_fraction(&with, &without)),
+            "blockness": round_to_microsecond(first_look::box_share(&settings, volume)),
             "kind": volume.kind().kind.name().key(),
             "labels_lost": matches!(volume.kind().kind, DataKind::LabelMap { .. })
-                .then(|| auto::labels_lost(&settings, volume)),
+                .then(|| first_look::count_lost_labels(&settings, volume)),
             // World space is right-anterior-superior.
             "from_the_front": volume.is_anatomical().then_some(towards_eye.y > 0.0),
         }));
@@ -62,8 +64,8 @@ impl Bench<'_> {
     }
 }
 
-/// A size of the same shape whose longest edge is no longer than `most`.
-fn within(size: [u32; 2], most: u32) -> [u32; 2] {
+/// Scales a size down so that its longest edge is at most `most`, keeping the aspect ratio.
+fn fit_size(size: [u32; 2], most: u32) -> [u32; 2] {
     let longest = size[0].max(size[1]);
     if longest <= most {
         return size;
@@ -71,7 +73,7 @@ fn within(size: [u32; 2], most: u32) -> [u32; 2] {
     size.map(|edge| ((f64::from(edge) * f64::from(most) / f64::from(longest)).round() as u32).max(1))
 }
 
-/// CPU time of this process, from one call to the next.
+/// Stopwatch for the CPU time of this process, from one call to the next.
 struct CpuClock {
     last: Option<f64>,
 }
@@ -81,15 +83,15 @@ impl CpuClock {
         Self { last: process_cpu_ms() }
     }
 
-    /// Milliseconds since the last call; `None` where the system does not say.
+    /// Milliseconds since the last call; `None` if the system does not report CPU times.
     fn lap(&mut self) -> Option<f64> {
         let before = std::mem::replace(&mut self.last, process_cpu_ms());
-        self.last.zip(before).map(|(after, before)| round(after - before))
+        self.last.zip(before).map(|(after, before)| round_to_microsecond(after - before))
     }
 }
 
-/// Lines of the table.
-pub(super) fn lines(cases: &[Value]) -> Vec<String> {
+/// Formats the rows of the first-look table.
+pub(super) fn first_look_table(cases: &[Value]) -> Vec<String> {
     let looks = cases.iter().filter(|case| case["name"] == "first-look");
     let mut lines: Vec<String> = looks
         .map(|case| {
@@ -146,7 +148,7 @@ mod tests {
             ([300, 200], [300, 200]),
             ([10_000, 1], [400, 1]),
         ] {
-            assert_eq!(within(size, 400), expected, "{size:?}");
+            assert_eq!(fit_size(size, 400), expected, "{size:?}");
         }
     }
 }

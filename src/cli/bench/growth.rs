@@ -1,46 +1,45 @@
-//! How the cost of a light volume grows with the volume's edge N: the paper's O(N³) for splatting and
-//! O(N⁴) for rays show where nothing is skipped; with brick skipping and early exit both grow less.
+//! Growth of a light volume's cost with the volume's edge N. The paper's O(N³) for splatting and O(N⁴) for rays hold
+//! without skipping; with brick skipping and early ray termination both grow less.
 
 use serde_json::{Value, json};
 
-use super::report::{Samples, round};
+use super::report::{CaseTimings, round_to_microsecond};
 use crate::cli::CliError;
 use crate::data::{Dataset, synthetic};
-use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary};
-use crate::model::{ShadowAlgorithm, auto};
+use crate::gpu::{GpuContext, RenderOptions, Renderer, ShaderLibrary};
+use crate::model::{ShadowAlgorithm, first_look};
 
-/// Voxels along each axis of the clouds.
+/// Numbers of voxels along each axis of the test clouds.
 const SIZES: [usize; 4] = [64, 128, 256, 512];
 
-/// The largest of them that rays are cast through: the next would take a software adapter an hour.
+/// Largest cloud for ray casting: the next would take a software adapter an hour.
 const LARGEST_FOR_RAYS: usize = 256;
 
-/// No more frames of a size once they took so long: rays through 256³ voxels without skipping take a
+/// Time limit after which a size gets no more frames, in seconds: rays through 256³ voxels without skipping take a
 /// software adapter minutes.
-const PATIENCE_S: f64 = 20.0;
+const TIME_LIMIT_S: f64 = 20.0;
 
-/// What saves work.
+/// Optimisations that are enabled in a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Savings {
-    /// Bricks are skipped, rays end when nothing is left, and only what the picture looks up is
-    /// filled.
+enum Optimizations {
+    /// Brick skipping, early ray termination, and filling only the voxels that the picture looks up.
     All,
-    /// Every sample of every ray, every voxel.
+    /// No optimisation: every sample of every ray, every voxel.
     None,
 }
 
-/// Times light volumes of clouds by both algorithms.
+/// Times light volumes of clouds, filled by both algorithms.
 pub(super) fn run(
-    context: &Context,
+    context: &GpuContext,
     frames: usize,
     cases: &mut Vec<Value>,
     ratios: &mut serde_json::Map<String, Value>,
 ) -> Result<(), CliError> {
     let shaders = ShaderLibrary::new(context);
-    let mut builds: [Vec<f64>; WAYS.len()] = Default::default();
+    let mut builds: [Vec<f64>; COMBINATIONS.len()] = Default::default();
     for n in SIZES {
         let loaded = Dataset::new(synthetic::builtin("cloud", Some(n))?);
-        for ((algorithm, savings), builds) in WAYS.into_iter().zip(&mut builds) {
+        for ((algorithm, savings), builds) in COMBINATIONS.into_iter().zip(&mut builds) {
             if algorithm == ShadowAlgorithm::Raycast && n > LARGEST_FOR_RAYS {
                 continue;
             }
@@ -51,7 +50,7 @@ pub(super) fn run(
                 "name": format!("growth-{}", label(algorithm, savings)),
                 "volume": loaded.volume().name(),
                 "dims": loaded.volume().dims(),
-                "light_volume_ms": round(samples.light_build()),
+                "light_volume_ms": round_to_microsecond(samples.light_build()),
             });
             if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
                 case.extend(timings);
@@ -59,60 +58,63 @@ pub(super) fn run(
             cases.push(case);
         }
     }
-    for ((algorithm, savings), builds) in WAYS.into_iter().zip(&builds) {
+    for ((algorithm, savings), builds) in COMBINATIONS.into_iter().zip(&builds) {
         let label = label(algorithm, savings);
         for (pair, n) in builds.windows(2).zip(&SIZES[1..]) {
-            ratios.insert(format!("{label}_{n}_over_{}", n / 2), json!(round(pair[1] / pair[0])));
+            ratios.insert(
+                format!("{label}_{n}_over_{}", n / 2),
+                json!(round_to_microsecond(pair[1] / pair[0])),
+            );
         }
-        ratios.insert(format!("{label}_exponent"), json!(round(exponent(builds))));
+        ratios.insert(format!("{label}_exponent"), json!(round_to_microsecond(exponent(builds))));
     }
-    for (pair, ways) in builds.chunks_exact(2).zip(WAYS.chunks_exact(2)) {
+    for (pair, ways) in builds.chunks_exact(2).zip(COMBINATIONS.chunks_exact(2)) {
         for ((splat, raycast), n) in pair[0].iter().zip(&pair[1]).zip(SIZES) {
             let label = label(ShadowAlgorithm::Raycast, ways[0].1);
-            ratios.insert(format!("{label}_over_splat_{n}"), json!(round(raycast / splat)));
+            ratios.insert(format!("{label}_over_splat_{n}"), json!(round_to_microsecond(raycast / splat)));
         }
     }
     Ok(())
 }
 
-/// What is compared: pairs of splatting and rays.
-const WAYS: [(ShadowAlgorithm, Savings); 4] = [
-    (ShadowAlgorithm::Splat, Savings::All),
-    (ShadowAlgorithm::Raycast, Savings::All),
-    (ShadowAlgorithm::Splat, Savings::None),
-    (ShadowAlgorithm::Raycast, Savings::None),
+/// Compared combinations: pairs of splatting and ray casting.
+const COMBINATIONS: [(ShadowAlgorithm, Optimizations); 4] = [
+    (ShadowAlgorithm::Splat, Optimizations::All),
+    (ShadowAlgorithm::Raycast, Optimizations::All),
+    (ShadowAlgorithm::Splat, Optimizations::None),
+    (ShadowAlgorithm::Raycast, Optimizations::None),
 ];
 
-fn label(algorithm: ShadowAlgorithm, savings: Savings) -> String {
+fn label(algorithm: ShadowAlgorithm, savings: Optimizations) -> String {
     let name = if algorithm == ShadowAlgorithm::Splat { "splat" } else { "raycast" };
-    let savings = if savings == Savings::All { "skipping" } else { "everything" };
+    let savings = if savings == Optimizations::All { "skipping" } else { "everything" };
     format!("{name}_{savings}")
 }
 
-/// Fills the light volume of a cloud's first look again and again; the light turns for each.
+/// Fills the light volume of a cloud's first look repeatedly, with the light turned each time.
 fn light_builds(
     mut renderer: Renderer,
     loaded: &Dataset,
     algorithm: ShadowAlgorithm,
-    savings: Savings,
+    savings: Optimizations,
     frames: usize,
     compiles: bool,
-) -> Result<Samples, CliError> {
-    let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+) -> Result<CaseTimings, CliError> {
+    let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
     settings.shadows.algorithm = algorithm;
-    // The picture does not matter here, but it is what asks for light.
+    // The picture is irrelevant here, but requests the light volume.
     let size = [64; 2];
     let mut options = RenderOptions { timed: true, ..RenderOptions::default() };
-    if savings == Savings::None {
+    if savings == Optimizations::None {
         options = RenderOptions {
             empty_space_skipping: false,
-            fill_everything: true,
+            fill_all_light_voxels: true,
             min_transmittance: 0.0,
             ..options
         };
     }
     let warm_up = usize::from(compiles);
-    let mut samples = Samples::default();
+    let mut samples = CaseTimings::default();
     let start = std::time::Instant::now();
     for frame in 0..warm_up + frames.max(1) {
         if let Some(light) = settings.lights.first_mut() {
@@ -128,14 +130,14 @@ fn light_builds(
         } else {
             samples.time(draw)?;
         }
-        if frame >= warm_up && start.elapsed().as_secs_f64() > PATIENCE_S {
+        if frame >= warm_up && start.elapsed().as_secs_f64() > TIME_LIMIT_S {
             break;
         }
     }
     Ok(samples)
 }
 
-/// The slope of log₂(milliseconds) over doublings, by least squares; 0 of fewer than two sizes.
+/// Returns the slope of log₂(milliseconds) over doublings of the size, by least squares; 0 for fewer than two sizes.
 fn exponent(builds: &[f64]) -> f64 {
     let count = builds.len() as f64;
     if builds.len() < 2 {

@@ -1,34 +1,34 @@
-//! From a file to its first picture, stage by stage, and the memory that it takes.
+//! Benchmark of loading: the time from a file to its first picture, stage by stage, and the memory that it takes.
 //!
-//! *Read* ends when all voxels are there, decoded and in the machine's own order. *Statistics* are what is found out of them:
-//! what values span and which of them matter, an identity, histogram, bounds of bricks and cells, the kind of data. *Upload*
-//! is the way to the adapter, with the pyramid. *First look* is what the automatic look takes beyond all that, and *picture*
-//! a light volume and a picture at full quality.
+//! *Read* ends when all voxels are decoded and in native byte order. *Statistics* are computed from the voxels: the
+//! range of values and its robust part, content id, histogram, bounds of bricks and cells, kind of data. *Upload* is
+//! the transfer to the adapter, with the pyramid. *First look* is the additional time for the automatic look, and
+//! *picture* that for a light volume and a picture at full quality.
 
 use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use super::report::{Samples, round, spread};
-use super::{Bench, BenchArgs, describe};
+use super::report::{CaseTimings, round_to_microsecond, spread_json};
+use super::{BenchArgs, VolumeBenchmark, case_json};
 use crate::cli::CliError;
 use crate::data::{Dataset, Volume};
-use crate::gpu::{Context, RenderOptions, Renderer, ShaderLibrary, Stage, first_look};
-use crate::model::{Settings, auto};
-use crate::plan::Request;
+use crate::gpu::{GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, first_look};
+use crate::model::{Settings, first_look};
+use crate::plan::RenderRequest;
 
-/// What the stages are called, in their order.
+/// Names of the stages, in their order.
 pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];
 
-/// Loading takes seconds: more frames than these are not needed for a median.
-const MOST_FRAMES: usize = 3;
+/// Maximum number of frames: loading takes seconds, and a median needs no more.
+const MAX_FRAMES: usize = 3;
 
-/// Milliseconds of each of [`STAGES`], for each time that a volume was loaded.
+/// Milliseconds of each of [`STAGES`], one per repetition.
 #[derive(Debug, Default)]
-struct Stages([Vec<f64>; STAGES.len()]);
+struct LoadStageTimes([Vec<f64>; STAGES.len()]);
 
-impl Stages {
+impl LoadStageTimes {
     fn add(&mut self, took_ms: &[f64]) {
         for (all, &took) in self.0.iter_mut().zip(took_ms) {
             all.push(took);
@@ -36,51 +36,51 @@ impl Stages {
     }
 
     fn json(&self) -> Value {
-        STAGES.iter().zip(&self.0).map(|(name, all)| ((*name).to_owned(), spread(all))).collect()
+        STAGES.iter().zip(&self.0).map(|(name, all)| ((*name).to_owned(), spread_json(all))).collect()
     }
 }
 
-/// Bytes on the adapter: all, those of light volumes, and the most that there were.
+/// Memory on the adapter in bytes: in total, of light volumes, and at its peak.
 #[derive(Debug, Default)]
-struct Bytes {
+struct AdapterMemory {
     all: u64,
     light: u64,
     peak: u64,
 }
 
-/// Milliseconds since the last call.
-struct Lap(Instant);
+/// Stopwatch for the wall-clock time since the last call.
+struct LapTimer(Instant);
 
-impl Lap {
+impl LapTimer {
     fn start() -> Self {
         Self(Instant::now())
     }
 
-    fn take(&mut self) -> f64 {
+    fn lap_ms(&mut self) -> f64 {
         let now = Instant::now();
         now.duration_since(std::mem::replace(&mut self.0, now)).as_secs_f64() * 1000.0
     }
 }
 
-/// What reading a file took, and what was found out of its voxels on the way.
-fn read_and_look(lap: &mut Lap, volume: &Volume) -> [f64; 2] {
-    let looking = volume.looking_took().as_secs_f64() * 1000.0;
-    [lap.take() - looking, looking]
+/// Splits the time since the last call into reading the file and statistics gathered while reading, in milliseconds.
+fn split_read_time(lap: &mut LapTimer, volume: &Volume) -> [f64; 2] {
+    let looking = volume.analysis_time().as_secs_f64() * 1000.0;
+    [lap.lap_ms() - looking, looking]
 }
 
-/// Reads files, and finds out of their voxels what follows from them: no adapter is needed.
+/// Times reading and statistics of files, which need no adapter.
 pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> Result<(), CliError> {
-    let mut stages = Stages::default();
-    // The first time brings the file into memory, and starts the threads.
+    let mut stages = LoadStageTimes::default();
+    // The first repetition fills the file cache and starts the threads.
     for frame in 0..=usize::from(args.frames) {
-        let mut lap = Lap::start();
+        let mut lap = LapTimer::start();
         let volume = args.look.read_volume(source)?;
-        let [read, mut looking] = read_and_look(&mut lap, &volume);
+        let [read, mut looking] = split_read_time(&mut lap, &volume);
         let (name, dims, voxel_type) =
             (volume.name().to_owned(), volume.dims(), volume.samples().voxel_type().name());
         let dataset = Dataset::new(volume);
         dataset.volume().kind();
-        looking += lap.take();
+        looking += lap.lap_ms();
         if frame > 0 {
             stages.add(&[read, looking]);
         }
@@ -98,54 +98,54 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
     Ok(())
 }
 
-/// Brings a volume to the adapter; no picture is begun.
+/// Uploads a volume to the adapter without rendering a picture.
 fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Result<(), CliError> {
     let options = RenderOptions { timed: true, ..RenderOptions::default() };
     let (volume, settings) = (loaded.volume().id(), settings.clone());
-    // Of a size that costs nothing: it is not drawn.
-    let request = Request { volume, settings, size: [1; 2], coarse: None };
+    // The smallest size, since the picture is not drawn.
+    let request = RenderRequest { volume, settings, size: [1; 2], preview_resolution: None };
     let mut job = renderer.begin(loaded, request, &options)?;
-    while matches!(job.stage(), Some(Stage::Upload | Stage::Pyramid)) {
+    while matches!(job.stage(), Some(RenderStage::Upload | RenderStage::Pyramid)) {
         job.step()?;
     }
     Ok(())
 }
 
-impl Bench<'_> {
-    /// From a file, or the numbers of a built-in volume, to its first picture at full quality, and the
-    /// memory that it takes. Pipelines are there already.
+impl VolumeBenchmark<'_> {
+    /// Times the way from a file, or the formula of a built-in volume, to its first picture at full quality, and
+    /// measures its memory. Pipelines are compiled beforehand.
     pub(super) fn load(
         &self,
-        context: &Context,
+        context: &GpuContext,
         source: &Path,
         wants: impl Fn(&str) -> bool,
         cases: &mut Vec<Value>,
     ) -> Result<(), CliError> {
         let shaders = ShaderLibrary::new(context);
-        let (mut samples, mut stages) = (Samples::default(), Stages::default());
+        let (mut samples, mut stages) = (CaseTimings::default(), LoadStageTimes::default());
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
-        for frame in 0..=usize::from(self.args.frames).min(MOST_FRAMES) {
+        for frame in 0..=usize::from(self.args.frames).min(MAX_FRAMES) {
             let mut took = [0.0; STAGES.len()];
-            let mut bytes = Bytes::default();
-            let mut warm_up = Samples::default();
+            let mut bytes = AdapterMemory::default();
+            let mut warm_up = CaseTimings::default();
             let keep = if frame == 0 { &mut warm_up } else { &mut samples };
             let mut loaded = None;
             keep.time(|| {
-                let mut lap = Lap::start();
+                let mut lap = LapTimer::start();
                 let volume = self.args.look.read_volume(source)?;
-                [took[0], took[1]] = read_and_look(&mut lap, &volume);
-                let dataset = self.args.look.shown(source, volume, context)?;
+                [took[0], took[1]] = split_read_time(&mut lap, &volume);
+                let dataset = self.args.look.adapter_dataset(source, volume, context)?;
                 dataset.volume().kind();
-                took[1] += lap.take();
+                took[1] += lap.lap_ms();
                 let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
                 upload(&mut renderer, &dataset, &self.settings)?;
                 let uploaded = renderer.report().upload_ms;
-                took[2] = lap.take();
+                took[2] = lap.lap_ms();
                 renderer.draw(&dataset, &self.settings, self.args.size, &options)?;
-                took[4] = lap.take();
+                took[4] = lap.lap_ms();
                 let mut report = renderer.report().clone();
                 report.upload_ms += uploaded;
-                bytes = Bytes {
+                bytes = AdapterMemory {
                     all: renderer.gpu_bytes(),
                     light: renderer.light_bytes(),
                     peak: report.peak_gpu_bytes,
@@ -166,15 +166,15 @@ impl Bench<'_> {
                 stages.add(&took);
             }
         }
-        let mut case = describe("load", self.loaded, self.args.size, &self.settings, &samples, 1);
+        let mut case = case_json("load", self.loaded, self.args.size, &self.settings, &samples, 1);
         case["load_ms"] = stages.json();
         cases.push(case);
         Ok(())
     }
 
-    fn memory(&self, &Bytes { all, light, peak }: &Bytes) -> Value {
+    fn memory(&self, &AdapterMemory { all, light, peak }: &AdapterMemory) -> Value {
         let volume = self.loaded.volume();
-        let per_voxel = |bytes: u64| round(bytes as f64 / volume.voxel_count() as f64);
+        let per_voxel = |bytes: u64| round_to_microsecond(bytes as f64 / volume.voxel_count() as f64);
         json!({
             "name": "memory",
             "volume": volume.name(),
@@ -186,18 +186,18 @@ impl Bench<'_> {
     }
 }
 
-/// What a first look takes of a volume that has been brought to an adapter, and of which nothing else has been made.
-fn first_look_ms(context: &Context, shaders: &ShaderLibrary, dataset: &Dataset) -> Result<f64, CliError> {
+/// Returns the time of a first look, in milliseconds, for a volume that has been uploaded but nothing else.
+fn first_look_ms(context: &GpuContext, shaders: &ShaderLibrary, dataset: &Dataset) -> Result<f64, CliError> {
     let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
-    let settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    let settings = first_look::first_settings(dataset.volume(), dataset.histogram());
     upload(&mut renderer, dataset, &settings)?;
-    let mut lap = Lap::start();
+    let mut lap = LapTimer::start();
     first_look(&mut renderer, dataset)?;
-    Ok(lap.take())
+    Ok(lap.lap_ms())
 }
 
-/// Lines of the table of stages.
-pub(super) fn lines(cases: &[Value]) -> Vec<String> {
+/// Formats the rows of the table of loading stages.
+pub(super) fn load_table(cases: &[Value]) -> Vec<String> {
     let timed = cases.iter().filter(|case| case["load_ms"].is_object());
     let mut lines: Vec<String> = timed
         .map(|case| {

@@ -1,22 +1,21 @@
-//! `chiaroscuro bench`: how long pictures and light volumes take, in ratios within one run.
+//! Command `chiaroscuro bench`: times pictures and light volumes, and compares them within one run.
 //!
-//! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, frame by frame in turn;
-//! *light-drag* (the light moves, so its volume is filled for every frame); *light-build* (the two
-//! halves of the light pass of those frames); *tf-edit* (a transfer function changes); *background* (only the
-//! background does); *load* (from a file to its first picture, stage by stage) and *memory*; *read* (of that only what needs
-//! no adapter); *growth* (light volumes of clouds of growing size, splatted
-//! and by rays, with everything that saves work and without);
-//! *sky*, *area* and *scattering* (light from all around, of a light that has a size, and that bounces, in units of one
-//! light's); *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look* (figures of
-//! the picture that a volume is opened with).
+//! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, with alternating frames; *light-drag* (the light
+//! moves, so its volume is filled for every frame); *light-build* (the two halves of the light pass of those frames);
+//! *tf-edit* (a transfer function changes); *background* (only the background does); *load* (from a file to its first
+//! picture, stage by stage) and *memory*; *read* (the stages of *load* that need no adapter); *growth* (light volumes
+//! of clouds of growing size, splatted and by rays, with all optimisations and without); *sky*, *area* and
+//! *scattering* (light volumes of the sky, of area lights and of multiple scattering, in units of one light's);
+//! *paper* (the table of P §5: light volume and picture by each of the three shadow algorithms); *first-look*
+//! (figures of the picture that a volume is opened with).
 
 use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::{Value, json};
 
-mod area;
-mod edit;
+mod area_lights;
+mod edits;
 mod first_look;
 mod growth;
 mod load;
@@ -25,22 +24,22 @@ mod report;
 mod scattering;
 mod sky;
 
-use report::{Samples, round};
+use report::{CaseTimings, round_to_microsecond};
 
 use super::CliError;
-use super::outputs::print_line;
+use super::output::print_line;
 use super::scene::{LookArgs, parse_size};
 use crate::data::Dataset;
-use crate::gpu::{Context, RenderOptions, Renderer};
-use crate::model::{Kernel, NearField, Resolution, Settings, ShadowAlgorithm};
+use crate::gpu::{GpuContext, RenderOptions, Renderer};
+use crate::model::{LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, ShadowAlgorithm};
 
-/// Frames before the clock runs: pipelines are compiled, caches are warm.
-const WARM_UP: usize = 2;
+/// Number of untimed frames at the start, which compile pipelines and fill caches.
+const WARM_UP_FRAMES: usize = 2;
 
-/// Degrees that camera or light move per frame.
+/// Rotation of the camera or light per frame, in degrees.
 const STEP_DEG: f64 = 12.0;
 
-/// What there is to be measured.
+/// Names of the benchmark cases.
 const CASES: [&str; 14] = [
     "orbit",
     "light-drag",
@@ -58,8 +57,8 @@ const CASES: [&str; 14] = [
     "first-look",
 ];
 
-/// Longest edge of pictures that are only looked at in figures.
-const MOST_SIZE: u32 = 400;
+/// Longest edge of pictures from which only figures are computed, in pixels.
+const MAX_FIGURE_SIZE: u32 = 400;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -75,7 +74,7 @@ pub(super) struct BenchArgs {
         help = "Volume: a file, or builtin:NAME[:N]; can be given several times"
     )]
     volumes: Vec<PathBuf>,
-    /// Pixels
+    /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "512x512", value_parser = parse_size)]
     size: [u32; 2],
     /// Timed frames per case
@@ -92,7 +91,7 @@ pub(super) struct BenchArgs {
     look: LookArgs,
 }
 
-/// Runs the cases and prints them.
+/// Runs the selected cases and prints their results.
 pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let wants = |case: &str| {
         args.only
@@ -106,28 +105,31 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         for volume in &args.volumes {
             load::read(args, volume, &mut cases)?;
         }
-        return print(args, &json!({ "cases": cases, "ratios": {} }));
+        return print_result(args, &json!({ "cases": cases, "ratios": {} }));
     }
     let mut ratios = serde_json::Map::new();
-    let context = Context::headless()?;
+    let context = GpuContext::headless()?;
     let mut orbits = Vec::new();
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
-        let loaded = args.look.shown(volume, args.look.read_volume(volume)?, &context)?;
+        let loaded = args.look.adapter_dataset(volume, args.look.read_volume(volume)?, &context)?;
         let mut renderer = Renderer::new(&context)?;
         let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
-        let mut bench = Bench { args, loaded: &loaded, renderer, settings };
+        let mut bench = VolumeBenchmark { args, loaded: &loaded, renderer, settings };
         let mut found = serde_json::Map::new();
         if wants("orbit") || wants("light-drag") || wants("light-build") {
             let (with, without) = bench.orbit(&mut cases)?;
             orbits.push(with.cost());
             found.insert(
                 "shadowed_over_unshadowed_frame".to_owned(),
-                json!(round(with.cost() / without.cost())),
+                json!(round_to_microsecond(with.cost() / without.cost())),
             );
             if wants("light-drag") || wants("light-build") {
                 let drag = bench.light_drag(&mut cases)?;
                 let ratio = drag.light_build() / without.eye();
-                found.insert("light_build_over_unshadowed_frame".to_owned(), json!(round(ratio)));
+                found.insert(
+                    "light_build_over_unshadowed_frame".to_owned(),
+                    json!(round_to_microsecond(ratio)),
+                );
             }
         }
         if wants("tf-edit") {
@@ -143,7 +145,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             bench.paper(&mut cases, &mut found)?;
         }
         if wants("area") {
-            bench.area(&mut cases, &mut found)?;
+            bench.area_lights(&mut cases, &mut found)?;
         }
         if wants("sky") {
             bench.sky(&mut cases, &mut found)?;
@@ -162,7 +164,10 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         growth::run(&context, usize::from(args.frames), &mut cases, &mut ratios)?;
     }
     if let [first, .., last] = orbits[..] {
-        ratios.insert("orbit_frame_last_volume_over_first".to_owned(), json!(round(last / first)));
+        ratios.insert(
+            "orbit_frame_last_volume_over_first".to_owned(),
+            json!(round_to_microsecond(last / first)),
+        );
     }
     if let Some(case) = cases.iter().find(|case| case["full_quality"] == false)
         && !args.reduced
@@ -179,23 +184,23 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         "cases": cases,
         "ratios": ratios,
     });
-    print(args, &result)
+    print_result(args, &result)
 }
 
-fn print(args: &BenchArgs, result: &Value) -> Result<(), CliError> {
+fn print_result(args: &BenchArgs, result: &Value) -> Result<(), CliError> {
     if args.json { print_line(&result.to_string()) } else { print_table(result) }
 }
 
-struct Bench<'a> {
+struct VolumeBenchmark<'a> {
     args: &'a BenchArgs,
     loaded: &'a Dataset,
     renderer: Renderer,
     settings: Settings,
 }
 
-impl Bench<'_> {
-    /// A frame without reading back, as the viewer draws it.
-    fn frame(&mut self, settings: &Settings, samples: Option<&mut Samples>) -> Result<(), CliError> {
+impl VolumeBenchmark<'_> {
+    /// Draws a frame without reading it back, as the viewer does.
+    fn frame(&mut self, settings: &Settings, samples: Option<&mut CaseTimings>) -> Result<(), CliError> {
         let options = RenderOptions { timed: true, ..RenderOptions::default() };
         let size = self.args.size;
         let mut draw = || {
@@ -208,16 +213,17 @@ impl Bench<'_> {
         }
     }
 
-    /// The camera turns: with shadows and without, in turn, so that a busy machine slows both.
-    fn orbit(&mut self, cases: &mut Vec<Value>) -> Result<(Samples, Samples), CliError> {
-        let (mut with, mut without) = (Samples::default(), Samples::default());
+    /// Times an orbit of the camera, alternately with and without shadows, so that other load on the machine slows
+    /// both alike.
+    fn orbit(&mut self, cases: &mut Vec<Value>) -> Result<(CaseTimings, CaseTimings), CliError> {
+        let (mut with, mut without) = (CaseTimings::default(), CaseTimings::default());
         let mut rebuilds = 0;
-        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();
             settings.camera.azimuth_deg += STEP_DEG * frame as f64;
             let mut unshadowed = settings.clone();
             unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
-            let timed = frame >= WARM_UP;
+            let timed = frame >= WARM_UP_FRAMES;
             let before: u64 = self.renderer.light_rebuilds().iter().sum();
             self.frame(&settings, timed.then_some(&mut with))?;
             self.frame(&unshadowed, timed.then_some(&mut without))?;
@@ -230,17 +236,17 @@ impl Bench<'_> {
         Ok((with, without))
     }
 
-    /// The first light turns about the vertical axis.
-    fn light_drag(&mut self, cases: &mut Vec<Value>) -> Result<Samples, CliError> {
-        let mut samples = Samples::default();
+    /// Times frames in which the first light turns about the vertical axis.
+    fn light_drag(&mut self, cases: &mut Vec<Value>) -> Result<CaseTimings, CliError> {
+        let mut samples = CaseTimings::default();
         let mut rebuilds = 0;
-        for frame in 0..WARM_UP + usize::from(self.args.frames) {
+        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();
             if let Some(light) = settings.lights.first_mut() {
                 let turn = glam::DQuat::from_rotation_z((STEP_DEG * (frame + 1) as f64).to_radians());
                 light.position = (turn * glam::DVec3::from(light.position)).into();
             }
-            let timed = frame >= WARM_UP;
+            let timed = frame >= WARM_UP_FRAMES;
             let before: u64 = self.renderer.light_rebuilds().iter().sum();
             self.frame(&settings, timed.then_some(&mut samples))?;
             if timed {
@@ -249,23 +255,23 @@ impl Bench<'_> {
         }
         cases.push(self.case("light-drag", &samples, rebuilds));
         let mut build = self.case("light-build", &samples, rebuilds);
-        build["wall_ms"] = json!({ "median": round(samples.light_build()) });
+        build["wall_ms"] = json!({ "median": round_to_microsecond(samples.light_build()) });
         build["cpu_ms"] = Value::Null;
         cases.push(build);
         Ok(samples)
     }
 
-    fn case(&self, name: &str, samples: &Samples, rebuilds: u64) -> Value {
-        describe(name, self.loaded, self.args.size, &self.settings, samples, rebuilds)
+    fn case(&self, name: &str, samples: &CaseTimings, rebuilds: u64) -> Value {
+        case_json(name, self.loaded, self.args.size, &self.settings, samples, rebuilds)
     }
 }
 
-fn describe(
+fn case_json(
     name: &str,
     loaded: &Dataset,
     size: [u32; 2],
     settings: &Settings,
-    samples: &Samples,
+    samples: &CaseTimings,
     rebuilds: u64,
 ) -> Value {
     let mut case = json!({
@@ -284,7 +290,7 @@ fn describe(
             "file_dims": loaded.volume().file_dims(),
         },
         "full_quality": is_full_quality(settings)
-            && samples.were_whole(size)
+            && samples.is_full_resolution(size)
             && loaded.volume().dims() == loaded.volume().file_dims(),
     });
     if let (Value::Object(case), Value::Object(timings)) = (&mut case, samples.json()) {
@@ -293,15 +299,16 @@ fn describe(
     case
 }
 
-/// Whether settings ask for exact kernels, slabs no thicker than voxels and whole light volumes. Light volumes may do with
-/// the prefiltered kernel where rays nearby see what it blurs.
+/// Returns true if settings use exact kernels, slabs no thicker than voxels and light volumes of full resolution.
+/// Light volumes may use the prefiltered kernel if near-field rays restore the blurred detail.
 fn is_full_quality(settings: &Settings) -> bool {
     let (sampling, shadows) = (&settings.sampling, &settings.shadows);
-    let exact = |kernel: Kernel, slab: f64| kernel != Kernel::Prefiltered && slab <= 1.0;
+    let exact =
+        |kernel: ReconstructionKernel, slab: f64| kernel != ReconstructionKernel::Prefiltered && slab <= 1.0;
     exact(sampling.kernel, sampling.slab)
         && (exact(shadows.kernel, shadows.slab)
-            || settings.near_field() != NearField::Off && shadows.slab <= 1.0)
-        && shadows.resolution == Resolution::Full
+            || settings.effective_near_field() != NearFieldRay::Off && shadows.slab <= 1.0)
+        && shadows.resolution == LightVolumeResolution::Full
 }
 
 fn print_table(result: &Value) -> Result<(), CliError> {
@@ -310,10 +317,10 @@ fn print_table(result: &Value) -> Result<(), CliError> {
         print_line(&format!("{} ({})", text(&result["adapter"]), text(&result["driver"])))?;
     }
     let cases = result["cases"].as_array().map_or(&[][..], Vec::as_slice);
-    for line in first_look::lines(cases).iter().chain(&load::lines(cases)) {
+    for line in first_look::first_look_table(cases).iter().chain(&load::load_table(cases)) {
         print_line(line)?;
     }
-    // Those have a table of their own, and nothing to say in this one.
+    // The first-look and read cases have tables of their own.
     if cases.iter().all(|case| case["name"] == "first-look" || case["name"] == "read") {
         return Ok(());
     }

@@ -1,15 +1,15 @@
-//! The table of P §5: light volume and picture by each of the three shadow algorithms.
+//! Benchmark of the table of P §5: light volume and picture by each of the three shadow algorithms.
 
 use serde_json::{Value, json};
 
-use super::Bench;
-use super::report::round;
+use super::VolumeBenchmark;
+use super::report::round_to_microsecond;
 use crate::cli::CliError;
-use crate::model::{Kernel, ShadowAlgorithm};
+use crate::model::{ReconstructionKernel, ShadowAlgorithm};
 
-impl Bench<'_> {
-    /// P §5: what a light volume and a picture take by each algorithm, and the paper's ratios of its
-    /// seconds for the lobster.
+impl VolumeBenchmark<'_> {
+    /// Measures light volume and picture by each algorithm of P §5, and compares the ratios with the paper's for the
+    /// lobster.
     pub(super) fn paper(
         &mut self,
         cases: &mut Vec<Value>,
@@ -20,8 +20,8 @@ impl Bench<'_> {
             ("paper-2-raycast", ShadowAlgorithm::Raycast),
             ("paper-3-splat", ShadowAlgorithm::Splat),
         ];
-        // All three with the same kernel.
-        self.settings.shadows.kernel = Kernel::BSpline;
+        // The same kernel for all three algorithms.
+        self.settings.shadows.kernel = ReconstructionKernel::BSpline;
         let mut took = Vec::new();
         for (name, algorithm) in algorithms {
             self.settings.shadows.algorithm = algorithm;
@@ -29,7 +29,7 @@ impl Bench<'_> {
             let samples = self.light_drag(&mut made)?;
             let mut case = made.swap_remove(0);
             case["name"] = json!(name);
-            case["light_volume_ms"] = json!(round(samples.light_build()));
+            case["light_volume_ms"] = json!(round_to_microsecond(samples.light_build()));
             cases.push(case);
             took.push((samples.light_build(), samples.eye()));
         }
@@ -38,14 +38,17 @@ impl Bench<'_> {
         let rows = [
             ("light_volume_raycast_over_splat", raycast / splat, 132.0 / 35.0),
             ("picture_direct_over_splat", direct / frame, 44.0 / 29.0),
-            // With a cached light volume each picture saves so much.
+            // Number of pictures after which a cached light volume has paid off.
             ("pictures_that_pay_a_splatted_light_volume", splat / (direct - frame), 35.0 / (44.0 - 29.0)),
             ("light_volume_over_picture", splat / frame, 1.25),
-            // "Comparable" rendering times.
+            // "Comparable" rendering times, according to the paper.
             ("picture_with_over_without_shadows", with.cost() / without.cost(), 1.0),
         ];
         for (name, found, paper) in rows {
-            ratios.insert(name.to_owned(), json!({ "measured": round(found), "paper": round(paper) }));
+            ratios.insert(
+                name.to_owned(),
+                json!({ "measured": round_to_microsecond(found), "paper": round_to_microsecond(paper) }),
+            );
         }
         Ok(())
     }

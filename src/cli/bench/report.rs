@@ -1,13 +1,13 @@
-//! What a benchmark measured, as JSON and as a table.
+//! Results of a benchmark case, as JSON and as a table.
 
 use serde_json::{Value, json};
 
 use crate::cli::process::process_cpu_ms;
-use crate::gpu::Report;
+use crate::gpu::RenderReport;
 
-/// Timings of one case.
+/// Timings of one benchmark case, one entry per frame.
 #[derive(Debug, Default)]
-pub(super) struct Samples {
+pub(super) struct CaseTimings {
     wall_ms: Vec<f64>,
     cpu_ms: Vec<f64>,
     eye_ms: Vec<f64>,
@@ -20,13 +20,13 @@ pub(super) struct Samples {
     upload_ms: Vec<f64>,
     eye_gpu_ms: Vec<f64>,
     light_gpu_ms: Vec<f64>,
-    /// Of the last frame: its pixels, and the coarsest light volume that it looked up.
+    /// Size of the last frame in pixels, and the divisor of the coarsest light volume that it looked up.
     rendered: ([u32; 2], usize),
 }
 
-impl Samples {
-    /// Runs one frame and keeps what it took.
-    pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<Report, E>) -> Result<(), E> {
+impl CaseTimings {
+    /// Runs one frame and records its timings.
+    pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<RenderReport, E>) -> Result<(), E> {
         let cpu = process_cpu_ms();
         let start = std::time::Instant::now();
         let report = frame()?;
@@ -40,7 +40,7 @@ impl Samples {
         self.light_raycast_ms.push(report.light_raycast_ms);
         self.sky_ms.push(report.sky_ms);
         self.bounces_ms.push(report.bounces_ms);
-        self.bricks_ms.push(report.bricks_ms);
+        self.bricks_ms.push(report.tables_ms);
         self.upload_ms.push(report.upload_ms);
         self.eye_gpu_ms.extend(report.eye_gpu_ms);
         self.light_gpu_ms.extend(report.light_gpu_ms);
@@ -48,75 +48,75 @@ impl Samples {
         Ok(())
     }
 
-    /// Median wall time of a frame.
+    /// Median wall-clock time of a frame, in milliseconds.
     pub(super) fn wall_median(&self) -> f64 {
         median(&self.wall_ms)
     }
 
-    /// Median CPU time of a frame, or wall time where that is not known.
+    /// Median CPU time of a frame in milliseconds, or wall-clock time if CPU time is not available.
     pub(super) fn cost(&self) -> f64 {
         if self.cpu_ms.is_empty() { self.wall_median() } else { median(&self.cpu_ms) }
     }
 
-    /// Median of both halves of the light pass together, or of the rays in their place.
+    /// Median time of the light pass in milliseconds: the sum of march and back-projection, or the rays instead.
     pub(super) fn light_build(&self) -> f64 {
         let halves = self.light_march_ms.iter().zip(&self.light_backproject_ms);
         let all: Vec<f64> = halves.zip(&self.light_raycast_ms).map(|((a, b), c)| a + b + c).collect();
         median(&all)
     }
 
-    /// Median of the filling of a sky's volume.
+    /// Median time to fill a sky-visibility volume, in milliseconds.
     pub(super) fn sky(&self) -> f64 {
         median(&self.sky_ms)
     }
 
-    /// Median of the filling of a volume of bounced light.
+    /// Median time to fill a volume of multiply scattered light, in milliseconds.
     pub(super) fn bounces(&self) -> f64 {
         median(&self.bounces_ms)
     }
 
-    /// Median of the eye pass.
+    /// Median time of the eye pass, in milliseconds.
     pub(super) fn eye(&self) -> f64 {
         median(&self.eye_ms)
     }
 
-    /// Whether the frames had so many pixels, and no light volume was coarser than the data.
-    pub(super) fn were_whole(&self, size: [u32; 2]) -> bool {
+    /// Returns true if the last frame had the given size and used no light volume coarser than the data.
+    pub(super) fn is_full_resolution(&self, size: [u32; 2]) -> bool {
         self.rendered.0 == size && self.rendered.1 <= 1
     }
 
-    /// Everything, as the JSON of a case.
+    /// Returns all timings as the JSON of a case.
     pub(super) fn json(&self) -> Value {
         json!({
             "frames": self.wall_ms.len(),
-            "wall_ms": spread(&self.wall_ms),
-            "cpu_ms": spread(&self.cpu_ms),
+            "wall_ms": spread_json(&self.wall_ms),
+            "cpu_ms": spread_json(&self.cpu_ms),
             "stages": {
-                "eye": round(median(&self.eye_ms)),
-                "light_march": round(median(&self.light_march_ms)),
-                "light_backproject": round(median(&self.light_backproject_ms)),
-                "light_raycast": round(median(&self.light_raycast_ms)),
-                "sky": round(median(&self.sky_ms)),
-                "bounces": round(median(&self.bounces_ms)),
-                "bricks": round(median(&self.bricks_ms)),
-                "upload": round(median(&self.upload_ms)),
+                "eye": round_to_microsecond(median(&self.eye_ms)),
+                "light_march": round_to_microsecond(median(&self.light_march_ms)),
+                "light_backproject": round_to_microsecond(median(&self.light_backproject_ms)),
+                "light_raycast": round_to_microsecond(median(&self.light_raycast_ms)),
+                "sky": round_to_microsecond(median(&self.sky_ms)),
+                "bounces": round_to_microsecond(median(&self.bounces_ms)),
+                "bricks": round_to_microsecond(median(&self.bricks_ms)),
+                "upload": round_to_microsecond(median(&self.upload_ms)),
             },
-            // By the adapter's own clock.
-            "gpu_ms": { "eye": spread(&self.eye_gpu_ms), "light": spread(&self.light_gpu_ms) },
+            // Measured by the adapter's timestamp queries.
+            "gpu_ms": { "eye": spread_json(&self.eye_gpu_ms), "light": spread_json(&self.light_gpu_ms) },
         })
     }
 }
 
-/// Median, least and most; null of nothing.
-pub(super) fn spread(values: &[f64]) -> Value {
+/// Returns median, minimum and maximum as JSON; null for an empty slice.
+pub(super) fn spread_json(values: &[f64]) -> Value {
     if values.is_empty() {
         return Value::Null;
     }
     let (min, max) = values.iter().fold((f64::INFINITY, 0f64), |(min, max), &v| (min.min(v), max.max(v)));
-    json!({ "median": round(median(values)), "min": round(min), "max": round(max) })
+    json!({ "median": round_to_microsecond(median(values)), "min": round_to_microsecond(min), "max": round_to_microsecond(max) })
 }
 
-/// The middle value; 0 of nothing.
+/// Returns the median; 0 for an empty slice.
 pub(super) fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -127,8 +127,8 @@ pub(super) fn median(values: &[f64]) -> f64 {
     }
 }
 
-/// To a microsecond.
-pub(super) fn round(ms: f64) -> f64 {
+/// Rounds milliseconds to a microsecond.
+pub(super) fn round_to_microsecond(ms: f64) -> f64 {
     (ms * 1000.0).round() / 1000.0
 }
 

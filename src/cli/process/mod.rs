@@ -1,12 +1,12 @@
-//! This process: its signals, its threads, the time that it takes.
+//! Process-wide facilities: signals, threads, CPU time, and the state of standard output.
 
 mod closed_output;
 mod cpu_time;
 mod signals;
-mod threads;
+mod thread_pool;
 
 pub(super) use closed_output::is_output_closed;
 pub use closed_output::note_closed_output;
 pub(super) use cpu_time::process_cpu_ms;
-pub(super) use signals::listen;
-pub(super) use threads::start;
+pub(super) use signals::listen_for_signals;
+pub(super) use thread_pool::start_thread_pool;

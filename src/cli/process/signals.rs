@@ -1,76 +1,75 @@
-//! What happens when the process is told to end: Ctrl+C, the end of the terminal, logging out.
+//! Termination signals: Ctrl+C, a closed terminal, logging out.
 
 #[cfg(unix)]
 use std::sync::Arc;
 
-use crate::export::remove_unfinished;
+use crate::export::remove_own_temporary_files;
 
-/// What shells have for a process that a signal has ended: this and the signal's number.
-const SIGNALLED: i32 = 128;
+/// Base of the exit code that shells report for a process ended by a signal; the signal's number is added.
+const SIGNAL_EXIT_BASE: i32 = 128;
 
-/// Does what must be done before the process ends, and ends it without the destructors of threads that are in the
-/// middle of something.
-fn end(last_acts: &[fn()], signal: i32) -> ! {
+/// Runs the last acts and ends the process without running destructors of threads that are still working.
+fn run_last_acts_and_exit(last_acts: &[fn()], signal: i32) -> ! {
     for act in last_acts {
         act();
     }
-    remove_unfinished();
-    leave(SIGNALLED + signal)
+    remove_own_temporary_files();
+    exit_now(SIGNAL_EXIT_BASE + signal)
 }
 
-/// Ends the process at once: what libraries do at an exit, such as drivers that take their threads down, would crash
-/// where these are drawing.
+/// Ends the process immediately: exit handlers of libraries, such as drivers that stop their threads, would crash
+/// while those threads are rendering.
 #[cfg(unix)]
-fn leave(code: i32) -> ! {
+fn exit_now(code: i32) -> ! {
     signal_hook::low_level::exit(code)
 }
 
-/// Ends the process.
+/// Ends the process with an exit code.
 #[cfg(not(unix))]
 #[expect(
     clippy::exit,
     reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
 )]
-fn leave(code: i32) -> ! {
+fn exit_now(code: i32) -> ! {
     std::process::exit(code)
 }
 
-/// Listens, from now on, on a thread of its own. Before the process ends, some things are done.
-pub(in crate::cli) fn listen(last_acts: &'static [fn()]) {
-    if let Err(err) = start(last_acts) {
+/// Starts a thread that listens for termination signals and runs `last_acts` before the process ends.
+pub(crate) fn listen_for_signals(last_acts: &'static [fn()]) {
+    if let Err(err) = spawn_listener(last_acts) {
         log::warn!("files that are being written will stay when this is interrupted: {err}");
     }
 }
 
 #[cfg(unix)]
-fn start(last_acts: &'static [fn()]) -> std::io::Result<()> {
+fn spawn_listener(last_acts: &'static [fn()]) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
 
-    // Beyond a limit of the user's (`ulimit -f`) the system would end the process; where the signal is taken, the write fails
-    // as on a full disk, and nothing unfinished stays.
+    // Beyond a file size limit (`ulimit -f`) SIGXFSZ would end the process; with a handler, the write fails as on a
+    // full disk, and no unfinished file remains.
     signal_hook::flag::register(SIGXFSZ, Arc::default())?;
 
     let ignored = ignored_signals(&std::fs::read_to_string("/proc/self/status").unwrap_or_default());
-    // Whoever starts this with `nohup`, or behind a shell script, has said that it goes on.
+    // Signals that are already ignored stay ignored, as `nohup` and background jobs of shell scripts require.
     let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     let mut signals = Signals::new(heard)?;
     let listen = move || {
         if let Some(signal) = signals.forever().next() {
-            end(last_acts, signal);
+            run_last_acts_and_exit(last_acts, signal);
         }
     };
     std::thread::Builder::new().name("signals".to_owned()).spawn(listen).map(drop)
 }
 
 #[cfg(not(unix))]
-fn start(last_acts: &'static [fn()]) -> Result<(), ctrlc::Error> {
-    // The number that Ctrl+C has elsewhere.
-    ctrlc::set_handler(move || end(last_acts, 2))
+fn spawn_listener(last_acts: &'static [fn()]) -> Result<(), ctrlc::Error> {
+    // Signal number of Ctrl+C (SIGINT) on other systems.
+    ctrlc::set_handler(move || run_last_acts_and_exit(last_acts, 2))
 }
 
-/// The signals that a process ignores, one bit for each, the first for signal 1: from what Linux says of it in
-/// `/proc/self/status`. None where nothing is said.
+/// Parses the mask of ignored signals from Linux's `/proc/self/status`: one bit per signal, bit 0 for signal 1.
+/// Returns 0 if the field is missing.
 #[cfg(unix)]
 fn ignored_signals(status: &str) -> u64 {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

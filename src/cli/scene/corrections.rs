@@ -1,29 +1,29 @@
-//! What the command line knows better than the file of a volume.
+//! Corrections of a volume that are given on the command line.
 
 use std::path::Path;
 
 use crate::cli::CliError;
 use crate::data::{Corrections, Volume};
-use crate::model::{Settings, assign};
+use crate::model::{Settings, set_value};
 
-/// The group of settings that are corrections.
-const GROUP: &str = "volume";
+/// Settings group that contains the corrections.
+const CORRECTIONS_GROUP: &str = "volume";
 
-/// Whether a single setting of the command line corrects the volume.
+/// Returns true if an assignment of the command line is a correction of the volume.
 fn is_correction(assignment: &str) -> bool {
     let path = assignment.split('=').next().unwrap_or_default().trim();
-    path.strip_prefix(GROUP).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    path.strip_prefix(CORRECTIONS_GROUP).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Corrections with those laid over them that are among single settings.
-pub(super) fn laid_over(before: Corrections, set: &[String]) -> Result<Corrections, CliError> {
+/// Applies the corrections among the assignments of the command line to earlier ones.
+pub(super) fn with_assignments(before: Corrections, set: &[String]) -> Result<Corrections, CliError> {
     let mut settings = Settings { volume: before, ..Settings::default() };
     for assignment in set.iter().filter(|assignment| is_correction(assignment)) {
-        // What is no assignment is refused when all are read.
+        // Malformed assignments are rejected later, when all of them are parsed.
         let Some((path, value)) = assignment.split_once('=') else { continue };
-        (settings, _) = assign(&settings, path.trim(), value.trim())
+        (settings, _) = set_value(&settings, path.trim(), value.trim())
             .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
-        if let Some(expected) = impossible(path.trim(), value.trim(), &settings.volume) {
+        if let Some(expected) = rejected_value(path.trim(), value.trim(), &settings.volume) {
             return Err(CliError::Usage(format!(
                 "--set: expected {expected}, found {:?} (command line, {assignment:?})",
                 value.trim()
@@ -33,9 +33,9 @@ pub(super) fn laid_over(before: Corrections, set: &[String]) -> Result<Correctio
     Ok(settings.volume)
 }
 
-/// What was expected in place of a value that cannot be: of those that a session brings the file's own are taken, and
-/// whoever types one is told.
-fn impossible(path: &str, value: &str, taken: &Corrections) -> Option<&'static str> {
+/// Returns the expected kind of value if the given one was not accepted. Sessions fall back to the file's own value
+/// in that case; on the command line it is an error.
+fn rejected_value(path: &str, value: &str, taken: &Corrections) -> Option<&'static str> {
     let is_another = |taken: f64| value.parse::<f64>().is_ok_and(|number| number != taken);
     match path {
         "volume.spacing" if taken.spacing.is_none() && value != "null" => {
@@ -47,8 +47,8 @@ fn impossible(path: &str, value: &str, taken: &Corrections) -> Option<&'static s
     }
 }
 
-/// A volume that was opened, with corrections from the command line alone: nothing else can be set.
-pub(in crate::cli) fn corrected_by(
+/// Applies corrections from the command line to an opened volume; other settings are rejected.
+pub(crate) fn apply_command_line_corrections(
     source: &Path,
     volume: Volume,
     set: &[String],
@@ -60,15 +60,15 @@ pub(in crate::cli) fn corrected_by(
              line, --set)"
         )));
     }
-    corrected(source, volume, &laid_over(Corrections::default(), set)?)
+    apply_corrections(source, volume, &with_assignments(Corrections::default(), set)?)
 }
 
-/// A volume that was opened, corrected.
-pub(in crate::cli) fn corrected(source: &Path, volume: Volume, by: &Corrections) -> Result<Volume, CliError> {
+/// Applies corrections to an opened volume.
+pub(crate) fn apply_corrections(source: &Path, volume: Volume, by: &Corrections) -> Result<Volume, CliError> {
     if by.is_none() {
         return Ok(volume);
     }
-    let refused = |err: crate::data::VolumeError| CliError::Uncorrectable {
+    let refused = |err: crate::data::VolumeError| CliError::InvalidCorrection {
         path: source.display().to_string(),
         by: by.in_words().join(", "),
         why: err.to_string(),

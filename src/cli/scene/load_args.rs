@@ -1,18 +1,18 @@
-//! Arguments that say how a volume is read.
+//! Command-line arguments for reading a volume.
 
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
 
-use super::{downsampled_to_fit, open_with_word};
+use super::{downsampled_to_fit, open_with_size_warning};
 use crate::cli::CliError;
-use crate::data::load::{Choice, Endian, LoadOptions, Portion, RawFormat, Region, Thinning};
+use crate::data::load::{Downsampling, Endian, LoadOptions, Portion, RawFormat, VolumeChoice, VoxelRegion};
 use crate::data::{Volume, VoxelType};
-use crate::gpu::Context;
+use crate::gpu::GpuContext;
 
-/// How a volume is read.
+/// Arguments for reading a volume.
 #[derive(Debug, Clone, Args)]
-pub(in crate::cli) struct LoadArgs {
+pub(crate) struct LoadArgs {
     /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
     reduce: Option<u16>,
@@ -21,7 +21,7 @@ pub(in crate::cli) struct LoadArgs {
     every: Option<u16>,
     /// Voxels to read, along each axis from the first to before the last, counted from 0; an end may be left out
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
-    region: Option<Region>,
+    region: Option<VoxelRegion>,
     /// RAW input: voxels along x, y, z
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
@@ -61,8 +61,8 @@ enum EndianArg {
 }
 
 impl LoadArgs {
-    /// The options for the reader.
-    pub(in crate::cli) fn load_options(&self) -> Result<LoadOptions, CliError> {
+    /// Converts the arguments to the reader's options.
+    pub(crate) fn load_options(&self) -> Result<LoadOptions, CliError> {
         let usage = |field: &str, text: &str, expected: &str| {
             CliError::Usage(format!(
                 "--{field}: expected {expected}, found {text:?} (command line, --{field})"
@@ -71,74 +71,75 @@ impl LoadArgs {
         let dims = match &self.dims {
             None => None,
             Some(text) => Some(
-                triple::<usize>(text).ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
+                parse_triple::<usize>(text)
+                    .ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
             ),
         };
         let spacing_mm = match &self.spacing {
             None => None,
-            Some(text) => {
-                Some(triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?)
-            }
+            Some(text) => Some(
+                parse_triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?,
+            ),
         };
         let endian = self.endian.map(|endian| match endian {
             EndianArg::Little => Endian::Little,
             EndianArg::Big => Endian::Big,
         });
         let raw = RawFormat { dims, voxel_type: self.voxel_type, spacing_mm, endian, offset: self.offset };
-        let choice = Choice {
+        let choice = VolumeChoice {
             component: self.component,
             frame: self.frame,
             channel: self.channel,
             series: self.series.clone(),
             array: self.array.clone(),
             portion: self.portion(),
-            ..Choice::default()
+            ..VolumeChoice::default()
         };
         Ok(LoadOptions { raw, choice, ..LoadOptions::default() })
     }
 
-    /// How much of the volume is read, where that is said.
+    /// Returns the portion of the volume to be read, if one is given.
     fn portion(&self) -> Option<Portion> {
         let thinning = match (self.every, self.reduce) {
-            (Some(step), _) => Thinning::Every(step.into()),
-            (None, Some(block)) => Thinning::Average(block.into()),
-            (None, None) => Thinning::None,
+            (Some(step), _) => Downsampling::Every(step.into()),
+            (None, Some(block)) => Downsampling::Average(block.into()),
+            (None, None) => Downsampling::None,
         };
         let is_said = self.every.is_some() || self.reduce.is_some() || self.region.is_some();
         is_said.then_some(Portion { region: self.region, thinning })
     }
 
     /// Loads a volume, and opens the adapter.
-    pub(in crate::cli) fn open(&self, source: &Path) -> Result<(Volume, Context), CliError> {
+    pub(crate) fn open(&self, source: &Path) -> Result<(Volume, GpuContext), CliError> {
         self.open_chosen(source, None)
     }
 
-    /// As [`Self::open`]. Of several volumes it is that one, and as much of it as was read then, unless the command line
-    /// says something else.
-    pub(in crate::cli) fn open_chosen(
+    /// Loads a volume like [`Self::open`]. `choice` selects one of several volumes and the portion that was read
+    /// earlier; arguments of the command line take precedence.
+    pub(crate) fn open_chosen(
         &self,
         source: &Path,
-        choice: Option<&Choice>,
-    ) -> Result<(Volume, Context), CliError> {
+        choice: Option<&VolumeChoice>,
+    ) -> Result<(Volume, GpuContext), CliError> {
         let mut options = self.load_options()?;
         if let Some(choice) = choice {
-            options.choice = options.choice.or(choice);
+            options.choice = options.choice.with_fallback(choice);
         }
-        // What is wrong with a file is said first.
-        let whole = open_with_word(source, &options)?;
-        let context = Context::headless()?;
+        // The file is read first, so that its errors are reported before those of the adapter.
+        let whole = open_with_size_warning(source, &options)?;
+        let context = GpuContext::headless()?;
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }
 }
 
-/// `uint8`
-pub(in crate::cli) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
+/// Parses a voxel type such as `uint8`.
+pub(crate) fn parse_voxel_type(text: &str) -> Result<VoxelType, String> {
     let known = VoxelType::ALL.into_iter().find(|known| known.name() == text.to_lowercase());
     known.ok_or_else(|| format!("expected one of {}", VoxelType::ALL.map(VoxelType::name).join(", ")))
 }
 
-/// `1x2x3`.
-fn triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
+/// Parses three numbers such as `1x2x3`.
+fn parse_triple<T: std::str::FromStr>(text: &str) -> Option<[T; 3]> {
     let parts: Vec<T> =
         text.split(['x', 'X', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
@@ -150,8 +151,8 @@ mod tests {
 
     #[test]
     fn three_numbers_are_read() {
-        assert_eq!(triple("1x2x3"), Some([1usize, 2, 3]));
-        assert_eq!(triple::<usize>("1x2"), None);
-        assert_eq!(triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
+        assert_eq!(parse_triple("1x2x3"), Some([1usize, 2, 3]));
+        assert_eq!(parse_triple::<usize>("1x2"), None);
+        assert_eq!(parse_triple("0.5x1x2"), Some([0.5, 1.0, 2.0]));
     }
 }

@@ -1,42 +1,42 @@
-//! The look that arguments describe, with what the program decides where nobody else does.
+//! Look that the arguments describe, with the parts that are determined automatically.
 
 use super::LookArgs;
-use super::overlay::Overlay;
+use super::preset_or_session::PresetOrSession;
 use crate::cli::CliError;
-use crate::cli::outputs::warn_line;
+use crate::cli::output::warn_line;
 use crate::data::Dataset;
-use crate::gpu::{Open, Renderer, finish_look};
-use crate::model::{Settings, auto};
+use crate::gpu::{Renderer, UndecidedPart, complete_first_look};
+use crate::model::{Settings, first_look};
 
-/// Parts of a look that the program decides where nobody else does, by the paths of their settings.
-const OPEN: [(&str, Open); 4] = [
-    ("lights", Open::Lights),
-    ("floor", Open::Floor),
-    ("shadows.balance", Open::Balance),
-    ("output.exposure", Open::Exposure),
+/// Parts of a look that are determined automatically unless they are given, with the paths of their settings.
+const AUTOMATIC_PARTS: [(&str, UndecidedPart); 4] = [
+    ("lights", UndecidedPart::Lights),
+    ("floor", UndecidedPart::Floor),
+    ("shadows.balance", UndecidedPart::Balance),
+    ("output.exposure", UndecidedPart::Exposure),
 ];
 
-/// Those that preset, session or single settings name.
+/// Automatic parts that a preset, session or single setting overrides.
 #[derive(Debug, Default)]
-pub(super) struct Named {
+pub(super) struct OverriddenParts {
     paths: Vec<&'static str>,
 }
 
-impl Named {
-    /// Adds those of which something says so, by their paths.
+impl OverriddenParts {
+    /// Adds the parts for whose path `is_named` is true.
     pub(super) fn add(&mut self, is_named: impl Fn(&str) -> bool) {
-        self.paths.extend(OPEN.iter().map(|(path, _)| *path).filter(|path| is_named(path)));
+        self.paths.extend(AUTOMATIC_PARTS.iter().map(|(path, _)| *path).filter(|path| is_named(path)));
     }
 
-    /// Those that are left open.
-    fn open(&self) -> Vec<Open> {
-        OPEN.iter().filter(|(path, _)| !self.paths.contains(path)).map(|(_, part)| *part).collect()
+    /// Returns the parts that are still to be determined automatically.
+    fn remaining(&self) -> Vec<UndecidedPart> {
+        AUTOMATIC_PARTS.iter().filter(|(path, _)| !self.paths.contains(path)).map(|(_, part)| *part).collect()
     }
 }
 
-/// A look of a list that is proposed for a volume, counted from 1; `small` is a small copy of the volume.
-pub(super) fn proposal(number: usize, first: &Settings, small: &Dataset) -> Result<Settings, CliError> {
-    let mut looks = auto::looks(first, small.volume(), small.histogram());
+/// Returns a look of the list suggested for a volume, counted from 1; `small` is a small copy of the volume.
+pub(super) fn suggested_look(number: usize, first: &Settings, small: &Dataset) -> Result<Settings, CliError> {
+    let mut looks = first_look::propose_looks(first, small.volume(), small.histogram());
     let count = looks.len();
     let at = number.checked_sub(1).filter(|&at| at < count);
     let Some(at) = at else {
@@ -48,19 +48,19 @@ pub(super) fn proposal(number: usize, first: &Settings, small: &Dataset) -> Resu
     Ok(looks.swap_remove(at).settings)
 }
 
-/// Settings with those parts decided that are open.
-fn finished(
+/// Determines the open parts of a look automatically.
+fn determine_open_parts(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
-    open: &[Open],
+    open: &[UndecidedPart],
 ) -> Result<Settings, CliError> {
-    let mut look = finish_look(renderer, loaded, settings, open)?;
+    let mut look = complete_first_look(renderer, loaded, settings, open)?;
     if look.floor.on && !settings.floor.on {
-        // How long the picture is exposed has been found since the floor was laid.
-        look.floor.color = auto::floor_color(look.output.exposure);
+        // The exposure, on which the floor's colour depends, has only now been determined.
+        look.floor.color = first_look::floor_color(look.output.exposure);
     }
-    if renderer.context().is_software() && look.casts_rays_to_all_points() {
+    if renderer.context().is_software() && look.casts_rays_to_all_samples() {
         warn_line(
             "warning: this driver, which draws with the processor, ends rays to lights that have a size before they \
              arrive: such lights are too dark; --quality fine shows them as they are",
@@ -69,52 +69,51 @@ fn finished(
     Ok(look)
 }
 
-/// A look that is made from the finished first one.
+/// Suggested look, which is derived from the finished first look.
 #[derive(Debug)]
-pub(super) struct Proposed {
-    /// Which one, counted from 1.
+pub(super) struct SuggestedLook {
+    /// Number of the suggestion, counted from 1.
     pub(super) number: usize,
-    /// The first look before it is finished.
+    /// First look before its open parts are determined.
     pub(super) automatic: Settings,
-    /// A small copy of the volume.
+    /// Small copy of the volume.
     pub(super) small: Dataset,
-    /// What is laid over it.
-    pub(super) overlays: Vec<Overlay>,
-    /// The arguments.
-    pub(super) of: LookArgs,
+    /// Presets and sessions to be applied.
+    pub(super) overlays: Vec<PresetOrSession>,
+    /// Arguments with further settings to be applied.
+    pub(super) args: LookArgs,
 }
 
-/// A look that is complete but for what needs the GPU to be decided.
+/// Look that is complete except for the parts that need the GPU.
 #[derive(Debug)]
-pub(in crate::cli) struct Look {
+pub(crate) struct SceneLook {
     settings: Settings,
-    named: Named,
-    /// Instead of the settings, where another look than the first was asked for.
-    proposed: Option<Proposed>,
+    named: OverriddenParts,
+    /// Suggested look that replaces the settings, if one was selected.
+    proposed: Option<SuggestedLook>,
 }
 
-impl Look {
-    /// Settings that are laid over automatic ones, as the arguments say, and the parts that these name.
-    pub(super) fn new(settings: Settings, named: Named, proposed: Option<Proposed>) -> Self {
+impl SceneLook {
+    /// Creates a look from settings to which the arguments have been applied, and the automatic parts that they
+    /// override.
+    pub(super) fn new(settings: Settings, named: OverriddenParts, proposed: Option<SuggestedLook>) -> Self {
         Self { settings, named, proposed }
     }
 
-    /// The settings. Lights are placed and balanced, and the picture exposed, as the viewer does on load, unless preset,
-    /// session or a single setting say how.
-    pub(in crate::cli) fn settings(
-        &self,
-        renderer: &mut Renderer,
-        loaded: &Dataset,
-    ) -> Result<Settings, CliError> {
-        let open = self.named.open();
-        let Some(Proposed { number, automatic, small, overlays, of }) = &self.proposed else {
-            return finished(renderer, loaded, &self.settings, &open);
+    /// Returns the final settings. Lights are placed and balanced, and the exposure is set, as in the viewer after
+    /// loading, unless a preset, session or single setting overrides them.
+    pub(crate) fn settings(&self, renderer: &mut Renderer, loaded: &Dataset) -> Result<Settings, CliError> {
+        let open = self.named.remaining();
+        let Some(SuggestedLook { number, automatic, small, overlays, args: of }) = &self.proposed else {
+            return determine_open_parts(renderer, loaded, &self.settings, &open);
         };
-        let first = finished(renderer, loaded, automatic, &Named::default().open())?;
-        let proposed = proposal(*number, &first, small)?;
-        // Warnings have been given.
-        let (settings, _) = of.laid_over(proposed, overlays, loaded, |_| {})?;
-        let brightness = [Open::Balance, Open::Exposure].into_iter().filter(|part| open.contains(part));
-        finished(renderer, loaded, &settings, &brightness.collect::<Vec<_>>())
+        let first =
+            determine_open_parts(renderer, loaded, automatic, &OverriddenParts::default().remaining())?;
+        let proposed = suggested_look(*number, &first, small)?;
+        // Warnings were printed when the arguments were first applied.
+        let (settings, _) = of.apply_to(proposed, overlays, loaded, |_| {})?;
+        let brightness =
+            [UndecidedPart::Balance, UndecidedPart::Exposure].into_iter().filter(|part| open.contains(part));
+        determine_open_parts(renderer, loaded, &settings, &brightness.collect::<Vec<_>>())
     }
 }

@@ -1,39 +1,39 @@
-//! Arguments that say what is rendered, common to most commands.
+//! Command-line arguments that describe the scene, common to most commands.
 
-mod choices;
 mod corrections;
+mod decompression_warning;
 mod load_args;
 mod look;
-mod overlay;
+mod option_values;
+mod preset_or_session;
 mod single_settings;
-mod unfolding;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use clap::Args;
 
-use self::choices::{EngineArg, KindArg, QualityArg, ShadowArg};
-pub(super) use self::corrections::{corrected, corrected_by};
+pub(super) use self::corrections::{apply_command_line_corrections, apply_corrections};
+pub(super) use self::decompression_warning::{open_for_overview, open_with_size_warning};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
-pub(super) use self::look::Look;
-use self::look::{Named, Proposed, proposal};
-use self::overlay::Overlay;
-pub(super) use self::unfolding::{open_for_a_glance, open_with_word};
+pub(super) use self::look::SceneLook;
+use self::look::{OverriddenParts, SuggestedLook, suggested_look};
+use self::option_values::{EngineArg, KindArg, QualityArg, ShadowArg};
+use self::preset_or_session::PresetOrSession;
 use super::CliError;
-use super::outputs::{keep_apart, warn_line};
-use crate::data::{Dataset, KindName, Surroundings, ValueRanges, Volume, read_surroundings};
-use crate::gpu::{Context, fitted, small_volume};
-use crate::model::auto::Wishes;
-use crate::model::{MAX_EDGE, SceneAxis, Settings, assign, auto};
+use super::output::{check_overwrites, warn_line};
+use crate::data::{Dataset, EnvironmentMap, KindName, ValueRanges, Volume, read_environment_map};
+use crate::gpu::{GpuContext, downsample_to_fit, downsampled_volume};
+use crate::model::first_look::FirstLookOptions;
+use crate::model::{MAX_IMAGE_EDGE, SceneAxis, Settings, first_look, set_value};
 
-/// How high the floor lies, by its path.
+/// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
 
-/// The volume as the adapter can hold it.
-fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result<Volume, CliError> {
+/// Downsamples the volume if the adapter cannot hold it, with a warning.
+fn downsampled_to_fit(source: &Path, whole: Volume, context: &GpuContext) -> Result<Volume, CliError> {
     let before = whole.dims();
-    let volume = fitted(context, whole)?;
+    let volume = downsample_to_fit(context, whole)?;
     if volume.dims() != before {
         let ([x, y, z], [a, b, c]) = (before, volume.dims());
         warn_line(&format!(
@@ -46,15 +46,16 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &Context) -> Result
     Ok(volume)
 }
 
-/// `1920x1080`.
+/// Parses a picture size such as `1920x1080`.
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let expected = || format!("expected WIDTHxHEIGHT between 1x1 and {MAX_EDGE}x{MAX_EDGE}, found {text:?}");
+    let expected =
+        || format!("expected WIDTHxHEIGHT between 1x1 and {MAX_IMAGE_EDGE}x{MAX_IMAGE_EDGE}, found {text:?}");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
-    let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=MAX_EDGE).contains(n));
+    let parse = |part: &str| part.trim().parse::<u32>().ok().filter(|n| (1..=MAX_IMAGE_EDGE).contains(n));
     Ok([parse(width).ok_or_else(expected)?, parse(height).ok_or_else(expected)?])
 }
 
-/// The look.
+/// Arguments that describe the look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
     /// The look that is proposed under this number instead of the first; `info --json` lists them
@@ -86,15 +87,15 @@ pub(super) struct LookArgs {
     engine: Option<EngineArg>,
     #[command(flatten)]
     load: LoadArgs,
-    /// Preset and session once they have been read, which a pipe allows once.
+    /// Preset and session after they have been read: a pipe can be read only once.
     #[arg(skip)]
-    read: OnceLock<Vec<Overlay>>,
-    /// The panorama, likewise.
+    overlay_cache: OnceLock<Vec<PresetOrSession>>,
+    /// Panorama after it has been read, cached for the same reason.
     #[arg(skip)]
-    lit_by: OnceLock<Option<Surroundings>>,
+    environment_cache: OnceLock<Option<EnvironmentMap>>,
 }
 
-/// What is rendered, and how it looks.
+/// Arguments for the volume and its look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SceneArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
@@ -106,8 +107,8 @@ pub(super) struct SceneArgs {
     force: bool,
 }
 
-/// A volume with what follows from it, after a word about values that are not finite.
-fn checked(volume: Volume) -> Dataset {
+/// Computes a volume's dataset, and warns of values that are not finite.
+fn dataset_with_warning(volume: Volume) -> Dataset {
     let missing = volume.non_finite_voxels();
     if missing > 0 {
         warn_line(&format!("warning: {missing} voxels are not finite and count as nothing"));
@@ -116,149 +117,166 @@ fn checked(volume: Volume) -> Dataset {
 }
 
 impl SceneArgs {
-    /// Loads the volume, and opens the adapter that shows it.
-    pub(super) fn load(&self) -> Result<(Dataset, Context), CliError> {
+    /// Loads the volume, and opens the adapter that renders it.
+    pub(super) fn load(&self) -> Result<(Dataset, GpuContext), CliError> {
         let (volume, context) = self.look.load.open(&self.file)?;
-        Ok((checked(self.look.corrected(&self.file, volume)?), context))
+        Ok((dataset_with_warning(self.look.corrected(&self.file, volume)?), context))
     }
 
-    /// What is to be loaded.
+    /// Path or built-in name of the volume.
     pub(super) fn source(&self) -> &Path {
         &self.file
     }
 
-    /// Refuses to write over what is read, or twice over one file, or over files of others unless that is wanted.
+    /// Rejects outputs that would replace an input, another output or, without `--force`, a file that this program
+    /// has not made.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, surroundings, .. } = &self.look;
         let named = [preset, session, surroundings].map(|path| path.as_deref());
         let inputs = named.into_iter().chain([Some(self.file.as_path())]);
-        keep_apart(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
+        check_overwrites(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
     }
 
-    /// Finds the look.
-    pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
+    /// Applies the arguments of the look to the automatic look.
+    pub(super) fn look(&self, loaded: &Dataset) -> Result<SceneLook, CliError> {
         self.look.look(loaded)
     }
 }
 
 impl LookArgs {
-    /// Reads a volume, whatever shows it.
+    /// Reads a volume, without regard to an adapter.
     pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
-        Ok(open_with_word(source, &self.load.load_options()?)?)
+        Ok(open_with_size_warning(source, &self.load.load_options()?)?)
     }
 
-    /// What an adapter shows of a volume that was read.
-    pub(super) fn shown(&self, source: &Path, whole: Volume, context: &Context) -> Result<Dataset, CliError> {
+    /// Returns the corrected dataset of a volume, downsampled if the adapter cannot hold it.
+    pub(super) fn adapter_dataset(
+        &self,
+        source: &Path,
+        whole: Volume,
+        context: &GpuContext,
+    ) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
-        Ok(checked(self.corrected(source, volume)?))
+        Ok(dataset_with_warning(self.corrected(source, volume)?))
     }
 
-    /// The preset and the session that the arguments name, the one that counts last.
-    fn overlays(&self) -> Result<Vec<Overlay>, CliError> {
-        if let Some(read) = self.read.get() {
+    /// Returns the preset and the session that the arguments name; the later one takes precedence.
+    fn overlays(&self) -> Result<Vec<PresetOrSession>, CliError> {
+        if let Some(read) = self.overlay_cache.get() {
             return Ok(read.clone());
         }
         let named = [("preset", &self.preset), ("session", &self.session)];
-        let read = named.into_iter().filter_map(|(what, path)| Some(Overlay::read(what, path.as_ref()?)));
+        let read =
+            named.into_iter().filter_map(|(what, path)| Some(PresetOrSession::read(what, path.as_ref()?)));
         let read = read.collect::<Result<_, _>>()?;
-        Ok(self.read.get_or_init(|| read).clone())
+        Ok(self.overlay_cache.get_or_init(|| read).clone())
     }
 
-    /// The panorama that the arguments name.
-    fn lit_by(&self) -> Result<Option<&Surroundings>, CliError> {
-        if self.lit_by.get().is_none() {
-            let read = self.surroundings.as_deref().map(read_surroundings).transpose()?;
-            return Ok(self.lit_by.get_or_init(|| read).as_ref());
+    /// Returns the panorama that the arguments name.
+    fn environment_map(&self) -> Result<Option<&EnvironmentMap>, CliError> {
+        if self.environment_cache.get().is_none() {
+            let read = self.surroundings.as_deref().map(read_environment_map).transpose()?;
+            return Ok(self.environment_cache.get_or_init(|| read).as_ref());
         }
-        Ok(self.lit_by.get().and_then(Option::as_ref))
+        Ok(self.environment_cache.get().and_then(Option::as_ref))
     }
 
-    /// A volume that was opened, corrected as its session and single settings say.
+    /// Applies the corrections of the session and of single settings to an opened volume.
     fn corrected(&self, source: &Path, volume: Volume) -> Result<Volume, CliError> {
         let opened_id = volume.opened_id();
         let overlays = self.overlays()?;
         let of_session = overlays.iter().rev().find_map(|overlay| overlay.corrections_of(opened_id));
-        let by = corrections::laid_over(of_session.unwrap_or_default(), &self.set)?;
-        corrected(source, volume, &by)
+        let by = corrections::with_assignments(of_session.unwrap_or_default(), &self.set)?;
+        apply_corrections(source, volume, &by)
     }
 
-    /// The axis that is to point up, if preset, session or single settings name one.
-    fn up(&self, overlays: &[Overlay], ranges: &ValueRanges) -> Option<SceneAxis> {
+    /// Returns the scene axis that points up, if a preset, session or single setting names one.
+    fn requested_up(&self, overlays: &[PresetOrSession], ranges: &ValueRanges) -> Option<SceneAxis> {
         let of_setting = |assignment: &String| {
             let (path, value) = assignment.split_once('=')?;
             let path = Some(path.trim()).filter(|path| ["camera", "camera.up"].contains(path))?;
-            // What cannot be understood is said when it is its turn.
-            let (settings, _) = assign(&Settings::default(), path, value.trim()).ok()?;
+            // Errors are reported when the setting is applied.
+            let (settings, _) = set_value(&Settings::default(), path, value.trim()).ok()?;
             Some(settings.camera.up)
         };
         let of_overlays = overlays.iter().filter_map(|overlay| overlay.up(ranges));
         of_overlays.chain(self.set.iter().filter_map(of_setting)).last()
     }
 
-    /// The automatic look, of a volume that stands as somebody says: lights and floor are where they belong then.
-    fn first_settings(&self, overlays: &[Overlay], loaded: &Dataset) -> Settings {
+    /// Returns the automatic look, for the up axis that was requested, so that lights and floor match it.
+    fn first_settings(&self, overlays: &[PresetOrSession], loaded: &Dataset) -> Settings {
         let (volume, histogram) = (loaded.volume(), loaded.histogram());
         let treated_as = self.treat_as.map(KindName::from);
-        let Some(up) = self.up(overlays, &volume.ranges()) else {
-            return auto::first_settings_with(volume, histogram, Wishes { treated_as, ..Wishes::default() });
+        let Some(up) = self.requested_up(overlays, &volume.ranges()) else {
+            return first_look::first_settings_with(
+                volume,
+                histogram,
+                FirstLookOptions { data_kind: treated_as, ..FirstLookOptions::default() },
+            );
         };
-        let mut settings = auto::first_settings_with(volume, histogram, Wishes { treated_as, up });
-        // Against what the file says.
-        auto::stand(&mut settings, volume, up);
+        let mut settings = first_look::first_settings_with(
+            volume,
+            histogram,
+            FirstLookOptions { data_kind: treated_as, up },
+        );
+        // Overrides the orientation from the file.
+        first_look::set_up_axis(&mut settings, volume, up);
         settings
     }
 
-    /// The automatic look, with preset, session and single settings laid over it.
-    /// All of them are checked here, before anything slow begins.
-    pub(super) fn look(&self, loaded: &Dataset) -> Result<Look, CliError> {
+    /// Applies preset, session and single settings to the automatic look. All of them are validated here, before
+    /// anything slow begins.
+    pub(super) fn look(&self, loaded: &Dataset) -> Result<SceneLook, CliError> {
         let overlays = self.overlays()?;
         let automatic = self.first_settings(&overlays, loaded);
-        let (settings, named) = self.laid_over(automatic.clone(), &overlays, loaded, warn_line)?;
+        let (settings, named) = self.apply_to(automatic.clone(), &overlays, loaded, warn_line)?;
         let proposed = match self.look {
             None | Some(1) => None,
             Some(number) => {
-                let small = small_volume(loaded)?;
-                // Whether there is one; what it is made from is found later.
-                proposal(number, &automatic, &small)?;
-                Some(Proposed { number, automatic, small, overlays, of: self.clone() })
+                let small = downsampled_volume(loaded)?;
+                // Validates the number; the look itself is derived later.
+                suggested_look(number, &automatic, &small)?;
+                Some(SuggestedLook { number, automatic, small, overlays, args: self.clone() })
             }
         };
-        Ok(Look::new(settings, named, proposed))
+        Ok(SceneLook::new(settings, named, proposed))
     }
 
-    /// Settings with preset, session and single settings laid over them, and which open parts these name.
-    fn laid_over(
+    /// Applies preset, session and single settings, and returns the automatic parts that they override.
+    fn apply_to(
         &self,
         mut settings: Settings,
-        overlays: &[Overlay],
+        overlays: &[PresetOrSession],
         loaded: &Dataset,
         warn: impl Fn(&str),
-    ) -> Result<(Settings, Named), CliError> {
+    ) -> Result<(Settings, OverriddenParts), CliError> {
         let volume = loaded.volume();
         let before = settings.clone();
-        let mut named = Named::default();
+        let mut named = OverriddenParts::default();
         for overlay in overlays {
-            named.add(|part| overlay.names(part));
-            settings = overlay.over(&settings, &volume.ranges(), &warn)?;
+            named.add(|part| overlay.contains_setting(part));
+            settings = overlay.apply_to(&settings, &volume.ranges(), &warn)?;
         }
-        if let Some(surroundings) = self.lit_by()? {
-            settings.surround(surroundings);
+        if let Some(surroundings) = self.environment_map()? {
+            settings.apply_environment_map(surroundings);
             named.add(|part| ["lights", "shadows.balance"].contains(&part));
         }
-        let mut settings = self.single_settings(settings, warn)?;
-        // It has been made into the volume.
+        let mut settings = self.apply_single_settings(settings, warn)?;
+        // The volume already has these corrections.
         settings.volume = *volume.corrections();
-        named.add(|part| self.sets(part));
-        let says_how_high = self.sets(FLOOR_HEIGHT) || overlays.iter().any(|one| one.names(FLOOR_HEIGHT));
+        named.add(|part| self.is_set(part));
+        let says_how_high =
+            self.is_set(FLOOR_HEIGHT) || overlays.iter().any(|one| one.contains_setting(FLOOR_HEIGHT));
         let shows = |look: &Settings| (look.transfer.clone(), look.range, look.camera.up);
         if !says_how_high && shows(&settings) != shows(&before) {
-            auto::lay_floor(&mut settings, volume);
+            first_look::lay_floor(&mut settings, volume);
         }
         Ok((settings, named))
     }
 
-    /// Whether a single setting of the command line is one, or a part or the whole of it. Whoever names it means it.
-    fn sets(&self, path: &str) -> bool {
+    /// Returns true if an assignment of the command line refers to a setting, to a part of it or to a group that
+    /// contains it.
+    fn is_set(&self, path: &str) -> bool {
         self.set.iter().any(|assignment| {
             let set = assignment.split('=').next().unwrap_or_default().trim();
             let is_within = |inner: &str, outer: &str| {

@@ -1,19 +1,19 @@
-//! What the command line says of single settings.
+//! Single settings given on the command line.
 
 use super::LookArgs;
-use super::choices::{EngineArg, ShadowArg};
+use super::option_values::{EngineArg, ShadowArg};
 use crate::cli::CliError;
-use crate::model::{Engine, Quality, Settings, ShadowAlgorithm, assign};
+use crate::model::{QualityPreset, RenderEngine, Settings, ShadowAlgorithm, set_value};
 
 impl LookArgs {
-    /// Lays over settings what the command line says of single ones.
-    pub(super) fn single_settings(
+    /// Applies the single settings of the command line.
+    pub(super) fn apply_single_settings(
         &self,
         mut settings: Settings,
         warn: impl Fn(&str),
     ) -> Result<Settings, CliError> {
         if let Some(level) = self.quality {
-            Quality::from(level).apply(&mut settings);
+            QualityPreset::from(level).apply(&mut settings);
         }
         for assignment in &self.set {
             let (path, value) = assignment.split_once('=').ok_or_else(|| {
@@ -21,7 +21,7 @@ impl LookArgs {
                     "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
                 ))
             })?;
-            let (next, warning) = assign(&settings, path.trim(), value.trim())
+            let (next, warning) = set_value(&settings, path.trim(), value.trim())
                 .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
             if let Some(warning) = warning {
                 warn(&format!("warning: --set: {warning}"));
@@ -36,8 +36,8 @@ impl LookArgs {
             None => {}
         }
         match self.engine {
-            Some(EngineArg::Gather) => settings.sampling.engine = Engine::Gather,
-            Some(EngineArg::Scatter) => settings.sampling.engine = Engine::Scatter,
+            Some(EngineArg::Gather) => settings.sampling.engine = RenderEngine::Gather,
+            Some(EngineArg::Scatter) => settings.sampling.engine = RenderEngine::Scatter,
             None => {}
         }
         Ok(settings)

@@ -1,50 +1,51 @@
-//! A wooden chair on a floor plate: the scene for looking at shadows.
+//! Built-in volume `chair`: a wooden chair on a floor plate, a scene to demonstrate shadows.
 //!
-//! After the voxelised chair in figure 6 of M. Nulkar, K. Mueller, "Splatting with shadows", Volume
-//! Graphics 2001. The chair looks towards −y, is 1.35 high and stands on a plate of 1.84 x 1.84.
+//! After the voxelised chair in figure 6 of M. Nulkar, K. Mueller, "Splatting with shadows", Volume Graphics 2001.
+//! The chair faces −y, is 1.35 high and stands on a plate of 1.84 x 1.84.
 
 use glam::DVec3;
 
-use super::parts::Part;
-use super::shapes::Shape;
+use super::shapes::SdfShape;
+use super::voxelise::ScenePart;
 
-/// Values, far enough apart for a transfer function to give each its own colour.
+/// Voxel values, far enough apart for a transfer function to give each its own colour.
 const WOOD: u8 = 200;
 const CUSHION: u8 = 150;
 const FLOOR: u8 = 90;
 
-/// Where the floor plate ends and the legs begin.
+/// Height of the floor plate's top, where the legs begin.
 const FLOOR_TOP: f64 = -0.74;
 
-/// Feet reach this far into the plate, so that no round end is seen.
-const SUNK: f64 = 0.03;
+/// Depth by which the feet reach into the plate, to hide their round ends.
+const FOOT_DEPTH: f64 = 0.03;
 
-/// Where the back posts meet the seat.
+/// Lower end of the back posts, at the seat.
 const BACK_FOOT: DVec3 = DVec3::new(0.30, 0.27, -0.12);
 
-/// Where the back posts end; the top rail sits on them.
+/// Upper end of the back posts; the top rail sits on them.
 const BACK_TOP: DVec3 = DVec3::new(0.30, 0.41, 0.50);
 
-/// How far the back bows behind its posts in the middle.
+/// Backward bow of the back in its middle, relative to the posts.
 const BOW: f64 = 0.055;
 
-/// All parts of the scene.
-pub(super) fn parts() -> Vec<Part> {
-    let floor = Shape::upright_box([0.0, 0.0, FLOOR_TOP - 0.05], [0.92, 0.92, 0.05], 0.015);
-    let cushion = Shape::upright_box([0.0, -0.02, -0.055], [0.30, 0.27, 0.04], 0.04);
-    let mut parts = vec![Part { value: FLOOR, shape: floor }, Part { value: CUSHION, shape: cushion }];
+/// Returns all parts of the scene.
+pub(super) fn parts() -> Vec<ScenePart> {
+    let floor = SdfShape::upright_box([0.0, 0.0, FLOOR_TOP - 0.05], [0.92, 0.92, 0.05], 0.015);
+    let cushion = SdfShape::upright_box([0.0, -0.02, -0.055], [0.30, 0.27, 0.04], 0.04);
+    let mut parts =
+        vec![ScenePart { value: FLOOR, shape: floor }, ScenePart { value: CUSHION, shape: cushion }];
     let wood = [frame(), stretchers(), back()].into_iter().flatten();
-    parts.extend(wood.map(|shape| Part { value: WOOD, shape }));
+    parts.extend(wood.map(|shape| ScenePart { value: WOOD, shape }));
     parts
 }
 
-/// Seat, apron and legs.
-fn frame() -> Vec<Shape> {
-    let foot = FLOOR_TOP - SUNK;
+/// Returns the seat, the apron and the legs.
+fn frame() -> Vec<SdfShape> {
+    let foot = FLOOR_TOP - FOOT_DEPTH;
     let mut shapes = vec![
-        Shape::upright_box([0.0, 0.0, -0.115], [0.37, 0.35, 0.035], 0.03),
-        Shape::upright_box([0.0, -0.265, -0.185], [0.28, 0.022, 0.05], 0.012),
-        Shape::upright_box([0.0, 0.265, -0.185], [0.28, 0.022, 0.05], 0.012),
+        SdfShape::upright_box([0.0, 0.0, -0.115], [0.37, 0.35, 0.035], 0.03),
+        SdfShape::upright_box([0.0, -0.265, -0.185], [0.28, 0.022, 0.05], 0.012),
+        SdfShape::upright_box([0.0, 0.265, -0.185], [0.28, 0.022, 0.05], 0.012),
     ];
     for side in [-1.0, 1.0] {
         let front = [side * 0.295, -0.27, -0.15].into();
@@ -52,29 +53,29 @@ fn frame() -> Vec<Shape> {
         let back = [side * BACK_FOOT.x, BACK_FOOT.y, BACK_FOOT.z].into();
         let back_foot = [side * 0.325, 0.34, foot].into();
         shapes.extend([
-            Shape::upright_box([side * 0.29, 0.0, -0.185], [0.022, 0.26, 0.05], 0.012),
-            Shape::Rod { from: front, to: front_foot, radii: [0.05, 0.036] },
-            Shape::Rod { from: back, to: back_foot, radii: [0.05, 0.036] },
+            SdfShape::upright_box([side * 0.29, 0.0, -0.185], [0.022, 0.26, 0.05], 0.012),
+            SdfShape::Rod { from: front, to: front_foot, radii: [0.05, 0.036] },
+            SdfShape::Rod { from: back, to: back_foot, radii: [0.05, 0.036] },
         ]);
     }
     shapes
 }
 
-/// One rod between the legs of each side, one between those two, one in front.
-fn stretchers() -> Vec<Shape> {
+/// Returns the rods between the legs: one on each side, one between these two, and one in front.
+fn stretchers() -> Vec<SdfShape> {
     vec![
-        Shape::rod([-0.315, -0.295, -0.54], [-0.315, 0.315, -0.54], 0.025),
-        Shape::rod([0.315, -0.295, -0.54], [0.315, 0.315, -0.54], 0.025),
-        Shape::rod([-0.315, 0.0, -0.54], [0.315, 0.0, -0.54], 0.025),
-        Shape::rod([-0.31, -0.287, -0.42], [0.31, -0.287, -0.42], 0.025),
+        SdfShape::rod([-0.315, -0.295, -0.54], [-0.315, 0.315, -0.54], 0.025),
+        SdfShape::rod([0.315, -0.295, -0.54], [0.315, 0.315, -0.54], 0.025),
+        SdfShape::rod([-0.315, 0.0, -0.54], [0.315, 0.0, -0.54], 0.025),
+        SdfShape::rod([-0.31, -0.287, -0.42], [0.31, -0.287, -0.42], 0.025),
     ]
 }
 
-/// Posts, slats, and the rails above and below the slats, all leaning backwards.
-fn back() -> Vec<Shape> {
+/// Returns the posts, the slats, and the rails above and below the slats, all leaning backwards.
+fn back() -> Vec<SdfShape> {
     let lean = (BACK_TOP.y - BACK_FOOT.y) / (BACK_TOP.z - BACK_FOOT.z);
     let post_y = |z: f64| BACK_FOOT.y + lean * (z - BACK_FOOT.z);
-    let rail = |z: f64, half: [f64; 3], crown: f64| Shape::Board {
+    let rail = |z: f64, half: [f64; 3], crown: f64| SdfShape::Board {
         centre: DVec3::new(0.0, post_y(z), z),
         half: half.into(),
         radius: 0.022,
@@ -85,14 +86,14 @@ fn back() -> Vec<Shape> {
     let mut shapes = vec![rail(0.49, [0.365, 0.028, 0.075], 0.04), rail(0.06, [0.30, 0.024, 0.032], 0.0)];
     for side in [-1.0, 1.0] {
         let mirror = DVec3::new(side, 1.0, 1.0);
-        shapes.push(Shape::Rod { from: BACK_FOOT * mirror, to: BACK_TOP * mirror, radii: [0.05, 0.036] });
+        shapes.push(SdfShape::Rod { from: BACK_FOOT * mirror, to: BACK_TOP * mirror, radii: [0.05, 0.036] });
     }
     for slat in -2..=2 {
         let x = f64::from(slat) * 0.1;
         // The slats follow the bow of the rails that hold them.
         let behind = BOW * (1.0 - (x / BACK_TOP.x).powi(2));
         let at = |z: f64, spread: f64| DVec3::new(x * spread, post_y(z) + behind, z);
-        shapes.push(Shape::bar(at(0.06, 0.95), at(0.46, 1.05), 0.03, 0.02, 0.012));
+        shapes.push(SdfShape::bar(at(0.06, 0.95), at(0.46, 1.05), 0.03, 0.02, 0.012));
     }
     shapes
 }

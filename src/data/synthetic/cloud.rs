@@ -1,15 +1,15 @@
-//! A cumulus cloud: soft puffs over a flat base, roughened by fractal noise.
+//! Built-in volume `cloud`: a cumulus of soft puffs over a flat base, roughened by fractal noise.
 //!
-//! After the hypertexture of K. Perlin and E. Hoffert (SIGGRAPH 1989): a soft shape whose density
-//! is modulated before it is cut, so that the outline frays and the middle stays dense.
+//! After the hypertexture of K. Perlin and E. Hoffert (SIGGRAPH 1989): the density of a soft shape is modulated
+//! before it is thresholded, so that the outline frays and the middle stays dense.
 
 use glam::DVec3;
 
-use super::super::attempt::{Attempt, LoadControl, LoadError};
-use super::Grid;
+use super::super::load_context::{LoadContext, LoadControl, LoadError};
+use super::UnitGrid;
 use super::noise::fractal;
 
-/// The value where the cloud is densest.
+/// Maximum voxel value, where the cloud is densest.
 const DENSEST: f64 = 220.0;
 
 /// Centres and radii of the puffs, in units of p.
@@ -23,8 +23,12 @@ const PUFFS: [([f64; 3], [f64; 3]); 7] = [
     ([-0.14, 0.30, -0.06], [0.42, 0.36, 0.36]),
 ];
 
-/// The cloud's voxels, 0 … 220.
-pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<u8>, LoadError> {
+/// Computes the voxels of the cloud, 0 … 220.
+pub(super) fn voxels(
+    grid: UnitGrid,
+    attempt: LoadContext<'_>,
+    control: &LoadControl,
+) -> Result<Vec<u8>, LoadError> {
     grid.fill(attempt, control, |z, slice| {
         for (y, row) in slice.chunks_exact_mut(grid.n).enumerate() {
             for (x, voxel) in row.iter_mut().enumerate() {
@@ -35,18 +39,18 @@ pub(super) fn voxels(grid: Grid, attempt: Attempt<'_>, control: &LoadControl) ->
     })
 }
 
-/// Density in [0, 1] at `p`; 0 outside the puffs.
+/// Returns the density at `p`, in [0, 1]; 0 outside the puffs.
 fn density(p: DVec3) -> f64 {
     let body = body(p);
     if body <= 0.0 {
         return 0.0;
     }
-    // Noise fades out with the body: the cloud ends inside its puffs and never at a hard edge.
+    // Noise fades out with the body, so that the cloud ends softly inside its puffs.
     let roughness = 1.5 * (body / 0.3).min(1.0);
     smooth_step(0.15, 1.25, body + roughness * fractal(p * 2.3 + 5.1, 4))
 }
 
-/// The soft union of the puffs in [0, 1], thinned towards the flat base.
+/// Returns the soft union of the puffs at `p`, in [0, 1], thinned towards the flat base.
 fn body(p: DVec3) -> f64 {
     let clear = PUFFS.iter().fold(1.0, |clear, (centre, radii)| {
         let offset = (p - DVec3::from_array(*centre)) / DVec3::from_array(*radii);

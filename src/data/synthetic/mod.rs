@@ -1,60 +1,61 @@
 //! Built-in volumes: small scenes and test signals, computed at any resolution.
 //!
-//! All fill the same cube of 128 mm around the world's origin, whatever the number of voxels, so
-//! that settings made for one resolution hold for the others. They are described in coordinates
-//! p in [-1, 1]³ with z up: p = 1 is 64 mm, and voxel i of n has its centre at (i + ½) / n · 2 − 1.
+//! All fill the same cube of 128 mm around the world's origin, whatever the number of voxels, so that settings made
+//! for one resolution hold for the others. They are described in coordinates p in [-1, 1]³ with z up: p = 1 is 64 mm,
+//! and voxel i of n has its centre at (i + ½) / n · 2 − 1.
 
-mod block;
 mod chair;
 mod cloud;
+mod cube;
 mod marschner_lobb;
 mod noise;
-mod parts;
 mod shapes;
 mod sphere;
+mod voxelise;
 
 use std::path::Path;
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::attempt::{Attempt, Choice, Extent, LoadControl, LoadError, Room, memory_budget_bytes};
+use super::load_context::{
+    GridExtent, LoadContext, LoadControl, LoadError, ReadContext, VolumeChoice, memory_budget_bytes,
+};
 use super::{Samples, Volume, VoxelType};
 
-/// The built-in volumes.
-pub const NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
+/// Names of the built-in volumes.
+pub const BUILTIN_NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
 
-/// Voxels along each edge where nothing else is said.
+/// Default number of voxels along each edge.
 pub const DEFAULT_SIZE: usize = 128;
 
-/// Length to which the opacities of a built-in's transfer function refer: a voxel of the default
-/// size.
-pub(super) const UNIT_MM: f64 = 1.0;
+/// Opacity unit of built-in volumes, in mm: a voxel of the default size.
+pub(super) const OPACITY_UNIT_MM: f64 = 1.0;
 
-/// Voxels along each edge that are possible.
+/// Allowed numbers of voxels along each edge.
 const SIZES: std::ops::RangeInclusive<usize> = 8..=1024;
 
-/// Length of the cube's edges.
+/// Edge of the cube, in mm.
 const EDGE_MM: f64 = 128.0;
 
-/// The voxels of a built-in volume along each of the three axes.
+/// Cubic grid of `n` voxels along each axis, in coordinates p.
 #[derive(Debug, Clone, Copy)]
-struct Grid {
+struct UnitGrid {
     n: usize,
 }
 
-impl Grid {
-    /// The edge of a voxel, in units of p.
+impl UnitGrid {
+    /// Returns the edge of a voxel, in units of p.
     fn voxel_edge(self) -> f64 {
         2.0 / self.n as f64
     }
 
-    /// The centre of voxel `i` along one axis, in units of p.
+    /// Returns the centre of voxel `i` along one axis, in units of p.
     fn centre(self, i: usize) -> f64 {
         (i as f64 + 0.5) / self.n as f64 * 2.0 - 1.0
     }
 
-    /// The voxels whose centres lie in `[from, to]` along one axis.
+    /// Returns the voxels whose centres lie in `[from, to]` along one axis.
     fn range(self, from: f64, to: f64) -> std::ops::Range<usize> {
         let index = |p: f64| (p * 0.5 + 0.5) * self.n as f64 - 0.5;
         let first = index(from).ceil().max(0.0) as usize;
@@ -62,17 +63,17 @@ impl Grid {
         first.min(end)..end
     }
 
-    /// Computes all voxels on all cores: `slice(z, values)` fills one z-slice, which begins as zeros.
+    /// Computes all voxels in parallel: `slice(z, values)` fills one z-slice, which begins as zeros.
     fn fill<T: Copy + Default + Send>(
         self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         control: &LoadControl,
         slice: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<Vec<T>, LoadError> {
         let mut values = Vec::new();
         let count = self.n.pow(3);
         if values.try_reserve_exact(count).is_err() {
-            return Err(attempt.limit("N", "the memory is not there", "choose fewer voxels"));
+            return Err(attempt.limit_error("N", "the memory is not there", "choose fewer voxels"));
         }
         values.resize(count, T::default());
         control.start((count * size_of::<T>()) as u64);
@@ -86,39 +87,40 @@ impl Grid {
     }
 }
 
-/// Makes the built-in volume `name` of `n`³ voxels, else [`DEFAULT_SIZE`]³.
+/// Makes the built-in volume `name` of `n`³ voxels, [`DEFAULT_SIZE`]³ by default.
 ///
 /// # Errors
-/// `BadInput` for a name that is not in [`NAMES`] or an `n` outside 8 … 1024; `Limit` when it would
-/// need more than three quarters of the free memory.
+/// `BadInput` for a name that is not in [`BUILTIN_NAMES`] or an `n` outside 8 … 1024; `Limit` when it would need more
+/// than three quarters of the free memory.
 pub fn builtin(name: &str, n: Option<usize>) -> Result<Volume, LoadError> {
-    builtin_within(name, n, memory_budget_bytes(), &Choice::default(), &LoadControl::new())
+    builtin_with_budget(name, n, memory_budget_bytes(), &VolumeChoice::default(), &LoadControl::new())
 }
 
-/// As [`builtin`], with a memory budget in bytes that also holds what is chosen of it, and with a control to watch and to cancel it.
+/// Makes a built-in volume as [`builtin`] does, with a memory budget in bytes that must also hold the chosen portion,
+/// and with a control for progress and cancellation.
 ///
 /// # Errors
-/// As [`builtin`]; also `Cancelled`.
-pub(crate) fn builtin_within(
+/// Fails like [`builtin`]; also with `Cancelled`.
+pub(crate) fn builtin_with_budget(
     name: &str,
     n: Option<usize>,
     budget_bytes: u64,
-    choice: &Choice,
+    choice: &VolumeChoice,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = format!("builtin:{name}");
-    let attempt = Attempt { what: "make the built-in volume", path: Path::new(&source) };
+    let attempt = LoadContext { operation: "make the built-in volume", path: Path::new(&source) };
     let n = n.unwrap_or(DEFAULT_SIZE);
-    if !NAMES.contains(&name) {
-        return Err(attempt.bad_input(
+    if !BUILTIN_NAMES.contains(&name) {
+        return Err(attempt.bad_input_error(
             "NAME",
             "there is no built-in volume of that name",
-            format!("choose one of {}", NAMES.join(", ")),
+            format!("choose one of {}", BUILTIN_NAMES.join(", ")),
         ));
     }
     if !SIZES.contains(&n) {
         let (least, most) = (SIZES.start(), SIZES.end());
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "N",
             format!("{least} to {most} voxels along an edge are possible, {n} were asked for"),
             format!("write it like builtin:{name}:{DEFAULT_SIZE}"),
@@ -126,15 +128,15 @@ pub(crate) fn builtin_within(
     }
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
-    // All of it is made, whatever is wanted of it.
-    let room = Room { budget_bytes, choice, control };
-    Extent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
-    let grid = Grid { n };
+    // All voxels are made, even if only a portion of them is wanted.
+    let room = ReadContext { budget_bytes, choice, control };
+    GridExtent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
+    let grid = UnitGrid { n };
     let samples = match name {
-        "chair" => Samples::U8(parts::voxelise(grid, &chair::parts(), attempt, control)?),
-        "sphere" => Samples::U8(parts::voxelise(grid, &sphere::parts(), attempt, control)?),
+        "chair" => Samples::U8(voxelise::voxelise(grid, &chair::parts(), attempt, control)?),
+        "sphere" => Samples::U8(voxelise::voxelise(grid, &sphere::parts(), attempt, control)?),
         "cloud" => Samples::U8(cloud::voxels(grid, attempt, control)?),
-        "box" => Samples::U8(block::voxels(grid, attempt, control)?),
+        "box" => Samples::U8(cube::voxels(grid, attempt, control)?),
         _ => Samples::F32(marschner_lobb::voxels(grid, attempt, control)?),
     };
     let spacing_mm = EDGE_MM / n as f64;
@@ -143,14 +145,16 @@ pub(crate) fn builtin_within(
         translation: DVec3::splat((spacing_mm - EDGE_MM) / 2.0),
     };
     Volume::new(name, [n; 3], world_from_index, samples)
-        // One voxel of the default size: at any other size the look stays.
-        .map(|volume| volume.with_unit_mm(UNIT_MM))
-        .map_err(|error| attempt.bad_input("data", error.to_string(), "choose another number of voxels"))
+        // The opacity unit is one voxel of the default size, so that the look is independent of the resolution.
+        .map(|volume| volume.with_unit_mm(OPACITY_UNIT_MM))
+        .map_err(|error| {
+            attempt.bad_input_error("data", error.to_string(), "choose another number of voxels")
+        })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::attempt::LoadErrorKind;
+    use super::super::load_context::LoadErrorKind;
     use super::*;
 
     fn make(name: &str, n: usize) -> Volume {
@@ -164,7 +168,7 @@ mod tests {
 
     #[test]
     fn all_fill_the_same_cube() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             for n in [8, 30, 33] {
                 let volume = make(name, n);
                 assert_eq!((volume.name(), volume.dims()), (name, [n; 3]));
@@ -179,7 +183,7 @@ mod tests {
 
     #[test]
     fn resolution_changes_little() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             let (coarse, fine) = (mean(&make(name, 32)), mean(&make(name, 64)));
             assert!((coarse / fine - 1.0).abs() < 0.04, "{name}: {coarse} at 32, {fine} at 64");
         }
@@ -187,7 +191,7 @@ mod tests {
 
     #[test]
     fn the_same_call_gives_the_same_voxels() {
-        for name in NAMES {
+        for name in BUILTIN_NAMES {
             assert_eq!(make(name, 24).samples(), make(name, 24).samples(), "{name}");
         }
     }
@@ -208,7 +212,7 @@ mod tests {
 
     #[test]
     fn ranges_hold_the_centres() {
-        let grid = Grid { n: 8 };
+        let grid = UnitGrid { n: 8 };
         assert_eq!(grid.range(-2.0, 2.0), 0..8);
         assert_eq!(grid.range(grid.centre(2), grid.centre(5)), 2..6);
         assert_eq!(grid.range(0.01, 0.02), 4..4);
@@ -219,7 +223,7 @@ mod tests {
     #[test]
     fn unknown_names_and_sizes_are_refused() {
         let kind = |name, n, budget| {
-            builtin_within(name, n, budget, &Choice::default(), &LoadControl::new())
+            builtin_with_budget(name, n, budget, &VolumeChoice::default(), &LoadControl::new())
                 .map_err(|error| error.kind())
                 .map(drop)
         };

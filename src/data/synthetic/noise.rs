@@ -1,10 +1,10 @@
-//! Gradient noise and its fractal sum, from an integer hash: the same on every machine.
+//! Gradient noise (Perlin) and its fractal sum, from an integer hash: identical on every machine.
 //!
-//! After K. Perlin, "Improving noise", SIGGRAPH 2002, with a hash in place of the table.
+//! After K. Perlin, "Improving noise", SIGGRAPH 2002, with a hash in place of the permutation table.
 
 use glam::DVec3;
 
-/// The twelve gradients: from the middle of a cube to the middles of its edges.
+/// Gradient vectors: from the centre of a cube to the midpoints of its twelve edges.
 const GRADIENTS: [DVec3; 12] = [
     DVec3::new(1.0, 1.0, 0.0),
     DVec3::new(-1.0, 1.0, 0.0),
@@ -20,7 +20,8 @@ const GRADIENTS: [DVec3; 12] = [
     DVec3::new(0.0, -1.0, -1.0),
 ];
 
-/// Fractal noise about 0, within about ±0.6: each octave has half the size and half the height.
+/// Returns fractal noise around 0, within about ±0.6: each octave has half the size and half the amplitude of the one
+/// before.
 pub(super) fn fractal(p: DVec3, octaves: u32) -> f64 {
     let mut sum = 0.0;
     let mut height = 0.5;
@@ -28,13 +29,13 @@ pub(super) fn fractal(p: DVec3, octaves: u32) -> f64 {
     for octave in 0..octaves {
         sum += height * gradient(at, octave);
         height *= 0.5;
-        // Not exactly twice: the lattices of the octaves, where noise is 0, must not coincide.
+        // Not exactly 2: the lattices of the octaves, where noise is 0, must not coincide.
         at = at * 2.03 + 17.3;
     }
     sum
 }
 
-/// Gradient noise of one lattice, about ±1, smooth up to its second derivative.
+/// Returns gradient noise of one lattice, within about ±1, smooth up to its second derivative.
 fn gradient(p: DVec3, seed: u32) -> f64 {
     let cell = p.floor();
     let inside = p - cell;
@@ -50,7 +51,7 @@ fn gradient(p: DVec3, seed: u32) -> f64 {
     mix(along_y(0), along_y(1), fade.z)
 }
 
-/// Mixes a lattice point and a seed: a multiplication each, then the finalizer of `MurmurHash3`.
+/// Hashes a lattice point and a seed: a multiplication each, then the finalizer of `MurmurHash3`.
 fn hash(x: i32, y: i32, z: i32, seed: u32) -> u32 {
     let mut h = (x as u32).wrapping_mul(0x8da6_b343)
         ^ (y as u32).wrapping_mul(0xd816_3841)

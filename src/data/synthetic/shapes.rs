@@ -1,33 +1,33 @@
-//! Signed distances of simple shapes: negative inside.
+//! Signed distance functions of simple shapes: negative inside.
 //!
-//! After I. Quilez, "Distance functions", <https://iquilezles.org/articles/distfunctions/>. The
-//! tapered and the bowed shapes are a few percent off true distance, which a soft edge hides.
+//! After I. Quilez, "Distance functions", <https://iquilezles.org/articles/distfunctions/>. Those of the tapered and
+//! the bowed shapes deviate from the true distance by a few percent, which a soft edge hides.
 
 use glam::{DMat3, DVec3};
 
-use crate::math::Bounds;
+use crate::math::Aabb;
 
-/// A shape in coordinates p.
+/// Geometric shape in coordinates p.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Shape {
+pub(super) enum SdfShape {
     Sphere {
         centre: DVec3,
         radius: f64,
     },
-    /// A box whose edges are rounded by `radius`; the columns of `axes` are its own axes.
+    /// Box whose edges are rounded by `radius`; the columns of `axes` are its own axes.
     Box {
         centre: DVec3,
         axes: DMat3,
         half: DVec3,
         radius: f64,
     },
-    /// A rod with round ends and a radius at each.
+    /// Rod with round ends, tapered between a radius at each end.
     Rod {
         from: DVec3,
         to: DVec3,
         radii: [f64; 2],
     },
-    /// A rounded board along x that bows to +y and rises in its middle and leans to +y with z.
+    /// Rounded board along x that bows to +y and rises in its middle, and leans to +y with z.
     Board {
         centre: DVec3,
         half: DVec3,
@@ -38,18 +38,18 @@ pub(super) enum Shape {
     },
 }
 
-impl Shape {
-    /// A rounded box along the axes.
+impl SdfShape {
+    /// Creates a rounded box aligned with the coordinate axes.
     pub(super) fn upright_box(centre: [f64; 3], half: [f64; 3], radius: f64) -> Self {
         Self::Box { centre: centre.into(), axes: DMat3::IDENTITY, half: half.into(), radius }
     }
 
-    /// A rod of the same radius everywhere.
+    /// Creates a rod of constant radius.
     pub(super) fn rod(from: [f64; 3], to: [f64; 3], radius: f64) -> Self {
         Self::Rod { from: from.into(), to: to.into(), radii: [radius; 2] }
     }
 
-    /// A flat bar between two points that do not differ in x alone: `half_width` is along x.
+    /// Creates a flat bar between two points that do not differ in x alone: `half_width` is along x.
     pub(super) fn bar(from: DVec3, to: DVec3, half_width: f64, half_thickness: f64, radius: f64) -> Self {
         let along = (to - from).normalize_or(DVec3::Z);
         let across = along.cross(DVec3::X).normalize_or(DVec3::Y);
@@ -58,7 +58,7 @@ impl Shape {
         Self::Box { centre: (from + to) / 2.0, axes, half, radius }
     }
 
-    /// The signed distance of `p`.
+    /// Returns the signed distance of `p` from the surface.
     pub(super) fn distance(&self, p: DVec3) -> f64 {
         match *self {
             Self::Sphere { centre, radius } => p.distance(centre) - radius,
@@ -81,28 +81,28 @@ impl Shape {
         }
     }
 
-    /// A box around the shape.
-    pub(super) fn bounds(&self) -> Bounds {
+    /// Returns a bounding box of the shape.
+    pub(super) fn bounds(&self) -> Aabb {
         match *self {
-            Self::Sphere { centre, radius } => Bounds { min: centre - radius, max: centre + radius },
+            Self::Sphere { centre, radius } => Aabb { min: centre - radius, max: centre + radius },
             Self::Box { centre, axes, half, .. } => {
                 let reach =
                     axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
-                Bounds { min: centre - reach, max: centre + reach }
+                Aabb { min: centre - reach, max: centre + reach }
             }
             Self::Rod { from, to, radii: [at_from, at_to] } => {
-                Bounds { min: (from - at_from).min(to - at_to), max: (from + at_from).max(to + at_to) }
+                Aabb { min: (from - at_from).min(to - at_to), max: (from + at_from).max(to + at_to) }
             }
             Self::Board { centre, half, bow, crown, lean, .. } => {
                 let rise = half.z + crown.abs();
                 let reach = DVec3::new(half.x, half.y + bow.abs() + lean.abs() * rise, rise);
-                Bounds { min: centre - reach, max: centre + reach }
+                Aabb { min: centre - reach, max: centre + reach }
             }
         }
     }
 }
 
-/// The distance of `p` from a box around the origin; `half` includes the rounding.
+/// Returns the signed distance of `p` from a rounded box around the origin; `half` includes the rounding.
 fn rounded_box(p: DVec3, half: DVec3, radius: f64) -> f64 {
     let q = p.abs() - (half - radius);
     q.max(DVec3::ZERO).length() + q.max_element().min(0.0) - radius
@@ -115,19 +115,19 @@ mod tests {
     #[test]
     fn distances_are_right_where_they_are_easy() {
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
-        let sphere = Shape::Sphere { centre: DVec3::X, radius: 0.5 };
+        let sphere = SdfShape::Sphere { centre: DVec3::X, radius: 0.5 };
         near(sphere.distance(DVec3::ZERO), 0.5);
-        let cube = Shape::upright_box([0.0; 3], [0.5; 3], 0.1);
+        let cube = SdfShape::upright_box([0.0; 3], [0.5; 3], 0.1);
         near(cube.distance(DVec3::X), 0.5);
         near(cube.distance(DVec3::ZERO), -0.5);
         near(cube.distance(DVec3::splat(0.5)), 0.1 * 3f64.sqrt() - 0.1);
-        let rod = Shape::rod([0.0; 3], [0.0, 0.0, 1.0], 0.25);
+        let rod = SdfShape::rod([0.0; 3], [0.0, 0.0, 1.0], 0.25);
         near(rod.distance(DVec3::new(1.0, 0.0, 0.5)), 0.75);
         near(rod.distance(DVec3::new(0.0, 0.0, 2.0)), 0.75);
-        let bar = Shape::bar(DVec3::ZERO, DVec3::Y, 0.2, 0.1, 0.0);
+        let bar = SdfShape::bar(DVec3::ZERO, DVec3::Y, 0.2, 0.1, 0.0);
         near(bar.distance(DVec3::new(0.5, 0.5, 0.0)), 0.3);
         near(bar.distance(DVec3::new(0.0, 0.5, 0.5)), 0.4);
-        let board = Shape::Board {
+        let board = SdfShape::Board {
             centre: DVec3::ZERO,
             half: DVec3::new(1.0, 0.1, 0.2),
             radius: 0.0,
@@ -141,8 +141,8 @@ mod tests {
 
     #[test]
     fn bounds_hold_the_inside() {
-        let lean = Shape::bar(DVec3::new(0.1, 0.2, -0.3), DVec3::new(0.2, 0.5, 0.4), 0.05, 0.02, 0.01);
-        let board = Shape::Board {
+        let lean = SdfShape::bar(DVec3::new(0.1, 0.2, -0.3), DVec3::new(0.2, 0.5, 0.4), 0.05, 0.02, 0.01);
+        let board = SdfShape::Board {
             centre: DVec3::new(0.0, 0.1, 0.2),
             half: DVec3::new(0.4, 0.03, 0.1),
             radius: 0.02,
@@ -150,7 +150,7 @@ mod tests {
             crown: 0.05,
             lean: 0.3,
         };
-        let rod = Shape::Rod { from: DVec3::ZERO, to: DVec3::splat(0.4), radii: [0.05, 0.1] };
+        let rod = SdfShape::Rod { from: DVec3::ZERO, to: DVec3::splat(0.4), radii: [0.05, 0.1] };
         for shape in [lean, board, rod] {
             let bounds = shape.bounds();
             for i in 0..40usize.pow(3) {

@@ -1,15 +1,15 @@
-//! A sphere over a plate: the simplest scene with a shadow.
+//! Built-in volume `sphere`: a sphere over a plate, the simplest scene with a shadow.
 
 use glam::DVec3;
 
-use super::parts::Part;
-use super::shapes::Shape;
+use super::shapes::SdfShape;
+use super::voxelise::ScenePart;
 
-/// A sphere (value 200, radius ⅓) that floats above a plate (value 90, its top at z = −0.62).
-pub(super) fn parts() -> Vec<Part> {
-    let sphere = Shape::Sphere { centre: DVec3::new(0.0, 0.0, 0.25), radius: 1.0 / 3.0 };
-    let plate = Shape::upright_box([0.0, 0.0, -0.67], [0.9, 0.9, 0.05], 0.0);
-    vec![Part { value: 200, shape: sphere }, Part { value: 90, shape: plate }]
+/// Returns a sphere (value 200, radius ⅓) that floats above a plate (value 90, its top at z = −0.62).
+pub(super) fn parts() -> Vec<ScenePart> {
+    let sphere = SdfShape::Sphere { centre: DVec3::new(0.0, 0.0, 0.25), radius: 1.0 / 3.0 };
+    let plate = SdfShape::upright_box([0.0, 0.0, -0.67], [0.9, 0.9, 0.05], 0.0);
+    vec![ScenePart { value: 200, shape: sphere }, ScenePart { value: 90, shape: plate }]
 }
 
 #[cfg(test)]

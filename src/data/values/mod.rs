@@ -1,4 +1,4 @@
-//! Values of voxels: how they are stored, and which of them matter.
+//! Voxel values: storage types, ranges, and the robust range without outliers.
 
 pub(super) mod range;
 pub(super) mod robust;

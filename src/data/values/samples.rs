@@ -1,9 +1,9 @@
-//! The values of voxels as files have them, in any number type.
+//! Samples: voxel values as stored in files, in any number type.
 
 use crate::data::ValueRange;
-use crate::data::interrupt::{Interrupt, PIECE};
+use crate::data::cancellation::{CancelToken, PIECE_VALUES};
 
-/// The number types that a voxel can have.
+/// Number type of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say it all")]
 pub enum VoxelType {
@@ -18,11 +18,11 @@ pub enum VoxelType {
 }
 
 impl VoxelType {
-    /// Every type, in the order of the declaration.
+    /// All types, in the order of their declaration.
     pub const ALL: [Self; 8] =
         [Self::U8, Self::I8, Self::U16, Self::I16, Self::U32, Self::I32, Self::F32, Self::F64];
 
-    /// Size of one voxel in bytes.
+    /// Returns the size of one voxel in bytes.
     pub const fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -32,8 +32,8 @@ impl VoxelType {
         }
     }
 
-    /// The smallest and the largest whole number that it holds; nothing for fractions.
-    const fn whole(self) -> Option<(i64, i64)> {
+    /// Returns the smallest and the largest integer of the type; `None` for floating-point types.
+    const fn integer_range(self) -> Option<(i64, i64)> {
         match self {
             Self::U8 => Some((0, u8::MAX as i64)),
             Self::I8 => Some((i8::MIN as i64, i8::MAX as i64)),
@@ -45,22 +45,22 @@ impl VoxelType {
         }
     }
 
-    /// The smallest type that holds the values of both.
-    pub(in crate::data) fn with(self, other: Self) -> Self {
+    /// Returns the smallest type that holds the values of both types exactly.
+    pub(crate) fn common_type(self, other: Self) -> Self {
         if self == other {
             return self;
         }
-        let (Some(one), Some(another)) = (self.whole(), other.whole()) else {
-            // Whole numbers of 16 bits and fewer are exact as F32.
+        let (Some(one), Some(another)) = (self.integer_range(), other.integer_range()) else {
+            // Integers of up to 16 bits are exact in F32.
             let is_exact = |of: Self| of == Self::F32 || (of != Self::F64 && of.bytes() <= 2);
             return if is_exact(self) && is_exact(other) { Self::F32 } else { Self::F64 };
         };
         let (low, high) = (one.0.min(another.0), one.1.max(another.1));
-        let holds = |of: &Self| of.whole().is_some_and(|(first, last)| first <= low && high <= last);
+        let holds = |of: &Self| of.integer_range().is_some_and(|(first, last)| first <= low && high <= last);
         Self::ALL.into_iter().find(holds).unwrap_or(Self::F64)
     }
 
-    /// The name used in file names and on the command line: `uint8` … `float64`.
+    /// Returns the name used in file names and on the command line: `uint8` … `float64`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::U8 => "uint8",
@@ -75,7 +75,7 @@ impl VoxelType {
     }
 }
 
-/// The voxels' values as the file has them, x fastest, z slowest.
+/// Voxel values as the file stores them, x fastest, z slowest.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "one variant per voxel type")]
 pub enum Samples {
@@ -89,7 +89,7 @@ pub enum Samples {
     F64(Vec<f64>),
 }
 
-/// Calls `$body` with `$values` bound to the vector inside, whatever its type.
+/// Evaluates `$body` with `$values` bound to the vector inside, whatever its type.
 macro_rules! with_samples {
     ($samples:expr, $values:ident => $body:expr) => {
         match $samples {
@@ -105,26 +105,26 @@ macro_rules! with_samples {
     };
 }
 
-pub(in crate::data) use with_samples;
+pub(crate) use with_samples;
 
-/// Values in pieces, as long as they are wanted.
-fn wanted<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
-    let interrupt = Interrupt::here();
-    values.chunks(PIECE).take_while(move |_| !interrupt.is_due())
+/// Iterates over pieces of values until the task is cancelled.
+fn chunks_until_cancelled<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
+    let interrupt = CancelToken::current();
+    values.chunks(PIECE_VALUES).take_while(move |_| !interrupt.should_stop())
 }
 
 impl Samples {
-    /// Number of voxels.
+    /// Returns the number of voxels.
     pub fn len(&self) -> usize {
         with_samples!(self, values => values.len())
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no voxels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The number type.
+    /// Returns the number type of the values.
     pub fn voxel_type(&self) -> VoxelType {
         match self {
             Self::U8(_) => VoxelType::U8,
@@ -138,7 +138,7 @@ impl Samples {
         }
     }
 
-    /// One value in data units.
+    /// Returns one value in data units.
     #[expect(
         trivial_numeric_casts,
         clippy::unnecessary_cast,
@@ -148,8 +148,8 @@ impl Samples {
         with_samples!(self, values => values[voxel] as f64)
     }
 
-    /// The values of some voxels.
-    pub(in crate::data) fn picked(&self, voxels: &[usize]) -> Self {
+    /// Gathers the values of the voxels at the given indices.
+    pub(crate) fn gather(&self, voxels: &[usize]) -> Self {
         macro_rules! picked {
             ($($variant:ident),+) => {
                 match self {
@@ -160,8 +160,8 @@ impl Samples {
         picked!(U8, I8, U16, I16, U32, I32, F32, F64)
     }
 
-    /// The same values in a type that holds them, with room for so many; nothing without memory.
-    pub(in crate::data) fn in_type(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
+    /// Converts the values to a type that holds them, reserving capacity for `count`; `None` if memory is short.
+    pub(crate) fn converted_to(&self, voxel_type: VoxelType, count: usize) -> Option<Self> {
         macro_rules! in_type {
             ($($variant:ident),+) => {
                 match voxel_type {
@@ -178,9 +178,9 @@ impl Samples {
         Some(found)
     }
 
-    /// Adds values that are in its type's range.
+    /// Appends values, which must be in the range of this number type.
     #[expect(trivial_numeric_casts, reason = "one of the types is the same")]
-    pub(in crate::data) fn append(&mut self, more: &Self) {
+    pub(crate) fn append(&mut self, more: &Self) {
         with_samples!(self, values => {
             with_samples!(more, more => for &value in more {
                 values.push(value as _);
@@ -188,20 +188,21 @@ impl Samples {
         });
     }
 
-    /// What the finite values span, and how many voxels are not finite; `None` where none is finite.
-    pub(in crate::data) fn finite_range(&self) -> Option<(ValueRange, usize)> {
-        self.range_without(f64::NAN)
+    /// Returns the range of the finite values, and the number of voxels that are not finite; `None` if none is
+    /// finite.
+    pub(crate) fn finite_range(&self) -> Option<(ValueRange, usize)> {
+        self.finite_range_except(f64::NAN)
     }
 
-    /// What the finite values span that are not `left_out`, and how many voxels are not finite; `None` where there are
-    /// none.
-    pub(in crate::data) fn range_without(&self, left_out: f64) -> Option<(ValueRange, usize)> {
+    /// Returns the range of the finite values other than `left_out`, and the number of voxels that are not finite;
+    /// `None` if there are no such values.
+    pub(crate) fn finite_range_except(&self, left_out: f64) -> Option<(ValueRange, usize)> {
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let (low, high, non_finite) = with_samples!(self, values => wanted(values).flatten().fold(
+        let (low, high, non_finite) = with_samples!(self, values => chunks_until_cancelled(values).flatten().fold(
             (f64::INFINITY, f64::NEG_INFINITY, 0),
             |(low, high, non_finite), &value| {
                 let value = value as f64;
@@ -217,15 +218,15 @@ impl Samples {
         (low <= high).then_some((ValueRange::new(low, high), non_finite))
     }
 
-    /// A 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
-    pub(in crate::data) fn fingerprint(&self) -> u64 {
+    /// Returns a 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).
+    pub(crate) fn fingerprint(&self) -> u64 {
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
             reason = "one of the eight types is f64 already"
         )]
-        let hash = with_samples!(self, values => wanted(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
+        let hash = with_samples!(self, values => chunks_until_cancelled(values).flatten().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &value| {
             (hash ^ (value as f64).to_bits()).wrapping_mul(PRIME)
         }));
         hash
@@ -249,9 +250,9 @@ mod tests {
             (I32, F32, F64),
             (F32, F64, F64),
         ] {
-            assert_eq!((one.with(other), other.with(one)), (both, both), "{one:?} {other:?}");
+            assert_eq!((one.common_type(other), other.common_type(one)), (both, both), "{one:?} {other:?}");
         }
-        let mut samples = Samples::U8(vec![1, 255]).in_type(I16, 4).unwrap();
+        let mut samples = Samples::U8(vec![1, 255]).converted_to(I16, 4).unwrap();
         samples.append(&Samples::I16(vec![-3, 7]));
         assert_eq!(samples, Samples::I16(vec![1, 255, -3, 7]));
     }

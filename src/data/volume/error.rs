@@ -1,6 +1,6 @@
-//! Why numbers are no volume.
+//! Errors of constructing a volume.
 
-/// Why a grid and its values do not make a volume.
+/// Reason why a grid and its values do not form a volume.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum VolumeError {

@@ -1,5 +1,5 @@
-//! Which labels a volume has, and the densities of volumes that are shown as labels: not values, but classes, so that
-//! nothing depends on the numbers that labels happen to have.
+//! Set of the labels in a volume, and densities of volumes shown as labels: classes in place of values, so that
+//! nothing depends on the labels' numbers.
 
 use std::collections::BTreeMap;
 
@@ -8,45 +8,46 @@ use rayon::prelude::*;
 use super::{Samples, Volume};
 use crate::data::ValueRange;
 
-/// Most labels that are told apart: beyond it whole numbers are measurements.
-const MOST_LABELS: usize = 1 << 16;
+/// Maximum number of distinct labels: more integers than these are measurements.
+const MAX_LABELS_IN_VOLUME: usize = 1 << 16;
 
-/// Whole numbers beyond this are none that count things.
-const LARGEST_NUMBER: f64 = (1u64 << 32) as f64;
+/// Maximum absolute value of a label's number.
+const MAX_LABEL_NUMBER: f64 = (1u64 << 32) as f64;
 
-/// Classes that densities tell apart at most.
+/// Maximum number of classes that densities can distinguish.
 ///
-/// Tables of looks have 1024 entries, and what is looked up between two of them is mixed. With 256 classes entries of a class begin at most 1023/255/2 = 2.006 entries from its density, and a
-/// look-up reaches less than one: so densities may be wrong by 1.006/1023 = 9.8e-4. As 16-bit floats they are by half
-/// of 2^-11, which is 2.4e-4, as 16-bit shares by 7.6e-6. With 512 classes floats would mix neighbours.
+/// Tables of looks have 1024 entries, and lookups interpolate between two of them. With 256 classes, all entries
+/// within 1023/255/2 = 2.006 of a class's density belong to that class, and a lookup reaches less than one entry
+/// further: so a density may be off by 1.006/1023 = 9.8e-4. 16-bit floats are off by half of 2^-11, which is 2.4e-4,
+/// 16-bit normalised integers by 7.6e-6. With 512 classes, floats would mix neighbours.
 pub const MAX_CLASSES: usize = 256;
 
-/// A label, and how much of a volume has it.
+/// Label with the number of its voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CountedLabel {
-    /// What voxels hold.
+    /// Number that voxels of the label hold.
     pub number: i64,
-    /// How many of them.
+    /// Count of voxels with the label.
     pub voxels: u64,
 }
 
-/// The labels of a volume, at least two.
+/// Labels of a volume, at least two.
 ///
-/// Each belongs to a class, which decides what it looks like: up to
-/// [`MAX_CLASSES`] labels have classes of their own, in the order of their numbers. Of more of them, 0 (or the lowest,
-/// where no voxel has 0), which is what is around, has a class of its own, and the others take turns.
+/// Each belongs to a class, which determines its look: up to [`MAX_CLASSES`] labels have classes of their own, in the
+/// order of their numbers. If there are more, the background (0, or the lowest label if no voxel is 0) keeps a class
+/// of its own, and the others share the remaining classes in turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LabelSet {
-    /// By number.
+    /// Labels in ascending order of their numbers.
     labels: Vec<CountedLabel>,
-    /// Rank of what is around.
-    around: usize,
+    /// Rank of the background label.
+    background_rank: usize,
 }
 
 impl LabelSet {
-    /// The labels of a volume, but what missing voxels hold; `None` where values are not whole, or all the same, or more
-    /// than labels can be.
-    pub(super) fn of(volume: &Volume) -> Option<Self> {
+    /// Counts the labels of a volume without missing voxels; `None` if values are not integers, all equal, or more
+    /// than [`MAX_LABELS_IN_VOLUME`].
+    pub(super) fn from_volume(volume: &Volume) -> Option<Self> {
         let voxels = volume.voxel_count();
         let slice = voxels / volume.dims()[2];
         let missing = volume.missing();
@@ -58,71 +59,71 @@ impl LabelSet {
                 for (number, voxels) in more {
                     *all.entry(number).or_default() += voxels;
                 }
-                (all.len() <= MOST_LABELS).then_some(all)
+                (all.len() <= MAX_LABELS_IN_VOLUME).then_some(all)
             })?;
         Self::new(counted.into_iter().map(|(number, voxels)| CountedLabel { number, voxels }).collect())
     }
 
-    /// Labels by ascending number.
+    /// Creates a set of labels, which must ascend by number; `None` if there are fewer than two.
     fn new(labels: Vec<CountedLabel>) -> Option<Self> {
         let around = labels.binary_search_by_key(&0, |label| label.number).unwrap_or(0);
-        (labels.len() > 1).then_some(Self { labels, around })
+        (labels.len() > 1).then_some(Self { labels, background_rank: around })
     }
 
-    /// All of them, by number.
+    /// Returns all labels in the order of their numbers.
     pub fn labels(&self) -> &[CountedLabel] {
         &self.labels
     }
 
-    /// How many there are.
-    pub fn count(&self) -> usize {
+    /// Returns the number of labels.
+    pub fn count_integers(&self) -> usize {
         self.labels.len()
     }
 
-    /// How many classes they belong to.
+    /// Returns the number of classes in use.
     pub fn class_count(&self) -> usize {
-        self.count().min(MAX_CLASSES)
+        self.count_integers().min(MAX_CLASSES)
     }
 
-    /// Whether every label has a class of its own.
+    /// Returns true if every label has a class of its own.
     pub fn has_own_classes(&self) -> bool {
-        self.count() <= MAX_CLASSES
+        self.count_integers() <= MAX_CLASSES
     }
 
-    /// The class of the label with that rank among all.
+    /// Returns the class of the label with the given rank among all.
     fn class_of_rank(&self, rank: usize) -> usize {
-        if self.has_own_classes() || rank == self.around {
+        if self.has_own_classes() || rank == self.background_rank {
             return if self.has_own_classes() { rank } else { 0 };
         }
-        let among_others = rank - usize::from(rank > self.around);
+        let among_others = rank - usize::from(rank > self.background_rank);
         1 + among_others % (MAX_CLASSES - 1)
     }
 
-    /// The first label of a class, which stands for all of them.
-    pub fn first_of_class(&self, class: usize) -> CountedLabel {
+    /// Returns the first label of a class, which represents all its labels.
+    pub fn representative_of_class(&self, class: usize) -> CountedLabel {
         let rank = match class {
             _ if self.has_own_classes() => class,
-            0 => self.around,
-            _ => class - usize::from(class <= self.around),
+            0 => self.background_rank,
+            _ => class - usize::from(class <= self.background_rank),
         };
-        self.labels[rank.min(self.count() - 1)]
+        self.labels[rank.min(self.count_integers() - 1)]
     }
 
-    /// The label that stands for the class of a number; the number itself where it has a class of its own, or is none
-    /// of the volume's.
-    pub fn standing_for(&self, number: i64) -> i64 {
+    /// Returns the label that represents the class of a number; the number itself if it has a class of its own or is
+    /// not in the set.
+    pub fn representative_of(&self, number: i64) -> i64 {
         match self.labels.binary_search_by_key(&number, |label| label.number) {
-            Ok(rank) => self.first_of_class(self.class_of_rank(rank)).number,
+            Ok(rank) => self.representative_of_class(self.class_of_rank(rank)).number,
             Err(_) => number,
         }
     }
 
-    /// The classes as tables of looks count them: from 0 to the last.
-    pub fn classes(&self) -> ValueRange {
+    /// Returns the range of class indices: from 0 to the last.
+    pub fn class_range(&self) -> ValueRange {
         ValueRange::new(0.0, (self.class_count() - 1) as f64)
     }
 
-    /// The density of the label that is nearest to a value: its class as a share of the last one.
+    /// Returns the density of the label nearest to a value: its class as a share of the last one.
     pub fn density_of(&self, value: f64) -> f64 {
         if !value.is_finite() {
             return 0.0;
@@ -131,31 +132,32 @@ impl LabelSet {
         let distance = |rank: usize| (self.labels[rank].number as f64 - value).abs();
         let rank = match above {
             0 => 0,
-            above if above == self.count() => above - 1,
+            above if above == self.count_integers() => above - 1,
             above if distance(above - 1) < distance(above) => above - 1,
             above => above,
         };
-        self.class_of_rank(rank) as f64 / self.classes().high
+        self.class_of_rank(rank) as f64 / self.class_range().high
     }
 
-    /// The number of the first label of the class that is nearest to a density.
+    /// Returns the number of the first label of the class nearest to a density.
     pub fn number_at(&self, density: f64) -> i64 {
-        let class = self.classes().at(density.clamp(0.0, 1.0)).round() as usize;
-        self.first_of_class(class).number
+        let class = self.class_range().value_at(density.clamp(0.0, 1.0)).round() as usize;
+        self.representative_of_class(class).number
     }
 }
 
-/// How often each whole number occurs; `None` where there are others, or more than labels can be.
+/// Counts the occurrences of each integer; `None` if there are fractions, or more than [`MAX_LABELS_IN_VOLUME`]
+/// numbers.
 fn count(samples: &Samples, voxels: impl Iterator<Item = usize>) -> Option<BTreeMap<i64, u64>> {
     let mut counted = BTreeMap::new();
-    // Neighbours are mostly equal.
+    // Runs of equal values are counted at once: neighbours are mostly equal.
     let (mut last, mut run) = (f64::NAN, 0u64);
     let mut add = |value: f64, run: u64| {
-        let is_number = value.fract() == 0.0 && value.abs() <= LARGEST_NUMBER;
+        let is_number = value.fract() == 0.0 && value.abs() <= MAX_LABEL_NUMBER;
         if run > 0 && is_number {
             *counted.entry(value as i64).or_default() += run;
         }
-        run == 0 || is_number && counted.len() <= MOST_LABELS
+        run == 0 || is_number && counted.len() <= MAX_LABELS_IN_VOLUME
     };
     for voxel in voxels {
         let value = samples.value(voxel);
@@ -188,35 +190,38 @@ mod tests {
     #[test]
     fn labels_are_counted_but_for_what_is_missing() {
         let padded = volume(vec![3.0, 3.0, -2.0, 9.0, f32::NAN, 3.0, 255.0]).with_padding(255.0).unwrap();
-        let labels = LabelSet::of(&padded).unwrap();
+        let labels = LabelSet::from_volume(&padded).unwrap();
         let found: Vec<_> = labels.labels().iter().map(|label| (label.number, label.voxels)).collect();
         assert_eq!(found, [(-2, 1), (3, 3), (9, 1)]);
         assert_eq!([-2.0, 3.0, 9.0].map(|value| labels.density_of(value)), [0.0, 0.5, 1.0]);
-        // What is beside a label is the nearest.
+        // Values between labels get the nearest one.
         assert_eq!([-9.0, 5.9, 6.1, 1e9, f64::NAN].map(|v| labels.density_of(v)), [0.0, 0.5, 1.0, 1.0, 0.0]);
         assert_eq!([0.1, 0.3, 1.0].map(|density| labels.number_at(density)), [-2, 3, 9]);
     }
 
     #[test]
     fn what_are_no_labels_has_none() {
-        assert_eq!(LabelSet::of(&volume(vec![1.0, 2.5])), None);
-        assert_eq!(LabelSet::of(&volume(vec![1.0, 1e12])), None);
-        assert_eq!(LabelSet::of(&volume(vec![1.0, f32::NAN, 1.0])), None, "there is one only");
+        assert_eq!(LabelSet::from_volume(&volume(vec![1.0, 2.5])), None);
+        assert_eq!(LabelSet::from_volume(&volume(vec![1.0, 1e12])), None);
+        assert_eq!(LabelSet::from_volume(&volume(vec![1.0, f32::NAN, 1.0])), None, "there is one only");
         let many = |count: u32| {
             let values = Samples::U32((0..count).collect());
-            LabelSet::of(&Volume::with_spacing("t", [count as usize, 1, 1], DVec3::ONE, values).unwrap())
+            LabelSet::from_volume(
+                &Volume::with_spacing("t", [count as usize, 1, 1], DVec3::ONE, values).unwrap(),
+            )
         };
-        assert_eq!(many(1 << 16).map(|labels| labels.count()), Some(1 << 16));
+        assert_eq!(many(1 << 16).map(|labels| labels.count_integers()), Some(1 << 16));
         assert_eq!(many((1 << 16) + 1), None);
     }
 
-    /// The derivation at [`MAX_CLASSES`], for each number of classes: whatever a look-up mixes is of the same class.
+    /// Tests the derivation at [`MAX_CLASSES`] for each number of classes: entries that a lookup mixes belong to the
+    /// same class.
     #[test]
     fn classes_survive_both_formats_of_densities() {
         let nearest = |entry: f64, last: f64| (entry * last / 1023.0).round();
         for count in 2..=MAX_CLASSES {
             let labels = set(count);
-            let last = labels.classes().high;
+            let last = labels.class_range().high;
             for label in labels.labels() {
                 let density = labels.density_of(label.number as f64) as f32;
                 let class = (f64::from(density) * last).round();
@@ -233,19 +238,19 @@ mod tests {
     }
 
     #[test]
-    fn labels_beyond_the_classes_take_turns_and_what_is_around_does_not() {
+    fn extra_labels_share_classes_except_the_background() {
         let labels = set(1000);
         assert_eq!(labels.class_count(), MAX_CLASSES);
         let class = |number: i64| (labels.density_of(number as f64) * 255.0).round() as usize;
         assert_eq!((class(0), class(-70), class(-63), class(7)), (0, 1, 2, 11));
-        // All have the look of the first that has theirs.
+        // All labels have the look of the first one in their class.
         for label in labels.labels() {
-            let first = labels.standing_for(label.number);
+            let first = labels.representative_of(label.number);
             assert_eq!(class(first), class(label.number));
-            assert_eq!(labels.first_of_class(class(first)).number, first);
+            assert_eq!(labels.representative_of_class(class(first)).number, first);
             assert!(first <= label.number && (first == 0) == (label.number == 0));
         }
-        assert_eq!(labels.standing_for(12), 12, "there is no such label");
-        assert!((0..200).all(|rank| set(200).standing_for(7 * rank - 70) == 7 * rank - 70));
+        assert_eq!(labels.representative_of(12), 12, "there is no such label");
+        assert!((0..200).all(|rank| set(200).representative_of(7 * rank - 70) == 7 * rank - 70));
     }
 }

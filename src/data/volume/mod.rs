@@ -1,99 +1,99 @@
-//! A scalar volume on a regular grid, with its place in the world and its values in data units.
+//! Scalar volume on a regular grid, with its transform to world space and its values in data units.
 
+mod block_average;
 mod corrections;
+mod crop;
+mod density_mapping;
 mod error;
-mod in_file;
+mod file_grid;
 mod kind;
 mod label_set;
 mod missing;
-mod reduce;
-mod region;
-mod shown;
-mod thinned;
+mod subsample;
 
+pub(super) use block_average::BlockPartition;
+pub use block_average::block_counts;
 pub use corrections::{
-    AxisOrder, Corrections, Flips, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale,
+    AnatomicalAxes, AxisOrder, Corrections, Flips, Orientation, PaddingValue, SpacingUnit, ValueScale,
 };
+pub use density_mapping::DensityMapping;
 pub use error::VolumeError;
-pub use kind::{DataKind, KindFound, KindName};
+pub use kind::{DataKind, DetectedKind, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
-pub use missing::Missing;
-pub(super) use reduce::Blocks;
-pub use reduce::reduced_dims;
-pub use shown::Shown;
+pub use missing::MissingVoxels;
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use self::corrections::Corrected;
-use self::in_file::InFile;
-use super::attempt::Held;
+use self::corrections::AppliedCorrections;
+use self::file_grid::FileGridMapping;
+use super::load_context::FileContents;
 use super::values::robust::quantile;
-use super::{Hints, Samples, ValueRange, ValueRanges};
+use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
-/// Identifies a volume, and says what its values are.
+/// Identity of a volume together with its value ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeId {
-    /// See [`Volume::content_id`].
+    /// Content hash, see [`Volume::content_id`].
     pub content_id: u64,
-    /// See [`Volume::ranges`].
+    /// Value ranges, see [`Volume::ranges`].
     pub ranges: ValueRanges,
-    /// See [`Volume::dims`].
+    /// Dimensions in voxels, see [`Volume::dims`].
     pub dims: [usize; 3],
 }
 
-/// A scalar volume. Its invariants: at least one voxel, an invertible affine, a finite value range. Copies share the
-/// voxels.
+/// Scalar volume. Invariants: at least one voxel, an invertible affine transform, a finite value range. Clones share
+/// the voxels.
 #[derive(Debug, Clone)]
 pub struct Volume {
     name: String,
     dims: [usize; 3],
     file_dims: [usize; 3],
-    /// How voxels lie among those of the file.
-    block: InFile,
+    /// Position of the voxels in the grid of the file.
+    file_grid: FileGridMapping,
     world_from_index: DAffine3,
     samples: Arc<Samples>,
     ranges: ValueRanges,
-    shown: Shown,
-    missing: Option<Arc<Missing>>,
+    density_mapping: DensityMapping,
+    missing: Option<Arc<MissingVoxels>>,
     non_finite_voxels: usize,
     padding_value: Option<f64>,
-    unit_mm: Option<f64>,
+    opacity_unit_mm: Option<f64>,
     is_anatomical: bool,
-    hints: Hints,
+    hints: ValueMetadata,
     length_unit: SpacingUnit,
     remarks: Vec<String>,
-    held: Arc<Held>,
-    looking_took: Duration,
-    /// Found when it is first asked for.
-    kind: OnceLock<KindFound>,
-    /// Found when they are first asked for.
+    contents: Arc<FileContents>,
+    analysis_time: Duration,
+    /// Kind of data, detected on first use.
+    kind: OnceLock<DetectedKind>,
+    /// Labels of the volume, counted on first use.
     labels: OnceLock<Option<Arc<LabelSet>>>,
     content_id: u64,
-    /// What it was made from, if somebody knows better than the file.
-    corrected: Option<Arc<Corrected>>,
+    /// Corrections by the user and the opened volume, if there are any.
+    corrected: Option<Arc<AppliedCorrections>>,
 }
 
 impl Volume {
-    /// Makes a volume. `world_from_index` maps voxel indices (centres at integers) to millimetres.
+    /// Creates a volume. `world_from_index` maps voxel indices (centres at integers) to millimetres.
     ///
     /// # Errors
-    /// When the count does not fit `dims`, a dimension is zero, the affine is not finite and
-    /// invertible, no value is finite, or the values span more than a number can say.
+    /// Fails if the count does not match `dims`, a dimension is zero, the transform is not finite and invertible, no
+    /// value is finite, or the span of the values exceeds the range of numbers.
     pub fn new(
         name: impl Into<String>,
         dims: [usize; 3],
         world_from_index: DAffine3,
         samples: Samples,
     ) -> Result<Self, VolumeError> {
-        Self::sharing(name.into(), dims, world_from_index, Arc::new(samples))
+        Self::from_shared_samples(name.into(), dims, world_from_index, Arc::new(samples))
     }
 
-    /// As [`Self::new`], of voxels that others may have, too.
-    fn sharing(
+    /// Creates a volume as [`Self::new`] does, from voxels that other volumes may share.
+    fn from_shared_samples(
         name: String,
         dims: [usize; 3],
         world_from_index: DAffine3,
@@ -108,7 +108,7 @@ impl Volume {
         }
         let matrix = world_from_index.matrix3;
         let lengths = DVec3::new(matrix.x_axis.length(), matrix.y_axis.length(), matrix.z_axis.length());
-        // Relative to a box of the same edges: below a millionth it is flat, whatever the unit.
+        // Relative to a box with the same edges: below a millionth it is flat, whatever the unit.
         let flatness = matrix.determinant().abs() / lengths.element_product();
         if !(world_from_index.is_finite() && lengths.min_element() > 0.0 && flatness > 1e-6) {
             return Err(VolumeError::BadGeometry { what: format!("axes {matrix:?}") });
@@ -118,7 +118,7 @@ impl Volume {
             let range = format!("from {:e} to {:e}", value_range.low, value_range.high);
             return Err(VolumeError::TooWide { range });
         }
-        let ranges = ValueRanges::of(&samples, value_range);
+        let ranges = ValueRanges::from_samples(&samples, value_range);
         let geometry =
             dims.iter().map(|&n| n as u64).chain(world_from_index.to_cols_array().map(f64::to_bits));
         let content_id = geometry.fold(samples.fingerprint(), |hash, word| {
@@ -128,21 +128,21 @@ impl Volume {
             name,
             dims,
             file_dims: dims,
-            block: InFile::default(),
+            file_grid: FileGridMapping::default(),
             world_from_index,
             samples,
             ranges,
-            shown: Shown::Range(ranges.robust),
+            density_mapping: DensityMapping::Range(ranges.robust),
             missing: None,
             non_finite_voxels,
             padding_value: None,
-            unit_mm: None,
+            opacity_unit_mm: None,
             is_anatomical: false,
-            hints: Hints::default(),
+            hints: ValueMetadata::default(),
             length_unit: SpacingUnit::Mm,
             remarks: Vec::new(),
-            held: Arc::default(),
-            looking_took: Duration::ZERO,
+            contents: Arc::default(),
+            analysis_time: Duration::ZERO,
             kind: OnceLock::new(),
             labels: OnceLock::new(),
             content_id,
@@ -151,115 +151,116 @@ impl Volume {
         Ok(if non_finite_voxels > 0 { volume.with_missing() } else { volume })
     }
 
-    /// States the length to which opacities of this material refer, so that it looks the same at
-    /// every resolution; the built-in volumes have one.
+    /// Sets the opacity unit in mm, so that the material looks the same at every resolution; built-in volumes have
+    /// one.
     #[must_use]
     pub fn with_unit_mm(self, unit_mm: f64) -> Self {
-        Self { unit_mm: Some(unit_mm), ..self }
+        Self { opacity_unit_mm: Some(unit_mm), ..self }
     }
 
-    /// See [`Self::with_unit_mm`].
-    pub fn unit_mm(&self) -> Option<f64> {
-        self.unit_mm
+    /// Returns the opacity unit in mm, see [`Self::with_unit_mm`].
+    pub fn opacity_unit_mm(&self) -> Option<f64> {
+        self.opacity_unit_mm
     }
 
-    /// States that world space is right-anterior-superior, as the file says of a body.
+    /// Sets whether world space is right-anterior-superior, as the file states of a body.
     #[must_use]
-    pub(crate) fn with_anatomy(self, is_anatomical: bool) -> Self {
+    pub(crate) fn with_anatomical_axes(self, is_anatomical: bool) -> Self {
         Self { is_anatomical, ..self }
     }
 
-    /// Whether +x, +y and +z are known to be a body's right, front and head.
+    /// Returns true if +x, +y and +z are known to be a body's right, anterior and superior directions.
     pub fn is_anatomical(&self) -> bool {
         self.is_anatomical
     }
 
-    /// States what the file says of the values.
+    /// Sets the metadata of the values.
     #[must_use]
-    pub fn with_hints(self, hints: Hints) -> Self {
+    pub fn with_metadata(self, hints: ValueMetadata) -> Self {
         Self { hints, kind: OnceLock::new(), ..self }
     }
 
-    /// What the file says of the values.
-    pub fn hints(&self) -> &Hints {
+    /// Returns the metadata of the values, as the file states it.
+    pub fn metadata(&self) -> &ValueMetadata {
         &self.hints
     }
 
-    /// States that nobody knows how large voxels are: lengths are in voxels then, not in millimetres.
+    /// Marks the size of voxels as unknown: lengths are then in voxels, not in millimetres.
     #[must_use]
     pub fn with_unknown_scale(self) -> Self {
         Self { length_unit: SpacingUnit::Voxels, ..self }
     }
 
-    /// Whether lengths are in voxels because nobody knows how large these are.
+    /// Returns true if lengths are in voxels because the voxels' size is unknown.
     pub fn has_unknown_scale(&self) -> bool {
         self.length_unit == SpacingUnit::Voxels
     }
 
-    /// States what a user should know of how the file was read.
+    /// Sets remarks for the user about how the file was read.
     #[must_use]
     pub fn with_remarks(self, remarks: Vec<String>) -> Self {
         Self { remarks, ..self }
     }
 
-    /// What a user should know of how the file was read: what it says that cannot be, and what was taken instead.
+    /// Returns remarks for the user about how the file was read: impossible statements in it, and the values used
+    /// instead.
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 
-    /// States what else the file holds.
+    /// Sets the inventory of the file.
     #[must_use]
-    pub(super) fn with_held(self, held: Held) -> Self {
-        Self { held: Arc::new(held), ..self }
+    pub(super) fn with_contents(self, held: FileContents) -> Self {
+        Self { contents: Arc::new(held), ..self }
     }
 
-    /// What the file holds of which this volume is one: what else could be opened of it.
-    pub fn held(&self) -> &Held {
-        &self.held
+    /// Returns the inventory of the file: the other volumes that could be opened of it.
+    pub fn contents(&self) -> &FileContents {
+        &self.contents
     }
 
-    /// States how long it took to look at the voxels of a file once they were there.
+    /// Sets the time taken to analyse the voxels after reading.
     #[must_use]
-    pub(super) fn with_looking_took(self, looking_took: Duration) -> Self {
-        Self { looking_took, ..self }
+    pub(super) fn with_analysis_time(self, looking_took: Duration) -> Self {
+        Self { analysis_time: looking_took, ..self }
     }
 
-    /// How long it took, when its file was read, to find what its values span and what identifies them: what of loading was
-    /// neither reading nor decoding. Nothing for volumes that come from no file.
-    pub fn looking_took(&self) -> Duration {
-        self.looking_took
+    /// Returns the time taken, when the file was read, for the voxels' ranges and hash: the part of loading that was
+    /// neither reading nor decoding. Zero for volumes that come from no file.
+    pub fn analysis_time(&self) -> Duration {
+        self.analysis_time
     }
 
-    /// What kind of data it holds. The first to ask waits until that is found.
-    pub fn kind(&self) -> &KindFound {
-        self.kind.get_or_init(|| KindFound::of(self))
+    /// Returns the kind of data; the first call detects it and blocks meanwhile.
+    pub fn kind(&self) -> &DetectedKind {
+        self.kind.get_or_init(|| DetectedKind::detect(self))
     }
 
-    /// Whether its values are labels, whose numbers have no mean.
-    pub(in crate::data) fn is_of_labels(&self) -> bool {
+    /// Returns true if values are labels, whose numbers have no mean.
+    pub(crate) fn is_label_map(&self) -> bool {
         matches!(self.kind().kind, DataKind::LabelMap { .. })
     }
 
-    /// States what else is known of the volume whose blocks this one's voxels are.
+    /// Copies the metadata of the volume whose blocks this one's voxels represent.
     #[must_use]
-    pub(super) fn standing_for(self, whole: &Self) -> Self {
+    pub(super) fn with_metadata_of(self, whole: &Self) -> Self {
         Self {
             file_dims: whole.file_dims,
-            unit_mm: whole.unit_mm,
+            opacity_unit_mm: whole.opacity_unit_mm,
             is_anatomical: whole.is_anatomical,
             hints: whole.hints.clone(),
             length_unit: whole.length_unit,
             remarks: whole.remarks.clone(),
-            held: Arc::clone(&whole.held),
-            kind: whole.kind_of_parts(),
+            contents: Arc::clone(&whole.contents),
+            kind: whole.inherited_kind(),
             ..self
         }
     }
 
-    /// An axis-aligned volume: `spacing_mm` between voxel centres along x, y, z.
+    /// Creates an axis-aligned volume with `spacing_mm` between voxel centres along x, y, z.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Fails like [`Self::new`].
     pub fn with_spacing(
         name: impl Into<String>,
         dims: [usize; 3],
@@ -270,84 +271,84 @@ impl Volume {
         Self::new(name, dims, affine, samples)
     }
 
-    /// What the user calls it: the file's name or the built-in's.
+    /// Returns the name shown to the user: that of the file or the built-in volume.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Voxels along x, y, z.
+    /// Returns the number of voxels along x, y, z.
     pub fn dims(&self) -> [usize; 3] {
         self.dims
     }
 
-    /// Voxels along x, y, z of the volume whose blocks were averaged ([`Self::reduced`]), or of which every so manyth was
-    /// kept ([`Self::thinned`]); [`Self::dims`] where that is all of them.
+    /// Returns the dimensions of the volume from which this one was made by block averages ([`Self::block_averaged`])
+    /// or subsampling ([`Self::subsampled`]); [`Self::dims`] if it is neither.
     pub fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }
 
-    /// Number of voxels.
+    /// Returns the total number of voxels.
     pub fn voxel_count(&self) -> usize {
         self.samples.len()
     }
 
-    /// Voxel indices (centres at integers) to millimetres.
+    /// Returns the transform from voxel indices (centres at integers) to millimetres.
     pub fn world_from_index(&self) -> DAffine3 {
         self.world_from_index
     }
 
-    /// Distance between voxel centres along the three index axes.
+    /// Returns the distance in mm between voxel centres along the three index axes.
     pub fn spacing_mm(&self) -> DVec3 {
         let axes = self.world_from_index.matrix3;
         DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
     }
 
-    /// How the grid lies in scene space.
+    /// Returns the scene space of the grid.
     pub fn scene(&self) -> SceneSpace {
         SceneSpace::new(self.dims, self.world_from_index)
     }
 
-    /// The stored values.
+    /// Returns the stored values.
     pub fn samples(&self) -> &Samples {
         &self.samples
     }
 
-    /// The smallest and the largest finite value of the file, in data units.
+    /// Returns the range of finite values in the file, in data units.
     pub fn value_range(&self) -> ValueRange {
         self.ranges.all
     }
 
-    /// All values of the file, and those that matter.
+    /// Returns the range of all values and the robust range.
     pub fn ranges(&self) -> ValueRanges {
         self.ranges
     }
 
-    /// The value below which about that share of the voxels lies.
+    /// Returns the value below which about this share of the voxels lies.
     pub fn quantile(&self, share: f64) -> f64 {
         quantile(&self.samples, self.padding_value.unwrap_or(f64::NAN), share)
     }
 
-    /// How many voxels hold NaN or an infinity: nothing is there.
+    /// Returns the number of voxels that hold NaN or an infinity, and so are missing.
     pub fn non_finite_voxels(&self) -> usize {
         self.non_finite_voxels
     }
 
-    /// Identifies values and geometry: equal volumes have equal ids.
+    /// Returns a hash of values and geometry: equal volumes have equal ids.
     pub fn content_id(&self) -> u64 {
         self.content_id
     }
 
-    /// What pictures are asked for by.
+    /// Returns the identity by which pictures of the volume are cached.
     pub fn id(&self) -> VolumeId {
         VolumeId { content_id: self.content_id, ranges: self.ranges, dims: self.dims }
     }
 
-    /// One voxel in data units, as the file has it.
+    /// Returns the value of one voxel in data units, as stored in the file.
     pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
         self.samples.value(x + self.dims[0] * (y + self.dims[1] * z))
     }
 
-    /// The density of a voxel; `None` where it holds nothing.
+    /// Returns the density of a voxel; `None` if it is missing.
     pub fn density_at(&self, [x, y, z]: [usize; 3]) -> Option<f64> {
         let voxel = x + self.dims[0] * (y + self.dims[1] * z);
         let is_missing = self.missing().is_some_and(|missing| missing.contains(voxel));
@@ -365,7 +366,7 @@ mod tests {
         let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
         assert_eq!(volume.value_range(), ValueRange::new(-1000.0, 1000.0));
         assert_eq!(volume.non_finite_voxels(), 1);
-        // What is not there has the mean of what is beside it.
+        // The missing voxel gets the mean of its neighbours.
         assert_eq!(volume.slice_densities(0), [0.0, 0.0, 0.5, 1.0]);
         assert!(volume.missing().is_some_and(|missing| missing.count() == 1 && missing.contains(0)));
         assert_eq!(volume.value_of(0.5), 0.0);

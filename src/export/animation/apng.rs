@@ -1,5 +1,4 @@
-//! PNG that moves (APNG): every colour, and transparency as it is. Programs that do not know of such files
-//! show the first picture.
+//! Animated PNG (APNG): full colour and transparency. Programs that do not support it show the first picture.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -9,29 +8,29 @@ use png::text_metadata::ITXtChunk;
 
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::files::{Unfinished, place, temporary_beside};
-use crate::export::png_file::{mark, rgb};
-use crate::export::rows::RECORD;
+use crate::export::files::{TemporaryFile, rename_into_place, temporary_file_for};
+use crate::export::png_file::{add_software_text, rgb};
+use crate::export::rows::RECORD_KEY;
 
-/// An APNG file.
-pub(super) struct Apng {
+/// Writer of an APNG file.
+pub(super) struct ApngWriter {
     writer: png::Writer<BufWriter<File>>,
-    file: Unfinished,
+    file: TemporaryFile,
     path: PathBuf,
     transparent: bool,
-    /// The file says what its first picture was made with.
+    /// True once the file has the record of its first picture.
     has_record: bool,
 }
 
-impl Apng {
-    pub(super) fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
-        let AnimationSpec { size: [width, height], frames, rate, transparent } = *reel;
-        let file = temporary_beside(path)?;
-        let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
+impl ApngWriter {
+    pub(super) fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
+        let AnimationSpec { size: [width, height], frames, rate, transparent } = *animation_spec;
+        let file = temporary_file_for(path)?;
+        let out = BufWriter::new(file.reopen().map_err(ExportError::io_error_for(path))?);
         let mut encoder = png::Encoder::new(out, width, height);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_color(if transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
-        mark(&mut encoder)?;
+        add_software_text(&mut encoder)?;
         encoder.set_animated(frames, 0)?;
         encoder.set_frame_delay(1, rate)?;
         encoder.validate_sequence(true);
@@ -45,10 +44,10 @@ impl Apng {
     }
 }
 
-impl AnimationEncoder for Apng {
+impl AnimationEncoder for ApngWriter {
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
         if !self.has_record && !record.is_empty() {
-            let chunk = ITXtChunk::new(RECORD, record);
+            let chunk = ITXtChunk::new(RECORD_KEY, record);
             self.writer.write_text_chunk(&chunk)?;
             self.has_record = true;
         }
@@ -63,7 +62,7 @@ impl AnimationEncoder for Apng {
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
         let Self { writer, file, path, .. } = *self;
         writer.finish()?;
-        place(file, &path)
+        rename_into_place(file, &path)
     }
 }
 
@@ -76,8 +75,8 @@ mod tests {
     fn the_file_says_how_many_pictures_it_has() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let reel = AnimationSpec { size: [3, 2], frames: 3, rate: 10, transparent: true };
-        let mut file = Box::new(Apng::create(&path, &reel).unwrap());
+        let animation_spec = AnimationSpec { size: [3, 2], frames: 3, rate: 10, transparent: true };
+        let mut file = Box::new(ApngWriter::create(&path, &animation_spec).unwrap());
         for at in 1..=3 {
             file.add(&[at; 4 * 6], &format!("{{\"picture\": {at}}}")).unwrap();
         }

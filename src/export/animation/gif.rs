@@ -1,63 +1,72 @@
-//! GIF: 256 colours per picture, found for each anew, and no half transparency.
+//! GIF animation: a palette of 256 colours per frame, and binary transparency.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::carried::comment;
+use super::embedded_record::gif_comment;
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::files::{Unfinished, place, temporary_beside};
-use crate::model::made_by;
+use crate::export::files::{TemporaryFile, rename_into_place, temporary_file_for};
+use crate::model::provenance_mark;
 
-/// How many pixels the search for colours looks at: every third, which nobody can tell from all of them.
-const SPEED: i32 = 3;
+/// Sampling of pixels for the palette: every third, which is indistinguishable from all of them.
+const PALETTE_SAMPLING: i32 = 3;
 
-/// Shortest time a picture is shown, in hundredths of a second: viewers slow down what is faster.
-const SHORTEST: u64 = 2;
+/// Shortest duration of a frame, in hundredths of a second: viewers slow down faster ones.
+const MIN_DELAY: u64 = 2;
 
-/// A GIF file.
-pub(super) struct Gif {
+/// Writer of a GIF file.
+pub(super) struct GifWriter {
     encoder: gif::Encoder<BufWriter<File>>,
-    file: Unfinished,
+    file: TemporaryFile,
     path: PathBuf,
-    reel: AnimationSpec,
+    animation_spec: AnimationSpec,
     size: [u16; 2],
     written: u32,
 }
 
-impl Gif {
-    pub(super) fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
-        let unfit = ExportError::Unfit {
+impl GifWriter {
+    pub(super) fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
+        let unfit = ExportError::UnsupportedByFormat {
             what: "GIF pictures have at most 65535 pixels along an edge",
             path: path.to_owned(),
         };
-        let [Ok(width), Ok(height)] = reel.size.map(u16::try_from) else { return Err(unfit) };
-        let file = temporary_beside(path)?;
-        let out = BufWriter::new(file.reopen().map_err(ExportError::writing(path))?);
+        let [Ok(width), Ok(height)] = animation_spec.size.map(u16::try_from) else { return Err(unfit) };
+        let file = temporary_file_for(path)?;
+        let out = BufWriter::new(file.reopen().map_err(ExportError::io_error_for(path))?);
         let mut encoder = gif::Encoder::new(out, width, height, &[])?;
         encoder.set_repeat(gif::Repeat::Infinite)?;
-        encoder.write_raw_extension(gif::Extension::Comment.into(), &[made_by().as_bytes()])?;
-        Ok(Self { encoder, file, path: path.to_owned(), reel: *reel, size: [width, height], written: 0 })
+        encoder.write_raw_extension(gif::Extension::Comment.into(), &[provenance_mark().as_bytes()])?;
+        Ok(Self {
+            encoder,
+            file,
+            path: path.to_owned(),
+            animation_spec: *animation_spec,
+            size: [width, height],
+            written: 0,
+        })
     }
 
-    /// Hundredths of a second until the next picture: whole ones, which add up to the rate.
+    /// Returns the duration of the next frame in hundredths of a second, rounded so that the sum matches the rate.
     fn delay(&self) -> u16 {
-        let begins = |frame: u32| (200 * u64::from(frame) / u64::from(self.reel.rate.max(1))).div_ceil(2);
-        (begins(self.written + 1) - begins(self.written)).max(SHORTEST) as u16
+        let begins =
+            |frame: u32| (200 * u64::from(frame) / u64::from(self.animation_spec.rate.max(1))).div_ceil(2);
+        (begins(self.written + 1) - begins(self.written)).max(MIN_DELAY) as u16
     }
 }
 
-impl AnimationEncoder for Gif {
+impl AnimationEncoder for GifWriter {
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
         if self.written == 0 && !record.is_empty() {
-            self.encoder.write_raw_extension(gif::Extension::Comment.into(), &[&comment(record)])?;
+            self.encoder.write_raw_extension(gif::Extension::Comment.into(), &[&gif_comment(record)])?;
         }
         let mut pixels = shown.to_vec();
         for pixel in pixels.chunks_exact_mut(4) {
-            pixel[3] = if self.reel.transparent && pixel[3] < 128 { 0 } else { 255 };
+            pixel[3] = if self.animation_spec.transparent && pixel[3] < 128 { 0 } else { 255 };
         }
-        let mut frame = gif::Frame::from_rgba_speed(self.size[0], self.size[1], &mut pixels, SPEED);
+        let mut frame =
+            gif::Frame::from_rgba_speed(self.size[0], self.size[1], &mut pixels, PALETTE_SAMPLING);
         frame.delay = self.delay();
         frame.dispose = gif::DisposalMethod::Background;
         self.encoder.write_frame(&frame)?;
@@ -66,12 +75,12 @@ impl AnimationEncoder for Gif {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
-        let Self { encoder, file, path, reel, written, .. } = *self;
-        if written != reel.frames {
-            return Err(ExportError::Unfit { what: "pictures are missing", path });
+        let Self { encoder, file, path, animation_spec, written, .. } = *self;
+        if written != animation_spec.frames {
+            return Err(ExportError::UnsupportedByFormat { what: "pictures are missing", path });
         }
-        encoder.into_inner()?.flush().map_err(ExportError::writing(&path))?;
-        place(file, &path)
+        encoder.into_inner()?.flush().map_err(ExportError::io_error_for(&path))?;
+        rename_into_place(file, &path)
     }
 }
 
@@ -83,8 +92,8 @@ mod tests {
     fn pictures_come_back_and_take_their_time() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gif");
-        let reel = AnimationSpec { size: [2, 1], frames: 24, rate: 24, transparent: true };
-        let mut file = Box::new(Gif::create(&path, &reel).unwrap());
+        let animation_spec = AnimationSpec { size: [2, 1], frames: 24, rate: 24, transparent: true };
+        let mut file = Box::new(GifWriter::create(&path, &animation_spec).unwrap());
         for _ in 0..24 {
             file.add(&[200, 100, 50, 255, 9, 9, 9, 0], "").unwrap();
         }
@@ -100,6 +109,6 @@ mod tests {
             hundredths += u32::from(frame.delay);
         }
         assert_eq!((frames, hundredths), (24, 100), "a second");
-        assert!(Gif::create(&path, &AnimationSpec { size: [70000, 1], ..reel }).is_err());
+        assert!(GifWriter::create(&path, &AnimationSpec { size: [70000, 1], ..animation_spec }).is_err());
     }
 }

@@ -1,33 +1,33 @@
-//! Pictures that move: written frame by frame, so that a long turn takes no more memory than a short one.
+//! Animations: written frame by frame, so that a long turn takes no more memory than a short one.
 
 mod apng;
-pub(super) mod carried;
-mod folder;
+pub(super) mod embedded_record;
 mod gif;
+mod image_sequence;
 mod mp4;
 
-pub use folder::frame_names;
+pub use image_sequence::frame_names;
 
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
 
-/// Kinds of files that move.
+/// File format of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnimationFormat {
-    /// PNG that moves: every colour; browsers show it.
+    /// Animated PNG: full colour; supported by browsers.
     Apng,
-    /// GIF: 256 colours; everything shows it.
+    /// GIF: 256 colours; supported everywhere.
     Gif,
-    /// A video, made by ffmpeg.
+    /// MP4 video, encoded by ffmpeg.
     Mp4,
-    /// A folder with a PNG file for each picture.
+    /// Folder with a PNG file for each frame.
     Folder,
 }
 
 impl AnimationFormat {
-    /// What a name stands for; nothing that it does not end like means a folder.
-    pub fn of_path(path: &Path) -> Self {
+    /// Returns the format of a path by its extension; unknown extensions mean a folder.
+    pub fn from_path(path: &Path) -> Self {
         let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
         match ending.as_ref().and_then(|ending| ending.to_str()) {
             Some("png" | "apng") => Self::Apng,
@@ -37,39 +37,40 @@ impl AnimationFormat {
         }
     }
 
-    /// The folder from which the records of pictures see their volume: that of the file, or the one of pictures.
+    /// Returns the folder that paths of volumes in records are relative to: the file's, or the folder of frames.
     pub fn record_folder(path: &Path) -> Option<&Path> {
-        if Self::of_path(path) == Self::Folder { Some(path) } else { path.parent() }
+        if Self::from_path(path) == Self::Folder { Some(path) } else { path.parent() }
     }
 }
 
-/// What all pictures of a file that moves have in common.
+/// Parameters of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnimationSpec {
-    /// Columns and rows.
+    /// Columns and rows of each frame.
     pub size: [u32; 2],
-    /// How many there will be.
+    /// Number of frames.
     pub frames: u32,
-    /// How many a second.
+    /// Frames per second.
     pub rate: u16,
-    /// Whether their background is left out.
+    /// True if the background is transparent.
     pub transparent: bool,
 }
 
-/// Endings of pictures and videos that are no name for a folder.
-const OTHERS: [&str; 10] = ["avi", "avif", "bmp", "exr", "jpeg", "jpg", "mkv", "mov", "webm", "webp"];
+/// Extensions of other picture and video formats, which are not accepted as folder names.
+const UNSUPPORTED_EXTENSIONS: [&str; 10] =
+    ["avi", "avif", "bmp", "exr", "jpeg", "jpg", "mkv", "mov", "webm", "webp"];
 
-/// A kind of file that is being written.
+/// Encoder of one animation format.
 trait AnimationEncoder: Send {
-    /// Adds a picture.
+    /// Adds a frame: sRGB bytes, RGBA, with its record.
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError>;
 
-    /// Completes it.
+    /// Completes the file and gives it its name.
     fn finish(self: Box<Self>) -> Result<(), ExportError>;
 }
 
-/// A file of pictures of one size that is being written. It takes its name when it is complete, and leaves
-/// nothing when it is not; but pictures in a folder are complete one by one.
+/// Animation that is being written, with frames of equal size. The file gets its name when it is complete, and leaves
+/// nothing behind otherwise; in a folder, each frame is complete by itself.
 pub struct Animation {
     encoder: Box<dyn AnimationEncoder>,
     path: PathBuf,
@@ -82,44 +83,51 @@ impl std::fmt::Debug for Animation {
 }
 
 impl Animation {
-    /// Begins a file, of the kind that its name says, which repeats for ever where the kind can.
+    /// Starts an animation in the format of its extension, looping endlessly if the format supports that.
     ///
     /// # Errors
-    /// When the folder cannot be written to, the kind of file cannot hold what is asked for, or ffmpeg is
-    /// needed and not there.
-    pub fn create(path: &Path, reel: &AnimationSpec) -> Result<Self, ExportError> {
+    /// When the folder cannot be written to, the format does not support the parameters, or ffmpeg is needed and
+    /// missing.
+    pub fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
         let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
-        if OTHERS.iter().any(|other| ending == *other) {
+        if UNSUPPORTED_EXTENSIONS.iter().any(|other| ending == *other) {
             let what = "turns are written as .png, .gif, .mp4 or into a folder";
-            return Err(ExportError::Unfit { what, path: path.to_owned() });
+            return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
-        let encoder = Self::encoder(path, reel).map_err(ExportError::about(path))?;
+        let encoder = Self::encoder(path, animation_spec).map_err(ExportError::with_path(path))?;
         Ok(Self { encoder, path: path.to_owned() })
     }
 
-    /// Adds a picture: sRGB bytes, RGBA, row by row from the top left; and how it was made.
+    /// Adds a frame: sRGB bytes, RGBA, row by row from the top left; and its record.
     ///
     /// # Errors
-    /// When the disk refuses, or the picture is one too many.
+    /// When the file cannot be written, or there are too many frames.
     pub fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
-        self.encoder.add(shown, record).map_err(ExportError::about(&self.path))
+        self.encoder.add(shown, record).map_err(ExportError::with_path(&self.path))
     }
 
     /// Completes the file.
     ///
     /// # Errors
-    /// When the disk refuses, or pictures are missing; an older file of that name stays.
+    /// When the file cannot be written, or frames are missing; an older file of that name stays.
     pub fn finish(self) -> Result<(), ExportError> {
-        self.encoder.finish().map_err(ExportError::about(&self.path))
+        self.encoder.finish().map_err(ExportError::with_path(&self.path))
     }
 
-    /// What writes the kind of file that a name says.
-    fn encoder(path: &Path, reel: &AnimationSpec) -> Result<Box<dyn AnimationEncoder>, ExportError> {
-        Ok(match AnimationFormat::of_path(path) {
-            AnimationFormat::Apng => Box::new(apng::Apng::create(path, reel)?),
-            AnimationFormat::Gif => Box::new(gif::Gif::create(path, reel)?),
-            AnimationFormat::Mp4 => Box::new(mp4::Mp4::create(path, reel, "ffmpeg".as_ref())?),
-            AnimationFormat::Folder => Box::new(folder::Folder::create(path, reel)?),
+    /// Returns the encoder for the format of a path.
+    fn encoder(
+        path: &Path,
+        animation_spec: &AnimationSpec,
+    ) -> Result<Box<dyn AnimationEncoder>, ExportError> {
+        Ok(match AnimationFormat::from_path(path) {
+            AnimationFormat::Apng => Box::new(apng::ApngWriter::create(path, animation_spec)?),
+            AnimationFormat::Gif => Box::new(gif::GifWriter::create(path, animation_spec)?),
+            AnimationFormat::Mp4 => {
+                Box::new(mp4::Mp4Writer::create(path, animation_spec, "ffmpeg".as_ref())?)
+            }
+            AnimationFormat::Folder => {
+                Box::new(image_sequence::ImageSequenceWriter::create(path, animation_spec)?)
+            }
         })
     }
 }
@@ -128,8 +136,9 @@ impl Animation {
 mod tests {
     use super::*;
 
-    /// What tests write.
-    const REEL: AnimationSpec = AnimationSpec { size: [6, 4], frames: 3, rate: 24, transparent: false };
+    /// Parameters of the animations in these tests.
+    const TEST_ANIMATION: AnimationSpec =
+        AnimationSpec { size: [6, 4], frames: 3, rate: 24, transparent: false };
 
     fn picture(at: u8) -> Vec<u8> {
         (0..24).flat_map(|i| [at * 60, i * 10, 30, if i == 0 { 0 } else { 255 }]).collect()
@@ -145,7 +154,7 @@ mod tests {
             ("frames", AnimationFormat::Folder),
             ("v1.5", AnimationFormat::Folder),
         ] {
-            assert_eq!(AnimationFormat::of_path(Path::new(name)), format, "{name}");
+            assert_eq!(AnimationFormat::from_path(Path::new(name)), format, "{name}");
         }
         for (path, folder) in [("a/turn.gif", "a"), ("a/frames", "a/frames")] {
             assert_eq!(AnimationFormat::record_folder(Path::new(path)), Some(Path::new(folder)));
@@ -157,12 +166,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a.png", "a.gif"] {
             let path = folder.path().join(name);
-            let mut short = Animation::create(&path, &REEL).unwrap();
+            let mut short = Animation::create(&path, &TEST_ANIMATION).unwrap();
             short.add(&picture(1), "{}").unwrap();
             assert!(short.finish().is_err(), "two are missing");
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left");
             for transparent in [false, true] {
-                let mut whole = Animation::create(&path, &AnimationSpec { transparent, ..REEL }).unwrap();
+                let mut whole =
+                    Animation::create(&path, &AnimationSpec { transparent, ..TEST_ANIMATION }).unwrap();
                 for at in 1..=3 {
                     whole.add(&picture(at), "{}").unwrap();
                 }
@@ -170,7 +180,7 @@ mod tests {
                 whole.finish().unwrap();
             }
             std::fs::remove_file(&path).unwrap();
-            assert!(Animation::create(&folder.path().join("no").join(name), &REEL).is_err());
+            assert!(Animation::create(&folder.path().join("no").join(name), &TEST_ANIMATION).is_err());
         }
     }
 
@@ -178,7 +188,7 @@ mod tests {
     fn folders_have_a_file_for_each_picture() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("turn");
-        let mut file = Animation::create(&path, &REEL).unwrap();
+        let mut file = Animation::create(&path, &TEST_ANIMATION).unwrap();
         for at in 0..3 {
             file.add(&picture(at), &format!("{{\"at\": {at}}}")).unwrap();
         }
@@ -187,11 +197,11 @@ mod tests {
         assert_eq!(crate::export::read_record(&last).unwrap().as_deref(), Some("{\"at\": 2}"));
         assert_eq!(image::open(&last).unwrap().to_rgba8().get_pixel(1, 0).0, [120, 10, 30, 255]);
         assert_eq!(std::fs::read_dir(&path).unwrap().count(), 3);
-        // A shorter turn would be mixed with what is left of this one.
-        assert!(Animation::create(&path, &AnimationSpec { frames: 2, ..REEL }).is_err());
-        assert!(Animation::create(&path, &REEL).is_ok());
+        // A shorter turn would be mixed with the remaining frames of this one.
+        assert!(Animation::create(&path, &AnimationSpec { frames: 2, ..TEST_ANIMATION }).is_err());
+        assert!(Animation::create(&path, &TEST_ANIMATION).is_ok());
         for name in ["turn.webm", "turn.exr"] {
-            assert!(Animation::create(&folder.path().join(name), &REEL).is_err(), "{name}");
+            assert!(Animation::create(&folder.path().join(name), &TEST_ANIMATION).is_err(), "{name}");
         }
     }
 }

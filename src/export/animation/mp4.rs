@@ -1,4 +1,4 @@
-//! MP4, by ffmpeg where it is installed: video encoders are large, and some are patented.
+//! MP4 video, encoded by an installed ffmpeg: encoders are large, and some are patented.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -6,62 +6,64 @@ use std::io::{BufWriter, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
-use super::carried::append;
+use super::embedded_record::append_to_mp4;
 use super::{AnimationEncoder, AnimationSpec};
 use crate::export::ExportError;
-use crate::export::files::{Unfinished, place, scratch, temporary_beside};
+use crate::export::files::{TemporaryFile, rename_into_place, temporary_file_for, unnamed_file};
 use crate::export::png_file::rgb;
-use crate::model::made_by;
+use crate::model::provenance_mark;
 
-/// With x264: little is lost, which smooth shading needs.
-const BEST: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
+/// Options for x264: low loss, which smooth shading needs.
+const X264_OPTIONS: [&str; 4] = ["-c:v", "libx264", "-crf", "16"];
 
-/// With whatever else encodes MP4.
-const NEXT_BEST: [&str; 2] = ["-q:v", "2"];
+/// Options for any other MP4 encoder.
+const FALLBACK_OPTIONS: [&str; 2] = ["-q:v", "2"];
 
-/// Colours are those of high-definition television.
-const COLOURS: &str = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+/// Colour conversion to BT.709, limited range, 4:2:0.
+const COLOUR_FILTER: &str = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
-/// Most bytes of its words that are read.
-const MOST_WORDS: u64 = 1 << 16;
+/// Maximum number of bytes read of ffmpeg's error output.
+const MAX_ERROR_BYTES: u64 = 1 << 16;
 
-/// What becomes of the pictures: players want even edges, so that odd ones are continued by a pixel.
+/// Returns ffmpeg's filter graph. Players require even edges, so odd ones are extended by repeating a pixel.
 fn filter([width, height]: [u32; 2]) -> String {
     let (right, bottom) = (width % 2, height % 2);
     if (right, bottom) == (0, 0) {
-        return COLOURS.to_owned();
+        return COLOUR_FILTER.to_owned();
     }
     let wider = format!("pad={}:{}", width + right, height + bottom);
-    format!("{wider},fillborders=right={right}:bottom={bottom}:mode=smear,{COLOURS}")
+    format!("{wider},fillborders=right={right}:bottom={bottom}:mode=smear,{COLOUR_FILTER}")
 }
 
-/// A running ffmpeg, which ends with whatever wanted its video.
-struct Ffmpeg {
+/// Running ffmpeg process, which is killed when this is dropped.
+struct FfmpegProcess {
     child: Child,
     frames: Option<BufWriter<ChildStdin>>,
-    /// What it says: in a file, since a full pipe would stop it.
-    words: File,
+    /// Error output of ffmpeg: a file, since a full pipe would block it.
+    error_output: File,
 }
 
-impl Drop for Ffmpeg {
+impl Drop for FfmpegProcess {
     fn drop(&mut self) {
         self.frames = None;
-        // It has ended already, unless the video is not wanted any more.
+        // It has already ended, unless the video was abandoned.
         if let Err(err) = self.child.kill().and_then(|()| self.child.wait()) {
             log::warn!("ffmpeg could not be ended: {err}");
         }
     }
 }
 
-impl Ffmpeg {
-    /// Why it stopped, in its own last words if it had any.
+impl FfmpegProcess {
+    /// Returns the reason of a failure: ffmpeg's last message, or `otherwise` if there is none.
     fn failure(&mut self, path: &Path, otherwise: &str) -> ExportError {
         self.frames = None;
-        // Before it has ended, it may not have said why.
+        // The message is complete only when the process has ended.
         let status = self.child.wait().map_or_else(|err| err.to_string(), |status| status.to_string());
         let mut said = Vec::new();
-        let read =
-            self.words.rewind().and_then(|()| (&mut self.words).take(MOST_WORDS).read_to_end(&mut said));
+        let read = self
+            .error_output
+            .rewind()
+            .and_then(|()| (&mut self.error_output).take(MAX_ERROR_BYTES).read_to_end(&mut said));
         let said = String::from_utf8_lossy(if read.is_ok() { &said } else { &[] }).into_owned();
         let last = said.lines().map(str::trim).rfind(|line| !line.is_empty());
         let said = last.map_or_else(|| format!("{otherwise} ({status})"), str::to_owned);
@@ -69,36 +71,48 @@ impl Ffmpeg {
     }
 }
 
-/// A video that ffmpeg is making.
-pub(super) struct Mp4 {
-    ffmpeg: Ffmpeg,
-    file: Unfinished,
+/// Writer of an MP4 through ffmpeg.
+pub(super) struct Mp4Writer {
+    ffmpeg: FfmpegProcess,
+    file: TemporaryFile,
     path: PathBuf,
-    missing: u32,
-    /// What made the first picture.
+    remaining_frames: u32,
+    /// Record of the first frame.
     record: String,
 }
 
-impl Mp4 {
-    /// Starts ffmpeg, which is called `program`.
-    pub(super) fn create(path: &Path, reel: &AnimationSpec, program: &OsStr) -> Result<Self, ExportError> {
-        if reel.transparent {
+impl Mp4Writer {
+    /// Starts ffmpeg, whose executable is `program`.
+    pub(super) fn create(
+        path: &Path,
+        animation_spec: &AnimationSpec,
+        program: &OsStr,
+    ) -> Result<Self, ExportError> {
+        if animation_spec.transparent {
             let what = "MP4 has no transparency; PNG and GIF have, or leave the background in";
-            return Err(ExportError::Unfit { what, path: path.to_owned() });
+            return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
         let not_there =
             |source| ExportError::NoFfmpeg { program: program.to_string_lossy().into_owned(), source };
         let known = Command::new(program).args(["-v", "error", "-encoders"]).output().map_err(not_there)?;
         let has_x264 = String::from_utf8_lossy(&known.stdout).contains(" libx264 ");
-        let file = temporary_beside(path)?;
-        let words = scratch().map_err(ExportError::writing(path))?;
-        let [width, height] = reel.size;
+        let file = temporary_file_for(path)?;
+        let words = unnamed_file().map_err(ExportError::io_error_for(path))?;
+        let [width, height] = animation_spec.size;
         let mut child = Command::new(program)
             .args(["-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
-            .args(["-s", &format!("{width}x{height}"), "-r", &reel.rate.to_string(), "-i", "-", "-an"])
+            .args([
+                "-s",
+                &format!("{width}x{height}"),
+                "-r",
+                &animation_spec.rate.to_string(),
+                "-i",
+                "-",
+                "-an",
+            ])
             .args([
                 "-vf",
-                &filter(reel.size),
+                &filter(animation_spec.size),
                 "-colorspace",
                 "bt709",
                 "-color_primaries",
@@ -106,13 +120,13 @@ impl Mp4 {
                 "-color_trc",
                 "bt709",
             ])
-            .args(if has_x264 { &BEST[..] } else { &NEXT_BEST[..] })
-            // The head comes first, so that players begin before they have it all.
+            .args(if has_x264 { &X264_OPTIONS[..] } else { &FALLBACK_OPTIONS[..] })
+            // The header comes first, so that players can start before the file is complete.
             .args([
                 "-movflags",
                 "+faststart",
                 "-metadata",
-                &format!("comment={}", made_by()),
+                &format!("comment={}", provenance_mark()),
                 "-f",
                 "mp4",
                 "-y",
@@ -120,21 +134,27 @@ impl Mp4 {
             .arg(file.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
-            .stderr(words.try_clone().map_err(ExportError::writing(path))?)
+            .stderr(words.try_clone().map_err(ExportError::io_error_for(path))?)
             .spawn()
             .map_err(not_there)?;
         let frames = child.stdin.take().map(BufWriter::new);
-        let ffmpeg = Ffmpeg { child, frames, words };
-        Ok(Self { ffmpeg, file, path: path.to_owned(), missing: reel.frames, record: String::new() })
+        let ffmpeg = FfmpegProcess { child, frames, error_output: words };
+        Ok(Self {
+            ffmpeg,
+            file,
+            path: path.to_owned(),
+            remaining_frames: animation_spec.frames,
+            record: String::new(),
+        })
     }
 }
 
-impl AnimationEncoder for Mp4 {
+impl AnimationEncoder for Mp4Writer {
     fn add(&mut self, shown: &[u8], record: &str) -> Result<(), ExportError> {
         if self.record.is_empty() {
             record.clone_into(&mut self.record);
         }
-        self.missing = self.missing.saturating_sub(1);
+        self.remaining_frames = self.remaining_frames.saturating_sub(1);
         match self.ffmpeg.frames.as_mut().map(|frames| frames.write_all(&rgb(shown))) {
             Some(Ok(())) => Ok(()),
             Some(Err(err)) => Err(self.ffmpeg.failure(&self.path, &err.to_string())),
@@ -143,25 +163,25 @@ impl AnimationEncoder for Mp4 {
     }
 
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
-        let Self { mut ffmpeg, file, path, missing, record } = *self;
+        let Self { mut ffmpeg, file, path, remaining_frames: missing, record } = *self;
         if missing > 0 {
-            return Err(ExportError::Unfit { what: "pictures are missing", path });
+            return Err(ExportError::UnsupportedByFormat { what: "pictures are missing", path });
         }
         if let Some(Err(err)) = ffmpeg.frames.take().map(|mut frames| frames.flush()) {
             return Err(ffmpeg.failure(&path, &err.to_string()));
         }
-        // Without more pictures it comes to its end.
-        let ended = ffmpeg.child.wait().map_err(ExportError::writing(&path))?;
-        let length = file.as_file().metadata().map_err(ExportError::writing(&path))?.len();
+        // The process ends when its input is closed.
+        let ended = ffmpeg.child.wait().map_err(ExportError::io_error_for(&path))?;
+        let length = file.as_file().metadata().map_err(ExportError::io_error_for(&path))?.len();
         if !ended.success() || length == 0 {
             return Err(ffmpeg.failure(&path, "it wrote nothing"));
         }
         if !record.is_empty() {
-            let mut end = file.reopen().map_err(ExportError::writing(&path))?;
-            let appended = end.seek(SeekFrom::End(0)).and_then(|_| append(&mut end, &record));
-            appended.map_err(ExportError::writing(&path))?;
+            let mut end = file.reopen().map_err(ExportError::io_error_for(&path))?;
+            let appended = end.seek(SeekFrom::End(0)).and_then(|_| append_to_mp4(&mut end, &record));
+            appended.map_err(ExportError::io_error_for(&path))?;
         }
-        place(file, &path)
+        rename_into_place(file, &path)
     }
 }
 
@@ -171,9 +191,10 @@ mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt as _;
 
-    const REEL: AnimationSpec = AnimationSpec { size: [3, 2], frames: 2, rate: 24, transparent: false };
+    const ANIMATION_SPEC: AnimationSpec =
+        AnimationSpec { size: [3, 2], frames: 2, rate: 24, transparent: false };
 
-    /// A stand-in for ffmpeg: knows its encoders, then does what `script` says with the video's name in $last.
+    /// Creates a stand-in for ffmpeg: it lists its encoders, then runs `script` with the video's name in $last.
     fn stand_in(folder: &Path, script: &str) -> PathBuf {
         let path = folder.join("stand-in");
         let head =
@@ -184,7 +205,8 @@ mod tests {
     }
 
     fn make(folder: &Path, program: &Path) -> Result<(), ExportError> {
-        let mut file = Box::new(Mp4::create(&folder.join("a.mp4"), &REEL, program.as_os_str())?);
+        let mut file =
+            Box::new(Mp4Writer::create(&folder.join("a.mp4"), &ANIMATION_SPEC, program.as_os_str())?);
         for at in 0..2 {
             file.add(&[at; 24], "")?;
         }
@@ -207,7 +229,7 @@ mod tests {
 
     #[test]
     fn odd_edges_are_continued() {
-        assert_eq!(filter([640, 480]), COLOURS);
+        assert_eq!(filter([640, 480]), COLOUR_FILTER);
         assert!(filter([321, 240]).starts_with("pad=322:240,fillborders=right=1:bottom=0:mode=smear,"));
     }
 
@@ -225,11 +247,12 @@ mod tests {
         }
         let err = make(folder.path(), Path::new("/no/such/ffmpeg")).unwrap_err();
         assert!(matches!(err, ExportError::NoFfmpeg { .. }), "{err}");
-        let transparent = AnimationSpec { transparent: true, ..REEL };
-        assert!(Mp4::create(&folder.path().join("a.mp4"), &transparent, "ffmpeg".as_ref()).is_err());
-        // And one that is not wanted any more ends.
+        let transparent = AnimationSpec { transparent: true, ..ANIMATION_SPEC };
+        assert!(Mp4Writer::create(&folder.path().join("a.mp4"), &transparent, "ffmpeg".as_ref()).is_err());
+        // An abandoned process is ended.
         let program = stand_in(folder.path(), "cat > \"$last\"");
-        let mut short = Mp4::create(&folder.path().join("a.mp4"), &REEL, program.as_os_str()).unwrap();
+        let mut short =
+            Mp4Writer::create(&folder.path().join("a.mp4"), &ANIMATION_SPEC, program.as_os_str()).unwrap();
         short.add(&[0; 24], "").unwrap();
         drop(short);
         let left: Vec<_> =

@@ -1,17 +1,17 @@
-//! The one gate to the disk: nothing else in the program opens files for writing, renames or removes them.
+//! File output: nothing else in the program opens files for writing, renames or removes them.
 //!
-//! Files are written whole or not at all, never in place of what is no file, and say who made them.
+//! Files are written atomically, never replace anything but regular files, and name the program that wrote them.
 
+mod atomic_write;
 mod destination;
-mod guarded;
-mod made_by;
-mod unfinished;
-mod whole;
+mod own_files;
+mod program_mark;
+mod temporary_file;
 
-pub use destination::Destination;
-pub use guarded::{hold_lock, make_folder, put_aside, remove, rename};
-pub use made_by::is_ours;
-pub(super) use unfinished::{Unfinished, scratch};
-pub use unfinished::{remove_abandoned, remove_unfinished};
-pub use whole::{check_ending, check_writable, keep_backup, write_atomically};
-pub(super) use whole::{open_regular, place, temporary_beside};
+pub use atomic_write::{check_extension, check_writable, keep_backup, write_atomically};
+pub(super) use atomic_write::{open_regular, rename_into_place, temporary_file_for};
+pub use destination::OutputDestination;
+pub use own_files::{hold_lock, make_folder, quarantine, remove_own_file, rename_own_file};
+pub use program_mark::is_written_by_us;
+pub(super) use temporary_file::{TemporaryFile, unnamed_file};
+pub use temporary_file::{remove_abandoned_temporary_files, remove_own_temporary_files};

@@ -1,49 +1,49 @@
-//! Text and shapes that are laid over the rows of a picture, whatever its numbers are.
+//! Layer of text and shapes that is composited over the rows of a picture, in any number format.
 
 use std::sync::LazyLock;
 
 use ab_glyph::{Font as _, FontRef, ScaleFont as _, point};
 
-use crate::export::Rows;
-use crate::model::{Depth, ImageSpec, linear_from_srgb};
+use crate::export::PixelRows;
+use crate::model::{ImageSpec, PixelFormat, linear_from_srgb};
 
-/// The file of the typeface; its licence lies beside it.
+/// Font file; its licence is in the same folder.
 static FONT: &[u8] = include_bytes!("../../../assets/fonts/Ubuntu-Light.ttf");
 
-/// The typeface of the window. None if what the package holds is no font.
+/// Font of the window. `None` if the embedded file is not a valid font.
 static TYPEFACE: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_from_slice(FONT).ok());
 
-/// Ink that is read on dark pictures.
-pub(super) const BRIGHT: [u8; 3] = [0xe8, 0xec, 0xf2];
-/// What is around it, so that it is read on bright ones.
-pub(super) const DARK: [u8; 3] = [0x0c, 0x0d, 0x10];
+/// Ink colour that is legible on dark pictures.
+pub(super) const INK: [u8; 3] = [0xe8, 0xec, 0xf2];
+/// Outline colour that keeps the ink legible on bright pictures.
+pub(super) const OUTLINE_INK: [u8; 3] = [0x0c, 0x0d, 0x10];
 
-/// A rectangle of one ink that covers more or less of its pixels.
+/// Rectangle of one ink with a coverage mask.
 #[derive(Debug, Clone, PartialEq)]
-struct Dab {
+struct CoverageMask {
     left: i64,
     top: i64,
     width: usize,
-    /// Row by row: 255 covers.
+    /// Coverage row by row, from 0 to 255 (opaque).
     coverage: Vec<u8>,
     ink: [u8; 3],
 }
 
-/// What is laid over a picture, in pixels from its top left corner.
+/// Shapes and text to be composited over a picture, in pixels from its top left corner.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Layer {
-    dabs: Vec<Dab>,
+pub struct MarksLayer {
+    dabs: Vec<CoverageMask>,
 }
 
-impl Layer {
-    /// Fills a rectangle.
+impl MarksLayer {
+    /// Fills a rectangle with an ink, at least one pixel wide and high.
     pub(super) fn fill(&mut self, [left, top]: [f64; 2], [width, height]: [f64; 2], ink: [u8; 3], alpha: u8) {
         let (left, top) = (left.round() as i64, top.round() as i64);
         let (width, height) = (width.round().max(1.0) as usize, height.round().max(1.0) as usize);
-        self.dabs.push(Dab { left, top, width, coverage: vec![alpha; width * height], ink });
+        self.dabs.push(CoverageMask { left, top, width, coverage: vec![alpha; width * height], ink });
     }
 
-    /// How wide a line of text is.
+    /// Returns the width of a line of text, in pixels.
     pub(super) fn width(words: &str, height: f64) -> f64 {
         let Some(font) = &*TYPEFACE else { return 0.0 };
         let font = font.as_scaled(height as f32);
@@ -56,8 +56,8 @@ impl Layer {
         f64::from(advances.sum::<f32>())
     }
 
-    /// Writes a line of text `height` pixels high, with an edge that is read on any picture. `share`: which part of the text
-    /// is at `at`, from its left and its top: 0 … 1.
+    /// Writes a line of text `height` pixels high, with an outline that is legible on any picture. `share` selects
+    /// the point of the text's box that lies at `at`: fractions from its left and its top, 0 to 1.
     pub(super) fn write(&mut self, words: &str, at: [f64; 2], share: [f64; 2], height: f64) {
         let Some(font) = &*TYPEFACE else { return };
         let left = at[0] - share[0] * Self::width(words, height);
@@ -82,15 +82,15 @@ impl Layer {
                         *covered = (share.clamp(0.0, 1.0) * 255.0).round() as u8;
                     }
                 });
-                Dab { left, top, width, coverage, ink: BRIGHT }
+                CoverageMask { left, top, width, coverage, ink: INK }
             }));
         }
         let edge = (height / 14.0).round().max(1.0) as i64;
         for (right, down) in [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, 1), (-1, 1), (1, -1)] {
-            let moved = |dab: &Dab| Dab {
+            let moved = |dab: &CoverageMask| CoverageMask {
                 left: dab.left + right * edge,
                 top: dab.top + down * edge,
-                ink: DARK,
+                ink: OUTLINE_INK,
                 ..dab.clone()
             };
             self.dabs.extend(letters.iter().map(moved));
@@ -98,9 +98,9 @@ impl Layer {
         self.dabs.extend(letters);
     }
 
-    /// Lays it over rows of a picture, of which the first is row `first`.
-    pub fn lay_over(&self, shot: &ImageSpec, first: usize, rows: &mut Rows) {
-        let width = shot.size[0] as usize;
+    /// Composites the layer over rows of a picture, starting at row `first` of the picture.
+    pub fn composite_over(&self, image_spec: &ImageSpec, first: usize, rows: &mut PixelRows) {
+        let width = image_spec.size[0] as usize;
         for dab in &self.dabs {
             let ink = dab.ink.map(|c| f64::from(c) / 255.0);
             let linear = ink.map(linear_from_srgb);
@@ -113,22 +113,22 @@ impl Layer {
                     }
                     let (at, alpha) = ((y * width + x) * 4, f64::from(alpha) / 255.0);
                     match rows {
-                        Rows::Bytes(shown) => {
+                        PixelRows::Bytes(shown) => {
                             if let Some(pixel) = shown.get_mut(at..at + 4) {
                                 let before = [0, 1, 2, 3].map(|c| f64::from(pixel[c]) / 255.0);
-                                let after = over(before, ink, alpha);
+                                let after = composite_straight(before, ink, alpha);
                                 for (byte, value) in pixel.iter_mut().zip(after) {
                                     *byte = (value * 255.0).round() as u8;
                                 }
                             }
                         }
-                        Rows::Floats(shown) => {
+                        PixelRows::Floats(shown) => {
                             if let Some(pixel) = shown.get_mut(at..at + 4) {
                                 let before = [0, 1, 2, 3].map(|c| f64::from(pixel[c]));
-                                let after = if shot.depth == Depth::Linear {
-                                    over_premultiplied(before, linear, alpha)
+                                let after = if image_spec.depth == PixelFormat::Linear {
+                                    composite_premultiplied(before, linear, alpha)
                                 } else {
-                                    over(before, ink, alpha)
+                                    composite_straight(before, ink, alpha)
                                 };
                                 for (number, value) in pixel.iter_mut().zip(after) {
                                     *number = value as f32;
@@ -142,8 +142,8 @@ impl Layer {
     }
 }
 
-/// An ink over a colour with straight alpha (Porter and Duff 1984).
-fn over([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
+/// Composites an ink over a colour with straight alpha (Porter and Duff 1984).
+fn composite_straight([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     let left = below * (1.0 - alpha);
     let whole = alpha + left;
     if whole <= 0.0 {
@@ -153,8 +153,8 @@ fn over([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     [mix(r, ink[0]), mix(g, ink[1]), mix(b, ink[2]), whole]
 }
 
-/// The same where colours are multiplied by their alpha.
-fn over_premultiplied([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
+/// Composites an ink over a colour with premultiplied alpha.
+fn composite_premultiplied([r, g, b, below]: [f64; 4], ink: [f64; 3], alpha: f64) -> [f64; 4] {
     let mix = |before: f64, ink: f64| ink * alpha + before * (1.0 - alpha);
     [mix(r, ink[0]), mix(g, ink[1]), mix(b, ink[2]), mix(below, 1.0)]
 }
@@ -165,21 +165,21 @@ mod tests {
 
     #[test]
     fn shapes_cover_their_pixels_and_no_others_in_bands_too() {
-        let mut layer = Layer::default();
+        let mut layer = MarksLayer::default();
         layer.fill([1.0, 1.0], [2.0, 2.0], [255, 0, 0], 255);
-        // Partly outside.
+        // Partly outside the picture.
         layer.fill([-3.0, 3.0], [4.0, 9.0], [0, 255, 0], 255);
-        let shot = ImageSpec::new([4, 4]);
-        let mut whole = Rows::Bytes(vec![0; 64]);
-        layer.lay_over(&shot, 0, &mut whole);
+        let image_spec = ImageSpec::new([4, 4]);
+        let mut whole = PixelRows::Bytes(vec![0; 64]);
+        layer.composite_over(&image_spec, 0, &mut whole);
         let mut bands = Vec::new();
         for first in [0, 2] {
-            let mut band = Rows::Bytes(vec![0; 32]);
-            layer.lay_over(&shot, first, &mut band);
-            let Rows::Bytes(band) = band else { unreachable!() };
+            let mut band = PixelRows::Bytes(vec![0; 32]);
+            layer.composite_over(&image_spec, first, &mut band);
+            let PixelRows::Bytes(band) = band else { unreachable!() };
             bands.extend(band);
         }
-        assert_eq!(whole, Rows::Bytes(bands.clone()));
+        assert_eq!(whole, PixelRows::Bytes(bands.clone()));
         let pixel = |x: usize, y: usize| &bands[(y * 4 + x) * 4..][..4];
         assert_eq!((pixel(1, 1), pixel(2, 2)), (&[255, 0, 0, 255][..], &[255, 0, 0, 255][..]));
         assert_eq!((pixel(0, 3), pixel(3, 3)), (&[0, 255, 0, 255][..], &[0; 4][..]));
@@ -187,29 +187,29 @@ mod tests {
 
     #[test]
     fn inks_lie_over_colors_of_every_kind() {
-        assert_eq!(over([1.0, 1.0, 1.0, 1.0], [0.0; 3], 0.25), [0.75, 0.75, 0.75, 1.0]);
-        assert_eq!(over([0.3, 0.3, 0.3, 0.0], [1.0, 0.5, 0.0], 0.5), [1.0, 0.5, 0.0, 0.5]);
-        assert_eq!(over_premultiplied([0.5, 0.5, 0.5, 0.5], [1.0; 3], 0.5), [0.75; 4]);
-        let mut layer = Layer::default();
+        assert_eq!(composite_straight([1.0, 1.0, 1.0, 1.0], [0.0; 3], 0.25), [0.75, 0.75, 0.75, 1.0]);
+        assert_eq!(composite_straight([0.3, 0.3, 0.3, 0.0], [1.0, 0.5, 0.0], 0.5), [1.0, 0.5, 0.0, 0.5]);
+        assert_eq!(composite_premultiplied([0.5, 0.5, 0.5, 0.5], [1.0; 3], 0.5), [0.75; 4]);
+        let mut layer = MarksLayer::default();
         layer.fill([0.0, 0.0], [1.0, 1.0], [188, 188, 188], 255);
-        let shot = ImageSpec { depth: Depth::Linear, ..ImageSpec::new([1, 1]) };
-        let mut rows = Rows::Floats(vec![4.0, 0.0, 0.0, 1.0]);
-        layer.lay_over(&shot, 0, &mut rows);
-        let Rows::Floats(light) = rows else { unreachable!() };
+        let image_spec = ImageSpec { depth: PixelFormat::Linear, ..ImageSpec::new([1, 1]) };
+        let mut rows = PixelRows::Floats(vec![4.0, 0.0, 0.0, 1.0]);
+        layer.composite_over(&image_spec, 0, &mut rows);
+        let PixelRows::Floats(light) = rows else { unreachable!() };
         assert!((light[0] - 0.503).abs() < 0.002 && light[0] == light[2], "{light:?}");
     }
 
     #[test]
     fn words_are_as_wide_as_they_are_written() {
         let height = 40.0;
-        let mut layer = Layer::default();
+        let mut layer = MarksLayer::default();
         layer.write("Skull 12", [100.0, 20.0], [0.5, 0.0], height);
-        let ink = layer.dabs.iter().filter(|dab| dab.ink == BRIGHT);
+        let ink = layer.dabs.iter().filter(|dab| dab.ink == INK);
         let left = ink.clone().map(|dab| dab.left).min().unwrap() as f64;
         let right = ink.map(|dab| dab.left + dab.width as i64).max().unwrap() as f64;
-        let width = Layer::width("Skull 12", height);
+        let width = MarksLayer::width("Skull 12", height);
         assert!((right - left - width).abs() < 8.0, "{left} … {right}: {width}");
         assert!((f64::midpoint(left, right) - 100.0).abs() < 4.0);
-        assert!(Layer::width("WW", height) > Layer::width("ii", height));
+        assert!(MarksLayer::width("WW", height) > MarksLayer::width("ii", height));
     }
 }

@@ -1,26 +1,27 @@
-//! A bar that says how long things are.
+//! Scale bar: a round length, and its label.
 
-use super::layer::{BRIGHT, DARK, Layer};
+use super::layer::{INK, MarksLayer, OUTLINE_INK};
 
-/// The bar is no longer than this share of the picture's width.
-const LONGEST: f64 = 0.25;
+/// Maximum length of the bar, relative to the picture's width.
+const MAX_WIDTH_SHARE: f64 = 0.25;
 
-/// A length that fits, and its name in the unit that suits it.
+/// Round length that fits into a picture, with its label in a suitable unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaleBar {
-    /// In millimetres, or in voxels where nobody knows how large these are.
+    /// Length in millimetres, or in voxels if their size is unknown.
     pub length_mm: f64,
-    /// The length in words.
-    pub words: String,
+    /// Label of the length, with its unit.
+    pub label: String,
 }
 
-/// The bar for a picture of a width at the middle of the view; none where that is no length.
+/// Returns the scale bar for a picture whose width at the view's target is given; `None` if the width is not positive
+/// and finite.
 pub fn scale_bar(width_mm: f64, has_unknown_scale: bool) -> Option<ScaleBar> {
-    let longest_mm = LONGEST * width_mm;
+    let longest_mm = MAX_WIDTH_SHARE * width_mm;
     if !(longest_mm.is_finite() && longest_mm > 0.0) {
         return None;
     }
-    // 1, 2 or 5 times a power of ten.
+    // Chooses 1, 2 or 5 times a power of ten.
     let power = 10f64.powf(longest_mm.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= longest_mm).unwrap_or(1.0);
     let length_mm = step * power;
@@ -33,17 +34,17 @@ pub fn scale_bar(width_mm: f64, has_unknown_scale: bool) -> Option<ScaleBar> {
         length if length >= 1e-3 => (length * 1e3, "µm"),
         length => (length * 1e6, "nm"),
     };
-    // At most one digit that is not zero: no rounding shows.
-    Some(ScaleBar { length_mm, words: format!("{} {unit}", (value * 1e3).round() / 1e3) })
+    // There is at most one non-zero digit, so rounding is not visible.
+    Some(ScaleBar { length_mm, label: format!("{} {unit}", (value * 1e3).round() / 1e3) })
 }
 
 impl ScaleBar {
-    /// Draws it at the bottom left, so many pixels long.
-    pub(super) fn draw(&self, layer: &mut Layer, pixels: f64, [_, height]: [f64; 2], letters: f64) {
+    /// Draws the bar at the bottom left, `pixels` long.
+    pub(super) fn draw(&self, layer: &mut MarksLayer, pixels: f64, [_, height]: [f64; 2], letters: f64) {
         let (left, bottom) = (letters, height - letters);
         let thick = (letters / 8.0).round().max(1.0);
         let tick = (letters / 2.0).round().max(3.0);
-        for (edge, ink) in [(thick, DARK), (0.0, BRIGHT)] {
+        for (edge, ink) in [(thick, OUTLINE_INK), (0.0, INK)] {
             let long = [pixels + 2.0 * edge, thick + 2.0 * edge];
             layer.fill([left - edge, bottom - thick - edge], long, ink, 255);
             for end in [left, left + pixels - thick] {
@@ -55,7 +56,7 @@ impl ScaleBar {
                 );
             }
         }
-        layer.write(&self.words, [left + pixels / 2.0, bottom - tick - thick], [0.5, 1.0], letters);
+        layer.write(&self.label, [left + pixels / 2.0, bottom - tick - thick], [0.5, 1.0], letters);
     }
 }
 
@@ -73,12 +74,12 @@ mod tests {
             (2.6e3, 2e3, "2 m"),
             (9.9e-5, 5e-5, "50 nm"),
         ] {
-            let found = scale_bar(longest / LONGEST * (1.0 + 1e-12), false).unwrap();
+            let found = scale_bar(longest / MAX_WIDTH_SHARE * (1.0 + 1e-12), false).unwrap();
             assert!((found.length_mm / length - 1.0).abs() < 1e-9, "{longest}: {found:?}");
-            assert_eq!(found.words, text);
+            assert_eq!(found.label, text);
         }
-        let voxels = scale_bar(2.6e3 / LONGEST, true).unwrap();
-        assert_eq!((voxels.length_mm, voxels.words.as_str()), (2e3, "2000 voxels"));
+        let voxels = scale_bar(2.6e3 / MAX_WIDTH_SHARE, true).unwrap();
+        assert_eq!((voxels.length_mm, voxels.label.as_str()), (2e3, "2000 voxels"));
         assert_eq!(scale_bar(f64::NAN, false), None);
         assert_eq!(scale_bar(0.0, false), None);
     }

@@ -1,7 +1,7 @@
-//! `MetaImage`: a header in text, and the voxels behind it, as they are or in zlib.
+//! `MetaImage` writer: a text header, followed by the voxels, uncompressed or in zlib.
 //!
-//! After <https://itk.org/Wiki/MetaIO/Documentation>. World space is left-posterior-superior millimetres. What the format
-//! has no field for has the tag of DICOM as its name, as programs of ITK write it.
+//! Format: <https://itk.org/Wiki/MetaIO/Documentation>. World space is left-posterior-superior millimetres. Metadata
+//! without a field in the format are named by their DICOM tags, as programs based on ITK do.
 
 use std::io::{Result, Write};
 
@@ -9,20 +9,20 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::outgoing::Outgoing;
-use crate::data::{VoxelType, single_line};
-use crate::model::made_by;
+use super::export_volume::ExportVolume;
+use crate::data::{VoxelType, sanitised_line};
+use crate::model::provenance_mark;
 
-/// The field that says which program made a file: Software Versions of DICOM.
+/// Field with the name of the writing program: the tag of DICOM's Software Versions.
 const MADE_BY_FIELD: &str = "0018|1020";
 
-/// Characters of the longest value that `MetaIO` reads.
-const LONGEST_VALUE: usize = 200;
+/// Length of the longest value that `MetaIO` reads, in characters.
+const MAX_VALUE_CHARS: usize = 200;
 
-/// Counts what is written to it.
-struct Count(u64);
+/// Writer that only counts bytes.
+struct ByteCounter(u64);
 
-impl Write for Count {
+impl Write for ByteCounter {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
         self.0 += bytes.len() as u64;
         Ok(bytes.len())
@@ -33,11 +33,11 @@ impl Write for Count {
     }
 }
 
-/// Writes a volume.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: bool) -> Result<()> {
+/// Writes a volume as `MetaImage`.
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>, is_compressed: bool) -> Result<()> {
     let size = if is_compressed {
-        // The length stands before them, and they need not be in memory: they are compressed twice.
-        let mut count = Count(0);
+        // The compressed size precedes the voxels; compressing twice avoids keeping them in memory.
+        let mut count = ByteCounter(0);
         write_compressed(&mut count, volume)?;
         Some(count.0)
     } else {
@@ -47,23 +47,23 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: b
     if is_compressed { write_compressed(out, volume) } else { volume.write_voxels(out) }
 }
 
-fn write_compressed(out: &mut dyn Write, volume: &Outgoing<'_>) -> Result<()> {
+fn write_compressed(out: &mut dyn Write, volume: &ExportVolume<'_>) -> Result<()> {
     let mut encoder = ZlibEncoder::new(out, Compression::default());
     volume.write_voxels(&mut encoder)?;
     encoder.finish().map(drop)
 }
 
-/// The header of voxels that have so many bytes when they are compressed.
-fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
+/// Returns the header; `compressed` is the size of the compressed voxels in bytes.
+fn header(volume: &ExportVolume<'_>, compressed: Option<u64>) -> String {
     let mut text = String::new();
     let mut add = |field: &str, value: &str| {
         if !value.is_empty() {
-            text.extend([field, " = ", &single_line(value, LONGEST_VALUE), "\n"]);
+            text.extend([field, " = ", &sanitised_line(value, MAX_VALUE_CHARS), "\n"]);
         }
     };
     add("ObjectType", "Image");
     add("NDims", "3");
-    add(MADE_BY_FIELD, &made_by());
+    add(MADE_BY_FIELD, &provenance_mark());
     add("Name", volume.name());
     let hints = volume.hints();
     add("0008|0060", hints.modality.code().unwrap_or_default());
@@ -82,41 +82,42 @@ fn header(volume: &Outgoing<'_>, compressed: Option<u64>) -> String {
     if let Some(size) = compressed {
         add("CompressedDataSize", &size.to_string());
     }
-    if !volume.has_no_place() {
-        add_place(&mut add, volume);
+    if !volume.has_unknown_geometry() {
+        add_geometry(&mut add, volume);
     }
-    add("DimSize", &words(&volume.dims().map(|n| n.to_string())));
+    add("DimSize", &join_words(&volume.dims().map(|n| n.to_string())));
     add("ElementType", element_type(volume.voxel_type()));
     add("ElementDataFile", "LOCAL");
     text
 }
 
-/// The fields that say where voxels lie. What is not known has the words that `MetaIO` has for that.
-fn add_place(add: &mut impl FnMut(&str, &str), volume: &Outgoing<'_>) {
+/// Adds the fields for the position and orientation of the voxels. Unknown properties get the values that `MetaIO`
+/// defines for that.
+fn add_geometry(add: &mut impl FnMut(&str, &str), volume: &ExportVolume<'_>) {
     let lps_from_ras = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0)));
     let DAffine3 { matrix3, translation } = lps_from_ras * volume.world_from_index();
     let directions = [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis]
-        .map(|axis| words(&(axis / axis.length()).to_array().map(plus_zero)));
+        .map(|axis| join_words(&(axis / axis.length()).to_array().map(plus_zero)));
     add("TransformMatrix", &directions.join(" "));
-    add("Offset", &words(&translation.to_array().map(plus_zero)));
+    add("Offset", &join_words(&translation.to_array().map(plus_zero)));
     add("CenterOfRotation", "0 0 0");
     if !volume.is_anatomical() {
         add("AnatomicalOrientation", "???");
     }
-    add("ElementSpacing", &words(&volume.spacing_mm().map(|length| length.to_string())));
+    add("ElementSpacing", &join_words(&volume.spacing_mm().map(|length| length.to_string())));
     add("DistanceUnits", if volume.has_unknown_scale() { "?" } else { "mm" });
 }
 
-fn words(all: &[String; 3]) -> String {
+fn join_words(all: &[String; 3]) -> String {
     all.join(" ")
 }
 
-/// A number, without the sign that a zero may have.
+/// Formats a number, without the sign of a negative zero.
 fn plus_zero(number: f64) -> String {
     (number + 0.0).to_string()
 }
 
-/// The word for a number type.
+/// Returns the format's name of a voxel type.
 fn element_type(voxel_type: VoxelType) -> &'static str {
     match voxel_type {
         VoxelType::U8 => "MET_UCHAR",

@@ -1,55 +1,56 @@
-//! Volumes as files of other programs: a format for each ending, each with what it has room for.
+//! Export of volumes to other programs: a format for each file name extension, with the metadata that it supports.
 //!
-//! Voxels are turned and converted while they are written, row by row, so that nothing beside the volume is in memory.
+//! Voxels are reoriented and converted row by row while they are written, so that no copy of the volume is kept in
+//! memory.
 
+mod export_volume;
 mod metaimage;
 mod nifti;
 mod npy;
 mod nrrd;
-mod numbers;
-mod outgoing;
+mod number_conversion;
+mod reorientation;
 #[cfg(test)]
 mod tests;
 mod tiff;
-mod turn;
 mod vti;
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-pub use numbers::{ConvertError, NumberWish};
-pub use outgoing::Outgoing;
+pub use export_volume::ExportVolume;
+pub use number_conversion::{ConvertError, NumberRequest};
 
 use super::ExportError;
-use super::files::{place, temporary_beside};
+use super::files::{rename_into_place, temporary_file_for};
 use crate::data::{Volume, VoxelType};
 
-/// A format that volumes are written in.
+/// File format for exported volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VolumeFormat {
-    /// Everything that is known of a volume has its place.
+    /// NRRD: supports all metadata of a volume.
     Nrrd,
-    /// `MetaImage`, header and voxels in one file.
+    /// `MetaImage`, with header and voxels in one file.
     MetaImage,
     /// NIfTI-1, or NIfTI-2 for long axes.
     Nifti,
-    /// The same, in gzip as a whole.
+    /// `NIfTI`, compressed as a whole with gzip.
     NiftiGzip,
-    /// Pages, with `ImageJ`'s words.
+    /// TIFF: one page per slice, with `ImageJ` metadata.
     Tiff,
-    /// An array of `NumPy`.
+    /// `NumPy` array file (NPY).
     Npy,
-    /// VTK's image in XML.
+    /// VTK image data in XML.
     Vti,
 }
 
 impl VolumeFormat {
-    /// All of them, the most useful first.
+    /// All formats, the most useful first.
     pub const ALL: [Self; 7] =
         [Self::Nrrd, Self::MetaImage, Self::NiftiGzip, Self::Nifti, Self::Tiff, Self::Npy, Self::Vti];
 
-    /// Endings of their files, without the dot; the first is what the format is called by.
-    pub const fn endings(self) -> &'static [&'static str] {
+    /// File name extensions, without the dot; the first one names the format.
+    pub const fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Nrrd => &["nrrd"],
             Self::MetaImage => &["mha"],
@@ -61,30 +62,30 @@ impl VolumeFormat {
         }
     }
 
-    /// What a file's name, or a format's, ends with.
-    pub fn of_path(path: &Path) -> Option<Self> {
+    /// Returns the format that a file name's extension indicates.
+    pub fn from_path(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_string_lossy().to_lowercase();
         let has = |ending: &str| name.strip_suffix(ending).is_some_and(|rest| rest.ends_with('.'));
-        Self::ALL.into_iter().find(|format| format.endings().iter().any(|ending| has(ending)))
+        Self::ALL.into_iter().find(|format| format.extensions().iter().any(|ending| has(ending)))
     }
 
-    /// Whether its files hold their voxels compressed when that is asked for.
+    /// Returns true if the format supports optional compression of the voxels.
     pub const fn may_be_compressed(self) -> bool {
         matches!(self, Self::Nrrd | Self::MetaImage)
     }
 
-    /// What is known of a volume and has no place in the format.
-    pub fn lost(self, volume: &Outgoing<'_>) -> Vec<&'static str> {
+    /// Lists the known metadata of a volume that the format cannot store.
+    pub fn unsupported_metadata(self, volume: &ExportVolume<'_>) -> Vec<&'static str> {
         let hints = volume.hints();
-        let straight = volume.has_distances_alone();
-        let is_known = !volume.has_unknown_scale() || volume.has_no_place();
+        let straight = volume.has_spacing_only();
+        let is_known = !volume.has_unknown_scale() || volume.has_unknown_geometry();
         let (scale, place) = match self {
             Self::Nrrd | Self::MetaImage => (true, true),
-            // Without a known body there are distances alone.
+            // Without an anatomical orientation, only distances are stored.
             Self::Nifti | Self::NiftiGzip => (is_known, volume.is_anatomical() || straight),
             Self::Tiff => (true, straight),
             Self::Npy => (volume.has_unknown_scale(), straight),
-            // Axes are kept; which sides of a body they go to is not.
+            // Axes are stored, but not their anatomical directions.
             Self::Vti => (is_known, true),
         };
         let (padding, unit) = match self {
@@ -103,7 +104,12 @@ impl VolumeFormat {
         known.into_iter().filter(|(is_kept, _)| !is_kept).map(|(_, what)| what).collect()
     }
 
-    fn write(self, out: &mut dyn Write, volume: &Outgoing<'_>, is_compressed: bool) -> std::io::Result<()> {
+    fn write(
+        self,
+        out: &mut dyn Write,
+        volume: &ExportVolume<'_>,
+        is_compressed: bool,
+    ) -> std::io::Result<()> {
         match self {
             Self::Nrrd => nrrd::write(out, volume, is_compressed),
             Self::MetaImage => metaimage::write(out, volume, is_compressed),
@@ -116,33 +122,33 @@ impl VolumeFormat {
     }
 }
 
-/// Writes a volume, whole or not at all.
+/// Writes a volume atomically.
 ///
 /// # Errors
-/// As [`write_atomically`](super::write_atomically).
+/// Under the conditions of [`write_atomically`](super::write_atomically).
 pub fn write_volume(
     path: &Path,
     format: VolumeFormat,
-    volume: &Outgoing<'_>,
+    volume: &ExportVolume<'_>,
     is_compressed: bool,
 ) -> Result<(), ExportError> {
-    let mut file = temporary_beside(path)?;
-    let failed = ExportError::writing(path);
+    let mut file = temporary_file_for(path)?;
+    let failed = ExportError::io_error_for(path);
     let mut out = BufWriter::new(&mut file);
     format.write(&mut out, volume, is_compressed).and_then(|()| out.flush()).map_err(&failed)?;
     drop(out);
-    place(file, path)
+    rename_into_place(file, path)
 }
 
-/// The header of an attached NRRD of 32-bit floats that lies in the world as a volume does, with the empty line that ends
-/// it; voxels follow, the lowest byte of each first.
-pub fn nrrd_header_like(
+/// Returns the header of an attached NRRD of 32-bit floats in the same world space as a volume, including the empty
+/// line at its end; the voxels follow in little-endian order.
+pub fn nrrd_header_in_space_of(
     volume: &Volume,
     content: &str,
     dims: [usize; 3],
     world_from_index: glam::DAffine3,
 ) -> String {
-    let header = nrrd::Header {
+    let header = nrrd::NrrdFileHeader {
         content,
         voxel_type: VoxelType::F32,
         dims,

@@ -1,7 +1,8 @@
-//! `NIfTI`: a binary header, an extension that says who made the file, and the voxels, as they are or in gzip.
+//! `NIfTI` writer: a binary header, an extension with the program mark, and the voxels, uncompressed or in gzip.
 //!
-//! After `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 where an axis has more voxels than
-//! 16 bits count. World space is right-anterior-superior millimetres; where no body is known, distances alone are said.
+//! Format: `nifti1.h` and `nifti2.h` (<https://nifti.nimh.nih.gov>): NIfTI-1, or NIfTI-2 if an axis has more voxels
+//! than 16 bits can count. World space is right-anterior-superior millimetres; without an anatomical orientation,
+//! only distances are written.
 
 use std::io::{Result, Write};
 
@@ -9,90 +10,90 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::{DMat3, DQuat, DVec3};
 
-use super::outgoing::Outgoing;
-use crate::data::{Meaning, Modality, VoxelType};
-use crate::model::made_by;
+use super::export_volume::ExportVolume;
+use crate::data::{Modality, ValueMeaning, VoxelType};
+use crate::model::provenance_mark;
 
-/// The kind of an extension that is text (`NIFTI_ECODE_COMMENT`).
-const COMMENT: u32 = 6;
+/// Extension code of plain text (`NIFTI_ECODE_COMMENT`).
+const COMMENT_CODE: u32 = 6;
 
-/// Bytes of both headers, which they begin with.
-const BYTES_1: usize = 348;
-const BYTES_2: usize = 540;
+/// Sizes of the NIfTI-1 and NIfTI-2 headers in bytes, which are also their first field.
+const NIFTI_1_HEADER_BYTES: usize = 348;
+const NIFTI_2_HEADER_BYTES: usize = 540;
 
-/// Bytes between a header and its first extension; the first of them says that there is one.
+/// Bytes between a header and its first extension; the first byte is non-zero if there is one.
 const EXTENDER_BYTES: usize = 4;
 
-/// Bytes of an extension before its text: its length, and its kind.
-const BEFORE_TEXT: usize = 8;
+/// Bytes before the text of an extension: its size and its code.
+const EXTENSION_HEADER_BYTES: usize = 8;
 
-/// Lengths in millimetres (`NIFTI_UNITS_MM`).
+/// Unit code of millimetres (`NIFTI_UNITS_MM`).
 const UNITS_MM: u8 = 2;
 
-/// The place comes from the scanner (`NIFTI_XFORM_SCANNER_ANAT`).
-const SCANNER: u8 = 1;
+/// Transform code of scanner coordinates (`NIFTI_XFORM_SCANNER_ANAT`).
+const XFORM_SCANNER: u8 = 1;
 
-/// Numbers of labels (`NIFTI_INTENT_LABEL`).
-const LABELS: i16 = 1002;
+/// Intent code of label maps (`NIFTI_INTENT_LABEL`).
+const INTENT_LABEL: i16 = 1002;
 
-/// Cosine of axes up to which a turn is written beside the matrix, for programs that know nothing else: what is a
-/// thousandth askew is half a voxel off after five hundred.
-const MOST_ASKEW: f64 = 1e-3;
+/// Largest cosine between axes at which a quaternion is written beside the matrix, for programs that read nothing
+/// else: a shear of a thousandth amounts to half a voxel after five hundred.
+const MAX_SHEAR_COSINE: f64 = 1e-3;
 
-/// Bytes of a description, the last of them zero.
-const DESCRIPTION: usize = 79;
+/// Maximum length of the description in bytes, without the terminating zero.
+const MAX_DESCRIPTION_BYTES: usize = 79;
 
-/// Writes a volume.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
+/// Writes a volume as `NIfTI`.
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>, is_gzip: bool) -> Result<()> {
     if !is_gzip {
-        out.write_all(&beginning(volume))?;
+        out.write_all(&header_and_extension(volume))?;
         return volume.write_voxels(out);
     }
     let mut encoder = GzEncoder::new(out, Compression::default());
-    encoder.write_all(&beginning(volume))?;
+    encoder.write_all(&header_and_extension(volume))?;
     volume.write_voxels(&mut encoder)?;
     encoder.finish().map(drop)
 }
 
-/// All that stands before the voxels.
-fn beginning(volume: &Outgoing<'_>) -> Vec<u8> {
-    let comment = comment();
+/// Returns everything that precedes the voxels.
+fn header_and_extension(volume: &ExportVolume<'_>) -> Vec<u8> {
+    let comment = mark_extension();
     let is_long = volume.dims().iter().any(|&n| i16::try_from(n).is_err());
-    let header = if is_long { BYTES_2 } else { BYTES_1 };
-    // Voxels begin at a multiple of 16, as NIfTI-1 asks; extensions have such lengths.
+    let header = if is_long { NIFTI_2_HEADER_BYTES } else { NIFTI_1_HEADER_BYTES };
+    // NIfTI-1 requires voxels to begin at a multiple of 16; sizes of extensions are multiples of 16 too.
     let start = (header + EXTENDER_BYTES + comment.len()).next_multiple_of(16);
-    let mut bytes = if is_long { second(volume, start) } else { first(volume, start) };
+    let mut bytes = if is_long { nifti2_header(volume, start) } else { nifti1_header(volume, start) };
     bytes.extend([1, 0, 0, 0]);
     bytes.extend(comment);
     bytes.resize(start, 0);
     bytes
 }
 
-/// The extension that says who made the file.
-fn comment() -> Vec<u8> {
-    let text = made_by();
-    let length = (BEFORE_TEXT + text.len()).next_multiple_of(16);
+/// Returns the extension with the program mark.
+fn mark_extension() -> Vec<u8> {
+    let text = provenance_mark();
+    let length = (EXTENSION_HEADER_BYTES + text.len()).next_multiple_of(16);
     let mut bytes = (length as u32).to_le_bytes().to_vec();
-    bytes.extend(COMMENT.to_le_bytes());
+    bytes.extend(COMMENT_CODE.to_le_bytes());
     bytes.extend(text.as_bytes());
     bytes.resize(length, 0);
     bytes
 }
 
-/// What both headers say, in their own widths.
-struct Facts {
-    /// The code of the number type.
+/// Contents common to both headers, which store them in different widths.
+struct NiftiExportHeader {
+    /// Code of the voxel type.
     kind: i16,
     bits: i16,
-    /// Whether the volume lies in a body.
-    is_placed: bool,
-    /// Whether its axes are as good as square to each other, so that a turn says where it lies, too.
-    is_square: bool,
-    /// -1 where the grid is mirrored.
-    mirror: f64,
+    /// True if the volume has an anatomical orientation.
+    is_anatomical: bool,
+    /// True if its axes are nearly orthogonal, so that a quaternion describes the orientation as well.
+    is_orthogonal: bool,
+    /// Determinant sign (`qfac`): -1 for a mirrored grid, otherwise 1.
+    qfac: f64,
     spacing: [f64; 3],
-    turn: [f64; 3],
-    /// Rows of the matrix.
+    quaternion: [f64; 3],
+    /// Rows of the affine matrix.
     rows: [[f64; 4]; 3],
     units: u8,
     intent: i16,
@@ -100,15 +101,15 @@ struct Facts {
     description: Vec<u8>,
 }
 
-impl Facts {
-    fn of(volume: &Outgoing<'_>) -> Self {
+impl NiftiExportHeader {
+    fn from_volume(volume: &ExportVolume<'_>) -> Self {
         let world = volume.world_from_index();
         let axes = world.matrix3;
         let directions = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::normalize);
         let [x, y, z] = directions;
         let across = x.cross(y).normalize();
         let mirror = if across.dot(z) < 0.0 { -1.0 } else { 1.0 };
-        let is_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < MOST_ASKEW);
+        let is_square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < MAX_SHEAR_COSINE);
         let turn = DQuat::from_mat3(&DMat3::from_cols(x, across.cross(x), across));
         let turn = if turn.w < 0.0 { -turn } else { turn };
         let is_placed = volume.is_anatomical();
@@ -120,29 +121,29 @@ impl Facts {
         Self {
             kind,
             bits,
-            is_placed,
-            is_square,
-            mirror: if is_placed { mirror } else { 1.0 },
+            is_anatomical: is_placed,
+            is_orthogonal: is_square,
+            qfac: if is_placed { mirror } else { 1.0 },
             spacing: volume.spacing_mm(),
-            turn: [turn.x, turn.y, turn.z],
+            quaternion: [turn.x, turn.y, turn.z],
             rows: [row(0), row(1), row(2)],
             units: if of_unknown_size { 0 } else { UNITS_MM },
-            intent: if volume.hints().meaning == Meaning::Labels { LABELS } else { 0 },
+            intent: if volume.hints().meaning == ValueMeaning::Labels { INTENT_LABEL } else { 0 },
             window: volume.hints().window.unwrap_or_default(),
             description: description(volume),
         }
     }
 
     fn turn_code(&self) -> u8 {
-        if self.is_placed && self.is_square { SCANNER } else { 0 }
+        if self.is_anatomical && self.is_orthogonal { XFORM_SCANNER } else { 0 }
     }
 
     fn matrix_code(&self) -> u8 {
-        if self.is_placed { SCANNER } else { 0 }
+        if self.is_anatomical { XFORM_SCANNER } else { 0 }
     }
 }
 
-/// The code of a number type, and its bits.
+/// Returns the format's code of a voxel type, and its number of bits.
 fn type_code(voxel_type: VoxelType) -> [i16; 2] {
     match voxel_type {
         VoxelType::U8 => [2, 8],
@@ -156,8 +157,8 @@ fn type_code(voxel_type: VoxelType) -> [i16; 2] {
     }
 }
 
-/// How the data were acquired, in words that also name the modality, as far as there is room.
-fn description(volume: &Outgoing<'_>) -> Vec<u8> {
+/// Returns the description of the acquisition, including the modality, truncated to the field's length.
+fn description(volume: &ExportVolume<'_>) -> Vec<u8> {
     let hints = volume.hints();
     let acquisition = hints.acquisition().unwrap_or_default();
     let word = match hints.modality {
@@ -167,19 +168,19 @@ fn description(volume: &Outgoing<'_>) -> Vec<u8> {
         Modality::Nuclear => "SPECT",
         _ => "",
     };
-    let is_said = word.is_empty() || Modality::of_description(acquisition) == hints.modality;
+    let is_said = word.is_empty() || Modality::from_description(acquisition) == hints.modality;
     let text = match (is_said, acquisition) {
         (true, said) => said.to_owned(),
         (false, "") => word.to_owned(),
         (false, said) => format!("{word}, {said}"),
     };
-    text.as_bytes()[..text.floor_char_boundary(DESCRIPTION)].to_vec()
+    text.as_bytes()[..text.floor_char_boundary(MAX_DESCRIPTION_BYTES)].to_vec()
 }
 
-/// A header that is filled at places.
-struct Filled(Vec<u8>);
+/// Header buffer with fields at fixed offsets.
+struct HeaderBuffer(Vec<u8>);
 
-impl Filled {
+impl HeaderBuffer {
     fn put(&mut self, at: usize, bytes: impl AsRef<[u8]>) {
         let bytes = bytes.as_ref();
         self.0[at..at + bytes.len()].copy_from_slice(bytes);
@@ -196,19 +197,19 @@ impl Filled {
     }
 }
 
-/// The header of NIfTI-1.
-fn first(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
-    let facts = Facts::of(volume);
+/// Returns the NIfTI-1 header; `start` is the offset of the voxels.
+fn nifti1_header(volume: &ExportVolume<'_>, start: usize) -> Vec<u8> {
+    let facts = NiftiExportHeader::from_volume(volume);
     let [x, y, z] = facts.spacing;
-    let mut header = Filled(vec![0; BYTES_1]);
-    header.put(0, (BYTES_1 as i32).to_le_bytes());
+    let mut header = HeaderBuffer(vec![0; NIFTI_1_HEADER_BYTES]);
+    header.put(0, (NIFTI_1_HEADER_BYTES as i32).to_le_bytes());
     header.put(38, b"r");
     let [nx, ny, nz] = volume.dims().map(|n| n as i16);
     header.put(40, [3, nx, ny, nz, 1, 1, 1, 1].map(i16::to_le_bytes).concat());
     header.put(68, facts.intent.to_le_bytes());
     header.put(70, facts.kind.to_le_bytes());
     header.put(72, facts.bits.to_le_bytes());
-    header.put_f32s(76, &[facts.mirror, x, y, z]);
+    header.put_f32s(76, &[facts.qfac, x, y, z]);
     header.put_f32s(108, &[start as f64, 1.0, 0.0]);
     header.put(123, [facts.units]);
     let [low, high] = facts.window;
@@ -216,27 +217,27 @@ fn first(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
     header.put(148, &facts.description);
     header.put(252, i16::from(facts.turn_code()).to_le_bytes());
     header.put(254, i16::from(facts.matrix_code()).to_le_bytes());
-    if facts.is_placed {
+    if facts.is_anatomical {
         let origin = facts.rows.map(|row| row[3]);
-        header.put_f32s(256, &[facts.turn, origin].concat());
+        header.put_f32s(256, &[facts.quaternion, origin].concat());
         header.put_f32s(280, &facts.rows.concat());
     }
     header.put(344, b"n+1\0");
     header.0
 }
 
-/// The header of NIfTI-2.
-fn second(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
-    let facts = Facts::of(volume);
+/// Returns the NIfTI-2 header; `start` is the offset of the voxels.
+fn nifti2_header(volume: &ExportVolume<'_>, start: usize) -> Vec<u8> {
+    let facts = NiftiExportHeader::from_volume(volume);
     let [x, y, z] = facts.spacing;
-    let mut header = Filled(vec![0; BYTES_2]);
-    header.put(0, (BYTES_2 as i32).to_le_bytes());
+    let mut header = HeaderBuffer(vec![0; NIFTI_2_HEADER_BYTES]);
+    header.put(0, (NIFTI_2_HEADER_BYTES as i32).to_le_bytes());
     header.put(4, b"n+2\0\r\n\x1a\n");
     header.put(12, facts.kind.to_le_bytes());
     header.put(14, facts.bits.to_le_bytes());
     let [nx, ny, nz] = volume.dims().map(|n| n as i64);
     header.put(16, [3, nx, ny, nz, 1, 1, 1, 1].map(i64::to_le_bytes).concat());
-    header.put_f64s(104, &[facts.mirror, x, y, z]);
+    header.put_f64s(104, &[facts.qfac, x, y, z]);
     header.put(168, (start as i64).to_le_bytes());
     header.put_f64s(176, &[1.0, 0.0]);
     let [low, high] = facts.window;
@@ -244,9 +245,9 @@ fn second(volume: &Outgoing<'_>, start: usize) -> Vec<u8> {
     header.put(240, &facts.description);
     header.put(344, i32::from(facts.turn_code()).to_le_bytes());
     header.put(348, i32::from(facts.matrix_code()).to_le_bytes());
-    if facts.is_placed {
+    if facts.is_anatomical {
         let origin = facts.rows.map(|row| row[3]);
-        header.put_f64s(352, &[facts.turn, origin].concat());
+        header.put_f64s(352, &[facts.quaternion, origin].concat());
         header.put_f64s(400, &facts.rows.concat());
     }
     header.put(500, i32::from(facts.units).to_le_bytes());

@@ -1,7 +1,8 @@
-//! NRRD: a header in text, and the voxels behind it, as they are or in gzip.
+//! NRRD writer: a text header, followed by the voxels, uncompressed or in gzip.
 //!
-//! After <https://teem.sourceforge.net/nrrd/format.html>. World space is right-anterior-superior millimetres where a body
-//! is known, and has no name where none is. What is known of the values is in keys and in the fields that there are.
+//! Format: <https://teem.sourceforge.net/nrrd/format.html>. World space is right-anterior-superior millimetres if the
+//! orientation is anatomical, otherwise unnamed. Metadata of the values are stored in standard fields and key/value
+//! pairs.
 
 use std::fmt::Write as _;
 use std::io::{Result, Write};
@@ -10,26 +11,26 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::{DAffine3, DVec3};
 
-use super::outgoing::Outgoing;
-use crate::data::{Hints, Meaning, VoxelType};
-use crate::model::made_by;
+use super::export_volume::ExportVolume;
+use crate::data::{ValueMeaning, ValueMetadata, VoxelType};
+use crate::model::provenance_mark;
 
-/// What a header says, and how.
-pub(super) struct Header<'a> {
-    /// What the volume is called.
+/// Contents of an NRRD header.
+pub(super) struct NrrdFileHeader<'a> {
+    /// Name of the volume.
     pub(super) content: &'a str,
     pub(super) voxel_type: VoxelType,
     pub(super) dims: [usize; 3],
-    /// Voxel indices to the world; `None` where nothing is known of it.
+    /// Transform from voxel indices to world space; `None` if it is unknown.
     pub(super) world_from_index: Option<DAffine3>,
     pub(super) is_anatomical: bool,
-    /// Whether lengths are in voxels.
+    /// True if lengths are in voxels.
     pub(super) has_unknown_scale: bool,
     pub(super) is_gzip: bool,
 }
 
-impl Header<'_> {
-    /// The lines before the empty one.
+impl NrrdFileHeader<'_> {
+    /// Returns the header's lines, without the empty line at its end.
     pub(super) fn text(&self) -> String {
         let number = match self.voxel_type {
             VoxelType::F32 => "float",
@@ -37,7 +38,7 @@ impl Header<'_> {
             whole => whole.name(),
         };
         let [nx, ny, nz] = self.dims;
-        let mut text = format!("NRRD0005\n# {}\n", made_by());
+        let mut text = format!("NRRD0005\n# {}\n", provenance_mark());
         let mut add = |field: &str, value: &str| {
             if !value.is_empty() {
                 text.push_str(field);
@@ -72,19 +73,19 @@ impl Header<'_> {
     }
 }
 
-/// Writes a volume.
-pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -> Result<()> {
-    let header = Header {
+/// Writes a volume as NRRD.
+pub(super) fn write(out: &mut dyn Write, volume: &ExportVolume<'_>, is_gzip: bool) -> Result<()> {
+    let header = NrrdFileHeader {
         content: volume.name(),
         voxel_type: volume.voxel_type(),
         dims: volume.dims(),
-        world_from_index: (!volume.has_no_place()).then_some(volume.world_from_index()),
+        world_from_index: (!volume.has_unknown_geometry()).then_some(volume.world_from_index()),
         is_anatomical: volume.is_anatomical(),
         has_unknown_scale: volume.has_unknown_scale(),
         is_gzip,
     };
     out.write_all(header.text().as_bytes())?;
-    out.write_all(of_values(volume.hints(), volume.unit()).as_bytes())?;
+    out.write_all(value_metadata(volume.hints(), volume.unit()).as_bytes())?;
     out.write_all(b"\n")?;
     if !is_gzip {
         return volume.write_voxels(out);
@@ -94,11 +95,11 @@ pub(super) fn write(out: &mut dyn Write, volume: &Outgoing<'_>, is_gzip: bool) -
     encoder.finish().map(drop)
 }
 
-/// The lines that say what is known of the values.
-fn of_values(hints: &Hints, unit: Option<&str>) -> String {
+/// Returns the header's lines with metadata of the values.
+fn value_metadata(hints: &ValueMetadata, unit: Option<&str>) -> String {
     let mut text = String::new();
     let mut add = |line: std::fmt::Arguments<'_>| {
-        // Text takes whatever is written to it.
+        // Writing to a string cannot fail.
         text.write_fmt(line).ok();
         text.push('\n');
     };
@@ -106,7 +107,7 @@ fn of_values(hints: &Hints, unit: Option<&str>) -> String {
         add(format_args!("sample units: \"{unit}\""));
     }
     if hints.is_rescaled {
-        // That there was another range; which, is not known.
+        // Records that the values were rescaled; the original range is unknown.
         add(format_args!("old min: nan"));
     }
     if let Some(code) = hints.modality.code() {
@@ -122,8 +123,8 @@ fn of_values(hints: &Hints, unit: Option<&str>) -> String {
     if let Some(acquisition) = hints.acquisition() {
         add(format_args!("acquisition:={acquisition}"));
     }
-    if hints.meaning == Meaning::Labels {
-        // By this 3D Slicer marks its segmentations.
+    if hints.meaning == ValueMeaning::Labels {
+        // Key by which 3D Slicer recognises segmentations.
         add(format_args!("Segmentation_ContainedRepresentationNames:=Binary labelmap|"));
     }
     for (at, (number, label)) in hints.labels.iter().enumerate() {

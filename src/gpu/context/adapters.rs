@@ -1,32 +1,32 @@
-//! Choice of the graphics adapter, and the reason why there is none.
+//! Selection of the graphics adapter, and the error message if there is none.
 
 use super::ADAPTER_HELP;
-use crate::data::plain;
+use crate::data::sanitised;
 use crate::gpu::GpuError;
 
-/// Environment variable that names a part of the adapter's name.
-const NAME: &str = "WGPU_ADAPTER_NAME";
+/// Environment variable that selects an adapter by a part of its name.
+const ADAPTER_NAME_VARIABLE: &str = "WGPU_ADAPTER_NAME";
 
-/// Environment variable that names the interfaces to drivers.
-const BACKEND: &str = "WGPU_BACKEND";
+/// Environment variable that selects the graphics APIs (`vulkan`, `metal`, `dx12`).
+const BACKEND_VARIABLE: &str = "WGPU_BACKEND";
 
-/// Adapters that are listed at most: more than a machine has.
-const MOST_LISTED: usize = 8;
+/// Maximum number of adapters listed in an error message; more than any machine has.
+const MAX_LISTED_ADAPTERS: usize = 8;
 
-/// Bytes of a name from a driver or the environment that are told.
-const LONGEST_NAME: usize = 80;
+/// Maximum length, in bytes, of an adapter's or variable's name in an error message.
+const MAX_NAME_BYTES: usize = 80;
 
-/// The fastest adapter of those that the environment allows.
+/// Returns the fastest adapter among those that the environment variables allow.
 ///
 /// # Errors
-/// When there is none.
-pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
+/// Returns [`GpuError::NoAdapter`] if there is none.
+pub(super) fn fastest_adapter() -> Result<wgpu::Adapter, GpuError> {
     let asked = |variable: &str| std::env::var(variable).ok().filter(|value| !value.is_empty());
-    // Others may be compiled in by other packages, and cannot draw volumes.
+    // Other packages may compile in further backends (GL), which lack the features that volume rendering needs.
     let enabled = wgpu::Instance::enabled_backend_features() & wgpu::Backends::PRIMARY;
     let backends = wgpu::Backends::from_env().unwrap_or(enabled) & enabled;
     if backends.is_empty() {
-        return Err(no_interface(&asked(BACKEND).unwrap_or_default(), enabled));
+        return Err(no_backend_error(&asked(BACKEND_VARIABLE).unwrap_or_default(), enabled));
     }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
@@ -34,7 +34,7 @@ pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
     });
     let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
-    let wanted = asked(NAME).unwrap_or_default();
+    let wanted = asked(ADAPTER_NAME_VARIABLE).unwrap_or_default();
     let lower = wanted.to_lowercase();
     adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&lower));
     adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
@@ -44,11 +44,14 @@ pub(super) fn fastest() -> Result<wgpu::Adapter, GpuError> {
         wgpu::DeviceType::Cpu => 3,
         wgpu::DeviceType::Other => 4,
     });
-    adapters.into_iter().next().ok_or_else(|| none_of(&names, &wanted, asked(BACKEND).as_deref()))
+    adapters
+        .into_iter()
+        .next()
+        .ok_or_else(|| no_adapter_error(&names, &wanted, asked(BACKEND_VARIABLE).as_deref()))
 }
 
-/// Error for an environment that asks for interfaces which this program does not use.
-fn no_interface(asked: &str, enabled: wgpu::Backends) -> GpuError {
+/// Builds the error for a `WGPU_BACKEND` that selects no graphics API of this program.
+fn no_backend_error(asked: &str, enabled: wgpu::Backends) -> GpuError {
     let names = [
         (wgpu::Backends::VULKAN, "vulkan"),
         (wgpu::Backends::METAL, "metal"),
@@ -56,30 +59,33 @@ fn no_interface(asked: &str, enabled: wgpu::Backends) -> GpuError {
     ];
     let known: Vec<&str> =
         names.into_iter().filter(|(backend, _)| enabled.contains(*backend)).map(|(_, name)| name).collect();
-    let why = format!(
-        "{BACKEND} is {:?}, and this program draws through {} alone",
-        plain(asked, LONGEST_NAME),
+    let reason = format!(
+        "{BACKEND_VARIABLE} is {:?}, and this program draws through {} alone",
+        sanitised(asked, MAX_NAME_BYTES),
         known.join(" and ")
     );
-    GpuError::NoAdapter { why, help: "unset WGPU_BACKEND" }
+    GpuError::NoAdapter { reason, help: "unset WGPU_BACKEND" }
 }
 
-/// Error for a machine with these adapters, none of which is called as the environment says.
-fn none_of(names: &[String], wanted: &str, backend: Option<&str>) -> GpuError {
+/// Builds the error for a machine on which no adapter's name contains `wanted`.
+fn no_adapter_error(names: &[String], wanted: &str, backend: Option<&str>) -> GpuError {
     if names.is_empty() {
         let through = backend.map_or_else(String::new, |backend| {
-            format!(" ({BACKEND} is {:?})", plain(backend, LONGEST_NAME))
+            format!(" ({BACKEND_VARIABLE} is {:?})", sanitised(backend, MAX_NAME_BYTES))
         });
-        return GpuError::NoAdapter { why: format!("no driver offers one{through}"), help: ADAPTER_HELP };
+        return GpuError::NoAdapter { reason: format!("no driver offers one{through}"), help: ADAPTER_HELP };
     }
-    let listed: Vec<String> =
-        names.iter().take(MOST_LISTED).map(|name| format!("{:?}", plain(name, LONGEST_NAME))).collect();
+    let listed: Vec<String> = names
+        .iter()
+        .take(MAX_LISTED_ADAPTERS)
+        .map(|name| format!("{:?}", sanitised(name, MAX_NAME_BYTES)))
+        .collect();
     let why = format!(
-        "no adapter is called {:?} ({NAME}): there are {}",
-        plain(wanted, LONGEST_NAME),
+        "no adapter is called {:?} ({ADAPTER_NAME_VARIABLE}): there are {}",
+        sanitised(wanted, MAX_NAME_BYTES),
         listed.join(", ")
     );
-    GpuError::NoAdapter { why, help: "name a part of one of those, or unset WGPU_ADAPTER_NAME" }
+    GpuError::NoAdapter { reason: why, help: "name a part of one of those, or unset WGPU_ADAPTER_NAME" }
 }
 
 #[cfg(test)]
@@ -87,14 +93,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cause_is_told() {
+    fn errors_name_the_cause() {
         let names = ["llvmpipe (LLVM 15)".to_owned(), "Card\u{1b}[2J".to_owned()];
-        let said = none_of(&names, "nothing", None).to_string();
-        assert!(said.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME)"), "{said}");
-        assert!(said.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; name"), "{said}");
-        let said = none_of(&[], "nothing", Some("vulkan")).to_string();
+        let message = no_adapter_error(&names, "nothing", None).to_string();
+        assert!(message.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME)"), "{message}");
+        assert!(message.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; name"), "{message}");
+        let said = no_adapter_error(&[], "nothing", Some("vulkan")).to_string();
         assert!(said.contains("no driver offers one (WGPU_BACKEND is \"vulkan\"); install"), "{said}");
-        let said = no_interface("gl", wgpu::Backends::VULKAN).to_string();
+        let said = no_backend_error("gl", wgpu::Backends::VULKAN).to_string();
         assert!(
             said.contains("WGPU_BACKEND is \"gl\"") && said.contains("through vulkan alone; unset"),
             "{said}"

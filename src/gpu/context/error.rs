@@ -1,57 +1,58 @@
-//! What can go wrong on the GPU.
+//! Errors of the GPU: no adapter, out of memory, limits, lost device.
 
-/// Why a picture could not be made.
+/// Error of the renderer.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter at all, or none that can do what we need.
-    #[error("no usable graphics adapter: {why}; {help}")]
+    /// No adapter at all, or none with the features that rendering needs.
+    #[error("no usable graphics adapter: {reason}; {help}")]
     NoAdapter {
-        /// What was looked for and not found.
-        why: String,
-        /// What the user can do.
+        /// Requirement that no adapter met.
+        reason: String,
+        /// Advice to the user.
         help: &'static str,
     },
-    /// The GPU has no memory left, or not in one piece.
+    /// Graphics memory is exhausted, or has no free block of that size.
     #[error(
         "out of graphics memory while making {what} ({mebibytes} MiB); a smaller picture, a lower light-volume resolution or a smaller volume helps"
     )]
     OutOfMemory {
-        /// What was to be made.
+        /// Resource that could not be allocated.
         what: String,
-        /// Size of what was to be made.
+        /// Size of the resource, in MiB.
         mebibytes: u64,
     },
-    /// A user's limit leaves too few addresses for something that would end the program without them.
+    /// A limit on the process (`ulimit -v`) leaves less address space than a driver needs; without it the driver
+    /// would abort the process.
     #[error(
         "{what} needs {needed_mebibytes} MiB of addresses and a limit of this process leaves {left_mebibytes}; `ulimit -v unlimited` helps"
     )]
-    FewAddresses {
-        /// What needs them.
+    AddressSpaceTooSmall {
+        /// Component that needs the address space.
         what: String,
-        /// How many it needs.
+        /// Address space that it needs, in MiB.
         needed_mebibytes: u64,
-        /// How many there are.
+        /// Address space that is free, in MiB.
         left_mebibytes: u64,
     },
-    /// A size is beyond what the adapter can do.
+    /// A size exceeds a limit of the adapter.
     #[error("{what} needs {size}, this adapter allows {limit}; {help}")]
     OverLimit {
-        /// What is too large.
+        /// Resource that is too large.
         what: String,
-        /// How large it is.
+        /// Requested size, in the unit of the limit.
         size: u64,
-        /// How large it may be.
+        /// Largest size that the adapter allows.
         limit: u64,
-        /// What the user can do.
+        /// Advice to the user.
         help: &'static str,
     },
-    /// Something was read back that was never drawn.
+    /// A resource was read back before anything was drawn into it.
     #[error("there is no {0} to read back: it was never drawn")]
     NothingDrawn(&'static str),
-    /// A bug of ours or of the driver.
+    /// Validation error: a bug of this program or of the driver.
     #[error("the graphics driver refused: {0}")]
-    Refused(String),
-    /// The device is gone: driver update, sleep, watchdog.
+    Rejected(String),
+    /// The device is lost, after a driver update, sleep or a watchdog reset.
     #[error("the graphics device was lost ({0})")]
-    Lost(String),
+    DeviceLost(String),
 }

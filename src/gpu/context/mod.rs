@@ -1,102 +1,105 @@
-//! The device, what it can do, and what it complains about.
+//! Graphics device: its queue, limits and features, and its errors.
 
 mod adapters;
-mod addresses;
-pub(super) mod clock;
-mod complaints;
+mod address_space;
+mod device_errors;
 pub(super) mod error;
-mod formats;
+pub(super) mod gpu_clock;
+mod texture_formats;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-pub(crate) use self::addresses::check_room_for_drivers;
-pub(super) use self::addresses::{OF_THE_COMPILER, check_room};
-use self::clock::Clock;
-use self::complaints::Complaints;
-pub(super) use self::formats::pair_format;
+pub(crate) use self::address_space::check_driver_address_space;
+pub(super) use self::address_space::{COMPILER_ADDRESS_BYTES, check_address_space};
+use self::device_errors::DeviceErrors;
+use self::gpu_clock::GpuClock;
+pub(super) use self::texture_formats::pair_format;
 use super::GpuError;
-use crate::data::plain;
-use crate::fault::{self, Count, Fault};
+use crate::data::sanitised;
+use crate::fault::{self, FaultCounter, InjectedFault};
 
-/// Said when there is no adapter.
+/// Advice in the error message when there is no adapter.
 const ADAPTER_HELP: &str =
     "install a Vulkan driver (on Debian: mesa-vulkan-drivers, which also brings a software one)";
 
-/// Said when a device has fewer features than its adapter, and too few.
-const OPENING_HELP: &str = "open the device with the features of chiaroscuro::gpu::device_descriptor";
+/// Advice when a device was opened with fewer features than its adapter has, and too few.
+const DEVICE_HELP: &str = "open the device with the features of chiaroscuro::gpu::device_descriptor";
 
-/// A device with its queue and what we need to know about it. Cheap to clone.
+/// Graphics device with its queue and the capabilities that the renderer depends on. Cheap to clone.
 #[derive(Debug, Clone)]
-pub struct Context {
+pub struct GpuContext {
     adapter: wgpu::Adapter,
-    /// Makes resources.
+    /// Device, which creates resources.
     pub device: wgpu::Device,
-    /// Takes work.
+    /// Queue, to which work is submitted.
     pub queue: wgpu::Queue,
-    /// Name, driver, kind.
+    /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
-    /// Format of attenuation volumes, sheets and pyramid: 16-bit floats where they can be stored.
+    /// Format of attenuation volumes, sheets and pyramid: 16-bit floats where they can be stored, else 32-bit.
     pub storage_format: wgpu::TextureFormat,
-    /// Whether light volumes can have one byte per voxel.
-    pub byte_volumes: bool,
-    /// Whether 16-bit normalised textures are available for density.
-    pub unorm16: bool,
-    /// What nobody caught, kept until it is taken.
-    complaints: Complaints,
-    /// The device is gone.
-    lost: Arc<AtomicBool>,
+    /// `true` if light volumes can have one byte per voxel.
+    pub has_byte_volumes: bool,
+    /// `true` if 16-bit normalised textures are available for density.
+    pub has_unorm16: bool,
+    /// Errors that no error scope caught, kept until they are taken.
+    device_errors: DeviceErrors,
+    /// Set when the device is lost.
+    is_lost: Arc<AtomicBool>,
 }
 
-/// How long the adapter may take for what was submitted. Parts of pictures are made to take a tenth of a second; the
-/// slowest driver on a busy machine has needed ten seconds.
-const PATIENCE: Duration = Duration::from_mins(2);
+/// Longest wait for submitted work before the device counts as lost. Parts of pictures are sized to take a tenth of a
+/// second; the slowest driver on a busy machine has needed ten seconds.
+const DEVICE_TIMEOUT: Duration = Duration::from_mins(2);
 
-/// Textures and buffers that were asked for.
-pub(crate) static ALLOCATIONS: Count = Count::new();
+/// Number of textures and buffers requested so far, for fault injection.
+pub(crate) static ALLOCATION_COUNT: FaultCounter = FaultCounter::new();
 
-/// How often it is looked at whether a device that is waited for is still there.
-const LOOK_AGAIN: Duration = Duration::from_secs(2);
+/// Interval at which a waiting thread checks that the device is not lost.
+const LOSS_CHECK_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Features that we use where an adapter has them.
-const WANTED: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+/// Optional features, requested where the adapter has them.
+const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::PIPELINE_CACHE)
-    .union(Clock::FEATURES);
+    .union(GpuClock::FEATURES);
 
-/// What to ask of an adapter: the features we can use and its real limits instead of the defaults
-/// (which refuse a 2049-voxel axis and a 9000-pixel window on any card).
+/// Returns the descriptor for a device of this adapter.
+///
+/// It has the features that the renderer can use, and the adapter's real limits instead of the defaults (which refuse
+/// a 2049-voxel axis and a 9000-pixel window on any card).
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor {
         label: Some("chiaroscuro"),
-        required_features: adapter.features() & WANTED,
+        required_features: adapter.features() & OPTIONAL_FEATURES,
         required_limits: adapter.limits(),
         ..Default::default()
     }
 }
 
-impl Context {
-    /// Opens a device without a window: the one named by `WGPU_ADAPTER_NAME`, else the fastest.
+impl GpuContext {
+    /// Opens a device without a window: on the adapter named by `WGPU_ADAPTER_NAME`, else on the fastest.
     ///
     /// # Errors
-    /// When there is no adapter or it cannot store the textures that we need.
+    /// Returns an error if there is no adapter, or if it cannot store the textures that the renderer needs.
     pub fn headless() -> Result<Self, GpuError> {
-        check_room_for_drivers()?;
-        let adapter = adapters::fastest()?;
+        check_driver_address_space()?;
+        let adapter = adapters::fastest_adapter()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+            .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
         Self::new(&adapter, device, queue)
     }
 
-    /// A context on a device that somebody else opened with [`device_descriptor`], or with more features. What the
-    /// device complains about without being asked, also in the work of others on the same thread, goes to
-    /// [`Self::check`] there: programs with a handler of their own set it afterwards.
+    /// Creates a context on a device that the caller opened with [`device_descriptor`], or with more features. Sets
+    /// the device's handler for uncaptured errors: they are reported by [`Self::check`], including those of other
+    /// work on the same thread. Programs with a handler of their own install it afterwards.
     ///
     /// # Errors
-    /// When the adapter cannot store the textures that we need, or the device was opened without that feature.
+    /// Returns an error if the adapter cannot store the textures that the renderer needs, or if the device was opened
+    /// without the feature for it.
     pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         let features = device.features();
         let usable = |format: wgpu::TextureFormat| {
@@ -111,49 +114,59 @@ impl Context {
         };
         let storage_format = [wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R32Float]
             .into_iter()
-            // Volumes with missing voxels keep a share beside each density.
+            // Pyramids of volumes with missing voxels store presence as a second channel.
             .find(|&format| usable(format) && usable(pair_format(format)))
             .ok_or_else(|| GpuError::NoAdapter {
-                why: format!(
+                reason: format!(
                     "{} can neither store 16-bit nor filter 32-bit float volumes",
                     adapter.get_info().name
                 ),
-                // The adapter may well be able to.
-                help: if features.contains(adapter.features() & WANTED) {
+                // The adapter may have the feature even though the device was opened without it.
+                help: if features.contains(adapter.features() & OPTIONAL_FEATURES) {
                     ADAPTER_HELP
                 } else {
-                    OPENING_HELP
+                    DEVICE_HELP
                 },
             })?;
         let byte_volumes = usable(wgpu::TextureFormat::R8Unorm);
-        let complaints = Complaints::default();
+        let complaints = DeviceErrors::default();
         let for_errors = complaints.clone();
         device.on_uncaptured_error(Arc::new(move |err: wgpu::Error| {
             let err = match err {
                 wgpu::Error::OutOfMemory { .. } => {
                     GpuError::OutOfMemory { what: "a resource".to_owned(), mebibytes: 0 }
                 }
-                other => GpuError::Refused(other.to_string()),
+                other => GpuError::Rejected(other.to_string()),
             };
             log::error!("{err}");
-            for_errors.keep(err);
+            for_errors.store(err);
         }));
         let lost = Arc::new(AtomicBool::new(false));
         let (for_loss, flag) = (complaints.clone(), Arc::clone(&lost));
         device.set_device_lost_callback(move |reason, message| {
             flag.store(true, Ordering::Relaxed);
             let why = if message.is_empty() { format!("{reason:?}") } else { message };
-            let err = GpuError::Lost(why);
+            let err = GpuError::DeviceLost(why);
             log::error!("{err}");
-            for_loss.keep(err);
+            for_loss.store(err);
         });
         let unorm16 = features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
         let (adapter, info) = (adapter.clone(), adapter.get_info());
-        Ok(Self { adapter, device, queue, info, storage_format, byte_volumes, unorm16, complaints, lost })
+        Ok(Self {
+            adapter,
+            device,
+            queue,
+            info,
+            storage_format,
+            has_byte_volumes: byte_volumes,
+            has_unorm16: unorm16,
+            device_errors: complaints,
+            is_lost: lost,
+        })
     }
 
-    /// This device with 32-bit sheets, pyramid and light volumes, where it can filter them: for
-    /// checks that must not see the rounding of 16-bit floats.
+    /// Returns this context with 32-bit sheets, pyramid and light volumes, where the device can filter them: for
+    /// tests that must not see the rounding of 16-bit floats.
     #[cfg(feature = "testing")]
     #[must_use]
     pub fn with_full_precision(mut self) -> Self {
@@ -163,32 +176,32 @@ impl Context {
         self
     }
 
-    /// The adapter and its driver, in words.
+    /// Returns the name, backend and driver of the adapter, for the user.
     pub fn description(&self) -> String {
         let info = &self.info;
         let words = format!("{} · {:?} · {} {}", info.name, info.backend, info.driver, info.driver_info);
-        // A driver may call itself whatever it likes.
-        plain(words.trim(), 400)
+        // Names come from the driver and may contain any characters.
+        sanitised(words.trim(), 400)
     }
 
-    /// Another device on the same adapter, for work beside a window: long work on the window's own
-    /// queue would hold up its frames, and a surface cannot be resized while others submit to it.
+    /// Opens another device on the same adapter, for work beside a window: long work on the window's queue would
+    /// delay its frames, and a surface cannot be resized while other threads submit to its device.
     ///
     /// # Errors
-    /// When the adapter gives no second device.
-    pub fn sibling(&self) -> Result<Self, GpuError> {
-        // Mesa's software driver takes a fence of one device for passed only when what others of the
-        // same instance have drawn is done, too: every wait would last a frame of the window longer.
-        let adapter = if self.is_software() { self.same_adapter_elsewhere() } else { None };
+    /// Returns an error if the adapter provides no second device.
+    pub fn second_device(&self) -> Result<Self, GpuError> {
+        // Mesa's software driver signals a fence of one device only after the work of all devices of that instance is
+        // done: every wait would last a frame of the window longer. An instance of its own avoids that.
+        let adapter = if self.is_software() { self.adapter_of_new_instance() } else { None };
         let adapter = adapter.as_ref().unwrap_or(&self.adapter);
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
-            .map_err(|err| GpuError::NoAdapter { why: err.to_string(), help: ADAPTER_HELP })?;
+            .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
         let sibling = Self::new(adapter, device, queue)?;
         Ok(Self { storage_format: self.storage_format, ..sibling })
     }
 
-    /// This adapter as an instance of its own sees it.
-    fn same_adapter_elsewhere(&self) -> Option<wgpu::Adapter> {
+    /// Returns this adapter as enumerated by a new instance, if it is found there.
+    fn adapter_of_new_instance(&self) -> Option<wgpu::Adapter> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: self.info.backend.into(),
             ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
@@ -197,89 +210,94 @@ impl Context {
         adapters.into_iter().find(|adapter| adapter.get_info() == self.info)
     }
 
-    /// Whether the adapter is the CPU.
+    /// Returns true if the adapter is a software driver on the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Waits until everything submitted is done, and reports what went wrong in the work of this thread since the last call.
+    /// Waits until all submitted work is done, and reports the errors of this thread's work since the last call.
     ///
     /// # Errors
-    /// What the device complained about; that it is lost, also where the adapter has given no answer for two minutes.
+    /// Returns the device's error; [`GpuError::DeviceLost`] also where the adapter has not answered for two minutes.
     pub fn wait(&self) -> Result<(), GpuError> {
         let begin = Instant::now();
-        std::thread::sleep(fault::slowness());
+        std::thread::sleep(fault::adapter_delay());
         loop {
-            match self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOOK_AGAIN) }) {
-                Err(wgpu::PollError::Timeout) if self.lost.load(Ordering::Relaxed) => {}
-                Err(wgpu::PollError::Timeout) if begin.elapsed() > PATIENCE => {
-                    self.lost.store(true, Ordering::Relaxed);
-                    let why = format!("{} has not answered for {} s", self.info.name, PATIENCE.as_secs());
-                    return Err(GpuError::Lost(why));
+            match self
+                .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOSS_CHECK_INTERVAL) })
+            {
+                Err(wgpu::PollError::Timeout) if self.is_lost.load(Ordering::Relaxed) => {}
+                Err(wgpu::PollError::Timeout) if begin.elapsed() > DEVICE_TIMEOUT => {
+                    self.is_lost.store(true, Ordering::Relaxed);
+                    let why =
+                        format!("{} has not answered for {} s", self.info.name, DEVICE_TIMEOUT.as_secs());
+                    return Err(GpuError::DeviceLost(why));
                 }
                 Err(wgpu::PollError::Timeout) => continue,
-                Err(err) => return Err(GpuError::Refused(err.to_string())),
+                Err(err) => return Err(GpuError::Rejected(err.to_string())),
                 Ok(_) => {}
             }
             self.check()?;
-            return if self.lost.load(Ordering::Relaxed) { Err(self.gone()) } else { Ok(()) };
+            return if self.is_lost.load(Ordering::Relaxed) { Err(self.lost_error()) } else { Ok(()) };
         }
     }
 
-    /// Lets the device tell what has happened, without waiting. wgpu panics where it finds a device gone.
+    /// Polls the device. wgpu panics if it finds the device lost; the panic is caught and recorded as a loss.
     fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
         catch_unwind(AssertUnwindSafe(|| self.device.poll(how))).unwrap_or_else(|_| {
-            self.lost.store(true, Ordering::Relaxed);
+            self.is_lost.store(true, Ordering::Relaxed);
             Ok(wgpu::PollStatus::QueueEmpty)
         })
     }
 
-    /// Whether the device is gone, for good: after a driver's update, a sleep, a card that was taken out. To be asked
-    /// before anything is drawn with it, which might panic.
+    /// Returns true if the device is lost for good: after a driver update, sleep, or removal of the card. To be
+    /// checked before each use of the device, which might panic otherwise.
     pub fn is_lost(&self) -> bool {
-        if !self.lost.load(Ordering::Relaxed) {
+        if !self.is_lost.load(Ordering::Relaxed) {
             self.poll(wgpu::PollType::Poll).ok();
         }
-        self.lost.load(Ordering::Relaxed)
+        self.is_lost.load(Ordering::Relaxed)
     }
 
-    /// Takes the device away.
+    /// Destroys the device, for fault injection.
     #[cfg(feature = "window")]
-    pub(crate) fn lose(&self) {
+    pub(crate) fn destroy_device(&self) {
         self.device.destroy();
     }
 
-    /// As [`Self::is_lost`], as far as somebody has waited for the device: asking does not get into the way of a thread
-    /// that does.
+    /// Returns true if the device is already known to be lost. Does not poll, unlike [`Self::is_lost`], and so never
+    /// blocks a thread that is waiting for the device.
     #[cfg(feature = "window")]
-    pub(crate) fn was_lost(&self) -> bool {
-        self.lost.load(Ordering::Relaxed)
+    pub(crate) fn is_known_lost(&self) -> bool {
+        self.is_lost.load(Ordering::Relaxed)
     }
 
-    /// What to say of a device that is gone.
-    fn gone(&self) -> GpuError {
-        GpuError::Lost(self.info.name.clone())
+    /// Builds the error for a lost device.
+    fn lost_error(&self) -> GpuError {
+        GpuError::DeviceLost(self.info.name.clone())
     }
 
-    /// Reports what went wrong in the work of this thread since it called this last.
+    /// Reports the first error of this thread's work since the last call.
     ///
     /// # Errors
-    /// What the device complained about.
+    /// Returns the device's error.
     pub fn check(&self) -> Result<(), GpuError> {
-        let complaint = self.complaints.take();
-        // What a device complains about that is gone says nothing: nothing on it is valid any more.
-        let is_lost = self.lost.load(Ordering::Relaxed);
+        let complaint = self.device_errors.take();
+        // Errors of a lost device are meaningless: every resource on it is invalid.
+        let is_lost = self.is_lost.load(Ordering::Relaxed);
         match complaint {
-            Some(complaint) if is_lost && !matches!(complaint, GpuError::Lost(_)) => Err(self.gone()),
+            Some(complaint) if is_lost && !matches!(complaint, GpuError::DeviceLost(_)) => {
+                Err(self.lost_error())
+            }
             Some(complaint) => Err(complaint),
             None => Ok(()),
         }
     }
 
-    /// Makes a texture, or says that memory is out.
+    /// Creates a texture.
     ///
     /// # Errors
-    /// When an axis is over the adapter's limit or memory is out.
+    /// Returns an error if an axis exceeds the adapter's limit or memory is exhausted.
     pub fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> Result<wgpu::Texture, GpuError> {
         let what = descriptor.label.unwrap_or("a texture").to_owned();
         let limits = self.device.limits();
@@ -288,7 +306,7 @@ impl Context {
             wgpu::TextureDimension::D2 | wgpu::TextureDimension::D1 => limits.max_texture_dimension_2d,
         };
         let wgpu::Extent3d { width, height, depth_or_array_layers } = descriptor.size;
-        // Layers have a limit of their own, below that of the axes.
+        // Array layers have a limit of their own, below that of the axes.
         let most_layers = limits.max_texture_array_layers;
         let (size, limit) = match descriptor.dimension {
             wgpu::TextureDimension::D3 => (width.max(height).max(depth_or_array_layers), limit),
@@ -301,7 +319,7 @@ impl Context {
         }
         let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);
         let bytes = texels * u64::from(descriptor.format.block_copy_size(None).unwrap_or(16));
-        if fault::is_due(&ALLOCATIONS, Fault::OutOfMemory) {
+        if fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory) {
             return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -312,7 +330,7 @@ impl Context {
         }
     }
 
-    /// A uniform or storage buffer with these contents.
+    /// Creates a uniform or storage buffer with these contents, padded to the copy alignment.
     pub fn buffer<T: bytemuck::NoUninit>(
         &self,
         label: &str,
@@ -321,13 +339,13 @@ impl Context {
     ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
         let aligned = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
-        let buffer = self.empty_buffer(&wgpu::BufferDescriptor {
+        let buffer = self.uninitialised_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: aligned.max(wgpu::COPY_BUFFER_ALIGNMENT),
             usage: usage | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        // Not mapped from the beginning: memory that was refused cannot be, and wgpu panics.
+        // Not mapped at creation: a buffer whose allocation failed cannot be mapped, and wgpu panics.
         if bytes.len() as u64 == aligned {
             self.queue.write_buffer(&buffer, 0, bytes);
         } else {
@@ -338,24 +356,24 @@ impl Context {
         buffer
     }
 
-    /// A buffer of anything. Where memory is out it can be used like any other, to no effect, and [`Self::check`]
-    /// tells.
-    pub(crate) fn empty_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
-        let is_refused = fault::is_due(&ALLOCATIONS, Fault::OutOfMemory);
+    /// Creates an uninitialised buffer. If memory is exhausted, the returned buffer is invalid, commands with it have
+    /// no effect, and [`Self::check`] reports the error.
+    pub(crate) fn uninitialised_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
+        let is_refused = fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory);
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.device.create_buffer(descriptor);
         if pollster::block_on(scope.pop()).is_some() || is_refused {
             let what = descriptor.label.unwrap_or("a buffer").to_owned();
-            self.complaints.keep(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
+            self.device_errors.store(GpuError::OutOfMemory { what, mebibytes: descriptor.size >> 20 });
         }
         if is_refused {
-            // As one that was refused: what uses it is refused, too.
+            // Simulates a failed allocation: commands that use the buffer fail, too.
             buffer.destroy();
         }
         buffer
     }
 
-    /// A sampler that filters linearly and clamps.
+    /// Creates a sampler with linear filtering and clamped coordinates.
     pub fn sampler(&self, label: &str) -> wgpu::Sampler {
         self.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some(label),

@@ -1,5 +1,5 @@
-//! The eye pass: from density and light volumes to the linear picture, and the floor under it.
+//! Eye pass and floor pass: from density and light volumes to the linear picture.
 
+pub(super) mod eye_pass;
 pub(super) mod floor;
-pub(super) mod gather;
-pub(super) mod looked_up;
+pub(super) mod light_lookup;

@@ -1,104 +1,109 @@
-//! How bright a picture is: *Balance*, which makes it as bright as without shadows, and the exposure of a first look.
+//! Brightness of a first look: the balance of lights, which compensates for shadows, and the exposure.
 
-use super::measures::{exposure_for, mean_luminance};
+use super::image_statistics::{automatic_exposure, mean_luminance};
 use crate::data::Dataset;
 use crate::gpu::{GpuError, RenderOptions, Renderer};
-use crate::model::auto::{self, Wishes};
-use crate::model::{Engine, SceneAxis, Settings, ShadowAlgorithm};
+use crate::model::first_look::{self, FirstLookOptions};
+use crate::model::{RenderEngine, SceneAxis, Settings, ShadowAlgorithm};
 
-/// Size of the pictures from which brightness is measured: means over some thousand pixels.
+/// Size of the pictures from which brightness is measured, in pixels: means over some thousand of them.
 pub(super) const MEASURED_SIZE: [u32; 2] = [160, 120];
 
-/// Balance stays within this factor: beyond it the settings are at fault, not the shadows.
+/// Range of the balance; results outside it are due to the settings, not to shadows.
 const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 
-/// Settings for a volume that nobody has touched, but for what takes longer ([`super::finish_look`]).
+/// Returns the automatic settings of a volume, without the slower steps ([`super::complete_first_look`]).
 ///
-/// They are automatic, balanced so that shadows do not make the picture darker, and exposed. Uploads the volume and fills
-/// the light volumes on the way.
+/// Lights are balanced so that shadows do not darken the picture, and the picture is exposed. Uploads the volume and
+/// fills the light volumes.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings, GpuError> {
     first_look_upright(renderer, dataset, SceneAxis::default())
 }
 
-/// As [`first_look`], of a volume of which an axis of the scene points up, unless its file says what does.
+/// Returns the automatic settings like [`first_look()`], with the axis `up` of the scene pointing up, unless the file
+/// of the volume gives an orientation.
 ///
 /// # Errors
-/// When the GPU cannot do it.
+/// Returns an error if the device fails or memory is exhausted.
 pub fn first_look_upright(
     renderer: &mut Renderer,
     dataset: &Dataset,
     up: SceneAxis,
 ) -> Result<Settings, GpuError> {
-    let wishes = Wishes { up, ..Wishes::default() };
-    let mut settings = auto::first_settings_with(dataset.volume(), dataset.histogram(), wishes);
-    let seen = SmallPictures::of(renderer, dataset, &settings)?;
-    settings.shadows.balance = seen.balance();
-    settings.output.exposure = exposure_for(&seen.balanced(settings.shadows.balance));
+    let wishes = FirstLookOptions { up, ..FirstLookOptions::default() };
+    let mut settings = first_look::first_settings_with(dataset.volume(), dataset.histogram(), wishes);
+    let pictures = BrightnessPictures::draw(renderer, dataset, &settings)?;
+    settings.shadows.balance = pictures.balance();
+    settings.output.exposure = automatic_exposure(&pictures.with_balance(settings.shadows.balance));
     settings.sanitise();
     Ok(settings)
 }
 
-/// The factor for the lights that makes the picture with shadows as bright as without.
+/// Returns the factor for lights that makes the picture with shadows as bright as without.
 ///
 /// # Errors
-/// When the GPU cannot do it.
-pub fn balance(renderer: &mut Renderer, dataset: &Dataset, settings: &Settings) -> Result<f64, GpuError> {
-    Ok(SmallPictures::of(renderer, dataset, settings)?.balance())
-}
-
-/// As [`balance`], by the quickest way to light and picture, whichever the settings go: how bright a picture is hardly
-/// depends on it.
-///
-/// # Errors
-/// When the GPU cannot do it.
-pub fn balance_quickly(
+/// Returns an error if the device fails or memory is exhausted.
+pub fn measure_balance(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,
 ) -> Result<f64, GpuError> {
-    balance(renderer, dataset, &with_quick_shadows(settings))
+    Ok(BrightnessPictures::draw(renderer, dataset, settings)?.balance())
 }
 
-/// The settings with light volumes for shadows, and gathered sheets.
-pub(super) fn with_quick_shadows(settings: &Settings) -> Settings {
+/// Returns the factor of [`measure_balance`], measured with the fastest shadow algorithm and engine, on which
+/// brightness hardly depends.
+///
+/// # Errors
+/// Returns an error if the device fails or memory is exhausted.
+pub fn measure_balance_fast(
+    renderer: &mut Renderer,
+    dataset: &Dataset,
+    settings: &Settings,
+) -> Result<f64, GpuError> {
+    measure_balance(renderer, dataset, &with_fast_shadows(settings))
+}
+
+/// Returns the settings with light volumes for shadows, and with the gathering engine.
+pub(super) fn with_fast_shadows(settings: &Settings) -> Settings {
     let mut measured = settings.clone();
-    measured.sampling.engine = Engine::Gather;
+    measured.sampling.engine = RenderEngine::Gather;
     if !measured.shadows.algorithm.has_volume() {
         measured.shadows.algorithm = ShadowAlgorithm::Splat;
     }
     measured
 }
 
-/// Linear light of three small pictures, which give its parts.
-pub(super) struct SmallPictures {
-    /// With shadows as they are without a balance.
-    with: Vec<[f32; 4]>,
-    /// Without shadows.
-    pub(super) without: Vec<[f32; 4]>,
-    /// Without lights.
+/// Linear light of three small pictures, from which the parts of the light follow.
+pub(super) struct BrightnessPictures {
+    /// Picture with shadows and a balance of 1.
+    shadowed: Vec<[f32; 4]>,
+    /// Picture without shadows.
+    pub(super) unshadowed: Vec<[f32; 4]>,
+    /// Picture without lights.
     pub(super) unlit: Vec<[f32; 4]>,
 }
 
-impl SmallPictures {
-    /// Of a look of a volume.
-    pub(super) fn of(
+impl BrightnessPictures {
+    /// Draws the three pictures of a volume with these settings.
+    pub(super) fn draw(
         renderer: &mut Renderer,
         dataset: &Dataset,
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let mut dark = settings.clone();
-        (dark.shading.diffuse, dark.shading.specular) = (0.0, 0.0);
-        // Nor does their light bounce.
-        dark.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
-        let unlit = small_picture(renderer, dataset, &dark)?;
-        Self::before(renderer, dataset, settings, unlit)
+        let mut unlit_settings = settings.clone();
+        (unlit_settings.shading.diffuse, unlit_settings.shading.specular) = (0.0, 0.0);
+        // Lights without colour do not contribute scattered light, either.
+        unlit_settings.lights.iter_mut().for_each(|light| light.color = [0.0; 3]);
+        let unlit = draw_small_picture(renderer, dataset, &unlit_settings)?;
+        Self::draw_lit(renderer, dataset, settings, unlit)
     }
 
-    /// Of a look of a volume of which it is known what it is like without lights.
-    pub(super) fn before(
+    /// Draws the pictures with and without shadows; `unlit` is the known picture without lights.
+    pub(super) fn draw_lit(
         renderer: &mut Renderer,
         dataset: &Dataset,
         settings: &Settings,
@@ -107,24 +112,25 @@ impl SmallPictures {
         let mut shadowed = settings.clone();
         shadowed.shadows.balance = 1.0;
         let unshadowed = without_shadows(&shadowed);
-        let with = small_picture(renderer, dataset, &shadowed)?;
-        let without = small_picture(renderer, dataset, &unshadowed)?;
-        Ok(Self { with, without, unlit })
+        let with = draw_small_picture(renderer, dataset, &shadowed)?;
+        let without = draw_small_picture(renderer, dataset, &unshadowed)?;
+        Ok(Self { shadowed: with, unshadowed: without, unlit })
     }
 
-    /// The factor for the lights that makes the first as bright as the second. Mean linear luminance over what is seen
-    /// is `ambient + factor · direct`; the plain ratio of the two would fall short by the ambient share.
+    /// Returns the factor for lights that makes the picture with shadows as bright as without. Mean linear luminance
+    /// over visible pixels is `ambient + factor · direct`; the plain ratio of both would be too small by the ambient
+    /// share.
     pub(super) fn balance(&self) -> f64 {
         let [with, without, unlit] =
-            [&self.with, &self.without, &self.unlit].map(|light| mean_luminance(light));
+            [&self.shadowed, &self.unshadowed, &self.unlit].map(|light| mean_luminance(light));
         let factor = (without - unlit) / (with - unlit);
         if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 }
     }
 
-    /// The picture with shadows and a balance.
-    pub(super) fn balanced(&self, balance: f64) -> Vec<[f32; 4]> {
+    /// Returns the picture with shadows and a balance.
+    pub(super) fn with_balance(&self, balance: f64) -> Vec<[f32; 4]> {
         let factor = balance as f32;
-        let texels = self.with.iter().zip(&self.unlit);
+        let texels = self.shadowed.iter().zip(&self.unlit);
         texels
             .map(|(with, unlit)| {
                 std::array::from_fn(
@@ -135,13 +141,13 @@ impl SmallPictures {
     }
 }
 
-/// The look without shadows; by the pipelines of the look itself, if that is so of them: each takes about a second to
-/// compile on software adapters, and nothing else needs it.
+/// Returns the settings without shadows, with the same pipelines where possible: each takes about a second to compile
+/// on software adapters, and nothing else needs it.
 fn without_shadows(settings: &Settings) -> Settings {
     let mut unshadowed = settings.clone();
-    // What bounces comes out of shadows.
+    // Scattered light depends on shadows.
     unshadowed.scattering.bounces = 0;
-    // Light volumes hold hoods, too.
+    // Light volumes also contain the cones of lights.
     if settings.lights.iter().any(|light| light.hood.on) {
         unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
     } else {
@@ -150,9 +156,9 @@ fn without_shadows(settings: &Settings) -> Settings {
     unshadowed
 }
 
-/// Linear light of a small picture, of which the floor is no part. As a preview, it makes do with the light volumes of
-/// larger pictures.
-fn small_picture(
+/// Returns the linear light of a small picture without the floor. Drawn as a preview, so that it can reuse the light
+/// volumes of larger pictures.
+fn draw_small_picture(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,

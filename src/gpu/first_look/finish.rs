@@ -1,62 +1,67 @@
-//! The end of a first look, for those who wait for it: the light that was sought, and the brightness that goes with it.
+//! Completion of a first look: light search, floor, balance and exposure.
 
-use super::balance::{SmallPictures, with_quick_shadows};
-use super::light_search::{Found, LightSearch, Sought};
-use super::measures::exposure_for;
+use super::balance::{BrightnessPictures, with_fast_shadows};
+use super::image_statistics::automatic_exposure;
+use super::light_search::{LightSearch, LightSearchResult, SearchedLight};
 use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer};
 use crate::model::Settings;
 
-/// A part of a look that nobody has decided.
+/// Part of the settings that is still to be chosen automatically.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Open {
-    /// Where the lights stand.
+pub enum UndecidedPart {
+    /// Positions of the lights.
     Lights,
-    /// Whether there is a floor; decided with the lights.
+    /// Presence of a floor, chosen together with the lights.
     Floor,
-    /// How much brighter lights are for their shadows.
+    /// Balance: factor for lights that compensates for their shadows.
     Balance,
-    /// How bright the picture is shown.
+    /// Exposure of the displayed picture.
     Exposure,
 }
 
-/// Automatic settings with all parts decided that are open. Uploads the volume and fills the light volumes on the way.
+/// Returns the settings with all `open` parts chosen. Uploads the volume and fills the light volumes.
 ///
 /// # Errors
-/// When the GPU cannot do it.
-pub fn finish_look(
+/// Returns an error if the device fails or memory is exhausted.
+pub fn complete_first_look(
     renderer: &mut Renderer,
     dataset: &Dataset,
     settings: &Settings,
-    open: &[Open],
+    open: &[UndecidedPart],
 ) -> Result<Settings, GpuError> {
     let mut look = settings.clone();
-    if open.contains(&Open::Lights)
-        && let Some(found) = seek(renderer, dataset, settings)?
+    if open.contains(&UndecidedPart::Lights)
+        && let Some(found) = search_lights(renderer, dataset, settings)?
     {
         let found = found.apply(settings);
         look.lights = found.lights;
-        if open.contains(&Open::Floor) {
+        if open.contains(&UndecidedPart::Floor) {
             look.floor = found.floor;
         }
     }
-    if open.contains(&Open::Balance) || open.contains(&Open::Exposure) {
-        // Whether or not there are shadows: pictures with and without are as bright.
-        let seen = SmallPictures::of(renderer, dataset, &with_quick_shadows(&look))?;
-        if open.contains(&Open::Balance) {
+    if open.contains(&UndecidedPart::Balance) || open.contains(&UndecidedPart::Exposure) {
+        // Measured with shadows even if they are off: pictures with and without are equally bright.
+        let seen = BrightnessPictures::draw(renderer, dataset, &with_fast_shadows(&look))?;
+        if open.contains(&UndecidedPart::Balance) {
             look.shadows.balance = seen.balance();
         }
-        if open.contains(&Open::Exposure) {
-            look.output.exposure = exposure_for(&seen.balanced(look.shadows.balance));
+        if open.contains(&UndecidedPart::Exposure) {
+            look.output.exposure = automatic_exposure(&seen.with_balance(look.shadows.balance));
         }
     }
     look.sanitise();
     Ok(look)
 }
 
-/// Seeks the lights; `None` if nothing is seen, or there is no room for it: the picture can be made all the same.
-fn seek(renderer: &Renderer, dataset: &Dataset, settings: &Settings) -> Result<Option<Found>, GpuError> {
-    let search = LightSearch::new(renderer.shaders(), dataset, settings, Sought::KeyAndFill);
+/// Searches for lights; `None` if nothing is visible, or if memory for the search is exhausted, which need not
+/// prevent the picture.
+fn search_lights(
+    renderer: &Renderer,
+    dataset: &Dataset,
+    settings: &Settings,
+) -> Result<Option<LightSearchResult>, GpuError> {
+    let search = LightSearch::new(renderer.shaders(), dataset, settings, SearchedLight::KeyAndFill);
     match search.and_then(LightSearch::run) {
         Err(err @ (GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. })) => {
             log::warn!("no light was sought: {err}");

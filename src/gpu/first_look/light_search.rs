@@ -1,225 +1,232 @@
-//! Looks for the place of a light that makes the most of shadows: tries some on a small copy of the volume, in small
-//! pictures, one after the other.
+//! Light search: finds a position for a light that makes shadows most effective. Tries candidates one after the
+//! other, in small pictures of a downsampled volume.
 
 use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use super::balance::{MEASURED_SIZE, SmallPictures};
-use super::measures::{exposure_for, seen_share};
-use super::score::Score;
-use super::small_volume::{quick, small_volume};
+use super::balance::{BrightnessPictures, MEASURED_SIZE};
+use super::image_statistics::{automatic_exposure, visible_fraction};
+use super::score::LightingScore;
+use super::small_volume::{downsampled_volume, fast_settings};
 use crate::data::Dataset;
 use crate::gpu::{GpuError, Renderer, ShaderLibrary};
-use crate::model::{Light, LightPlace, Settings, auto, key_and_fill};
+use crate::model::{LightDirection, LightSettings, Settings, first_look, key_and_fill};
 
-/// What a place must score more than where the lights are, in bits: less is not seen in pictures side by side, and
-/// opening similar volumes should not make the light jump.
-const CLEARLY_BETTER: f64 = 0.15;
+/// Minimum gain over the current position, in bits: smaller ones are invisible side by side, and opening similar
+/// volumes should not make the light jump.
+const MIN_GAIN_BITS: f64 = 0.15;
 
-/// What a key on the right costs, in bits: people take light to come from the left (Sun & Perona 1998).
-const ON_THE_RIGHT: f64 = 0.15;
+/// Cost of a key light on the right, in bits: people assume that light comes from the left (Sun & Perona 1998).
+const RIGHT_SIDE_COST_BITS: f64 = 0.15;
 
-/// Suggestions stand at least so far apart: nearer ones look alike.
-const APART_DEG: f64 = 30.0;
+/// Minimum angle between suggestions; nearer ones look alike.
+const MIN_ANGLE_DEG: f64 = 30.0;
 
-/// Share of a picture that must show something for its light to be judged: fewer than a hundred pixels say nothing.
-const LEAST_SEEN: f64 = 0.005;
+/// Minimum fraction of visible pixels for a picture to be scored: fewer than a hundred pixels are meaningless.
+const MIN_VISIBLE_FRACTION: f64 = 0.005;
 
-/// Which light's place is sought.
+/// Light whose position is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sought {
-    /// That of the key of a first look; its fill stands across from it.
+pub enum SearchedLight {
+    /// Key light of a first look; its fill light follows on the opposite side.
     KeyAndFill,
-    /// That of a light of the settings; others stay where they are.
+    /// Light of the settings with this index; the others are not moved.
     Light(usize),
 }
 
-/// Lights, and what a picture with them is like.
+/// Candidate lights with their score.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Suggestion {
-    /// All lights of the look.
-    pub lights: Vec<Light>,
-    /// What they do for the picture.
-    pub score: Score,
-    /// The balance that goes with them.
+pub struct LightSuggestion {
+    /// Complete list of lights.
+    pub lights: Vec<LightSettings>,
+    /// Score of the picture with these lights.
+    pub score: LightingScore,
+    /// Balance measured with these lights.
     pub balance: f64,
-    /// The exposure that goes with them.
+    /// Exposure measured with these lights.
     pub exposure: f64,
-    /// What the place itself costs, in bits.
+    /// Penalty of the position, in bits.
     cost: f64,
 }
 
-impl Suggestion {
-    /// Lights that give a picture so many bits of tones, with a balance and an exposure.
+impl LightSuggestion {
+    /// Creates a suggestion with a given entropy of tones, balance and exposure.
     #[cfg(test)]
-    pub(crate) fn of(lights: Vec<Light>, tones: f64, [balance, exposure]: [f64; 2]) -> Self {
-        let score = Score { tones, shadowed: 0.0, dark: 0.0, edges: 0.0 };
+    pub(crate) fn new(lights: Vec<LightSettings>, tones: f64, [balance, exposure]: [f64; 2]) -> Self {
+        let score = LightingScore { tones, shadowed_fraction: 0.0, dark_fraction: 0.0, edges: 0.0 };
         Self { lights, score, balance, exposure, cost: 0.0 }
     }
 
-    fn worth(&self) -> f64 {
+    fn net_score(&self) -> f64 {
         self.score.total() - self.cost
     }
 }
 
-/// What a search has found.
+/// Result of a light search.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
-    /// The lights as they were.
-    pub start: Suggestion,
-    /// The best three places, the best first; fewer if nothing is seen.
-    pub best: Vec<Suggestion>,
-    /// Whether a floor would show a shadow where the object shows none.
+pub struct LightSearchResult {
+    /// Score of the current lights.
+    pub current: LightSuggestion,
+    /// Best three suggestions, best first; fewer if nothing is visible.
+    pub best: Vec<LightSuggestion>,
+    /// `true` if the look gets a floor: the object shows few shadows itself, or stands on a broad base.
     wants_floor: bool,
 }
 
-impl Found {
-    /// What a search may have found.
+impl LightSearchResult {
+    /// Creates a search result.
     #[cfg(test)]
-    pub(crate) fn of(start: Suggestion, best: Vec<Suggestion>) -> Self {
-        Self { start, best, wants_floor: false }
+    pub(crate) fn new(start: LightSuggestion, best: Vec<LightSuggestion>) -> Self {
+        Self { current: start, best, wants_floor: false }
     }
 
-    /// The best, unless what was there is about as good.
-    pub fn chosen(&self) -> &Suggestion {
+    /// Returns the best suggestion, or the current lights unless it is clearly better.
+    pub fn best_or_current(&self) -> &LightSuggestion {
         self.best
             .first()
-            .filter(|best| best.worth() > self.start.worth() + CLEARLY_BETTER)
-            .unwrap_or(&self.start)
+            .filter(|best| best.net_score() > self.current.net_score() + MIN_GAIN_BITS)
+            .unwrap_or(&self.current)
     }
 
-    /// A first look with what was found: its balance and exposure change as those of the small pictures do.
+    /// Returns the settings with the chosen lights; balance and exposure change in proportion to those of the small
+    /// pictures.
     #[must_use]
     pub fn apply(&self, first: &Settings) -> Settings {
-        let (chosen, mut settings) = (self.chosen(), first.clone());
+        let (chosen, mut settings) = (self.best_or_current(), first.clone());
         settings.lights.clone_from(&chosen.lights);
-        settings.shadows.balance *= chosen.balance / self.start.balance;
-        settings.output.exposure *= chosen.exposure / self.start.exposure;
+        settings.shadows.balance *= chosen.balance / self.current.balance;
+        settings.output.exposure *= chosen.exposure / self.current.exposure;
         if self.wants_floor && !settings.floor.on {
             settings.floor.on = true;
-            settings.floor.color = auto::floor_color(settings.output.exposure);
+            settings.floor.color = first_look::floor_color(settings.output.exposure);
         }
         settings.sanitise();
         settings
     }
 }
 
-/// A search, step by step.
+/// Light search, executed step by step.
 #[derive(Debug)]
 pub struct LightSearch {
     renderer: Renderer,
     small: Dataset,
     settings: Settings,
-    waiting: VecDeque<Candidate>,
-    start: Option<Suggestion>,
-    tried: Vec<(DVec3, Suggestion)>,
-    /// The picture without lights.
+    candidates: VecDeque<LightCandidate>,
+    start: Option<LightSuggestion>,
+    scored: Vec<(DVec3, LightSuggestion)>,
+    /// Picture without lights, which all candidates share.
     unlit: Vec<[f32; 4]>,
 }
 
-/// Lights to be tried.
+/// Candidate lights to be scored.
 #[derive(Debug)]
-struct Candidate {
-    /// Towards the light that is sought, as seen from the eye; `None`: where the lights are.
-    way: Option<DVec3>,
-    lights: Vec<Light>,
+struct LightCandidate {
+    /// Direction to the light in view space; `None` for the current lights.
+    direction: Option<DVec3>,
+    lights: Vec<LightSettings>,
     cost: f64,
 }
 
 impl LightSearch {
-    /// A search for a look of a volume, on the device of some pipelines.
+    /// Prepares a search for a volume and its settings, on the device of the shader library.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn new(
         shaders: ShaderLibrary,
         dataset: &Dataset,
         settings: &Settings,
-        sought: Sought,
+        sought: SearchedLight,
     ) -> Result<Self, GpuError> {
-        let small = small_volume(dataset)?;
-        let quick = quick(settings, dataset.volume(), small.volume());
-        let as_they_are = Candidate { way: None, lights: settings.lights.clone(), cost: 0.0 };
-        let others = LightPlace::to_try().into_iter().filter_map(|place| candidate(settings, place, sought));
+        let small = downsampled_volume(dataset)?;
+        let quick = fast_settings(settings, dataset.volume(), small.volume());
+        let as_they_are = LightCandidate { direction: None, lights: settings.lights.clone(), cost: 0.0 };
+        let others = LightDirection::search_candidates()
+            .into_iter()
+            .filter_map(|place| candidate(settings, place, sought));
         Ok(Self {
             renderer: Renderer::with_shaders(&shaders.context.clone(), shaders)?,
-            waiting: std::iter::once(as_they_are).chain(others).collect(),
+            candidates: std::iter::once(as_they_are).chain(others).collect(),
             small,
             settings: quick,
             start: None,
-            tried: Vec::new(),
+            scored: Vec::new(),
             unlit: Vec::new(),
         })
     }
 
-    /// Tries the next place: three small pictures at most. Whether there are more.
+    /// Scores the next candidate, which takes at most three small pictures. Returns true if there are more.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn step(&mut self) -> Result<bool, GpuError> {
-        let Some(Candidate { way, lights, cost }) = self.waiting.pop_front() else { return Ok(false) };
+        let Some(LightCandidate { direction: way, lights, cost }) = self.candidates.pop_front() else {
+            return Ok(false);
+        };
         let quick = Settings { lights: lights.clone(), ..self.settings.clone() };
         let seen = if self.start.is_none() {
-            SmallPictures::of(&mut self.renderer, &self.small, &quick)?
+            BrightnessPictures::draw(&mut self.renderer, &self.small, &quick)?
         } else {
             let unlit = std::mem::take(&mut self.unlit);
-            SmallPictures::before(&mut self.renderer, &self.small, &quick, unlit)?
+            BrightnessPictures::draw_lit(&mut self.renderer, &self.small, &quick, unlit)?
         };
         let balance = seen.balance();
-        let with = seen.balanced(balance);
-        let score = Score::of(&with, &seen.without, &seen.unlit, MEASURED_SIZE[0] as usize);
-        let suggestion = Suggestion { lights, score, balance, exposure: exposure_for(&with), cost };
-        log::debug!("light {way:?}: {score:?}, {:.3} in all", suggestion.worth());
+        let with = seen.with_balance(balance);
+        let score = LightingScore::new(&with, &seen.unshadowed, &seen.unlit, MEASURED_SIZE[0] as usize);
+        let suggestion =
+            LightSuggestion { lights, score, balance, exposure: automatic_exposure(&with), cost };
+        log::debug!("light {way:?}: {score:?}, {:.3} in all", suggestion.net_score());
         if let Some(way) = way {
-            self.tried.push((way, suggestion));
+            self.scored.push((way, suggestion));
         } else {
             self.start = Some(suggestion);
-            if seen_share(&with) < LEAST_SEEN {
-                self.waiting.clear();
+            if visible_fraction(&with) < MIN_VISIBLE_FRACTION {
+                self.candidates.clear();
             }
         }
         self.unlit = seen.unlit;
-        Ok(!self.waiting.is_empty())
+        Ok(!self.candidates.is_empty())
     }
 
-    /// What was found; `None` before anything was tried.
-    pub fn finish(self) -> Option<Found> {
-        let Self { start, mut tried, small, settings, .. } = self;
+    /// Returns the result of the search; `None` if nothing was scored.
+    pub fn finish(self) -> Option<LightSearchResult> {
+        let Self { start, scored: mut tried, small, settings, .. } = self;
         let start = start?;
-        tried.sort_by(|(_, a), (_, b)| b.worth().total_cmp(&a.worth()));
-        let mut best: Vec<(DVec3, Suggestion)> = Vec::new();
+        tried.sort_by(|(_, a), (_, b)| b.net_score().total_cmp(&a.net_score()));
+        let mut best: Vec<(DVec3, LightSuggestion)> = Vec::new();
         for (way, suggestion) in tried {
-            let is_apart =
-                |(other, _): &(DVec3, Suggestion)| way.angle_between(*other) > APART_DEG.to_radians();
+            let is_apart = |(other, _): &(DVec3, LightSuggestion)| {
+                way.angle_between(*other) > MIN_ANGLE_DEG.to_radians()
+            };
             if best.len() < 3 && best.iter().all(is_apart) {
                 best.push((way, suggestion));
             }
         }
         let best = best.into_iter().map(|(_, suggestion)| suggestion).collect();
-        let mut found = Found { start, best, wants_floor: false };
-        let shadowed = found.chosen().score.shadowed;
-        found.wants_floor = auto::wants_floor(&settings, small.volume(), shadowed);
+        let mut found = LightSearchResult { current: start, best, wants_floor: false };
+        let shadowed = found.best_or_current().score.shadowed_fraction;
+        found.wants_floor = first_look::needs_floor(&settings, small.volume(), shadowed);
         Some(found)
     }
 
-    /// Tries everything.
+    /// Scores all candidates.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
-    pub fn run(mut self) -> Result<Option<Found>, GpuError> {
+    /// Returns an error if the device fails or memory is exhausted.
+    pub fn run(mut self) -> Result<Option<LightSearchResult>, GpuError> {
         while self.step()? {}
         Ok(self.finish())
     }
 }
 
-/// The lights with the one that is sought at a place; `None` if there is no such light.
-fn candidate(settings: &Settings, place: LightPlace, sought: Sought) -> Option<Candidate> {
-    let way = place.in_view();
-    let cost = if place.is_right() { ON_THE_RIGHT } else { 0.0 };
+/// Returns the lights with the selected one moved to a position; `None` if there is no such light.
+fn candidate(settings: &Settings, place: LightDirection, sought: SearchedLight) -> Option<LightCandidate> {
+    let way = place.view_direction();
+    let cost = if place.is_right() { RIGHT_SIDE_COST_BITS } else { 0.0 };
     let lights = match sought {
-        Sought::KeyAndFill => key_and_fill(&settings.camera, place).to_vec(),
-        Sought::Light(index) => {
+        SearchedLight::KeyAndFill => key_and_fill(&settings.camera, place).to_vec(),
+        SearchedLight::Light(index) => {
             let mut lights = settings.lights.clone();
             let light = lights.get_mut(index)?;
             let distance = DVec3::from(light.position).length().max(1.0);
@@ -228,29 +235,33 @@ fn candidate(settings: &Settings, place: LightPlace, sought: Sought) -> Option<C
             lights
         }
     };
-    Some(Candidate { way: Some(way), lights, cost })
+    Some(LightCandidate { direction: Some(way), lights, cost })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn suggestion(tones: f64, at: [f64; 3]) -> Suggestion {
-        Suggestion::of(vec![Light { position: at, ..Light::default() }], tones, [1.5, 1.2])
+    fn suggestion(tones: f64, at: [f64; 3]) -> LightSuggestion {
+        LightSuggestion::new(
+            vec![LightSettings { position: at, ..LightSettings::default() }],
+            tones,
+            [1.5, 1.2],
+        )
     }
 
     #[test]
     fn lights_stay_unless_others_are_clearly_better() {
         let start = suggestion(5.0, [0.0, 0.0, 3.0]);
-        let found = |tones: f64| Found {
-            start: start.clone(),
+        let found = |tones: f64| LightSearchResult {
+            current: start.clone(),
             best: vec![suggestion(tones, [3.0, 0.0, 0.0])],
             wants_floor: false,
         };
-        assert_eq!(found(5.1).chosen(), &start);
+        assert_eq!(found(5.1).best_or_current(), &start);
         assert_eq!(found(5.1).apply(&Settings::default()).lights, start.lights);
         assert_eq!(found(5.2).apply(&Settings::default()).lights[0].position, [3.0, 0.0, 0.0]);
-        assert_eq!(Found { best: Vec::new(), ..found(9.0) }.chosen(), &start);
+        assert_eq!(LightSearchResult { best: Vec::new(), ..found(9.0) }.best_or_current(), &start);
     }
 
     #[test]
@@ -259,7 +270,11 @@ mod tests {
         (first.shadows.balance, first.output.exposure) = (2.0, 1.5);
         let mut best = suggestion(9.0, [3.0, 0.0, 0.0]);
         (best.balance, best.exposure) = (1.8, 1.0);
-        let found = Found { start: suggestion(5.0, [0.0, 0.0, 3.0]), best: vec![best], wants_floor: true };
+        let found = LightSearchResult {
+            current: suggestion(5.0, [0.0, 0.0, 3.0]),
+            best: vec![best],
+            wants_floor: true,
+        };
         let look = found.apply(&first);
         assert!((look.shadows.balance - 2.0 * 1.8 / 1.5).abs() < 1e-12);
         assert!((look.output.exposure - 1.5 / 1.2).abs() < 1e-12);
@@ -268,15 +283,15 @@ mod tests {
 
     #[test]
     fn the_sought_light_moves_and_others_stay() {
-        let lights = vec![Light { position: [0.0, 5.0, 0.0], ..Light::default() }; 2];
+        let lights = vec![LightSettings { position: [0.0, 5.0, 0.0], ..LightSettings::default() }; 2];
         let settings = Settings { lights, ..Settings::default() };
-        for place in LightPlace::to_try() {
-            let Candidate { lights, way, .. } =
-                candidate(&settings, place, Sought::Light(1)).expect("a candidate");
+        for place in LightDirection::search_candidates() {
+            let LightCandidate { lights, direction: way, .. } =
+                candidate(&settings, place, SearchedLight::Light(1)).expect("a candidate");
             assert_eq!(lights[0], settings.lights[0]);
             let seen = settings.camera.scene_from_view().transpose() * DVec3::from(lights[1].position);
             assert!((seen / 5.0 - way.expect("a way")).length() < 1e-9, "as far away as before");
         }
-        assert!(candidate(&settings, LightPlace::USUAL, Sought::Light(2)).is_none());
+        assert!(candidate(&settings, LightDirection::DEFAULT_KEY, SearchedLight::Light(2)).is_none());
     }
 }

@@ -1,18 +1,20 @@
-//! What happens once when a volume is opened, besides the automatic settings: how bright the picture is, where the lights
-//! stand, and whether there is a floor.
+//! First look: measurements when a volume is opened, in addition to the automatic settings, that choose brightness,
+//! lights and the floor.
 
 mod balance;
 mod finish;
+mod image_statistics;
 mod light_search;
-mod measures;
+mod measured_settings;
 mod score;
-mod small_look;
 mod small_volume;
 
-pub use self::balance::{balance, balance_quickly, first_look, first_look_upright};
-pub use self::finish::{Open, finish_look};
-pub use self::light_search::{Found, LightSearch, Sought, Suggestion};
-pub use self::measures::{dark_share, exposure_for, mean_luminance, seen_share, shadowed_share};
-pub use self::score::Score;
-pub use self::small_look::SmallLook;
-pub use self::small_volume::small_volume;
+pub use self::balance::{first_look, first_look_upright, measure_balance, measure_balance_fast};
+pub use self::finish::{UndecidedPart, complete_first_look};
+pub use self::image_statistics::{
+    automatic_exposure, dark_fraction, mean_luminance, shadowed_fraction, visible_fraction,
+};
+pub use self::light_search::{LightSearch, LightSearchResult, LightSuggestion, SearchedLight};
+pub use self::measured_settings::MeasuredSettings;
+pub use self::score::LightingScore;
+pub use self::small_volume::downsampled_volume;

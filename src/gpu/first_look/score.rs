@@ -1,99 +1,107 @@
-//! How good a picture's light is, in a number: tones that differ, shadows that are seen, nothing that drowns in them.
+//! Lighting score: rates a picture by the variety of tones, visible shadows, and the absence of black areas.
 
-use super::measures::{dark_share, exposure_for, is_seen, material_luminance, shadowed_share};
+use super::image_statistics::{
+    automatic_exposure, dark_fraction, is_visible, material_luminance, shadowed_fraction,
+};
 use crate::model::srgb_from_linear;
 
-/// Classes in which displayed luminance is counted: four of 255 steps each, the least that is told apart in pictures.
-const TONES: usize = 64;
+/// Number of bins for displayed luminance: four of 255 steps each, the smallest difference that is noticed in
+/// pictures.
+const TONE_BINS: usize = 64;
 
-/// Shares of a picture in shadow: none, best, and where shadows begin to rule it. Every shadow shapes: of things that cast
+/// Corners of the score of shadowed area: none, best, and too much. All shadows convey shape; for objects that cast
 /// few, some are better than none.
-const IN_SHADOW: [f64; 3] = [0.0, 0.22, 0.40];
+const SHADOW_FRACTIONS: [f64; 3] = [0.0, 0.22, 0.40];
 
-/// What shadows of the best share are worth, in bits of tones: half of what the tones of a picture have.
-const OF_SHADOWS: f64 = 3.0;
+/// Weight of shadows with the best area, in bits: half the entropy of a typical picture's tones.
+const SHADOW_WEIGHT_BITS: f64 = 3.0;
 
-/// What each share of nearly black costs beyond the first two hundredths: 5 % more takes what 1 bit of tones gives.
-const OF_DARKNESS: f64 = 20.0;
-const DARKNESS_LET_PASS: f64 = 0.02;
+/// Cost of nearly black area beyond the first two hundredths, in bits per unit of area: another 5 % cancel 1 bit of
+/// tones.
+const DARKNESS_COST_BITS: f64 = 20.0;
+const FREE_DARKNESS: f64 = 0.02;
 
-/// What it is worth that all edges of the unlit picture are still there.
-const OF_EDGES: f64 = 0.5;
+/// Weight of edges, in bits, if all edges of the unlit picture are preserved.
+const EDGE_WEIGHT_BITS: f64 = 0.5;
 
-/// What a picture's light is like.
+/// Parts of the lighting score of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Score {
+pub struct LightingScore {
     /// Entropy of displayed luminance, in bits (Gumhold 2002).
     pub tones: f64,
-    /// Share of what is seen that shadows darken by 30 % or more.
-    pub shadowed: f64,
-    /// Share of what is seen that is nearly black.
-    pub dark: f64,
-    /// Share of the contrast of the unlit picture's edges that is still there.
+    /// Fraction of visible pixels that shadows darken by 30 % or more.
+    pub shadowed_fraction: f64,
+    /// Fraction of visible pixels that are nearly black.
+    pub dark_fraction: f64,
+    /// Fraction of the unlit picture's edge contrast that is preserved.
     pub edges: f64,
 }
 
-impl Score {
-    /// Of a picture with shadows, without, and without lights: linear light of the same size, the first as bright as the
-    /// second on the whole.
-    pub(super) fn of(with: &[[f32; 4]], without: &[[f32; 4]], unlit: &[[f32; 4]], width: usize) -> Self {
-        let exposure = exposure_for(with);
+impl LightingScore {
+    /// Scores a picture with shadows, given the ones without shadows and without lights: linear light of equal size,
+    /// the first two with equal mean brightness.
+    pub(super) fn new(with: &[[f32; 4]], without: &[[f32; 4]], unlit: &[[f32; 4]], width: usize) -> Self {
+        let exposure = automatic_exposure(with);
         let shown = |light: &[[f32; 4]], exposure: f64| -> Vec<Option<f64>> {
-            light.iter().map(|texel| is_seen(texel).then(|| displayed(texel, exposure))).collect()
+            light
+                .iter()
+                .map(|texel| is_visible(texel).then(|| displayed_luminance(texel, exposure)))
+                .collect()
         };
         let lit = shown(with, exposure);
         Self {
-            tones: entropy(&tones(lit.iter().flatten().copied())),
-            shadowed: shadowed_share(with, without),
-            dark: dark_share(with, exposure),
-            edges: kept_edges(&lit, &shown(unlit, exposure_without_bounds(unlit)), width),
+            tones: entropy(&tone_histogram(lit.iter().flatten().copied())),
+            shadowed_fraction: shadowed_fraction(with, without),
+            dark_fraction: dark_fraction(with, exposure),
+            edges: preserved_edges(&lit, &shown(unlit, mean_matching_exposure(unlit)), width),
         }
     }
 
-    /// All of it in one number, in bits: more is better.
+    /// Returns the total score in bits; higher is better.
     pub fn total(&self) -> f64 {
-        self.tones + OF_SHADOWS * tri(self.shadowed, IN_SHADOW)
-            - OF_DARKNESS * (self.dark - DARKNESS_LET_PASS).max(0.0)
-            + OF_EDGES * self.edges
+        self.tones + SHADOW_WEIGHT_BITS * triangle(self.shadowed_fraction, SHADOW_FRACTIONS)
+            - DARKNESS_COST_BITS * (self.dark_fraction - FREE_DARKNESS).max(0.0)
+            + EDGE_WEIGHT_BITS * self.edges
     }
 }
 
-/// Displayed luminance of a pixel's material, 0 … 1.
-fn displayed(texel: &[f32; 4], exposure: f64) -> f64 {
+/// Returns the displayed luminance of a pixel's material, 0 … 1.
+fn displayed_luminance(texel: &[f32; 4], exposure: f64) -> f64 {
     srgb_from_linear((exposure * material_luminance(texel)).clamp(0.0, 1.0))
 }
 
-/// Brings the mean of unlit pictures, which ambient light alone makes, to that of lit ones: their edges are compared.
-fn exposure_without_bounds(unlit: &[[f32; 4]]) -> f64 {
-    let seen = unlit.iter().filter(|texel| is_seen(texel)).map(material_luminance);
+/// Returns the exposure that brings the mean of an unlit picture, lit by ambient light only, to that of lit ones, so
+/// that edges can be compared.
+fn mean_matching_exposure(unlit: &[[f32; 4]]) -> f64 {
+    let seen = unlit.iter().filter(|texel| is_visible(texel)).map(material_luminance);
     let (sum, count) = seen.fold((0.0, 0usize), |(sum, count), y| (sum + y, count + 1));
     if sum > 0.0 { 0.2 * count as f64 / sum } else { 1.0 }
 }
 
-/// How often each class of displayed luminance occurs.
-fn tones(displayed: impl Iterator<Item = f64>) -> [usize; TONES] {
-    let mut counts = [0; TONES];
+/// Returns the histogram of displayed luminance.
+fn tone_histogram(displayed: impl Iterator<Item = f64>) -> [usize; TONE_BINS] {
+    let mut counts = [0; TONE_BINS];
     for value in displayed {
-        counts[((value * TONES as f64) as usize).min(TONES - 1)] += 1;
+        counts[((value * TONE_BINS as f64) as usize).min(TONE_BINS - 1)] += 1;
     }
     counts
 }
 
-/// Entropy of how often things occur, in bits.
+/// Returns the entropy of a histogram, in bits.
 pub(super) fn entropy(counts: &[usize]) -> f64 {
     let total: usize = counts.iter().sum();
     let share = |&count: &usize| count as f64 / total.max(1) as f64;
     counts.iter().map(share).filter(|&p| p > 0.0).map(|p| -p * p.log2()).sum()
 }
 
-/// A triangle: 0 up to the first place, 1 at the second, 0 from the third on.
-pub(super) fn tri(x: f64, [from, best, to]: [f64; 3]) -> f64 {
+/// Triangle function: 0 up to the first corner, 1 at the second, 0 from the third on.
+pub(super) fn triangle(x: f64, [from, best, to]: [f64; 3]) -> f64 {
     ((x - from) / (best - from)).min((to - x) / (to - best)).clamp(0.0, 1.0)
 }
 
-/// Of the contrast between neighbours in the unlit picture, the share that the lit one has at least; 1 where there is
-/// none. Neighbours of which one shows nothing do not count: outlines are always there.
-pub(super) fn kept_edges(lit: &[Option<f64>], unlit: &[Option<f64>], width: usize) -> f64 {
+/// Returns the fraction of the unlit picture's contrast between neighbours that the lit one preserves; 1 if there is
+/// none. Pairs with an invisible pixel are ignored, because outlines are always visible.
+pub(super) fn preserved_edges(lit: &[Option<f64>], unlit: &[Option<f64>], width: usize) -> f64 {
     let (mut kept, mut all) = (0.0, 0.0);
     let mut compare = |a: usize, b: usize| {
         if let (Some(la), Some(lb), Some(ua), Some(ub)) = (lit[a], lit[b], unlit[a], unlit[b]) {
@@ -137,7 +145,7 @@ mod tests {
         for (x, expected) in
             [(0.0, 0.0), (0.10, 0.0), (0.15, 0.5), (0.20, 1.0), (0.275, 0.5), (0.35, 0.0), (1.0, 0.0)]
         {
-            assert!((tri(x, corners) - expected).abs() < 1e-12, "{x}");
+            assert!((triangle(x, corners) - expected).abs() < 1e-12, "{x}");
         }
     }
 
@@ -145,29 +153,29 @@ mod tests {
     fn edges_are_kept_as_far_as_they_are_seen() {
         // Two rows of three: a step from 0.2 to 0.6 between the second and the third column.
         let step = |low: f64, high: f64| [low, low, high, low, low, high].map(Some);
-        assert_eq!(kept_edges(&step(0.2, 0.6), &step(0.2, 0.6), 3), 1.0);
-        assert_eq!(kept_edges(&step(0.0, 0.0), &step(0.2, 0.6), 3), 0.0);
-        assert!((kept_edges(&step(0.1, 0.2), &step(0.2, 0.6), 3) - 0.25).abs() < 1e-12);
-        assert_eq!(kept_edges(&step(0.0, 1.0), &step(0.2, 0.6), 3), 1.0, "more is not better");
-        assert_eq!(kept_edges(&step(0.0, 1.0), &step(0.4, 0.4), 3), 1.0, "nothing to lose");
-        // Where rows end there is no edge, nor beside what is not seen.
+        assert_eq!(preserved_edges(&step(0.2, 0.6), &step(0.2, 0.6), 3), 1.0);
+        assert_eq!(preserved_edges(&step(0.0, 0.0), &step(0.2, 0.6), 3), 0.0);
+        assert!((preserved_edges(&step(0.1, 0.2), &step(0.2, 0.6), 3) - 0.25).abs() < 1e-12);
+        assert_eq!(preserved_edges(&step(0.0, 1.0), &step(0.2, 0.6), 3), 1.0, "more is not better");
+        assert_eq!(preserved_edges(&step(0.0, 1.0), &step(0.4, 0.4), 3), 1.0, "nothing to lose");
+        // The ends of rows are no edges, and neither are the borders of invisible pixels.
         let mut gone = step(0.2, 0.6);
         (gone[2], gone[5]) = (None, None);
-        assert_eq!(kept_edges(&step(0.0, 0.0), &gone, 3), 1.0);
+        assert_eq!(preserved_edges(&step(0.0, 0.0), &gone, 3), 1.0);
     }
 
     #[test]
     fn the_parts_add_up() {
-        let score = Score { tones: 5.0, shadowed: 0.11, dark: 0.04, edges: 0.8 };
+        let score = LightingScore { tones: 5.0, shadowed_fraction: 0.11, dark_fraction: 0.04, edges: 0.8 };
         assert!((score.total() - (5.0 + 3.0 * 0.5 - 20.0 * 0.02 + 0.5 * 0.8)).abs() < 1e-12);
-        let flat = Score { tones: 5.0, shadowed: 0.0, dark: 0.02, edges: 1.0 };
+        let flat = LightingScore { tones: 5.0, shadowed_fraction: 0.0, dark_fraction: 0.02, edges: 1.0 };
         assert!((flat.total() - 5.5).abs() < 1e-12);
     }
 
     #[test]
     fn shadows_of_the_best_share_win() {
         let grey = |value: f64| [value as f32, value as f32, value as f32, 1.0];
-        // A ramp of light, of which shadows take a share of the pixels away to a half.
+        // Ramp of light, with half the light removed from a fraction of the pixels.
         let without: Vec<_> = (0..400).map(|at| grey(0.1 + 0.4 * f64::from(at % 20) / 20.0)).collect();
         let shadowed = |share: f64, left: f32| -> Vec<[f32; 4]> {
             let dark = |at: usize| (at * 7919 % 400) < (share * 400.0) as usize;
@@ -177,7 +185,7 @@ mod tests {
                 .collect()
         };
         let total = |share: f64, left: f32| {
-            Score::of(&shadowed(share, left), &without, &vec![grey(0.15); 400], 20).total()
+            LightingScore::new(&shadowed(share, left), &without, &vec![grey(0.15); 400], 20).total()
         };
         assert!(total(0.2, 0.5) > total(0.02, 0.5) + 1.0);
         assert!(total(0.2, 0.5) > total(0.5, 0.5) + 1.0);

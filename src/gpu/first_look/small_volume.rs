@@ -1,31 +1,33 @@
-//! A volume with so few voxels that many looks of it can be tried at once.
+//! Downsampled volume for trying many settings in a short time.
 
-use crate::data::{Dataset, Volume, reduced_dims};
+use crate::data::{Dataset, Volume, block_counts};
 use crate::gpu::GpuError;
-use crate::model::{Engine, Kernel, Length, Resolution, Settings, Slabs};
+use crate::model::{
+    LightVolumeResolution, OpacityLength, ReconstructionKernel, RenderEngine, Settings, SlabMode,
+};
 use crate::plan::preview_slab;
 
-use super::balance::{MEASURED_SIZE, with_quick_shadows};
+use super::balance::{MEASURED_SIZE, with_fast_shadows};
 
-/// Most voxels: 96³, of which a software adapter fills a light volume in a few hundredths of a second.
-const MOST_VOXELS: usize = 96 * 96 * 96;
+/// Maximum number of voxels: 96³, for which a software adapter fills a light volume in a few hundredths of a second.
+const MAX_VOXELS: usize = 96 * 96 * 96;
 
-/// The volume itself if it is small, else blocks of its voxels averaged, which are about as long along every axis.
+/// Returns the volume itself if it is small, else one with averaged blocks that are about as long along every axis.
 ///
 /// # Errors
-/// When what is left cannot be a volume.
-pub fn small_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
+/// Returns an error if the averaged voxels do not form a valid volume.
+pub fn downsampled_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
     let volume = dataset.volume();
-    let block = block_for(volume.dims(), volume.spacing_mm().into());
+    let block = smallest_sufficient_block(volume.dims(), volume.spacing_mm().into());
     if block == [1; 3] {
         return Ok(dataset.clone());
     }
-    let small = volume.averaged(block).map_err(|err| GpuError::Refused(err.to_string()))?;
+    let small = volume.to_block_averaged(block).map_err(|err| GpuError::Rejected(err.to_string()))?;
     Ok(Dataset::new(small))
 }
 
-/// Voxels along the edges of the smallest blocks of which there are few enough.
-fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
+/// Returns the smallest block size, in voxels, with at most `MAX_VOXELS` blocks.
+fn smallest_sufficient_block(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
     let shortest = spacing_mm.into_iter().fold(f64::INFINITY, f64::min);
     let mut edge = 1.0;
     loop {
@@ -33,30 +35,32 @@ fn block_for(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 3] {
             let count = (edge * shortest / spacing_mm[axis]).round() as usize;
             count.clamp(1, dims[axis].max(1))
         });
-        let left: usize = reduced_dims(dims, block).iter().product();
-        if left <= MOST_VOXELS {
+        let left: usize = block_counts(dims, block).iter().product();
+        if left <= MAX_VOXELS {
             return block;
         }
-        // At least as long that an axis which is not averaged as a whole has longer blocks: spacings may be worlds apart.
+        // At least one axis that is not fully averaged gets longer blocks; spacings may differ by many orders of
+        // magnitude.
         let longer = (0..3).filter(|&axis| block[axis] < dims[axis]);
         let next = longer.map(|axis| (block[axis] as f64 + 0.5) * spacing_mm[axis] / shortest);
         edge = next.fold(f64::INFINITY, f64::min).max(edge + 1.0);
     }
 }
 
-/// The settings for a volume with averaged voxels, quick: as previews are.
-pub(super) fn quick(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
-    let mut quick = with_quick_shadows(settings);
-    // Opacities refer to the same thickness, however many voxels that has.
-    if let Length::Voxels(_) = quick.opacity_unit {
+/// Returns the settings for a downsampled volume, with the fast kernels and slabs of previews.
+pub(super) fn fast_settings(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
+    let mut quick = with_fast_shadows(settings);
+    // Opacities keep their reference length, although voxels are larger.
+    if let OpacityLength::Voxels(_) = quick.opacity_unit {
         let scene = whole.scene();
-        quick.opacity_unit = Length::Mm(quick.opacity_unit.in_scene(&scene) * scene.mm_per_unit);
+        quick.opacity_unit = OpacityLength::Mm(quick.opacity_unit.scene_units(&scene) * scene.mm_per_unit);
     }
-    quick.shadows.resolution = Resolution::Full;
-    (quick.shadows.kernel, quick.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
-    quick.sampling.engine = Engine::Gather;
-    let slab = quick.mean_slab();
-    quick.sampling.slabs = Slabs::Even;
+    quick.shadows.resolution = LightVolumeResolution::Full;
+    (quick.shadows.kernel, quick.sampling.kernel) =
+        (ReconstructionKernel::Prefiltered, ReconstructionKernel::Prefiltered);
+    quick.sampling.engine = RenderEngine::Gather;
+    let slab = quick.equivalent_even_slab();
+    quick.sampling.slabs = SlabMode::Even;
     quick.sampling.slab = preview_slab(&quick.camera, &small.scene(), MEASURED_SIZE, slab);
     quick
 }
@@ -77,7 +81,7 @@ mod tests {
             ([512; 3], [1.0, 1.0, 1e-9], [1, 1, 171]),
             ([2048, 2048, 2], [1.0, 1.0, 1e-9], [3, 3, 2]),
         ] {
-            assert_eq!(block_for(dims, spacing_mm), expected, "{dims:?} {spacing_mm:?}");
+            assert_eq!(smallest_sufficient_block(dims, spacing_mm), expected, "{dims:?} {spacing_mm:?}");
         }
     }
 
@@ -87,8 +91,8 @@ mod tests {
             for flat in [1usize, 30, n] {
                 for thick in [0.01, 1.0, 100.0] {
                     let dims = [n, n, flat];
-                    let block = block_for(dims, [1.0, 1.0, thick]);
-                    assert!(reduced_dims(dims, block).iter().product::<usize>() <= MOST_VOXELS, "{dims:?}");
+                    let block = smallest_sufficient_block(dims, [1.0, 1.0, thick]);
+                    assert!(block_counts(dims, block).iter().product::<usize>() <= MAX_VOXELS, "{dims:?}");
                 }
             }
         }

@@ -1,16 +1,16 @@
-//! One picture from request to pixels: what must be computed, in which steps, and what is kept.
+//! Frame: one picture from request to pixels, with the plan, the steps and the caches.
 
+pub(super) mod caches;
+mod double_buffer;
+pub(super) mod downsample_to_fit;
 pub(super) mod encode;
-pub(super) mod fit;
-pub(super) mod job;
-pub(super) mod kept;
-pub(super) mod light_build;
-mod loaded;
-mod plan;
+mod frame_plan;
+pub(super) mod light_fill;
+mod loaded_volume;
+#[cfg(test)]
+mod out_of_memory_tests;
+pub(super) mod render_job;
 pub(super) mod renderer;
 pub(super) mod report;
 pub(super) mod step;
-mod targets;
-#[cfg(test)]
-mod tests;
 pub(super) mod warm_up;

@@ -1,104 +1,104 @@
-//! The renderer: what it keeps, and pictures at once.
+//! Renderer: cached products of one device, and blocking functions to draw a picture.
 
 use std::time::Instant;
 
-use super::loaded::Loaded;
-use super::report::{Picture, Report};
-use super::targets::Targets;
-use crate::data::{Dataset, Interrupt};
-use crate::gpu::context::clock::Clock;
-use crate::gpu::resources::cached::Cached;
-use crate::gpu::resources::tools::Tools;
-use crate::gpu::{Context, GpuError, RenderOptions, ShaderLibrary};
+use super::double_buffer::DoubleBuffer;
+use super::loaded_volume::LoadedVolume;
+use super::report::{RenderReport, RenderedPicture};
+use crate::data::{CancelToken, Dataset};
+use crate::gpu::context::gpu_clock::GpuClock;
+use crate::gpu::resources::cache_entry::CacheEntry;
+use crate::gpu::resources::gpu_tools::GpuTools;
+use crate::gpu::{GpuContext, GpuError, RenderOptions, ShaderLibrary};
 use crate::model::Settings;
-use crate::plan::{Request, VolumeKey};
+use crate::plan::{RenderRequest, VolumeKey};
 
-/// Renders volumes on one device. Every product is kept with the key of what it was made from, and serves all
-/// pictures that need the same.
+/// Renderer of volumes on one device. Each product is cached with the key of its inputs, and reused by all pictures
+/// with the same key.
 #[derive(Debug)]
 pub struct Renderer {
-    pub(crate) tools: Tools,
-    /// The volume on the GPU by its content and the values that it shows, complete when it is uploaded.
-    pub(crate) loaded: Option<Cached<VolumeKey, Loaded>>,
-    pub(crate) targets: Targets,
-    /// How often the light volume of each light of the settings was filled.
-    pub(crate) fills: Vec<u64>,
-    /// Counts pictures.
-    pub(crate) pictures: u64,
-    pub(crate) report: Report,
-    /// For pictures that are timed; where the adapter has one.
-    pub(crate) gpu_clock: Option<Clock>,
+    pub(crate) tools: GpuTools,
+    /// Volume on the GPU, by content and shown values; complete when it is uploaded.
+    pub(crate) loaded: Option<CacheEntry<VolumeKey, LoadedVolume>>,
+    pub(crate) targets: DoubleBuffer,
+    /// Number of times that the light volume of each light in the settings was filled.
+    pub(crate) fill_counts: Vec<u64>,
+    /// Number of pictures started.
+    pub(crate) picture_count: u64,
+    pub(crate) report: RenderReport,
+    /// Clock for timed pictures; `None` if the adapter has no timestamps.
+    pub(crate) gpu_clock: Option<GpuClock>,
 }
 
 impl Renderer {
-    /// A renderer on a device.
+    /// Creates a renderer on a device.
     ///
     /// # Errors
-    /// When not even one texel can be had.
-    pub fn new(context: &Context) -> Result<Self, GpuError> {
+    /// Returns an error if memory is exhausted.
+    pub fn new(context: &GpuContext) -> Result<Self, GpuError> {
         Self::with_shaders(context, ShaderLibrary::new(context))
     }
 
-    /// A renderer with shaders of one's own, which tests damage on purpose.
+    /// Creates a renderer with the given shaders, which tests damage on purpose.
     ///
     /// # Errors
-    /// As [`Self::new`].
-    pub fn with_shaders(context: &Context, shaders: ShaderLibrary) -> Result<Self, GpuError> {
+    /// Same as [`Self::new`].
+    pub fn with_shaders(context: &GpuContext, shaders: ShaderLibrary) -> Result<Self, GpuError> {
         Ok(Self {
-            tools: Tools::new(context, shaders)?,
+            tools: GpuTools::new(context, shaders)?,
             loaded: None,
-            targets: Targets::new(context)?,
-            fills: Vec::new(),
-            pictures: 0,
-            report: Report::default(),
-            gpu_clock: Clock::new(context),
+            targets: DoubleBuffer::new(context)?,
+            fill_counts: Vec::new(),
+            picture_count: 0,
+            report: RenderReport::default(),
+            gpu_clock: GpuClock::new(context),
         })
     }
 
-    /// The device.
-    pub fn context(&self) -> &Context {
+    /// Returns the device context.
+    pub fn context(&self) -> &GpuContext {
         &self.tools.context
     }
 
-    /// Its pipelines, for other renderers on the device.
+    /// Returns the shader library, to share its pipelines with other renderers on the device.
     pub fn shaders(&self) -> ShaderLibrary {
         self.tools.shaders.clone()
     }
 
-    /// The volume of the last picture, with the values at densities 0 and 1 that it showed.
+    /// Returns the volume of the last picture, with the values at densities 0 and 1 that it showed.
     pub fn dataset(&self) -> Option<&Dataset> {
-        self.loaded.as_ref().map(|loaded| &loaded.value.dataset)
+        self.loaded.as_ref().map(|loaded| &loaded.product.dataset)
     }
 
-    /// What the last picture took.
-    pub fn report(&self) -> &Report {
+    /// Returns times and counts of the last picture.
+    pub fn report(&self) -> &RenderReport {
         &self.report
     }
 
-    /// Makes a picture and waits for it.
+    /// Renders a picture and reads it back, with its linear light.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn render(
         &mut self,
         dataset: &Dataset,
         settings: &Settings,
         size: [u32; 2],
         options: &RenderOptions,
-    ) -> Result<Picture, GpuError> {
-        let shown = self.render_shown(dataset, settings, size, options)?;
+    ) -> Result<RenderedPicture, GpuError> {
+        let shown = self.render_display(dataset, settings, size, options)?;
         let start = Instant::now();
         let light = self.read_light()?;
         self.report.readback_ms += milliseconds(start);
-        Ok(Picture { size, light, shown })
+        Ok(RenderedPicture { size, linear: light, display: shown })
     }
 
-    /// Makes a picture, waits for it and reads back what is shown, as [`Self::read_shown`] does, but not its
-    /// light, which takes four times the memory.
+    /// Renders a picture and reads back the displayed result like [`Self::read_display`], without the linear light,
+    /// which takes four times the memory.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
-    pub fn render_shown(
+    /// Returns an error if the device fails or memory is exhausted.
+    pub fn render_display(
         &mut self,
         dataset: &Dataset,
         settings: &Settings,
@@ -107,7 +107,7 @@ impl Renderer {
     ) -> Result<Vec<u8>, GpuError> {
         self.draw(dataset, settings, size, options)?;
         let start = Instant::now();
-        let shown = self.read_shown()?;
+        let shown = self.read_display()?;
         self.report.readback_ms += milliseconds(start);
         Ok(shown)
     }
@@ -115,7 +115,7 @@ impl Renderer {
     /// Draws a picture and waits until it is complete, without reading it back.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
+    /// Returns an error if the device fails or memory is exhausted.
     pub fn draw(
         &mut self,
         dataset: &Dataset,
@@ -123,14 +123,14 @@ impl Renderer {
         size: [u32; 2],
         options: &RenderOptions,
     ) -> Result<(), GpuError> {
-        let drawn = self.draw_all(dataset, settings, size, options);
+        let drawn = self.try_draw(dataset, settings, size, options);
         if drawn.is_err() {
-            self.forget_everything();
+            self.drop_all();
         }
         drawn
     }
 
-    fn draw_all(
+    fn try_draw(
         &mut self,
         dataset: &Dataset,
         settings: &Settings,
@@ -139,17 +139,17 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let context = self.tools.context.clone();
         let volume = dataset.volume().id();
-        let request = Request { volume, settings: settings.clone(), size, coarse: None };
+        let request = RenderRequest { volume, settings: settings.clone(), size, preview_resolution: None };
         let mut job = self.begin(dataset, request, options)?;
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.
-        job.set_band((1 << 18) / options.window(job.request()).size[0].max(1));
-        let interrupt = Interrupt::here();
-        // Bounds what is queued: little where somebody may want to stop.
-        let most = if interrupt.is_possible() { 4 } else { 64 };
+        job.set_band((1 << 18) / options.sample_window(job.request()).size[0].max(1));
+        let interrupt = CancelToken::current();
+        // Limits the queued submissions: few if the work may be interrupted.
+        let most = if interrupt.is_cancellable() { 4 } else { 64 };
         let mut unfinished = 0;
         while job.step()? {
-            if interrupt.is_due() {
-                return Err(GpuError::Refused("nobody waits for the picture any more".to_owned()));
+            if interrupt.should_stop() {
+                return Err(GpuError::Rejected("nobody waits for the picture any more".to_owned()));
             }
             unfinished += 1;
             if unfinished % most == 0 {
@@ -159,20 +159,19 @@ impl Renderer {
         context.wait()
     }
 
-    /// Forgets all that is on the GPU: after an error, some of it may not be what its key says. It is also the most
-    /// that can be given back.
-    pub fn forget_everything(&mut self) {
+    /// Drops everything on the GPU. After an error, products may not match their keys. Also frees the most memory.
+    pub fn drop_all(&mut self) {
         self.loaded = None;
         self.tools.pool.clear();
-        self.targets.forget();
-        // What was recorded with it may still complain.
+        self.targets.invalidate();
+        // Pending work may still report errors about dropped resources.
         self.tools.context.wait().ok();
     }
 
-    /// Forgets finished pictures, so that the next one is drawn anew whatever it shows: for measurements, and for
-    /// tests that the same picture is the same twice.
-    pub fn forget_pictures(&mut self) {
-        self.targets.forget();
+    /// Invalidates finished pictures, so that the next one is drawn again: for measurements, and for tests of
+    /// determinism.
+    pub fn invalidate_pictures(&mut self) {
+        self.targets.invalidate();
     }
 }
 

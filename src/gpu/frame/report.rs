@@ -1,92 +1,92 @@
-//! What the renderer answers: a picture, and what it took.
+//! Results of the renderer: picture, times and counts.
 
-use super::step::Stage;
+use super::step::RenderStage;
 
-/// A finished picture on the CPU.
+/// Finished picture in host memory.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
-    /// Pixels per row and column.
+pub struct RenderedPicture {
+    /// Number of pixels per row and column.
     pub size: [u32; 2],
     /// Linear, premultiplied RGBA before tone mapping, row by row from the top left.
-    pub light: Vec<[f32; 4]>,
-    /// sRGB bytes, RGBA.
-    pub shown: Vec<u8>,
+    pub linear: Vec<[f32; 4]>,
+    /// Displayed picture: RGBA in sRGB bytes.
+    pub display: Vec<u8>,
 }
 
-/// What a picture took.
+/// Times and counts of one picture.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Report {
-    /// Milliseconds of the upload and the pyramid.
+pub struct RenderReport {
+    /// Time of the upload, the pyramid and pre-classification, in milliseconds.
     pub upload_ms: f64,
-    /// Milliseconds of the transfer functions and brick sets.
-    pub bricks_ms: f64,
-    /// Milliseconds of the forward half of the light pass.
+    /// Time of the transfer tables and brick sets, in milliseconds.
+    pub tables_ms: f64,
+    /// Time of the light march, in milliseconds.
     pub light_march_ms: f64,
-    /// Milliseconds of its reverse half.
+    /// Time of the back-projection of light, in milliseconds.
     pub light_backproject_ms: f64,
-    /// Milliseconds of rays from the voxels of light volumes.
+    /// Time of casting rays from the voxels of light volumes, in milliseconds.
     pub light_raycast_ms: f64,
-    /// Milliseconds of the light of the sky.
+    /// Time of computing sky visibility, in milliseconds.
     pub sky_ms: f64,
-    /// Milliseconds of light that bounces.
+    /// Time of computing scattered light, in milliseconds.
     pub bounces_ms: f64,
-    /// Milliseconds of the eye pass.
+    /// Time of the eye pass and the floor pass, in milliseconds.
     pub eye_ms: f64,
-    /// Milliseconds of the display pass and of reading back.
+    /// Time of the display pass and of reading back, in milliseconds.
     pub readback_ms: f64,
-    /// Milliseconds of the light pass, both halves and rays, by the GPU's own clock, if it has one.
+    /// GPU time of all light volumes, in milliseconds; `None` if the adapter has no timestamps.
     pub light_gpu_ms: Option<f64>,
-    /// Milliseconds of the eye pass by the GPU's own clock, if it has one.
+    /// GPU time of the eye pass, in milliseconds; `None` if the adapter has no timestamps.
     pub eye_gpu_ms: Option<f64>,
-    /// Pixels of the picture.
+    /// Size of the picture, in pixels.
     pub size: [u32; 2],
-    /// Data voxels per voxel, along an axis, of the coarsest light volume that was looked up; 0 without.
+    /// Number of data voxels per voxel, along an axis, of the coarsest light volume looked up; 0 without one.
     pub light_divisor: usize,
-    /// Slabs of the eye's stack.
+    /// Number of slabs in the eye's stack.
     pub slabs: u32,
-    /// Largest sum of our textures and buffers so far.
+    /// Peak size of all textures and buffers so far, in bytes.
     pub peak_gpu_bytes: u64,
-    /// What was computed for it, in steps: what a change made stale, and nothing else.
-    pub runs: Runs,
+    /// Number of steps computed: those that a change made stale, and no others.
+    pub step_counts: StepCounts,
 }
 
-/// How many pieces of each kind of work a picture took.
+/// Number of steps of each kind that a picture took.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Runs {
-    /// Blocks of the volume that were uploaded or prefiltered.
+pub struct StepCounts {
+    /// Number of blocks of the volume that were uploaded or prefiltered.
     pub volume: u32,
-    /// Blocks of voxels that were classified, or of coarser levels of them.
+    /// Number of blocks of voxels, or of coarser levels, that were classified.
     pub materials: u32,
-    /// Lookup tables that were baked.
+    /// Number of lookup tables that were baked.
     pub tables: u32,
-    /// Light volumes whose filling began.
+    /// Number of light volumes whose filling began.
     pub light_volumes: u32,
-    /// Pieces of the combined light volume.
+    /// Number of steps that filled the combined light volume.
     pub combined_light: u32,
-    /// Volumes of the sky's visibility whose filling began.
+    /// Number of sky-visibility volumes whose filling began.
     pub sky: u32,
-    /// Volumes of bounced light whose filling began.
+    /// Number of scattered-light volumes whose filling began.
     pub bounces: u32,
-    /// Pieces of the eye pass.
+    /// Number of steps of the eye pass.
     pub eye: u32,
-    /// Pieces of the floor pass.
+    /// Number of steps of the floor pass.
     pub floor: u32,
-    /// Display passes.
+    /// Number of display passes.
     pub display: u32,
 }
 
-impl Report {
-    /// Notes what a step took, in all and by the GPU's own clock.
-    pub(crate) fn add(&mut self, stage: Stage, took_ms: f64, gpu_ms: Option<f64>) {
+impl RenderReport {
+    /// Adds the wall time and the GPU time of a step.
+    pub(crate) fn add(&mut self, stage: RenderStage, took_ms: f64, gpu_ms: Option<f64>) {
         let (sum, gpu_sum) = match stage {
-            Stage::Upload | Stage::Pyramid => (&mut self.upload_ms, None),
-            Stage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),
-            Stage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
-            Stage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Bounces => (&mut self.bounces_ms, Some(&mut self.light_gpu_ms)),
-            Stage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
-            Stage::Display => (&mut self.readback_ms, None),
+            RenderStage::Upload | RenderStage::Pyramid => (&mut self.upload_ms, None),
+            RenderStage::LightMarch => (&mut self.light_march_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::LightBackproject => (&mut self.light_backproject_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::LightRaycast => (&mut self.light_raycast_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::Sky => (&mut self.sky_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::ScatteredLight => (&mut self.bounces_ms, Some(&mut self.light_gpu_ms)),
+            RenderStage::Eye => (&mut self.eye_ms, Some(&mut self.eye_gpu_ms)),
+            RenderStage::Display => (&mut self.readback_ms, None),
         };
         *sum += took_ms;
         if let (Some(sum), Some(gpu_ms)) = (gpu_sum, gpu_ms) {

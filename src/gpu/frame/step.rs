@@ -1,74 +1,74 @@
-//! Pieces of work for one picture, each short enough for a watchdog and a waiting user.
+//! Steps of a picture, each short enough for driver watchdogs and a responsive window.
 
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use crate::gpu::bounces::steps::BounceStep;
 use crate::gpu::eye::floor;
-use crate::gpu::resources::part::Part;
-use crate::gpu::volume::transfer_tables::{Table, Tables};
+use crate::gpu::resources::work_part::WorkPart;
+use crate::gpu::scattered_light::steps::ScatteringStep;
+use crate::gpu::volume::transfer_tables::{TransferTable, TransferTables};
 
-/// What a step belongs to, for reports and for the status bar.
+/// Stage of the picture that a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// Density, on its way to the GPU.
+pub enum RenderStage {
+    /// Upload of density to the GPU.
     Upload,
-    /// The pyramid of prefiltered volumes.
+    /// Pyramid of prefiltered density.
     Pyramid,
-    /// Sheets of a light.
+    /// March of light through its sheets.
     LightMarch,
-    /// Sheets into the light volume.
+    /// Back-projection of sheets into the light volume.
     LightBackproject,
-    /// Rays from the voxels of the light volume.
+    /// Ray casting from the voxels of the light volume.
     LightRaycast,
-    /// Light of the sky.
+    /// Computation of sky visibility.
     Sky,
-    /// Light that bounces.
-    Bounces,
-    /// The picture.
+    /// Computation of scattered light.
+    ScatteredLight,
+    /// Linear picture and floor.
     Eye,
     /// Display colours of the picture.
     Display,
 }
 
-/// A piece of one half of a light pass.
+/// Step of the march or back-projection of a light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct LightStep {
+pub(crate) struct LightStep {
     /// Index of the light build.
     pub build: usize,
-    /// Which of the colours of light, where each is followed by itself.
+    /// Index of the light's colour, if colours are followed separately.
     pub color: Option<usize>,
-    /// Index of its view.
+    /// Index of the view in the build.
     pub view: usize,
-    /// First slab of the chunk.
+    /// Index of the chunk's first slab.
     pub begin: u32,
-    /// Which part of the tiles or bricks.
-    pub part: Part,
+    /// Part of the chunk's tiles or bricks.
+    pub part: WorkPart,
 }
 
-/// Rays from the voxels of some bricks to a light.
+/// Step that casts rays from the voxels of some bricks to a light.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct RaycastStep {
+pub(crate) struct RaycastStep {
     /// Index of the light build.
     pub build: usize,
-    /// Which of the colours of light, where each is followed by itself.
+    /// Index of the light's colour, if colours are followed separately.
     pub color: Option<usize>,
-    /// Number of the point of the light.
+    /// Index of the point on the light.
     pub point: usize,
-    /// Which of its bricks.
+    /// Range of the build's bricks.
     pub bricks: Range<usize>,
 }
 
-/// A transfer function.
+/// Transfer function: of the eye or of light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum TransferSelector {
     Eye,
     Lighting,
 }
 
-impl Side {
-    /// Its table.
-    pub(super) fn of(self, tables: &Tables) -> &Table {
+impl TransferSelector {
+    /// Returns the table of this transfer function.
+    pub(super) fn table(self, tables: &TransferTables) -> &TransferTable {
         match self {
             Self::Eye => &tables.eye,
             Self::Lighting => &tables.lighting,
@@ -76,105 +76,112 @@ impl Side {
     }
 }
 
-/// Something that a picture needs, and that is kept.
+/// Product that a picture needs and that is cached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Product {
+pub(crate) enum FrameProduct {
     Volume,
-    /// What a table makes of voxels.
-    Materials(Side),
-    /// The volume that a light build fills.
+    /// Pre-classified voxels of a table.
+    Materials(TransferSelector),
+    /// Light volume of the build with this index.
     Light(usize),
     CombinedLight,
-    /// The volume of the sky's visibility.
+    /// Volume of sky visibility.
     Sky,
-    /// The volume of light that has bounced.
-    Bounces,
+    /// Volume of scattered light.
+    ScatteredLight,
     /// Linear light of the volume.
     Picture,
     Floor,
-    Shown,
+    Display,
 }
 
-/// A piece of work for one submission.
+/// Unit of work for one submission.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
-    /// Slices of the volume.
+pub(crate) enum RenderStep {
+    /// Uploads slices of the volume.
     Upload(Range<usize>),
-    /// Slices of the coarsest level of what is there.
+    /// Uploads slices of the coarsest level of the presence texture, with those of the finer levels.
     Presence(Range<usize>),
-    /// Level, and which of its bricks.
+    /// Prefilters bricks of one pyramid level.
     Pyramid(u32, Range<usize>),
-    /// Level, and which of its bricks.
+    /// Computes gradients in bricks of one pyramid level.
     Gradients(u32, Range<usize>),
-    /// By which table voxels are classified, level, and which of its bricks.
-    Materials(Side, u32, Range<usize>),
+    /// Classifies voxels by a table, in bricks of one pyramid level.
+    Materials(TransferSelector, u32, Range<usize>),
     March(LightStep),
     Backproject(LightStep),
     Raycast(RaycastStep),
-    /// The volumes of points of a light join those before: index of the light build, the colour, and the last of them.
+    /// Averages the latest batch of points: index of the light build, colour, and last point.
     Average {
         build: usize,
         color: Option<usize>,
         point: usize,
     },
-    /// The volumes of a light's colours become one: index of the light build.
-    JoinColors(usize),
-    /// Bricks of the volume in which all lights are combined.
+    /// Merges the volumes of red, green and blue light: index of the light build.
+    MergeColors(usize),
+    /// Fills bricks of the combined light volume.
     Combine(Range<usize>),
-    /// What attenuates the light of a sky.
+    /// Computes the blocks of extinction for sky visibility.
     SkyBlocks,
-    /// A batch of directions of a sky.
+    /// Sweeps a batch of directions for sky visibility.
     SkyBatch(usize),
-    /// A piece of the filling of a volume of bounced light.
-    Bounce(BounceStep),
-    /// Rows of the picture.
+    /// Runs a step of filling a scattered-light volume.
+    ScatteredLight(ScatteringStep),
+    /// Draws rows of the picture.
     Eye(Range<u32>),
-    /// Slabs of the eye's scattered sheets.
+    /// Draws slabs of the eye's scattered sheets.
     ScatterEye(Range<u32>),
-    /// Rows of the floor.
+    /// Draws rows of the floor.
     Floor(Range<u32>),
     Display,
-    /// Everything of a product has been recorded; no work of its own.
-    Finish(Product),
+    /// Marks a product whose steps have all been recorded as complete; records no commands.
+    Finish(FrameProduct),
 }
 
-impl Step {
-    /// What it belongs to; `None` of what is no work.
-    pub(super) fn stage(&self) -> Option<Stage> {
+impl RenderStep {
+    /// Returns the stage for reports; `None` for steps without commands.
+    pub(super) fn stage(&self) -> Option<RenderStage> {
         Some(match self {
-            Self::Upload(_) | Self::Presence(_) => Stage::Upload,
-            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => Stage::Pyramid,
-            Self::March(..) => Stage::LightMarch,
-            Self::Backproject(..) | Self::Average { .. } | Self::JoinColors(_) | Self::Combine(_) => {
-                Stage::LightBackproject
+            Self::Upload(_) | Self::Presence(_) => RenderStage::Upload,
+            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => RenderStage::Pyramid,
+            Self::March(..) => RenderStage::LightMarch,
+            Self::Backproject(..) | Self::Average { .. } | Self::MergeColors(_) | Self::Combine(_) => {
+                RenderStage::LightBackproject
             }
-            Self::Raycast(_) => Stage::LightRaycast,
-            Self::SkyBlocks | Self::SkyBatch(_) => Stage::Sky,
-            Self::Bounce(_) => Stage::Bounces,
-            Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => Stage::Eye,
-            Self::Display => Stage::Display,
+            Self::Raycast(_) => RenderStage::LightRaycast,
+            Self::SkyBlocks | Self::SkyBatch(_) => RenderStage::Sky,
+            Self::ScatteredLight(_) => RenderStage::ScatteredLight,
+            Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => RenderStage::Eye,
+            Self::Display => RenderStage::Display,
             Self::Finish(_) => return None,
         })
     }
 }
 
-/// Cuts rows that are still to be drawn into bands of `rows`.
-pub(super) fn cut_into_bands(steps: &mut VecDeque<Step>, rows: u32) {
+/// Splits rows that are still to be drawn into bands of `rows`.
+pub(super) fn split_into_bands(steps: &mut VecDeque<RenderStep>, rows: u32) {
     let mut cut = VecDeque::with_capacity(steps.len());
     for step in steps.drain(..) {
         match step {
-            Step::Eye(range) => cut_rows(&mut cut, range, rows, Step::Eye),
-            Step::Floor(range) => cut_rows(&mut cut, range, (rows / floor::COST).max(1), Step::Floor),
+            RenderStep::Eye(range) => append_bands(&mut cut, range, rows, RenderStep::Eye),
+            RenderStep::Floor(range) => {
+                append_bands(&mut cut, range, (rows / floor::ROW_COST).max(1), RenderStep::Floor);
+            }
             other => cut.push_back(other),
         }
     }
     *steps = cut;
 }
 
-/// Adds bands of rows. Adjoining bands are joined again when the band grows.
-fn cut_rows(steps: &mut VecDeque<Step>, range: Range<u32>, rows: u32, step: fn(Range<u32>) -> Step) {
+/// Appends bands of rows. Adjacent bands are merged again when the band height grows.
+fn append_bands(
+    steps: &mut VecDeque<RenderStep>,
+    range: Range<u32>,
+    rows: u32,
+    step: fn(Range<u32>) -> RenderStep,
+) {
     let Range { mut start, end } = range;
-    if let Some(Step::Eye(last) | Step::Floor(last)) = steps.back()
+    if let Some(RenderStep::Eye(last) | RenderStep::Floor(last)) = steps.back()
         && steps.back() == Some(&step(last.clone()))
         && last.end == start
         && last.end - last.start < rows
@@ -194,13 +201,15 @@ mod tests {
 
     #[test]
     fn bands_are_cut_and_joined_again() {
-        let mut steps: VecDeque<Step> = [Step::Eye(0..10), Step::Floor(0..10), Step::Display].into();
-        cut_into_bands(&mut steps, 4);
-        let eye = [Step::Eye(0..4), Step::Eye(4..8), Step::Eye(8..10)];
-        let floor = (0..5).map(|k| Step::Floor(2 * k..2 * k + 2));
-        let wanted: VecDeque<Step> = eye.into_iter().chain(floor).chain([Step::Display]).collect();
+        let mut steps: VecDeque<RenderStep> =
+            [RenderStep::Eye(0..10), RenderStep::Floor(0..10), RenderStep::Display].into();
+        split_into_bands(&mut steps, 4);
+        let eye = [RenderStep::Eye(0..4), RenderStep::Eye(4..8), RenderStep::Eye(8..10)];
+        let floor = (0..5).map(|k| RenderStep::Floor(2 * k..2 * k + 2));
+        let wanted: VecDeque<RenderStep> =
+            eye.into_iter().chain(floor).chain([RenderStep::Display]).collect();
         assert_eq!(steps, wanted);
-        cut_into_bands(&mut steps, 100);
-        assert_eq!(steps, [Step::Eye(0..10), Step::Floor(0..10), Step::Display]);
+        split_into_bands(&mut steps, 100);
+        assert_eq!(steps, [RenderStep::Eye(0..10), RenderStep::Floor(0..10), RenderStep::Display]);
     }
 }

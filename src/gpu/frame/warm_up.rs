@@ -1,74 +1,85 @@
-//! Makes the pipelines that the first pictures and previews will need, ahead of time: each can take
-//! a driver tens of milliseconds, which a window must not wait for.
+//! Pre-compilation of the pipelines for the first pictures and previews: each can take a driver tens of milliseconds,
+//! which would stall the window.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::gpu::eye::eye_pass::EyeVariant;
 use crate::gpu::eye::floor::FloorVariant;
-use crate::gpu::eye::gather::GatherVariant;
 use crate::gpu::light::backproject::BackprojectVariant;
 use crate::gpu::light::march::MarchVariant;
 use crate::gpu::output::display::DisplayVariant;
-use crate::gpu::pipelines::variant::{LightCount, Only, Variant};
+use crate::gpu::pipelines::pipeline_variant::{LightCount, PipelineVariant, SingleVariant};
 use crate::gpu::{GpuError, ShaderLibrary};
-use crate::model::{ClipPlane, Cuts, Kernel, Sampling, Settings, Shadows, Slabs};
+use crate::model::{
+    ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SlabMode,
+};
 
-/// Lights of a first look.
+/// Number of lights in a first look.
 const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
 
 /// Kernels and slabs of previews and of pictures.
-const LOOKS: [(Kernel, Slabs); 2] =
-    [(Kernel::Prefiltered, Slabs::Preintegrated), (Kernel::BSpline, Slabs::ByNeed)];
+const KERNELS_AND_SLABS: [(ReconstructionKernel, SlabMode); 2] = [
+    (ReconstructionKernel::Prefiltered, SlabMode::Preintegrated),
+    (ReconstructionKernel::BSpline, SlabMode::ByNeed),
+];
 
 impl ShaderLibrary {
-    /// Makes the usual variants of every shader, until `stop`. To be called on a thread of its own.
+    /// Compiles the usual variants of every shader, until `stop` is set. To be called on a separate thread.
     ///
     /// # Errors
-    /// When the driver refuses a shader.
+    /// Returns an error if the driver rejects a shader.
     pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
         for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
-            self.warm(&Only(shader), stop)?;
+            self.compile_unless_stopped(&SingleVariant(shader), stop)?;
         }
-        self.warm(&Only("light/clear_margin.wgsl"), stop)?;
-        self.warm(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
-        self.warm_up_passes(&Cuts::default(), stop)
+        self.compile_unless_stopped(&SingleVariant("light/clear_margin.wgsl"), stop)?;
+        self.compile_unless_stopped(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
+        self.warm_up_passes(&Clipping::default(), stop)
     }
 
-    fn warm(&self, variant: &impl Variant, stop: &AtomicBool) -> Result<(), GpuError> {
+    fn compile_unless_stopped(
+        &self,
+        variant: &impl PipelineVariant,
+        stop: &AtomicBool,
+    ) -> Result<(), GpuError> {
         if !stop.load(Ordering::Relaxed) {
             self.pipeline(variant)?;
         }
         Ok(())
     }
 
-    /// Makes variants that the user may ask for later: the floor, and what remains after cuts. To be called on a
-    /// thread of its own when nothing else is waited for.
+    /// Compiles variants that the user may need later: the floor, and cuts. To be called on a separate thread while
+    /// the program is idle.
     ///
     /// # Errors
-    /// As [`Self::warm_up`].
-    pub fn warm_up_rest(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        for (kernel, _) in LOOKS {
-            let shadows = Shadows { kernel, ..Shadows::default() };
+    /// Same as [`Self::warm_up`].
+    pub fn warm_up_optional(&self, stop: &AtomicBool) -> Result<(), GpuError> {
+        for (kernel, _) in KERNELS_AND_SLABS {
+            let shadows = ShadowSettings { kernel, ..ShadowSettings::default() };
             let settings = Settings { shadows, ..Settings::default() };
-            self.warm(&FloorVariant::of(&settings, FIRST_LIGHTS), stop)?;
+            self.compile_unless_stopped(&FloorVariant::from_settings(&settings, FIRST_LIGHTS), stop)?;
         }
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
-        self.warm_up_passes(&Cuts { plane, ..Cuts::default() }, stop)
+        self.warm_up_passes(&Clipping { plane, ..Clipping::default() }, stop)
     }
 
-    /// The passes of a splatted picture, of whole volumes or of what remains of them.
-    fn warm_up_passes(&self, cuts: &Cuts, stop: &AtomicBool) -> Result<(), GpuError> {
+    /// Compiles the passes of a splatted picture, of the whole volume or with cuts.
+    fn warm_up_passes(&self, cuts: &Clipping, stop: &AtomicBool) -> Result<(), GpuError> {
         for is_stretched in [false, true] {
-            for (kernel, slabs) in LOOKS {
+            for (kernel, slabs) in KERNELS_AND_SLABS {
                 let settings = Settings {
-                    sampling: Sampling { kernel, slabs, ..Sampling::default() },
-                    shadows: Shadows { kernel, ..Shadows::default() },
+                    sampling: SamplingSettings { kernel, slabs, ..SamplingSettings::default() },
+                    shadows: ShadowSettings { kernel, ..ShadowSettings::default() },
                     cuts: cuts.clone(),
                     ..Settings::default()
                 };
-                let eye = GatherVariant::of(&settings, FIRST_LIGHTS, is_stretched);
-                self.warm(&eye.with_gradients(true), stop)?;
-                self.warm(&BackprojectVariant::of(&self.context, &settings.shadows, is_stretched), stop)?;
-                self.warm(&MarchVariant::of(&settings, is_stretched), stop)?;
+                let eye = EyeVariant::from_settings(&settings, FIRST_LIGHTS, is_stretched);
+                self.compile_unless_stopped(&eye.with_gradients(true), stop)?;
+                self.compile_unless_stopped(
+                    &BackprojectVariant::from_shadows(&self.context, &settings.shadows, is_stretched),
+                    stop,
+                )?;
+                self.compile_unless_stopped(&MarchVariant::from_settings(&settings, is_stretched), stop)?;
             }
         }
         Ok(())

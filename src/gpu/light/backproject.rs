@@ -1,40 +1,43 @@
-//! Reverse half of the light pass: splats the sheets back into the light volume.
+//! Back-projection, the second half of the light pass: splats the sheets back into the light volume.
 
 use std::ops::Range;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::march::Sheets;
-use super::volume::LightVolume;
+use super::light_volume::LightVolume;
+use super::march::LightSheets;
 use crate::data::BRICK_EDGE;
-use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::{
+    PipelineVariant, ReconstructionVariant, ShaderConstants, flag,
+};
 use crate::gpu::pipelines::uniforms::{self, rows};
-use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant, flag};
-use crate::gpu::resources::part::Part;
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::listed_bricks::{self, Listed};
-use crate::gpu::volume::transfer_tables::EVERYWHERE;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::resources::work_part::WorkPart;
+use crate::gpu::volume::VolumeContext;
+use crate::gpu::volume::brick_list::{self, BrickEntry};
+use crate::gpu::volume::transfer_tables::UNLIMITED_REACH;
+use crate::gpu::{GpuContext, GpuError};
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Quadrature, ReverseKernel, Shadows};
+use crate::model::{ReconstructionKernel, ReverseKernel, ShadowSettings, SlabQuadrature};
 use crate::plan::{LightView, MarchTiles};
 
-/// What each chunk of slabs has to do.
+/// Work for each chunk of slabs: bricks to back-project and tiles to march.
 #[derive(Debug)]
-pub(crate) struct Schedule {
-    /// The bricks of a light volume, by the chunk that completes them.
-    chunks: Vec<Vec<Listed>>,
-    /// The tiles of the sheets that are marched.
+pub(crate) struct ChunkSchedule {
+    /// Bricks of the light volume by the chunk that completes them.
+    chunks: Vec<Vec<BrickEntry>>,
+    /// Tiles of the sheets that are marched.
     tiles: MarchTiles,
 }
 
-impl Schedule {
-    /// Finds for every brick to be filled the chunks in which any of its voxels gets its last sheet, and the
-    /// tiles in which sheets are read: all of them if `reach` is [`EVERYWHERE`].
+impl ChunkSchedule {
+    /// Lists for each chunk the bricks in which any voxel receives its last sheet, and the tiles in which sheets are
+    /// read: all of them if `reach` is [`UNLIMITED_REACH`].
     ///
-    /// `reach`: cells beyond those to be filled that the reverse kernel reads. For a floor what comes out of all sheets is read,
-    /// too; on its way it changes where bricks are filled, since all that attenuates light is in one.
+    /// `reach` is the number of cells beyond the filled ones that the reverse kernel reads. For a floor the
+    /// transmittance behind all sheets is read, too; in between it only changes where bricks are filled, since
+    /// everything that attenuates light lies in one of them.
     pub(crate) fn new(
         scene: &SceneSpace,
         view: &LightView,
@@ -44,38 +47,39 @@ impl Schedule {
     ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
-        for (brick, cells) in light.filled.bricks() {
+        for (brick, cells) in light.filled_cells.bricks() {
             let (first, last) = final_slabs(scene, view, light, brick);
             for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
-                list.push(listed_bricks::listed((brick, cells)));
+                list.push(brick_list::brick_entry((brick, cells)));
             }
         }
-        let tiles = if reach == EVERYWHERE {
+        let tiles = if reach == UNLIMITED_REACH {
             MarchTiles::all(view, chunk)
         } else {
-            MarchTiles::behind(view, scene, chunk, read_boxes(light, reach), has_floor)
+            MarchTiles::covering(view, scene, chunk, brick_boxes(light, reach), has_floor)
         };
         Self { chunks, tiles }
     }
 
-    /// The tiles that a part of the march through a chunk takes.
-    pub(crate) fn tiles(&self, chunk: usize, part: Part) -> &[u32] {
-        part.take(self.tiles.of_chunk(chunk))
+    /// Returns the tiles of a chunk that belong to a part of its march.
+    pub(crate) fn tiles(&self, chunk: usize, part: WorkPart) -> &[u32] {
+        part.slice(self.tiles.chunk(chunk))
     }
 }
 
-/// Where sheets are read for the bricks of a light volume: around each, in index space.
-fn read_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-    // Cells are pairs of voxels, and samples belong to the cell in which they lie (`density/cells.wgsl`).
+/// Returns the boxes, in index space, around the bricks of a light volume in which sheets are read.
+fn brick_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    // Cells are pairs of voxels along each axis, and samples belong to the cell in which they lie
+    // (`density/cells.wgsl`).
     let beyond = DVec3::splat(2.0 * f64::from(reach));
     let edge = (BRICK_EDGE * light.divisor) as f64;
-    light.filled.bricks().map(move |(brick, _)| {
+    light.filled_cells.bricks().map(move |(brick, _)| {
         let low = edge * DVec3::from(brick.map(|at| at as f64));
         [low - beyond, low + edge + beyond]
     })
 }
 
-/// The first and the last slab that completes any voxel of a brick.
+/// Returns the first and the last slab that completes any voxel of a brick.
 fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick: [usize; 3]) -> (u32, u32) {
     let step = light.divisor as f64;
     let corner = |side: usize| {
@@ -89,41 +93,42 @@ fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick:
     let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
     let (near, far) =
         depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
-    // One slab of slack each for the quadrature points and the rounding of the shader.
+    // One slab of slack each for the quadrature points and for the rounding of the shader.
     let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
     let last = f64::from(frame.slab_count.max(1) - 1);
     let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
     (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
 }
 
-/// Light axes from index space: x and y in pixels of the anchor plane, z in scene units.
+/// Returns the map from index space to light axes: x and y in pixels of the anchor plane, z in scene units.
 fn light_from_index(scene: &SceneSpace, view: &LightView) -> DAffine3 {
     let to_light = DMat3::from_diagonal(DVec3::new(1.0 / view.frame.pitch, 1.0 / view.frame.pitch, 1.0))
         * view.axes.transpose();
     DAffine3 { matrix3: to_light, translation: -(to_light * view.anchor) } * scene.scene_from_index
 }
 
-/// What tells one pipeline of the back-projection from another.
+/// Pipeline variant of the back-projection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct BackprojectVariant {
-    reconstruction: Reconstruction,
+    reconstruction: ReconstructionVariant,
     first_touch: bool,
-    /// Kernels are wider than a pixel or a slab somewhere.
+    /// `true` if kernels are wider than a pixel or a slab somewhere.
     is_wide: bool,
-    /// A software driver's vector does a whole brick, and what comes before its first voxel once.
+    /// Size of a workgroup. A software driver's 8-lane vector processes a whole brick, and computes what precedes its
+    /// first voxel once.
     lanes: u32,
 }
 
 impl BackprojectVariant {
-    /// The back-projection with kernels that are wider than a pixel or a slab somewhere or not.
-    pub(crate) fn of(context: &Context, shadows: &Shadows, is_wide: bool) -> Self {
-        // The prefiltered kernel is a tent where it spreads.
+    /// Creates the variant; `is_wide` tells if kernels are wider than a pixel or a slab somewhere.
+    pub(crate) fn from_shadows(context: &GpuContext, shadows: &ShadowSettings, is_wide: bool) -> Self {
+        // The prefiltered kernel is a tent when it is spread.
         let kernel = match shadows.reverse_kernel {
-            ReverseKernel::Tent => Kernel::Prefiltered,
+            ReverseKernel::Tent => ReconstructionKernel::Prefiltered,
             ReverseKernel::Forward => shadows.kernel,
         };
         Self {
-            reconstruction: Reconstruction::new(kernel, shadows.quadrature),
+            reconstruction: ReconstructionVariant::new(kernel, shadows.quadrature),
             first_touch: shadows.first_touch,
             is_wide,
             lanes: if context.is_software() { 8 } else { 64 },
@@ -131,12 +136,12 @@ impl BackprojectVariant {
     }
 }
 
-impl Variant for BackprojectVariant {
+impl PipelineVariant for BackprojectVariant {
     fn shader(&self) -> &'static str {
         "light/backproject.wgsl"
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = self.reconstruction.constants();
         constants.extend([
             flag("FIRST_TOUCH", self.first_touch),
@@ -147,29 +152,29 @@ impl Variant for BackprojectVariant {
     }
 }
 
-/// Writes the voxels that some slabs complete: those in a part of the bricks.
+/// Back-projects some slabs into the voxels that they complete, within a part of the bricks.
 #[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn backproject(
-    gpu: Gpu<'_>,
-    shadows: &Shadows,
+    gpu: VolumeContext<'_>,
+    shadows: &ShadowSettings,
     view: &LightView,
-    (sheets, schedule): (&Sheets, &Schedule),
+    (sheets, schedule): (&LightSheets, &ChunkSchedule),
     light: &LightVolume,
     slabs: Range<u32>,
-    part: Part,
+    part: WorkPart,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Gpu { context, shaders, volume, .. } = gpu;
-    let bricks = part.take(&schedule.chunks[(slabs.start / sheets.chunk) as usize]);
+    let VolumeContext { context, shaders, volume, .. } = gpu;
+    let bricks = part.slice(&schedule.chunks[(slabs.start / sheets.chunk) as usize]);
     if bricks.is_empty() {
         return Ok(());
     }
-    let is_wide = !view.kernel_is_narrow() || shadows.quadrature == Quadrature::Two;
-    let variant = BackprojectVariant::of(context, shadows, is_wide);
+    let is_wide = !view.kernel_is_narrow() || shadows.quadrature == SlabQuadrature::Two;
+    let variant = BackprojectVariant::from_shadows(context, shadows, is_wide);
     let pipeline = shaders.pipeline_into(&variant, light.texture.format())?;
     let [x, y, z] = rows(&light_from_index(&volume.scene, view));
-    let uniform = uniforms::Backprojection {
-        frame: uniforms::SheetFrame::new(&view.frame),
+    let uniform = uniforms::BackprojectionUniform {
+        frame: uniforms::SheetFrameUniform::new(&view.frame),
         light_from_index_x: x,
         light_from_index_y: y,
         light_from_index_z: z,
@@ -187,17 +192,17 @@ pub(crate) fn backproject(
         pad1: 0.0,
     };
     let uniform = gpu.uniform("Backprojection::uniform", uniform);
-    let list = listed_bricks::upload(gpu, bricks);
+    let list = brick_list::upload_bricks(gpu, bricks);
     let bind_group = gpu.bind(
         "Backprojection::bind_group",
         &pipeline,
         0,
         &[
-            buffer("bound_view", &uniform),
-            buffer("bricks", &list),
-            view_of("ring", &sheets.ring.view),
+            bind_buffer("bound_view", &uniform),
+            bind_buffer("bricks", &list),
+            bind_view("ring", &sheets.ring.view),
             sampler("ring_sampler", &volume.clamped),
-            view_of("attenuation", &light.view),
+            bind_view("attenuation", &light.view),
         ],
     );
     pass::dispatch(
@@ -205,7 +210,7 @@ pub(crate) fn backproject(
         "Backprojection::pass",
         &pipeline,
         &[&bind_group],
-        listed_bricks::single_workgroups(bricks.len() as u32),
+        brick_list::one_workgroup_per_brick(bricks.len() as u32),
     );
     Ok(())
 }

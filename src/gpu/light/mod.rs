@@ -1,14 +1,15 @@
-//! The light pass: from density to the attenuation of each light.
+//! Light pass: from density to the attenuation volume of each light.
 //!
-//! March (density seen from the light to sheets of transmittance) and back-projection (sheets to voxels) fill a
-//! light volume; rays from its voxels are the other way. Of a light that has a size it is the mean of those of points on it.
+//! The march (density seen from the light, into sheets of transmittance) and the back-projection (sheets into voxels)
+//! fill a light volume; casting rays from its voxels is the alternative. The volume of an area light is the average
+//! over points on it.
 
-pub(super) mod average;
+pub(super) mod area_light;
 pub(super) mod backproject;
-pub(super) mod colors;
-pub(super) mod combine;
+pub(super) mod colored_shadows;
+pub(super) mod combined_light;
 pub(super) mod floor_shadow;
+pub(super) mod light_uniform;
+pub(super) mod light_volume;
 pub(super) mod march;
-pub(super) mod packed;
 pub(super) mod raycast;
-pub(super) mod volume;

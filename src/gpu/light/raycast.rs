@@ -1,122 +1,123 @@
-//! Fills a light volume by a ray from every voxel to the light.
+//! Ray casting of a light volume: ray marching from every voxel to the light.
 
-use super::packed::pack_light;
-use super::volume::LightVolume;
-use crate::gpu::pipelines::binding::{buffer, view_of};
-use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{
-    Constants, Ends, Reconstruction, Variant, deposit_constant, flag, is_cut,
+use super::light_uniform::light_uniform;
+use super::light_volume::LightVolume;
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view};
+use crate::gpu::pipelines::pipeline_variant::{
+    GridBoundaries, PipelineVariant, ReconstructionVariant, ShaderConstants, deposit_constant, flag, is_cut,
 };
+use crate::gpu::pipelines::uniforms;
 use crate::gpu::resources::pass;
-use crate::gpu::volume::listed_bricks::{self, Listed};
-use crate::gpu::volume::transfer_tables::{EVERYWHERE, Tables};
-use crate::gpu::volume::{Gpu, Levels};
+use crate::gpu::volume::brick_list::{self, BrickEntry};
+use crate::gpu::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
+use crate::gpu::volume::{PyramidLevels, VolumeContext};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Deposit, SceneLight, Settings};
+use crate::model::{DepositMode, SceneLight, Settings};
 use crate::plan::ray_reach;
 
-/// Bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a
-/// software adapter some 0.2 s.
+/// Number of bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a software
+/// adapter some 0.2 s.
 pub(crate) const BRICKS_PER_STEP: usize = 16;
 
-/// What tells one pipeline of rays to lights from another.
+/// Pipeline variant of rays to lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct RaycastVariant {
-    reconstruction: Reconstruction,
-    deposit: Deposit,
+    reconstruction: ReconstructionVariant,
+    deposit: DepositMode,
     is_cut: bool,
-    /// Of what is gathered, where that has several.
+    /// Channel of the gathered values that holds extinction.
     component: u32,
 }
 
 impl RaycastVariant {
-    /// Rays through what attenuates light.
-    pub(crate) fn of(settings: &Settings) -> Self {
+    /// Creates the variant without grid boundaries.
+    pub(crate) fn from_settings(settings: &Settings) -> Self {
         let shadows = &settings.shadows;
         Self {
-            reconstruction: Reconstruction::new(settings.light_kernel(), shadows.quadrature),
+            reconstruction: ReconstructionVariant::new(settings.light_kernel(), shadows.quadrature),
             deposit: shadows.deposit,
-            is_cut: is_cut(settings.cuts.shading()),
+            is_cut: is_cut(settings.cuts.shadowing_part()),
             component: 0,
         }
     }
 
-    /// Rays through what ends there.
-    pub(crate) fn ending(mut self, ends: Ends) -> Self {
-        self.reconstruction = self.reconstruction.ending(ends);
+    /// Sets the grid boundaries that rays may meet.
+    pub(crate) fn with_boundaries(mut self, ends: GridBoundaries) -> Self {
+        self.reconstruction = self.reconstruction.with_boundaries(ends);
         self
     }
 }
 
-impl Variant for RaycastVariant {
+impl PipelineVariant for RaycastVariant {
     fn shader(&self) -> &'static str {
         "light/raycast.wgsl"
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = self.reconstruction.constants();
         constants.extend([
             deposit_constant(self.deposit),
             flag("CUT", self.is_cut),
-            ("GATHERED", f64::from(self.component)),
+            ("EXTINCTION_CHANNEL", f64::from(self.component)),
         ]);
         constants
     }
 }
 
-/// Fills the listed bricks of a light volume, by light or one of its colours.
+/// Fills the listed bricks of a light volume, for white light or one of its colours.
 pub(crate) fn raycast(
-    gpu: Gpu<'_>,
-    (tables, color): (&Tables, Option<usize>),
+    gpu: VolumeContext<'_>,
+    (tables, color): (&TransferTables, Option<usize>),
     (light, settings): (&SceneLight, &Settings),
     options: &RenderOptions,
     target: &LightVolume,
-    bricks: &[Listed],
+    bricks: &[BrickEntry],
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     if bricks.is_empty() {
         return Ok(());
     }
-    let Gpu { shaders, volume, .. } = gpu;
+    let VolumeContext { shaders, volume, .. } = gpu;
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.empty_space_skipping { seen } else { EVERYWHERE };
-    let met = tables.met(color);
-    let component = met.component;
-    let rays = RaycastVariant::of(settings).ending(met.ends(volume, dilation, 0.0));
+    let dilation = if options.empty_space_skipping { seen } else { UNLIMITED_REACH };
+    let met = tables.lighting_of_color(color);
+    let component = met.extinction_channel;
+    let rays = RaycastVariant::from_settings(settings).with_boundaries(met.boundaries(volume, dilation, 0.0));
     let variant = RaycastVariant { component, ..rays };
     let pipeline = shaders.pipeline_into(&variant, target.texture.format())?;
-    let uniform = uniforms::Raycast {
-        light: pack_light(light, Some(target), &volume.scene, settings),
-        space: uniforms::Space::new(&volume.scene),
+    let uniform = uniforms::RaycastUniform {
+        light: light_uniform(light, Some(target), &volume.scene, settings),
+        space: uniforms::SpaceUniform::new(&volume.scene),
         dims: target.dims.map(|n| n as u32),
         bricks: bricks.len() as u32,
         voxel_step: target.divisor as f32,
         ray_step: settings.shadows.ray_step(&volume.scene) as f32,
-        dark: options.max_optical_depth(),
+        max_optical_depth: options.max_optical_depth(),
         pad0: 0,
-        shading_cut: uniforms::Cut::new(&settings.cuts.shading().region(&volume.scene)),
+        shading_cut: uniforms::CutUniform::new(&settings.cuts.shadowing_part().region(&volume.scene)),
     };
     let uniform = gpu.uniform("Raycast::uniform", uniform);
-    let list = listed_bricks::upload(gpu, bricks);
+    let list = brick_list::upload_bricks(gpu, bricks);
     let own = gpu.bind(
         "Raycast::bind_group",
         &pipeline,
         0,
         &[
-            buffer("bound_raycast", &uniform),
-            buffer("table", met.gathered()),
-            view_of("distances", &tables.light_distances),
-            buffer("bricks", &list),
-            view_of("attenuation", &target.view),
+            bind_buffer("bound_raycast", &uniform),
+            bind_buffer("table", met.lookup_buffer()),
+            bind_view("distances", &tables.light_distances),
+            bind_buffer("bricks", &list),
+            bind_view("attenuation", &target.view),
         ],
     );
-    let of_volume = gpu.bind_volume(&pipeline, dilation, Levels::Finest, tables.lighting_pyramids(volume));
+    let of_volume =
+        gpu.bind_volume(&pipeline, dilation, PyramidLevels::Finest, tables.lighting_pyramids(volume));
     pass::dispatch(
         encoder,
         "Raycast::pass",
         &pipeline,
         &[&own, &of_volume],
-        listed_bricks::workgroups(bricks.len() as u32),
+        brick_list::two_workgroups_per_brick(bricks.len() as u32),
     );
     Ok(())
 }

@@ -1,31 +1,31 @@
-//! The display pass: the mean of a pixel's samples, tone map, background and sRGB.
+//! Display pass: average of a pixel's samples, tone map, background and sRGB.
 
-use super::target::{Shape, Target};
-use crate::gpu::pipelines::binding::{buffer, view_of};
+use super::render_target::{RenderTarget, TargetShape};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view};
+use crate::gpu::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{Constants, Variant};
+use crate::gpu::resources::gpu_tools::GpuTools;
 use crate::gpu::resources::pass;
-use crate::gpu::resources::tools::Tools;
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Background, Depth, Output, ToneMap};
+use crate::model::{Background, OutputSettings, PixelFormat, ToneMap};
 
-/// What tells one pipeline of the display from another.
+/// Pipeline variant of the display pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct DisplayVariant {
-    /// Samples of a pixel along an edge.
+    /// Number of samples along an edge of a pixel.
     pub samples: u32,
-    /// Light is written as it is.
+    /// `true` if linear light is written, without the sRGB curve.
     pub is_linear: bool,
-    /// More than 8 bits are written.
+    /// `true` if more than 8 bits per channel are written.
     pub is_deep: bool,
 }
 
-impl Variant for DisplayVariant {
+impl PipelineVariant for DisplayVariant {
     fn shader(&self) -> &'static str {
         if self.is_deep { "output/display_deep.wgsl" } else { "output/display.wgsl" }
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = Vec::new();
         if self.samples > 1 {
             constants.push(("SAMPLES", f64::from(self.samples)));
@@ -37,25 +37,26 @@ impl Variant for DisplayVariant {
     }
 }
 
-/// Turns the linear picture into the shown one, with all light multiplied by the exposure of the look, and that of the
-/// volume by a preview's.
-pub(crate) fn display(
-    Tools { context, shaders, pool, .. }: &Tools,
-    output: &Output,
+/// Converts the linear picture to the displayed one. All light is multiplied by the exposure of the settings, and
+/// that of the volume also by the preview's exposure.
+pub(crate) fn record_display(
+    GpuTools { context, shaders, pool, .. }: &GpuTools,
+    output: &OutputSettings,
     options: &RenderOptions,
-    target: &Target,
+    target: &RenderTarget,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Shape { size, samples, deep } = target.shape;
-    let variant = DisplayVariant { samples, is_linear: options.depth == Depth::Linear, is_deep: deep };
+    let TargetShape { size, samples, is_deep: deep } = target.shape;
+    let variant = DisplayVariant { samples, is_linear: options.depth == PixelFormat::Linear, is_deep: deep };
     let pipeline = shaders.pipeline(&variant)?;
     let ([first_column, first_row], rows) =
         options.part.map_or(([0; 2], size[1]), |part| (part.first, part.whole[1]));
     let Background { top, bottom } = output.background;
-    // What is one colour stays that; what is finer than 8 bits, or cut out, needs nothing.
+    // A uniform background stays uniform, and pictures with more than 8 bits or a transparent background need no
+    // dither.
     let is_dithered = top != bottom && !deep && !options.transparent;
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
-    let uniform = uniforms::Display {
+    let uniform = uniforms::DisplayUniform {
         top: opaque(top),
         bottom: opaque(bottom),
         transparent: u32::from(options.transparent),
@@ -74,10 +75,10 @@ pub(crate) fn display(
         &pipeline,
         0,
         &[
-            buffer("bound_display", &uniform),
-            view_of("picture", &target.light.value.plane.view),
-            view_of("shown", &target.shown.value.view),
-            view_of("floor_light", &target.floor.value.view),
+            bind_buffer("bound_display", &uniform),
+            bind_view("picture", &target.light.product.plane.view),
+            bind_view("shown", &target.display.product.view),
+            bind_view("floor_light", &target.floor.product.view),
         ],
     );
     pass::dispatch(

@@ -1,7 +1,7 @@
-//! What is made of finished pictures and light volumes: display colours, slices, distances, the window.
+//! Outputs made of finished pictures and light volumes: display colours, slices, distances, drawing in the window.
 
 pub(super) mod display;
-pub(super) mod distance;
-pub(super) mod light_slice;
-pub(super) mod target;
-pub(super) mod window;
+pub(super) mod light_volume_export;
+pub(super) mod picture_distance;
+pub(super) mod render_target;
+pub(super) mod window_painter;

@@ -1,42 +1,42 @@
-//! Bindings by name: what a shader declares, and what is bound to it.
+//! Shader bindings by name: declared slots, and the resources bound to them.
 
-use crate::gpu::Context;
+use crate::gpu::GpuContext;
 use crate::gpu::context::pair_format;
 
-/// A binding of a shader: its number in its group, its name there, and what may be bound.
+/// Binding of a shader: its number in the group, its name in WGSL, and the kind of resource it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Slot {
+pub(crate) struct BindingSlot {
     pub number: u32,
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: BindingKind,
 }
 
-/// What may be bound.
+/// Kind of resource that a slot takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Kind {
-    /// A struct of so many bytes.
+pub(crate) enum BindingKind {
+    /// Uniform buffer with a struct of this many bytes.
     Uniform(u64),
-    /// A storage buffer of so many bytes at least.
-    List(u64, Access),
-    /// A texture that is read through a sampler.
-    Sampled(Shape),
-    /// A texture of floats whose texels are loaded.
-    Loaded(Shape),
-    /// A texture of unsigned integers.
-    Integers(Shape),
-    /// A texture that is written.
-    Target(Shape, Format),
+    /// Storage buffer of at least this many bytes.
+    Storage(u64, BufferAccess),
+    /// Float texture that is sampled with filtering.
+    Sampled(TextureShape),
+    /// Float texture whose texels are loaded without filtering.
+    Loaded(TextureShape),
+    /// Texture of unsigned integers.
+    Uint(TextureShape),
+    /// Storage texture that is written.
+    StorageTexture(TextureShape, StorageFormat),
     Sampler,
 }
 
-/// What shaders do with a storage buffer.
+/// Access of a shader to a storage buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Access {
+pub(crate) enum BufferAccess {
     Read,
     ReadWrite,
 }
 
-/// The format of the ring of sheets where single channels are stored in `storage`.
+/// Returns the four-channel format of the ring of sheets, with the precision of the single-channel format `storage`.
 pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     match storage {
         wgpu::TextureFormat::R32Float => wgpu::TextureFormat::Rgba32Float,
@@ -44,68 +44,74 @@ pub(crate) fn ring_format(storage: wgpu::TextureFormat) -> wgpu::TextureFormat {
     }
 }
 
-/// How the texels of a texture lie.
+/// Dimensionality of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Shape {
-    /// In two dimensions.
-    Picture,
-    /// In layers of two dimensions.
-    Sheets,
-    /// In three dimensions.
-    Volume,
+pub(crate) enum TextureShape {
+    /// Two-dimensional texture, one layer.
+    D2,
+    /// Array of two-dimensional layers.
+    D2Array,
+    /// Three-dimensional texture with filtering in depth.
+    D3,
 }
 
-/// Format of a texture that is written.
+/// Format of a storage texture that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Format {
-    Of(wgpu::TextureFormat),
-    /// That of single channels, as the adapter can store them.
+pub(crate) enum StorageFormat {
+    Fixed(wgpu::TextureFormat),
+    /// Single-channel storage format of the adapter.
     Storage,
-    /// That of two such channels beside each other.
+    /// Two-channel format with the precision of the storage format.
     Pair,
-    /// The one that the pipeline is made for: that of a light volume, say.
+    /// Format passed when the pipeline is made, for example that of a light volume.
     Target,
-    /// That of the ring of sheets.
+    /// Four-channel format of the ring of sheets.
     Ring,
 }
 
-impl Slot {
-    /// A uniform of the type that the host writes.
+impl BindingSlot {
+    /// Declares a uniform with the size of the host's struct `T`.
     pub(crate) const fn uniform<T>(number: u32, name: &'static str) -> Self {
-        Self { number, name, kind: Kind::Uniform(size_of::<T>() as u64) }
+        Self { number, name, kind: BindingKind::Uniform(size_of::<T>() as u64) }
     }
 
-    /// A storage buffer of so many bytes at least.
-    pub(crate) const fn list(number: u32, name: &'static str, bytes: u64, access: Access) -> Self {
-        Self { number, name, kind: Kind::List(bytes, access) }
+    /// Declares a storage buffer of at least `bytes` bytes.
+    pub(crate) const fn storage(number: u32, name: &'static str, bytes: u64, access: BufferAccess) -> Self {
+        Self { number, name, kind: BindingKind::Storage(bytes, access) }
     }
 
-    /// A texture that is read through a sampler.
-    pub(crate) const fn sampled(number: u32, name: &'static str, shape: Shape) -> Self {
-        Self { number, name, kind: Kind::Sampled(shape) }
+    /// Declares a float texture that is sampled with filtering.
+    pub(crate) const fn sampled_texture(number: u32, name: &'static str, shape: TextureShape) -> Self {
+        Self { number, name, kind: BindingKind::Sampled(shape) }
     }
 
-    /// A texture of floats whose texels are loaded.
-    pub(crate) const fn loaded(number: u32, name: &'static str, shape: Shape) -> Self {
-        Self { number, name, kind: Kind::Loaded(shape) }
+    /// Declares a float texture whose texels are loaded.
+    pub(crate) const fn loaded_texture(number: u32, name: &'static str, shape: TextureShape) -> Self {
+        Self { number, name, kind: BindingKind::Loaded(shape) }
     }
 
-    /// A texture of unsigned integers.
-    pub(crate) const fn integers(number: u32, name: &'static str, shape: Shape) -> Self {
-        Self { number, name, kind: Kind::Integers(shape) }
+    /// Declares a texture of unsigned integers.
+    pub(crate) const fn uint_texture(number: u32, name: &'static str, shape: TextureShape) -> Self {
+        Self { number, name, kind: BindingKind::Uint(shape) }
     }
 
-    /// A texture that is written.
-    pub(crate) const fn target(number: u32, name: &'static str, shape: Shape, format: Format) -> Self {
-        Self { number, name, kind: Kind::Target(shape, format) }
+    /// Declares a storage texture that is written.
+    pub(crate) const fn storage_texture(
+        number: u32,
+        name: &'static str,
+        shape: TextureShape,
+        format: StorageFormat,
+    ) -> Self {
+        Self { number, name, kind: BindingKind::StorageTexture(shape, format) }
     }
 
-    /// A sampler.
-    pub(crate) const fn sampler(number: u32, name: &'static str) -> Self {
-        Self { number, name, kind: Kind::Sampler }
+    /// Declares a sampler with linear filtering.
+    pub(crate) const fn bind_sampler(number: u32, name: &'static str) -> Self {
+        Self { number, name, kind: BindingKind::Sampler }
     }
 
-    /// The entry of a layout, for targets of a format, where single channels are stored in `storage`.
+    /// Returns the entry of the bind-group layout. `storage` is the adapter's single-channel storage format, `target`
+    /// the format of [`StorageFormat::Target`] textures.
     pub(crate) fn entry(
         self,
         storage: wgpu::TextureFormat,
@@ -116,31 +122,35 @@ impl Slot {
             has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(bytes),
         };
-        let texture = |shape: Shape, sample_type| wgpu::BindingType::Texture {
+        let texture = |shape: TextureShape, sample_type| wgpu::BindingType::Texture {
             sample_type,
             view_dimension: shape.dimension(),
             multisampled: false,
         };
         let ty = match self.kind {
-            Kind::Uniform(bytes) => buffer(wgpu::BufferBindingType::Uniform, bytes),
-            Kind::List(bytes, access) => {
-                buffer(wgpu::BufferBindingType::Storage { read_only: access == Access::Read }, bytes)
+            BindingKind::Uniform(bytes) => buffer(wgpu::BufferBindingType::Uniform, bytes),
+            BindingKind::Storage(bytes, access) => {
+                buffer(wgpu::BufferBindingType::Storage { read_only: access == BufferAccess::Read }, bytes)
             }
-            Kind::Sampled(shape) => texture(shape, wgpu::TextureSampleType::Float { filterable: true }),
-            Kind::Loaded(shape) => texture(shape, wgpu::TextureSampleType::Float { filterable: false }),
-            Kind::Integers(shape) => texture(shape, wgpu::TextureSampleType::Uint),
-            Kind::Target(shape, format) => wgpu::BindingType::StorageTexture {
+            BindingKind::Sampled(shape) => {
+                texture(shape, wgpu::TextureSampleType::Float { filterable: true })
+            }
+            BindingKind::Loaded(shape) => {
+                texture(shape, wgpu::TextureSampleType::Float { filterable: false })
+            }
+            BindingKind::Uint(shape) => texture(shape, wgpu::TextureSampleType::Uint),
+            BindingKind::StorageTexture(shape, format) => wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: match format {
-                    Format::Of(format) => format,
-                    Format::Storage => storage,
-                    Format::Target => target,
-                    Format::Pair => pair_format(storage),
-                    Format::Ring => ring_format(storage),
+                    StorageFormat::Fixed(format) => format,
+                    StorageFormat::Storage => storage,
+                    StorageFormat::Target => target,
+                    StorageFormat::Pair => pair_format(storage),
+                    StorageFormat::Ring => ring_format(storage),
                 },
                 view_dimension: shape.dimension(),
             },
-            Kind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            BindingKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         };
         wgpu::BindGroupLayoutEntry {
             binding: self.number,
@@ -151,48 +161,52 @@ impl Slot {
     }
 }
 
-impl Shape {
+impl TextureShape {
     fn dimension(self) -> wgpu::TextureViewDimension {
         match self {
-            Self::Picture => wgpu::TextureViewDimension::D2,
-            Self::Sheets => wgpu::TextureViewDimension::D2Array,
-            Self::Volume => wgpu::TextureViewDimension::D3,
+            Self::D2 => wgpu::TextureViewDimension::D2,
+            Self::D2Array => wgpu::TextureViewDimension::D2Array,
+            Self::D3 => wgpu::TextureViewDimension::D3,
         }
     }
 }
 
-/// A resource, and the name of the binding that it is for.
+/// Resource with the name of the binding that it is meant for.
 #[derive(Debug, Clone)]
-pub(crate) struct Named<'a> {
+pub(crate) struct NamedResource<'a> {
     pub name: &'static str,
     pub resource: wgpu::BindingResource<'a>,
 }
 
-/// A whole buffer for a binding.
-pub(crate) fn buffer<'a>(name: &'static str, buffer: &'a wgpu::Buffer) -> Named<'a> {
-    Named { name, resource: buffer.as_entire_binding() }
+/// Binds a whole buffer to a name.
+pub(crate) fn bind_buffer<'a>(name: &'static str, buffer: &'a wgpu::Buffer) -> NamedResource<'a> {
+    NamedResource { name, resource: buffer.as_entire_binding() }
 }
 
-/// A texture view for a binding.
-pub(crate) fn view_of<'a>(name: &'static str, view: &'a wgpu::TextureView) -> Named<'a> {
-    Named { name, resource: wgpu::BindingResource::TextureView(view) }
+/// Binds a texture view to a name.
+pub(crate) fn bind_view<'a>(name: &'static str, view: &'a wgpu::TextureView) -> NamedResource<'a> {
+    NamedResource { name, resource: wgpu::BindingResource::TextureView(view) }
 }
 
-/// A sampler for a binding.
-pub(crate) fn sampler<'a>(name: &'static str, sampler: &'a wgpu::Sampler) -> Named<'a> {
-    Named { name, resource: wgpu::BindingResource::Sampler(sampler) }
+/// Binds a sampler to a name.
+pub(crate) fn sampler<'a>(name: &'static str, sampler: &'a wgpu::Sampler) -> NamedResource<'a> {
+    NamedResource { name, resource: wgpu::BindingResource::Sampler(sampler) }
 }
 
-/// A group of bindings of a pipeline.
+/// Bind group declaration of a pipeline: slots and layout.
 #[derive(Debug, Clone)]
-pub(crate) struct Group {
-    pub slots: &'static [Slot],
+pub(crate) struct BindingGroup {
+    pub slots: &'static [BindingSlot],
     pub layout: wgpu::BindGroupLayout,
 }
 
-impl Group {
-    /// A group whose layout follows from its slots.
-    pub(crate) fn new(context: &Context, slots: &'static [Slot], target: wgpu::TextureFormat) -> Self {
+impl BindingGroup {
+    /// Creates a group whose layout follows from its slots.
+    pub(crate) fn new(
+        context: &GpuContext,
+        slots: &'static [BindingSlot],
+        target: wgpu::TextureFormat,
+    ) -> Self {
         let entries: Vec<_> = slots.iter().map(|slot| slot.entry(context.storage_format, target)).collect();
         let layout = context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: slots.first().map(|slot| slot.name),
@@ -201,13 +215,13 @@ impl Group {
         Self { slots, layout }
     }
 
-    /// What is bound under the numbers of its names. A name that the shader does not know gets a number that it
-    /// does not know either, which the device refuses.
-    pub(crate) fn entries<'a>(&self, named: &[Named<'a>]) -> Vec<wgpu::BindGroupEntry<'a>> {
+    /// Returns the bind-group entries for named resources. A name that the shader does not declare gets a binding
+    /// number that does not exist, which the device rejects.
+    pub(crate) fn entries<'a>(&self, named: &[NamedResource<'a>]) -> Vec<wgpu::BindGroupEntry<'a>> {
         let number = |name: &str| self.slots.iter().find(|slot| slot.name == name).map(|slot| slot.number);
         named
             .iter()
-            .map(|Named { name, resource }| wgpu::BindGroupEntry {
+            .map(|NamedResource { name, resource }| wgpu::BindGroupEntry {
                 binding: number(name).unwrap_or(u32::MAX),
                 resource: resource.clone(),
             })
@@ -215,9 +229,9 @@ impl Group {
     }
 }
 
-/// A compute pipeline, and what can be bound to it.
+/// Compute pipeline with the declarations of its bind groups.
 #[derive(Debug, Clone)]
-pub(crate) struct Pipeline {
+pub(crate) struct ShaderPipeline {
     pub raw: wgpu::ComputePipeline,
-    pub groups: std::sync::Arc<[Group]>,
+    pub groups: std::sync::Arc<[BindingGroup]>,
 }

@@ -1,13 +1,13 @@
-//! The text of every shader, embedded in the program.
+//! Sources of all shaders, embedded in the program.
 
-/// Names and texts of files below `shaders/`.
+/// Expands to names and contents of files below `shaders/`.
 macro_rules! shader_files {
     ($($name:literal),+ $(,)?) => {
         &[$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
     };
 }
 
-/// Every shader file: its path below `shaders/`, and its text.
+/// All shader files: path below `shaders/`, and source text.
 #[cfg_attr(not(feature = "testing"), expect(unreachable_pub, reason = "the tests of shaders reach it"))]
 pub const SHADERS: &[(&str, &str)] = shader_files![
     "bounces/blocks.wgsl",
@@ -18,7 +18,6 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "bounces/ratio.wgsl",
     "bounces/source.wgsl",
     "bounces/sweep.wgsl",
-    "common/left.wgsl",
     "common/listed_bricks.wgsl",
     "common/listed_cells.wgsl",
     "common/most_light.wgsl",
@@ -26,6 +25,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "common/slab_mean.wgsl",
     "common/slab_source.wgsl",
     "common/space.wgsl",
+    "common/transmittance.wgsl",
     "density/cells.wgsl",
     "density/classify.wgsl",
     "density/cut.wgsl",

@@ -1,7 +1,7 @@
-//! What is read back: pictures of any size, light volumes, and figures about what the renderer keeps.
+//! Readback of pictures of any size and of light volumes, and statistics of the renderer.
 
 pub(super) mod pictures;
 pub(super) mod statistics;
 #[cfg(feature = "testing")]
-mod testing;
+mod test_hooks;
 pub(super) mod tiled;

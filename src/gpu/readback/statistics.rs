@@ -1,104 +1,108 @@
-//! What a renderer keeps and what it has done, in numbers.
+//! Statistics of a renderer: cached volumes, memory and work done.
 
-use crate::gpu::light::volume::LightVolume;
-use crate::gpu::resources::cached::Cached;
-use crate::gpu::resources::fill_time::FillTime;
-use crate::gpu::resources::readback::read_word;
+use crate::gpu::light::light_volume::LightVolume;
+use crate::gpu::resources::cache_entry::CacheEntry;
+use crate::gpu::resources::fill_time::FillStopwatch;
+use crate::gpu::resources::textures::read_word;
 use crate::gpu::{GpuError, Renderer};
-use crate::plan::{BouncesKey, LightKey, Request, SkyKey};
+use crate::plan::{BouncesKey, LightKey, RenderRequest, SkyKey};
 
-/// A volume of light, for display.
+/// Statistics of a light volume, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LightFigures {
-    /// Whether it is filled.
-    pub complete: bool,
-    /// From the beginning of its filling to the end, where the adapter works while it is told what to do.
+pub struct LightVolumeStatistics {
+    /// `true` if the volume is filled.
+    pub is_complete: bool,
+    /// Time to fill the volume, in milliseconds, on adapters that execute commands synchronously; else `None`.
     pub fill_ms: Option<f64>,
-    /// Bytes of its texture.
+    /// Size of the texture, in bytes.
     pub bytes: u64,
 }
 
 impl Renderer {
-    /// The volumes of the lights of a request at full resolution, in the order of the settings.
-    pub fn light_figures(&self, request: &Request) -> Vec<Option<LightFigures>> {
+    /// Returns the statistics of a request's light volumes at full resolution, in the order of the settings.
+    pub fn light_statistics(&self, request: &RenderRequest) -> Vec<Option<LightVolumeStatistics>> {
         let Some(loaded) = &self.loaded else { return Vec::new() };
         let figures = |key: &Option<LightKey>| {
             let wanted = key.as_ref()?;
-            let is_same = |light: &&Cached<LightKey, LightVolume>| *light.key() == *wanted;
-            let light = loaded.value.lights.iter().find(is_same)?;
-            Some(self.filled(light.is_complete(), &light.value.fill, light.value.bytes()))
+            let is_same = |light: &&CacheEntry<LightKey, LightVolume>| *light.key() == *wanted;
+            let light = loaded.product.lights.iter().find(is_same)?;
+            Some(self.volume_statistics(light.is_complete(), &light.product.fill_time, light.product.bytes()))
         };
-        (0..request.settings.lights.len()).map(|light| figures(&LightKey::of(request, light))).collect()
+        (0..request.settings.lights.len()).map(|light| figures(&LightKey::new(request, light))).collect()
     }
 
-    /// The volume of the sky of a request at full resolution, if there is one.
-    pub fn sky_figures(&self, request: &Request) -> Option<LightFigures> {
-        let wanted = SkyKey::of(request)?;
-        let sky = self.loaded.as_ref()?.value.skies.iter().find(|sky| *sky.key() == wanted)?;
-        Some(self.filled(sky.is_complete(), &sky.value.fill, sky.value.bytes()))
+    /// Returns the statistics of a request's sky volume at full resolution, if there is one.
+    pub fn sky_statistics(&self, request: &RenderRequest) -> Option<LightVolumeStatistics> {
+        let wanted = SkyKey::new(request)?;
+        let sky = self.loaded.as_ref()?.product.skies.iter().find(|sky| *sky.key() == wanted)?;
+        Some(self.volume_statistics(sky.is_complete(), &sky.product.fill_time, sky.product.bytes()))
     }
 
-    /// Voxels along the edge of a block of the sky's volume that was last used: more than were asked for where rays would take
-    /// more room than they may.
+    /// Returns the number of voxels along the edge of a block in the last used sky volume; larger than requested if
+    /// the rays would take too much memory.
     pub fn sky_divisor(&self) -> Option<usize> {
-        let skies = &self.loaded.as_ref()?.value.skies;
-        skies.iter().max_by_key(|sky| sky.value.last_used).map(|sky| sky.value.divisor)
+        let skies = &self.loaded.as_ref()?.product.skies;
+        skies.iter().max_by_key(|sky| sky.product.last_used).map(|sky| sky.product.divisor)
     }
 
-    /// The volume of bounced light of a request at full resolution, if there is one.
-    pub fn bounces_figures(&self, request: &Request) -> Option<LightFigures> {
-        let wanted = BouncesKey::of(request)?;
-        let known = &self.loaded.as_ref()?.value.bounces;
+    /// Returns the statistics of a request's scattered-light volume at full resolution, if there is one.
+    pub fn scattered_light_statistics(&self, request: &RenderRequest) -> Option<LightVolumeStatistics> {
+        let wanted = BouncesKey::new(request)?;
+        let known = &self.loaded.as_ref()?.product.bounces;
         let bounces = known.iter().find(|bounces| *bounces.key() == wanted)?;
-        Some(self.filled(bounces.is_complete(), &bounces.value.fill, bounces.value.bytes()))
+        Some(self.volume_statistics(
+            bounces.is_complete(),
+            &bounces.product.fill_time,
+            bounces.product.bytes(),
+        ))
     }
 
-    fn filled(&self, complete: bool, fill: &FillTime, bytes: u64) -> LightFigures {
-        // Others only take note of what they will do, and return at once.
-        let fill_ms = fill.took_ms().filter(|_| self.context().is_software());
-        LightFigures { complete, fill_ms, bytes }
+    fn volume_statistics(&self, complete: bool, fill: &FillStopwatch, bytes: u64) -> LightVolumeStatistics {
+        // On graphics cards submission is asynchronous, and the time measured is meaningless.
+        let fill_ms = fill.elapsed_ms().filter(|_| self.context().is_software());
+        LightVolumeStatistics { is_complete: complete, fill_ms, bytes }
     }
 
-    /// Whether the last picture shows nothing of its volume: all of it is transparent.
-    pub fn shows_nothing(&self) -> bool {
-        self.loaded.as_ref().is_some_and(|loaded| loaded.value.tables.value.eye.is_empty)
+    /// Returns true if the volume of the last picture is completely transparent.
+    pub fn is_volume_transparent(&self) -> bool {
+        self.loaded.as_ref().is_some_and(|loaded| loaded.product.tables.product.eye.is_empty)
     }
 
-    /// How often the light volume of each light of the settings was filled; counted where its first
-    /// march is submitted.
+    /// Returns the number of times each light's volume was filled, counted at its first march.
     pub fn light_rebuilds(&self) -> &[u64] {
-        &self.fills
+        &self.fill_counts
     }
 
-    /// Light volumes that are complete and kept.
+    /// Returns the number of complete light volumes in the cache.
     pub fn cached_light_volumes(&self) -> usize {
-        let lights = self.loaded.iter().flat_map(|loaded| &loaded.value.lights);
+        let lights = self.loaded.iter().flat_map(|loaded| &loaded.product.lights);
         lights.filter(|light| light.is_complete()).count()
     }
 
-    /// Bytes of our textures on the GPU now.
+    /// Returns the current size of the renderer's textures and buffers on the GPU, in bytes.
     pub fn gpu_bytes(&self) -> u64 {
-        let loaded = self.loaded.as_ref().map_or(0, |loaded| loaded.value.bytes());
+        let loaded = self.loaded.as_ref().map_or(0, |loaded| loaded.product.bytes());
         self.targets.bytes() + self.tools.pool.bytes() + loaded
     }
 
-    /// Bytes of light volumes, of which pictures look up those of their lights, or one for all.
+    /// Returns the size of all attenuation volumes and the combined one, in bytes.
     pub fn light_bytes(&self) -> u64 {
-        self.loaded.as_ref().map_or(0, |loaded| loaded.value.light_bytes())
+        self.loaded.as_ref().map_or(0, |loaded| loaded.product.light_bytes())
     }
 
-    /// How many footprints the last picture has splatted; 0 of one that gathers. Waits for it.
+    /// Returns the number of footprints that the last picture splatted; 0 for the gathering engine. Waits for the
+    /// picture.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
-    pub fn splats(&self) -> Result<u64, GpuError> {
-        let counter = self.targets.front.light.value.splats.as_ref();
+    /// Returns an error if the device fails.
+    pub fn splat_count(&self) -> Result<u64, GpuError> {
+        let counter = self.targets.front.light.product.splat_counter.as_ref();
         counter.map_or(Ok(0), |counter| read_word(self.context(), counter).map(u64::from))
     }
 
-    /// How many buffers, bind groups and sheets were made for passes so far: while the same things are drawn
-    /// again and again, none.
-    pub fn made(&self) -> u64 {
-        self.tools.pool.made()
+    /// Returns the number of buffers, bind groups and rings made so far, which stays constant while the same things
+    /// are drawn again.
+    pub fn created_resources(&self) -> u64 {
+        self.tools.pool.created_count()
     }
 }

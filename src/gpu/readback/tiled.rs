@@ -1,40 +1,40 @@
-//! Pictures of any size: drawn in parts, handed over in bands of rows, so that neither the adapter's largest
-//! texture nor its memory limits them.
+//! Tiled rendering: pictures of any size, drawn in parts and returned in bands of rows, so that the adapter's texture
+//! limits and memory do not limit their size.
 
 use crate::data::{Dataset, Volume};
-use crate::export::Rows;
-use crate::gpu::resources::readback::{read_floats, read_texture};
+use crate::export::PixelRows;
+use crate::gpu::resources::textures::{read_floats, read_texture};
 use crate::gpu::{GpuError, RenderOptions, Renderer};
 use crate::math::SceneSpace;
-use crate::model::{Depth, ImageSpec, Settings};
+use crate::model::{ImageSpec, PixelFormat, Settings};
 use crate::plan::PixelWindow;
 use crate::plan::picture_frame;
 
-/// Most samples of a part: a picture of high-definition television in one part, and about 100 MiB of textures.
-const MOST_SAMPLES: u32 = 1 << 21;
+/// Maximum number of samples in a part: a full-HD picture in one part, and about 100 MiB of textures.
+const MAX_PART_SAMPLES: u32 = 1 << 21;
 
-/// How large a part of a picture may be.
+/// Maximum size of a part of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct LargestPart {
-    /// Samples along an edge.
+pub(crate) struct PartLimits {
+    /// Maximum number of samples along an edge.
     pub edge: u32,
-    /// Samples in all.
+    /// Maximum number of samples in all.
     pub samples: u32,
 }
 
-/// A picture that is being made, from the top down.
+/// Picture in progress, drawn in bands from the top down.
 #[derive(Debug)]
-pub struct Bands<'a> {
+pub struct PictureBands<'a> {
     renderer: &'a mut Renderer,
     dataset: &'a Dataset,
     settings: &'a Settings,
-    shot: ImageSpec,
-    /// Pixels that are drawn around each part.
+    spec: ImageSpec,
+    /// Width of the margin drawn around each part, in pixels.
     margin: u32,
-    /// Those that are left, the next one last.
-    left: Vec<Vec<PixelWindow>>,
+    /// Bands yet to be drawn, the next one last.
+    remaining: Vec<Vec<PixelWindow>>,
     total: usize,
-    /// Nothing of the volume is seen in the parts that are done.
+    /// `true` if the volume is not visible in the bands drawn so far.
     is_empty: bool,
 }
 
@@ -44,89 +44,102 @@ impl Renderer {
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &ImageSpec,
-    ) -> Bands<'a> {
+        image_spec: &ImageSpec,
+    ) -> PictureBands<'a> {
         let longest = self.context().device.limits().max_texture_dimension_2d;
-        let largest = LargestPart { edge: longest, samples: MOST_SAMPLES };
-        self.bands_within(dataset, settings, shot, largest)
+        let largest = PartLimits { edge: longest, samples: MAX_PART_SAMPLES };
+        self.bands_within(dataset, settings, image_spec, largest)
     }
 
-    /// Begins a picture in parts whose edges have no more than so many samples, and which have no more than so many
-    /// in all.
+    /// Begins a picture in parts of at most the given size.
     pub(crate) fn bands_within<'a>(
         &'a mut self,
         dataset: &'a Dataset,
         settings: &'a Settings,
-        shot: &ImageSpec,
-        largest: LargestPart,
-    ) -> Bands<'a> {
-        let samples = shot.samples.max(1);
-        let margin = margin(dataset.volume(), settings, shot.size, samples);
+        image_spec: &ImageSpec,
+        largest: PartLimits,
+    ) -> PictureBands<'a> {
+        let samples = image_spec.samples.max(1);
+        let margin = gradient_margin(dataset.volume(), settings, image_spec.size, samples);
         let longest = (largest.edge / samples).saturating_sub(2 * margin);
         let mut left: Vec<_> =
-            PixelWindow::bands(shot.size, longest, largest.samples / (samples * samples)).collect();
+            PixelWindow::bands(image_spec.size, longest, largest.samples / (samples * samples)).collect();
         left.reverse();
         let total = left.len();
-        let shot = ImageSpec { samples, ..*shot };
-        Bands { renderer: self, dataset, settings, shot, margin, left, total, is_empty: true }
+        let image_spec = ImageSpec { samples, ..*image_spec };
+        PictureBands {
+            renderer: self,
+            dataset,
+            settings,
+            spec: image_spec,
+            margin,
+            remaining: left,
+            total,
+            is_empty: true,
+        }
     }
 }
 
-impl Bands<'_> {
-    /// How many bands are done, of how many.
+impl PictureBands<'_> {
+    /// Returns the number of bands drawn, and the total.
     pub fn progress(&self) -> (usize, usize) {
-        (self.total - self.left.len(), self.total)
+        (self.total - self.remaining.len(), self.total)
     }
 
-    /// Whether nothing of the volume is seen in the bands that are done.
+    /// Returns true if the volume is not visible in the bands drawn so far.
     pub fn is_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// Draws the next band. `None` after the last.
+    /// Draws the next band; `None` after the last.
     ///
     /// # Errors
-    /// When the GPU cannot do it.
-    pub fn next_rows(&mut self) -> Result<Option<Rows>, GpuError> {
-        let Some(parts) = self.left.pop() else { return Ok(None) };
-        let width = self.shot.size[0] as usize;
+    /// Returns an error if the device fails or memory is exhausted.
+    pub fn next_rows(&mut self) -> Result<Option<PixelRows>, GpuError> {
+        let Some(parts) = self.remaining.pop() else { return Ok(None) };
+        let width = self.spec.size[0] as usize;
         let height = parts.first().map_or(0, |part| part.size[1] as usize);
         let channels = 4 * width * height;
         let (mut bytes, mut floats) = (Vec::new(), Vec::new());
-        if self.shot.depth == Depth::Eight {
+        if self.spec.depth == PixelFormat::Eight {
             bytes.resize(channels, 0);
         } else {
             floats.resize(channels, 0.0);
         }
         for part in parts {
             let drawn = part.widened(self.margin);
-            let options = RenderOptions { part: Some(drawn), ..RenderOptions::of_shot(&self.shot) };
-            self.renderer.draw(self.dataset, self.settings, self.shot.size, &options)?;
-            // When something is seen, nobody asks any more.
+            let options = RenderOptions { part: Some(drawn), ..RenderOptions::for_image(&self.spec) };
+            self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
+            // Tested only until something is visible.
             self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
-            let (context, shown) = (self.renderer.context(), &self.renderer.shown()?.shown.value.texture);
-            if self.shot.depth == Depth::Eight {
-                lay(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
+            let (context, shown) =
+                (self.renderer.context(), &self.renderer.displayed_target()?.display.product.texture);
+            if self.spec.depth == PixelFormat::Eight {
+                copy_part(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
             } else {
-                lay(&mut floats, &read_floats(context, shown)?, width, drawn, part);
+                copy_part(&mut floats, &read_floats(context, shown)?, width, drawn, part);
             }
         }
-        Ok(Some(if self.shot.depth == Depth::Eight { Rows::Bytes(bytes) } else { Rows::Floats(floats) }))
+        Ok(Some(if self.spec.depth == PixelFormat::Eight {
+            PixelRows::Bytes(bytes)
+        } else {
+            PixelRows::Floats(floats)
+        }))
     }
 
-    /// All that is left of the picture at once.
+    /// Draws all remaining bands at once.
     ///
     /// # Errors
-    /// As [`Self::next_rows`].
-    pub fn all(mut self) -> Result<Rows, GpuError> {
-        let mut whole = match self.shot.depth {
-            Depth::Eight => Rows::Bytes(Vec::new()),
-            Depth::Sixteen | Depth::Linear => Rows::Floats(Vec::new()),
+    /// Same as [`Self::next_rows`].
+    pub fn all(mut self) -> Result<PixelRows, GpuError> {
+        let mut whole = match self.spec.depth {
+            PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
+            PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
         };
         while let Some(rows) = self.next_rows()? {
             match (&mut whole, rows) {
-                (Rows::Bytes(all), Rows::Bytes(more)) => all.extend(more),
-                (Rows::Floats(all), Rows::Floats(more)) => all.extend(more),
+                (PixelRows::Bytes(all), PixelRows::Bytes(more)) => all.extend(more),
+                (PixelRows::Floats(all), PixelRows::Floats(more)) => all.extend(more),
                 _ => {}
             }
         }
@@ -134,19 +147,20 @@ impl Bands<'_> {
     }
 }
 
-/// Pixels around a part that its own need: gradients of scattered sheets are differences of neighbours.
-fn margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
-    if !settings.scatters() {
+/// Returns the margin that a part needs, in pixels: gradients of scattered sheets are differences of neighbouring
+/// pixels.
+fn gradient_margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
+    if !settings.uses_scattering_engine() {
         return 0;
     }
     let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
-    let fine = PixelWindow::from(size).finer(samples);
+    let fine = PixelWindow::from(size).supersampled(samples);
     let frame = picture_frame(settings, &scene, fine);
     frame.gradient_steps().0.div_ceil(samples)
 }
 
-/// Puts a part of what was drawn into its place in a band.
-fn lay<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
+/// Copies a part of the drawn texels to its place in a band.
+fn copy_part<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
     let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
     let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);
     let rows = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);

@@ -1,10 +1,10 @@
-//! What every pass works with: buffers and textures that are used again, dispatches, products with their keys.
+//! Resources shared by all passes: pooled buffers and textures, dispatches, cache entries.
 
-pub(super) mod cached;
+pub(super) mod cache_entry;
 pub(super) mod fill_time;
-pub(super) mod part;
+pub(super) mod gpu_tools;
 pub(super) mod pass;
-pub(super) mod pool;
-pub(super) mod readback;
-pub(super) mod ring;
-pub(super) mod tools;
+pub(super) mod resource_pool;
+pub(super) mod sheet_ring;
+pub(super) mod textures;
+pub(super) mod work_part;

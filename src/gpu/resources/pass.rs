@@ -1,15 +1,15 @@
-//! What every compute pass is made of: bind groups, and a dispatch.
+//! Bind groups and dispatches of compute passes.
 
-use crate::gpu::Context;
-use crate::gpu::pipelines::binding::{Named, Pipeline};
+use crate::gpu::GpuContext;
+use crate::gpu::pipelines::binding::{NamedResource, ShaderPipeline};
 
-/// Binds resources to a group of a pipeline.
+/// Creates a bind group for one of a pipeline's groups.
 pub(crate) fn bind(
-    context: &Context,
+    context: &GpuContext,
     label: &str,
-    pipeline: &Pipeline,
+    pipeline: &ShaderPipeline,
     group: usize,
-    named: &[Named<'_>],
+    named: &[NamedResource<'_>],
 ) -> wgpu::BindGroup {
     let group = &pipeline.groups[group];
     context.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -19,11 +19,11 @@ pub(crate) fn bind(
     })
 }
 
-/// Records a pass of one dispatch; the groups are bound in their order.
+/// Records a compute pass with one dispatch; the groups are bound to indices from 0 on.
 pub(crate) fn dispatch(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
-    pipeline: &Pipeline,
+    pipeline: &ShaderPipeline,
     groups: &[&wgpu::BindGroup],
     [x, y, z]: [u32; 3],
 ) {
@@ -36,27 +36,28 @@ pub(crate) fn dispatch(
     pass.dispatch_workgroups(x, y, z);
 }
 
-/// Workgroups of 8 × 8 that cover a sheet or a picture.
-pub(crate) fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
+/// Returns the number of 8 × 8 workgroups that cover a sheet or a picture.
+pub(crate) fn tile_workgroups([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(8), height.div_ceil(8), 1]
 }
 
-/// Into how many runs the rows of tiles are sorted (`sheets/tiles.wgsl`). A software driver gives each thread a
-/// run of workgroups: there as many as threads, so that all have the same share of what is costly. Graphics
-/// cards hand workgroups out one by one, in their order.
-pub(crate) fn runs(context: &Context, [_, rows, _]: [u32; 3]) -> u32 {
-    threads(context).min(rows.max(1))
+/// Returns the number of interleaved runs into which rows of tiles are sorted (`sheets/tiles.wgsl`).
+///
+/// A software driver gives each thread a contiguous run of workgroups, so there are as many runs as threads, which
+/// balances expensive rows among them. Graphics cards dispatch workgroups one by one, in order.
+pub(crate) fn interleaved_runs(context: &GpuContext, [_, rows, _]: [u32; 3]) -> u32 {
+    driver_threads(context).min(rows.max(1))
 }
 
-/// Threads of a software driver; 1 for a graphics card.
-pub(crate) fn threads(context: &Context) -> u32 {
+/// Returns the number of threads of a software driver; 1 for a graphics card.
+pub(crate) fn driver_threads(context: &GpuContext) -> u32 {
     let threads = || std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32);
     if context.is_software() { threads() } else { 1 }
 }
 
 #[cfg(test)]
 mod tests {
-    /// As in the shader.
+    /// Row of tiles that a row of workgroups processes, as computed by the shader.
     fn row(group: u32, rows: u32, runs: u32) -> u32 {
         let (each, longer) = (rows / runs, rows % runs);
         let of_longer = longer * (each + 1);

@@ -1,42 +1,43 @@
-//! The eye pass over scattered sheets.
+//! Eye pass of the scattering engine: compositing of scattered sheets.
 
 use std::ops::Range;
 
-use super::footprints::{Footprints, Inputs};
-use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
-use super::voxels::Scattering;
+use super::footprints::{FootprintInputs, FootprintPhases};
+use super::splat::{ScatterVariant, SheetScatterer, SplatParameters, SplatQuantity, sums};
+use super::voxels::ScatterState;
 use crate::data::BRICK_EDGE;
-use crate::gpu::eye::gather::{EyePass, SamplingVariant};
-use crate::gpu::eye::looked_up::{LookedUp, light_bind_group};
-use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
-use crate::gpu::pipelines::variant::{Constants, Only, ShadingVariant, Variant, flag};
+use crate::gpu::eye::eye_pass::{EyePass, SamplingVariant};
+use crate::gpu::eye::light_lookup::{LightLookup, light_bind_group};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::{
+    PipelineVariant, ShaderConstants, ShadingVariant, SingleVariant, flag,
+};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
+use crate::gpu::volume::VolumeContext;
+use crate::gpu::volume::transfer_tables::{TransferTables, upload_distances};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Classification, Settings, SheetOrder};
+use crate::model::{ClassificationOrder, Settings, SheetOrder};
 use crate::plan::{BrickSet, SheetFrame};
 
-/// Slabs per submission: each is splatted and composited, which takes a software adapter some
-/// milliseconds.
+/// Number of slabs per submission: each is splatted and composited, which takes a software adapter some milliseconds.
 pub(crate) const SLABS_PER_STEP: u32 = 2;
 
-/// What tells one pipeline that composites sheets from another.
+/// Pipeline variant of the pass that composites sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ScatterEyeVariant {
     shading: ShadingVariant,
     sampling: SamplingVariant,
     sheets: ScatterVariant,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
 }
 
-impl Variant for ScatterEyeVariant {
+impl PipelineVariant for ScatterEyeVariant {
     fn shader(&self) -> &'static str {
         "scatter/eye.wgsl"
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = self.shading.constants();
         constants.extend(self.sampling.constants());
         constants.extend(self.sheets.constants());
@@ -45,46 +46,48 @@ impl Variant for ScatterEyeVariant {
     }
 }
 
-/// The eye's sheets, and what its rays have gathered so far.
+/// Sheets of the eye, with the colour and opacity that its rays have accumulated.
 #[derive(Debug)]
 pub(crate) struct EyeScatter {
-    scatterer: Scatterer,
-    /// In place of sheets, if every footprint is composited.
-    footprints: Option<Footprints>,
-    /// Distances in bricks to the nearest that the eye sees.
+    scatterer: SheetScatterer,
+    /// Splatting of single footprints; `None` if sheets are composited.
+    footprints: Option<FootprintPhases>,
+    /// Distances, in bricks, to the nearest brick visible to the eye.
     distances: wgpu::TextureView,
-    /// Colour and opacity so far.
+    /// Accumulated colour and opacity of each ray.
     rays: wgpu::Buffer,
     clamped: wgpu::Sampler,
-    /// Slabs to either side between which gradients are differences.
-    ahead: u32,
+    /// Distance, in slabs to either side, of the sheets whose difference is the gradient.
+    gradient_slabs: u32,
 }
 
 impl EyeScatter {
     /// Prepares the sheets of a picture.
     pub(crate) fn new(
-        gpu: Gpu<'_>,
-        scattering: &Scattering,
-        tables: &Tables,
+        gpu: VolumeContext<'_>,
+        scattering: &ScatterState,
+        tables: &TransferTables,
         frame: &SheetFrame,
         settings: &Settings,
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
         let sampling = &settings.sampling;
         let order = sampling.order;
-        // Slices of voxels are a voxel apart.
+        // Slices of voxels are one voxel apart.
         let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
-        let kernel = Splatting { kernel: sampling.kernel, quadrature: sampling.quadrature, order };
-        let seen = splatted_bricks(frame, &tables.eye.occupied, options);
-        let what = match sampling.classification {
-            Classification::Post => Splat::Density,
-            Classification::Pre => Splat::Material,
+        let kernel = SplatParameters { kernel: sampling.kernel, quadrature: sampling.quadrature, order };
+        let seen = bricks_to_splat(frame, &tables.eye.occupied_bricks, options);
+        let quantity = match sampling.classification {
+            ClassificationOrder::Post => SplatQuantity::Density,
+            ClassificationOrder::Pre => SplatQuantity::Material,
         };
-        let what = (what, &tables.eye);
-        let scatterer = Scatterer::new(gpu, &scattering.voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
-        let footprints =
-            (order == SheetOrder::EveryFootprint).then(|| Footprints::new(gpu, &scatterer)).transpose()?;
-        let occupied = &tables.eye.occupied;
+        let what = (quantity, &tables.eye);
+        let scatterer =
+            SheetScatterer::new(gpu, &scattering.voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
+        let footprints = (order == SheetOrder::EveryFootprint)
+            .then(|| FootprintPhases::new(gpu, &scatterer))
+            .transpose()?;
+        let occupied = &tables.eye.occupied_bricks;
         let distances = occupied.distances();
         let distances = upload_distances(
             gpu.context,
@@ -100,7 +103,7 @@ impl EyeScatter {
             // Four 32-bit floats per ray.
             rays: sums(gpu.context, "EyeScatter::rays", 4, frame.size)?,
             clamped: gpu.context.sampler("EyeScatter::clamped"),
-            ahead,
+            gradient_slabs: ahead,
         })
     }
 
@@ -108,20 +111,20 @@ impl EyeScatter {
     #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
     pub(crate) fn draw(
         &self,
-        gpu: Gpu<'_>,
-        scattering: &Scattering,
+        gpu: VolumeContext<'_>,
+        scattering: &ScatterState,
         eye: &EyePass,
-        tables: &Tables,
-        looked_up: LookedUp<'_>,
+        tables: &TransferTables,
+        looked_up: LightLookup<'_>,
         picture: &wgpu::TextureView,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, volume, .. } = gpu;
-        let uniform = eye.uniform_buffer(context, self.ahead);
+        let VolumeContext { context, shaders, volume, .. } = gpu;
+        let uniform = eye.uniform_buffer(context, self.gradient_slabs);
         let is_last = slabs.end == self.scatterer.sheet_count();
         if let Some(footprints) = &self.footprints {
-            let inputs = Inputs {
+            let inputs = FootprintInputs {
                 scattering,
                 eye,
                 eye_uniform: &uniform,
@@ -149,27 +152,27 @@ impl EyeScatter {
             &pipeline,
             0,
             &[
-                buffer("bound_eye", &uniform),
-                buffer("table", &tables.eye.buffer),
-                view_of("distances", &self.distances),
-                buffer("lighting_table", tables.lighting.gathered()),
-                view_of("gradients", gradients.unwrap_or(gpu.placeholder)),
+                bind_buffer("bound_eye", &uniform),
+                bind_buffer("table", &tables.eye.buffer),
+                bind_view("distances", &self.distances),
+                bind_buffer("lighting_table", tables.lighting.lookup_buffer()),
+                bind_view("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
         let grid = gpu.uniform("Volume::grid", volume.grid(0));
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         for k in slabs {
-            // The slabs ahead are there when their neighbours need them.
-            let from = if k == 0 { 0 } else { k + self.ahead };
-            for splatted in from..=k + self.ahead {
+            // Slabs ahead are splatted before a slab that takes gradients from them is composited.
+            let from = if k == 0 { 0 } else { k + self.gradient_slabs };
+            for splatted in from..=k + self.gradient_slabs {
                 if self.scatterer.is_filled(splatted) {
                     self.scatterer.splat(gpu, scattering, splatted, encoder)?;
                 }
             }
-            // Nothing to composite, and nothing to make room for.
-            let touched = tables.eye.shows_empty_space()
+            // Empty sheets need neither clearing nor compositing.
+            let touched = tables.eye.has_extinction_at_zero()
                 || self.scatterer.is_filled(k)
-                || k >= self.ahead && self.scatterer.is_filled(k - self.ahead);
+                || k >= self.gradient_slabs && self.scatterer.is_filled(k - self.gradient_slabs);
             if !touched {
                 continue;
             }
@@ -180,14 +183,14 @@ impl EyeScatter {
                 &pipeline,
                 1,
                 &[
-                    buffer("bound_grid", &grid),
-                    view_of("pyramid_texture", eye.levels().choose(tables.eye.pyramid(volume))),
-                    view_of("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
-                    view_of("presence_texture", gpu.presence(eye.levels())),
+                    bind_buffer("bound_grid", &grid),
+                    bind_view("pyramid_texture", eye.levels().choose(tables.eye.pyramid(volume))),
+                    bind_view("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
+                    bind_view("presence_texture", gpu.presence(eye.levels())),
                     sampler("clamped", &volume.clamped),
-                    buffer("bound_scatter", &slab),
-                    buffer("sheets", &self.scatterer.sheets),
-                    buffer("rays", &self.rays),
+                    bind_buffer("bound_scatter", &slab),
+                    bind_buffer("sheets", &self.scatterer.sheets),
+                    bind_buffer("rays", &self.rays),
                 ],
             );
             pass::dispatch(
@@ -195,55 +198,55 @@ impl EyeScatter {
                 "EyeScatter::composite",
                 &pipeline,
                 &[&own, &shared, &of_lights],
-                pass::tiles(self.scatterer.frame.size),
+                pass::tile_workgroups(self.scatterer.frame.size),
             );
         }
         if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) }
     }
 
-    /// Writes the picture.
+    /// Writes the accumulated rays into the picture.
     fn resolve(
         &self,
-        gpu: Gpu<'_>,
+        gpu: VolumeContext<'_>,
         picture: &wgpu::TextureView,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&Only("scatter/resolve.wgsl"))?;
+        let VolumeContext { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline(&SingleVariant("scatter/resolve.wgsl"))?;
         let uniform = self.scatterer.uniform_buffer(context, 0, 1.0);
         let own = pass::bind(
             context,
             "EyeScatter::picture",
             &pipeline,
             0,
-            &[buffer("rays", &self.rays), view_of("picture", picture)],
+            &[bind_buffer("rays", &self.rays), bind_view("picture", picture)],
         );
         let shared =
-            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[buffer("bound_scatter", &uniform)]);
+            pass::bind(context, "EyeScatter::frame", &pipeline, 1, &[bind_buffer("bound_scatter", &uniform)]);
         pass::dispatch(
             encoder,
             "EyeScatter::resolve",
             &pipeline,
             &[&own, &shared],
-            pass::tiles(self.scatterer.frame.size),
+            pass::tile_workgroups(self.scatterer.frame.size),
         );
         Ok(())
     }
 
-    /// Bytes of sheets and rays.
+    /// Returns the size of sheets and rays, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.scatterer.bytes() + self.rays.size()
     }
 }
 
-/// Bricks whose voxels can reach a sample that shows anything, or one between which and that sample a
-/// gradient is taken.
-pub(crate) fn splatted_bricks(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
+/// Returns the bricks with voxels that can reach a visible sample, or a neighbour of one from which its gradient is
+/// taken.
+pub(crate) fn bricks_to_splat(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
     if !options.empty_space_skipping {
         return BrickSet::full(occupied.dims);
     }
     let widest = frame.widest_stretch();
-    // A kernel's radius, at most √2 of it along a slanted axis, and a gradient's step of one pixel or voxel.
+    // Kernel radius (at most √2 of it along a slanted axis), plus the gradient's step of one pixel or voxel.
     let reach = (2.0 * std::f64::consts::SQRT_2 + 1.5) * widest + frame.slab / frame.voxel_edge;
     occupied.dilated((reach / BRICK_EDGE as f64).ceil() as usize)
 }

@@ -1,71 +1,70 @@
-//! Every footprint composited by itself: voxels of a slice in turns, so that no two of one dispatch
-//! touch a pixel.
+//! Compositing of every footprint separately: the voxels of a slice are drawn in phases, so that no two footprints of
+//! a dispatch share a pixel.
 
-use super::splat::{ScatterVariant, Scatterer};
-use super::voxels::Scattering;
+use super::splat::{ScatterVariant, SheetScatterer};
+use super::voxels::ScatterState;
 use crate::data::BRICK_EDGE;
 use crate::gpu::GpuError;
-use crate::gpu::eye::gather::EyePass;
-use crate::gpu::eye::looked_up::{LookedUp, light_bind_group};
-use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
+use crate::gpu::eye::eye_pass::EyePass;
+use crate::gpu::eye::light_lookup::{LightLookup, light_bind_group};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, ShadingVariant};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::uniforms::Phase;
-use crate::gpu::pipelines::variant::{Constants, ShadingVariant, Variant};
+use crate::gpu::pipelines::uniforms::FootprintPhaseUniform;
 use crate::gpu::resources::pass;
-use crate::gpu::volume::{Gpu, Levels};
-use crate::model::Classification;
+use crate::gpu::volume::{PyramidLevels, VolumeContext};
+use crate::model::ClassificationOrder;
 
-/// What tells one pipeline that composites footprints from another.
+/// Pipeline variant of the pass that composites footprints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct FootprintsVariant {
     shading: ShadingVariant,
     footprints: ScatterVariant,
 }
 
-impl Variant for FootprintsVariant {
+impl PipelineVariant for FootprintsVariant {
     fn shader(&self) -> &'static str {
         "scatter/footprints.wgsl"
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = self.shading.constants();
         constants.extend(self.footprints.constants());
         constants
     }
 }
 
-/// What a slice is composited from, and into.
+/// Inputs and target of compositing a slice.
 #[derive(Clone, Copy)]
-pub(crate) struct Inputs<'a> {
-    pub scattering: &'a Scattering,
+pub(crate) struct FootprintInputs<'a> {
+    pub scattering: &'a ScatterState,
     pub eye: &'a EyePass,
-    /// What shaders know of the eye.
+    /// Uniform buffer of the eye.
     pub eye_uniform: &'a wgpu::Buffer,
-    /// The eye's transfer function.
+    /// Transfer function of the eye.
     pub table: &'a wgpu::Buffer,
     /// Light volumes in the order of the lights.
-    pub looked_up: LookedUp<'a>,
-    /// Colour and opacity so far.
+    pub looked_up: LightLookup<'a>,
+    /// Accumulated colour and opacity of each ray.
     pub rays: &'a wgpu::Buffer,
     pub clamped: &'a wgpu::Sampler,
 }
 
-/// The turns of a slice.
+/// Phases of a slice, each with footprints that do not overlap.
 #[derive(Debug)]
-pub(crate) struct Footprints {
+pub(crate) struct FootprintPhases {
     phases: Vec<wgpu::Buffer>,
 }
 
-impl Footprints {
-    /// Lays out the turns.
+impl FootprintPhases {
+    /// Creates the phases.
     ///
-    /// Two footprints of radius 2s (in voxels, s the stretch) are apart when their voxels are
-    /// 4s · √3 apart in a slice: the line of sight leans at most as far from its axis as a cube's
-    /// diagonal.
-    pub(crate) fn new(gpu: Gpu<'_>, scatterer: &Scatterer) -> Result<Self, GpuError> {
-        let apart = 4.0 * 3f64.sqrt() * scatterer.widest();
+    /// Footprints of radius 2s (in voxels, s the stretch) do not overlap if their voxels are 4s · √3 apart in a
+    /// slice: the line of sight deviates from its axis at most as far as a cube's diagonal.
+    pub(crate) fn new(gpu: VolumeContext<'_>, scatterer: &SheetScatterer) -> Result<Self, GpuError> {
+        let apart = 4.0 * 3f64.sqrt() * scatterer.max_stretch();
         let stride = (apart / BRICK_EDGE as f64).ceil() as u32;
-        // A picture with pixels so wide is smaller than a thumbnail.
+        // Pictures with pixels this wide are smaller than thumbnails.
         if stride > 4 {
             return Err(GpuError::OverLimit {
                 what: "the width of footprints, in bricks,".to_owned(),
@@ -78,7 +77,7 @@ impl Footprints {
         let phases = (0..stride * stride * edge * edge)
             .map(|at| {
                 let (within, brick) = (at % (edge * edge), at / (edge * edge));
-                let phase = Phase {
+                let phase = FootprintPhaseUniform {
                     u: within % edge,
                     v: within / edge,
                     brick_u: brick % stride,
@@ -94,21 +93,23 @@ impl Footprints {
         Ok(Self { phases })
     }
 
-    /// Composites slice `k`.
+    /// Composites slice `k` into the rays.
     pub(crate) fn draw(
         &self,
-        gpu: Gpu<'_>,
-        scatterer: &Scatterer,
-        Inputs { scattering, eye, eye_uniform, table, looked_up, rays, clamped }: Inputs<'_>,
+        gpu: VolumeContext<'_>,
+        scatterer: &SheetScatterer,
+        FootprintInputs { scattering, eye, eye_uniform, table, looked_up, rays, clamped }: FootprintInputs<
+            '_,
+        >,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if !scatterer.is_filled(k) {
             return Ok(());
         }
-        let Gpu { context, shaders, .. } = gpu;
-        // Their densities are those of voxels.
-        let shading = ShadingVariant { classification: Classification::Post, ..eye.shading_variant() };
+        let VolumeContext { context, shaders, .. } = gpu;
+        // Footprints carry the densities of voxels, which are classified one by one.
+        let shading = ShadingVariant { classification: ClassificationOrder::Post, ..eye.shading_variant() };
         let variant = FootprintsVariant { shading, footprints: scatterer.variant() };
         let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(
@@ -117,15 +118,15 @@ impl Footprints {
             &pipeline,
             0,
             &[
-                buffer("bound_eye", eye_uniform),
-                buffer("table", table),
-                buffer("first_words", &scattering.voxels.first_words),
-                buffer("bricks", scatterer.bricks()),
-                buffer("splats", &scattering.counter),
-                buffer("voxels", &scattering.voxels.buffer),
+                bind_buffer("bound_eye", eye_uniform),
+                bind_buffer("table", table),
+                bind_buffer("first_words", &scattering.voxels.first_words),
+                bind_buffer("bricks", scatterer.bricks()),
+                bind_buffer("splats", &scattering.counter),
+                bind_buffer("voxels", &scattering.voxels.buffer),
             ],
         );
-        let uniform: uniforms::Scatter = scatterer.uniform(k, 1.0);
+        let uniform: uniforms::ScatterSlabUniform = scatterer.uniform(k, 1.0);
         let slab = context.buffer("Footprints::slice", &[uniform], wgpu::BufferUsages::UNIFORM);
         let grid = gpu.uniform("Volume::grid", gpu.volume.grid(0));
         let shared = pass::bind(
@@ -134,19 +135,19 @@ impl Footprints {
             &pipeline,
             1,
             &[
-                buffer("bound_grid", &grid),
-                view_of("pyramid_texture", Levels::Finest.choose(&gpu.volume.pyramid_views)),
-                view_of("presence_texture", gpu.presence(Levels::Finest)),
-                buffer("bound_scatter", &slab),
-                buffer("footprint_table", scatterer.footprints()),
-                buffer("rays", rays),
+                bind_buffer("bound_grid", &grid),
+                bind_view("pyramid_texture", PyramidLevels::Finest.choose(&gpu.volume.pyramid_views)),
+                bind_view("presence_texture", gpu.presence(PyramidLevels::Finest)),
+                bind_buffer("bound_scatter", &slab),
+                bind_buffer("footprint_table", scatterer.footprints()),
+                bind_buffer("rays", rays),
                 sampler("clamped", clamped),
             ],
         );
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         for phase in &self.phases {
             let turn =
-                pass::bind(context, "Footprints::phase", &pipeline, 3, &[buffer("bound_phase", phase)]);
+                pass::bind(context, "Footprints::phase", &pipeline, 3, &[bind_buffer("bound_phase", phase)]);
             let groups = [&own, &shared, &of_lights, &turn];
             pass::dispatch(
                 encoder,

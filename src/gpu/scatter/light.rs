@@ -1,41 +1,43 @@
-//! The light pass over scattered sheets: splats voxels, marches the light, splats the sheets back into
-//! the grid and divides by the weights.
+//! Light pass of the scattering engine: splats voxels, marches light through the sheets, splats the sheets back into
+//! the grid, and divides by the weights.
 
 use std::ops::Range;
 
-use super::eye::splatted_bricks;
-use super::splat::{ScatterVariant, Scatterer, Splat, Splatting, sums};
-use super::voxels::Scattering;
-use crate::gpu::light::march::{SLABS_PER_TEXEL, Sheets, march_uniform};
-use crate::gpu::light::volume::LightVolume;
-use crate::gpu::pipelines::binding::{buffer, sampler, view_of};
-use crate::gpu::pipelines::variant::{Constants, Only, Variant, deposit_constant, flag, is_cut};
+use super::eye::bricks_to_splat;
+use super::splat::{ScatterVariant, SheetScatterer, SplatParameters, SplatQuantity, sums};
+use super::voxels::ScatterState;
+use crate::gpu::light::light_volume::LightVolume;
+use crate::gpu::light::march::{LightSheets, SLABS_PER_TEXEL, march_uniform};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::{
+    PipelineVariant, ShaderConstants, SingleVariant, deposit_constant, flag, is_cut,
+};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::listed_bricks::{self, Listed};
-use crate::gpu::volume::transfer_tables::{Tables, upload_distances};
-use crate::gpu::volume::{Gpu, Levels};
+use crate::gpu::volume::brick_list::{self, BrickEntry};
+use crate::gpu::volume::transfer_tables::{TransferTables, upload_distances};
+use crate::gpu::volume::{PyramidLevels, VolumeContext};
 use crate::gpu::{GpuError, RenderOptions};
-use crate::model::{Classification, Deposit, SceneLight, Settings, SheetOrder};
+use crate::model::{ClassificationOrder, DepositMode, SceneLight, Settings, SheetOrder};
 use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
 
-/// What tells one pipeline of the march over scattered sheets from another.
+/// Pipeline variant of the march over scattered sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ScatterMarchVariant {
     is_cut: bool,
-    deposit: Deposit,
+    deposit: DepositMode,
     sheets: ScatterVariant,
-    /// Pixels are wider than voxels somewhere.
+    /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
-    /// Bricks around a sample's own that it sees.
+    /// Reach of a sample's kernel, in bricks around its own.
     dilation: i32,
 }
 
-impl Variant for ScatterMarchVariant {
+impl PipelineVariant for ScatterMarchVariant {
     fn shader(&self) -> &'static str {
         "scatter/light.wgsl"
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = self.sheets.reconstruction.constants();
         constants.extend([
             flag("CUT", self.is_cut),
@@ -48,52 +50,53 @@ impl Variant for ScatterMarchVariant {
     }
 }
 
-/// The sheets of one view of a light, and what was splatted back into the grid.
+/// Sheets of one view of a light, and the sums that are splatted back into the grid.
 #[derive(Debug)]
-pub(crate) struct LightScatter {
-    scatterer: Scatterer,
-    /// Σ D·h per light voxel.
+pub(crate) struct LightScatterer {
+    scatterer: SheetScatterer,
+    /// Sums of deposits times weights, Σ D·h, per light voxel.
     light: wgpu::Buffer,
-    /// The weight volume: Σ h per light voxel.
+    /// Weight volume: sums of weights, Σ h, per light voxel.
     weights: wgpu::Buffer,
-    /// Distances in bricks to the nearest that is read, and to the nearest that attenuates light.
+    /// Distances, in bricks, to the nearest brick whose sheets are read, and to the nearest that attenuates light.
     distances: wgpu::TextureView,
     dilation: i32,
-    /// What the slabs that share a texel of the ring deposit.
+    /// Deposits of the slabs that share a texel of the ring.
     deposits: wgpu::Buffer,
-    /// Data voxels per light voxel.
+    /// Number of data voxels per light voxel, along an axis.
     divisor: usize,
 }
 
-impl LightScatter {
-    /// Prepares a view; only sheets in the bricks of `read` will be splatted back, or all.
+impl LightScatterer {
+    /// Prepares a view. Sheets are splatted back in the bricks of `read` only, or everywhere without it.
     pub(crate) fn new(
-        gpu: Gpu<'_>,
-        scattering: &Scattering,
-        (tables, color): (&Tables, Option<usize>),
+        gpu: VolumeContext<'_>,
+        scattering: &ScatterState,
+        (tables, color): (&TransferTables, Option<usize>),
         view: &LightView,
         (settings, target): (&Settings, &LightVolume),
         read: Option<&BrickSet>,
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
-        let seen = splatted_bricks(&view.frame, &tables.lighting.occupied, options);
+        let seen = bricks_to_splat(&view.frame, &tables.lighting.occupied_bricks, options);
         let shadows = &settings.shadows;
         let what = match settings.sampling.classification {
-            Classification::Post => Splat::Density,
-            Classification::Pre => Splat::Extinction,
+            ClassificationOrder::Post => SplatQuantity::Density,
+            ClassificationOrder::Pre => SplatQuantity::Extinction,
         };
-        let what = (what, tables.met(color));
+        let what = (what, tables.lighting_of_color(color));
         let order = SheetOrder::ImageAligned;
-        let kernel = Splatting { kernel: shadows.kernel, quadrature: shadows.quadrature, order };
+        let kernel = SplatParameters { kernel: shadows.kernel, quadrature: shadows.quadrature, order };
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
-        let dims = tables.lighting.occupied.dims;
-        let unread = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
-        let thin = if options.empty_space_skipping {
-            tables.lighting.occupied.distances()
+        let dims = tables.lighting.occupied_bricks.dims;
+        let read_distances = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
+        let attenuating_distances = if options.empty_space_skipping {
+            tables.lighting.occupied_bricks.distances()
         } else {
-            vec![0; unread.len()]
+            vec![0; read_distances.len()]
         };
-        let pairs: Vec<u8> = unread.into_iter().zip(thin).flat_map(|(r, g)| [r, g]).collect();
+        let pairs: Vec<u8> =
+            read_distances.into_iter().zip(attenuating_distances).flat_map(|(r, g)| [r, g]).collect();
         Ok(Self {
             distances: upload_distances(
                 gpu.context,
@@ -102,8 +105,8 @@ impl LightScatter {
                 &pairs,
                 wgpu::TextureFormat::Rg8Uint,
             )?,
-            scatterer: Scatterer::new(gpu, &scattering.voxels, &view.frame, kernel, what, &seen, 1)?
-                .towards_grid(
+            scatterer: SheetScatterer::new(gpu, &scattering.voxels, &view.frame, kernel, what, &seen, 1)?
+                .with_light_grid(
                     view.first_pixel.as_vec2().into(),
                     view.cube_face,
                     (target.dims, target.divisor),
@@ -116,35 +119,35 @@ impl LightScatter {
         })
     }
 
-    /// Splats some slabs and marches the light through them.
+    /// Splats some slabs and marches light through them.
     #[expect(clippy::too_many_arguments, reason = "what the gathering pass takes, and two more")]
     pub(crate) fn march(
         &self,
-        gpu: Gpu<'_>,
-        scattering: &Scattering,
+        gpu: VolumeContext<'_>,
+        scattering: &ScatterState,
         table: &wgpu::Buffer,
-        (lamp, settings): (&SceneLight, &Settings),
+        (scene_light, settings): (&SceneLight, &Settings),
         view: &LightView,
-        sheets: &Sheets,
+        sheets: &LightSheets,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
+        let VolumeContext { context, shaders, .. } = gpu;
         let pipeline = shaders.pipeline(&ScatterMarchVariant {
-            is_cut: is_cut(settings.cuts.shading()),
+            is_cut: is_cut(settings.cuts.shadowing_part()),
             deposit: settings.shadows.deposit,
             sheets: self.scatterer.variant(),
-            is_stretched: self.scatterer.widest() > 1.0,
+            is_stretched: self.scatterer.max_stretch() > 1.0,
             dilation: self.dilation,
         })?;
-        let cut = settings.cuts.shading().region(&gpu.volume.scene);
-        let uniform = march_uniform(lamp, &cut, view, sheets, slabs.clone());
+        let cut = settings.cuts.shadowing_part().region(&gpu.volume.scene);
+        let uniform = march_uniform(scene_light, &cut, view, sheets, slabs.clone());
         let uniform = context.buffer("LightScatter::march", &[uniform], wgpu::BufferUsages::UNIFORM);
         let mut entries = sheets.march_entries(&uniform, table, &self.distances).to_vec();
-        entries.push(buffer("deposits", &self.deposits));
+        entries.push(bind_buffer("deposits", &self.deposits));
         let own = pass::bind(context, "LightScatter::march", &pipeline, 0, &entries);
         let grid = gpu.uniform("Volume::grid", gpu.volume.grid(0));
-        let levels = Levels::of(self.scatterer.widest() > 1.0);
+        let levels = PyramidLevels::for_stretch(self.scatterer.max_stretch() > 1.0);
         for k in slabs {
             if self.scatterer.is_filled(k) {
                 self.scatterer.splat(gpu, scattering, k, encoder)?;
@@ -156,12 +159,12 @@ impl LightScatter {
                 &pipeline,
                 1,
                 &[
-                    buffer("bound_grid", &grid),
-                    view_of("pyramid_texture", levels.choose(&gpu.volume.pyramid_views)),
-                    view_of("presence_texture", gpu.presence(levels)),
+                    bind_buffer("bound_grid", &grid),
+                    bind_view("pyramid_texture", levels.choose(&gpu.volume.pyramid_views)),
+                    bind_view("presence_texture", gpu.presence(levels)),
                     sampler("clamped", &gpu.volume.clamped),
-                    buffer("bound_scatter", &slab),
-                    buffer("sheets", &self.scatterer.sheets),
+                    bind_buffer("bound_scatter", &slab),
+                    bind_buffer("sheets", &self.scatterer.sheets),
                 ],
             );
             pass::dispatch(
@@ -169,7 +172,7 @@ impl LightScatter {
                 "LightScatter::march",
                 &pipeline,
                 &[&own, &shared],
-                pass::tiles(view.frame.size),
+                pass::tile_workgroups(view.frame.size),
             );
         }
         Ok(())
@@ -178,23 +181,23 @@ impl LightScatter {
     /// Splats some sheets back into the grid.
     pub(crate) fn splat_back(
         &self,
-        gpu: Gpu<'_>,
-        sheets: &Sheets,
+        gpu: VolumeContext<'_>,
+        sheets: &LightSheets,
         slabs: Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&self.scatterer.variant().of("scatter/reverse.wgsl"))?;
+        let VolumeContext { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline(&self.scatterer.variant().for_shader("scatter/reverse.wgsl"))?;
         let own = pass::bind(
             context,
             "LightScatter::grid",
             &pipeline,
             0,
             &[
-                view_of("distances", &self.distances),
-                view_of("ring", &sheets.ring.view),
-                buffer("light", &self.light),
-                buffer("weights", &self.weights),
+                bind_view("distances", &self.distances),
+                bind_view("ring", &sheets.ring.view),
+                bind_buffer("light", &self.light),
+                bind_buffer("weights", &self.weights),
             ],
         );
         for k in slabs {
@@ -205,26 +208,27 @@ impl LightScatter {
                 "LightScatter::splat_back",
                 &pipeline,
                 &[&own, &shared],
-                pass::tiles(self.scatterer.frame.size),
+                pass::tile_workgroups(self.scatterer.frame.size),
             );
         }
         Ok(())
     }
 
-    /// Divides light by weights into the listed bricks of the light volume.
+    /// Divides light by weights, into the listed bricks of the light volume.
     pub(crate) fn normalise(
         &self,
-        gpu: Gpu<'_>,
+        gpu: VolumeContext<'_>,
         target: &LightVolume,
-        bricks: &[Listed],
+        bricks: &[BrickEntry],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         if bricks.is_empty() {
             return Ok(());
         }
-        let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline_into(&Only("scatter/normalise.wgsl"), target.texture.format())?;
-        let list = listed_bricks::upload(gpu, bricks);
+        let VolumeContext { context, shaders, .. } = gpu;
+        let pipeline =
+            shaders.pipeline_into(&SingleVariant("scatter/normalise.wgsl"), target.texture.format())?;
+        let list = brick_list::upload_bricks(gpu, bricks);
         let mut uniform = self.scatterer.uniform(0, 1.0);
         uniform.count = bricks.len() as u32;
         let uniform = context.buffer("LightScatter::normalise", &[uniform], wgpu::BufferUsages::UNIFORM);
@@ -234,25 +238,30 @@ impl LightScatter {
             &pipeline,
             0,
             &[
-                buffer("bricks", &list),
-                buffer("light", &self.light),
-                buffer("weights", &self.weights),
-                view_of("attenuation", &target.view),
+                bind_buffer("bricks", &list),
+                bind_buffer("light", &self.light),
+                bind_buffer("weights", &self.weights),
+                bind_view("attenuation", &target.view),
             ],
         );
-        let shared =
-            pass::bind(context, "LightScatter::slab", &pipeline, 1, &[buffer("bound_scatter", &uniform)]);
+        let shared = pass::bind(
+            context,
+            "LightScatter::slab",
+            &pipeline,
+            1,
+            &[bind_buffer("bound_scatter", &uniform)],
+        );
         pass::dispatch(
             encoder,
             "LightScatter::normalise",
             &pipeline,
             &[&own, &shared],
-            listed_bricks::workgroups(bricks.len() as u32),
+            brick_list::two_workgroups_per_brick(bricks.len() as u32),
         );
         Ok(())
     }
 
-    /// Bytes of sheets, light and weights.
+    /// Returns the size of sheets, light and weights, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.scatterer.bytes() + self.light.size() + self.weights.size() + self.deposits.size()
     }

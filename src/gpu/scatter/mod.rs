@@ -1,4 +1,4 @@
-//! The engine that scatters: voxels splatted into sheets, sheets into the picture and back into the grid.
+//! Scattering engine: splats voxels into sheets, and sheets into the picture and back into the grid.
 
 pub(super) mod eye;
 pub(super) mod footprint_table;

@@ -1,13 +1,14 @@
-//! Which bricks are splatted into which sheet.
+//! Lists of the bricks that are splatted into each sheet.
 
 use glam::{DAffine3, DVec3};
 
 use crate::data::BRICK_EDGE;
-use crate::gpu::volume::listed_bricks;
+use crate::gpu::volume::brick_list;
 use crate::plan::{SheetFrame, SliceOrder};
 
-/// For every slab the bricks whose voxels reach it, with where their voxels begin; lists start at the
-/// first array's entries.
+/// Lists for every slab the bricks with voxels that reach it, and the word where those voxels begin.
+///
+/// Returns the start of each slab's list, and the lists themselves. `half_depth` is half the depth of a kernel.
 pub(crate) fn slab_lists(
     frame: &SheetFrame,
     sheets_from_index: &DAffine3,
@@ -28,35 +29,36 @@ pub(crate) fn slab_lists(
         let slab = |depth: f64| (depth - frame.first_depth) / frame.slab;
         let first = slab(near - half_depth).floor().max(0.0) as usize;
         let end = (slab(far + half_depth).floor() + 1.0).clamp(0.0, count as f64) as usize;
-        let packed = [listed_bricks::packed(brick), first_word];
+        let packed = [brick_list::pack_coordinates(brick), first_word];
         for list in lists.iter_mut().take(end).skip(first) {
             list.push(packed);
         }
     }
-    joined(lists)
+    concatenate(lists)
 }
 
-/// For every slice the bricks that it cuts, as [`slab_lists`].
+/// Lists for every slice the bricks that it cuts, in the format of [`slab_lists`].
 pub(crate) fn slice_lists(
     slices: &SliceOrder,
     bricks: impl Iterator<Item = ([usize; 3], u32)>,
 ) -> (Vec<u32>, Vec<[u32; 2]>) {
     let mut layers = vec![Vec::new(); (slices.count as usize).div_ceil(BRICK_EDGE)];
     for (brick, first_word) in bricks {
-        layers[brick[slices.axis]].push([listed_bricks::packed(brick), first_word]);
+        layers[brick[slices.axis]].push([brick_list::pack_coordinates(brick), first_word]);
     }
-    joined((0..slices.count).map(|k| layers[slices.slice(k) / BRICK_EDGE].clone()).collect())
+    concatenate((0..slices.count).map(|k| layers[slices.slice(k) / BRICK_EDGE].clone()).collect())
 }
 
-/// Lists behind each other, and where each begins; the last entry is where all end.
-fn joined(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
+/// Concatenates lists. Returns the start of each, with the end of the last as an additional entry, and the
+/// concatenation.
+fn concatenate(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
     let mut starts = vec![0];
     let mut all: Vec<[u32; 2]> = Vec::new();
     for list in lists {
         all.extend(list);
         starts.push(all.len() as u32);
     }
-    // A binding cannot be empty.
+    // Bindings must not be empty.
     if all.is_empty() {
         all.push([0; 2]);
     }

@@ -1,59 +1,58 @@
-//! Forward splatting: voxels into the sheets of one stack, slab after slab; what all scattering passes
-//! share.
+//! Forward splatting of voxels into a stack of sheets, slab by slab; shared by all scattering passes.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::footprint_table::{RADIUS, footprint_table};
 use super::sheet_lists::{slab_lists, slice_lists};
-use super::voxels::{ScatterVoxels, Scattering};
-use crate::gpu::pipelines::binding::{Pipeline, buffer};
+use super::voxels::{ScatterState, ScatterVoxels};
+use crate::gpu::pipelines::binding::{ShaderPipeline, bind_buffer};
+use crate::gpu::pipelines::pipeline_variant::{PipelineVariant, ReconstructionVariant, ShaderConstants};
 use crate::gpu::pipelines::uniforms::{self, rows};
-use crate::gpu::pipelines::variant::{Constants, Reconstruction, Variant};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::listed_bricks;
-use crate::gpu::volume::transfer_tables::Table;
-use crate::gpu::{Context, GpuError};
-use crate::model::{Kernel, Quadrature, SheetOrder};
+use crate::gpu::volume::VolumeContext;
+use crate::gpu::volume::brick_list;
+use crate::gpu::volume::transfer_tables::TransferTable;
+use crate::gpu::{GpuContext, GpuError};
+use crate::model::{ReconstructionKernel, SheetOrder, SlabQuadrature};
 use crate::plan::{BrickSet, SheetFrame, SliceOrder};
 
-/// A stack of sheets that voxels are splatted into.
+/// Stack of sheets that voxels are splatted into.
 #[derive(Debug)]
-pub(crate) struct Scatterer {
-    /// Rays and slabs.
+pub(crate) struct SheetScatterer {
+    /// Geometry of rays and slabs.
     pub frame: SheetFrame,
     variant: ScatterVariant,
-    /// Slices of voxels, if sheets are along the volume.
+    /// Slices of voxels, if sheets are aligned with the volume.
     slices: Option<SliceOrder>,
-    /// What does not change from slab to slab.
-    uniform: uniforms::Scatter,
-    /// Half a kernel's extents in (w·i, w·j, z), where it is not stretched.
-    half: DVec3,
-    /// How many times wider kernels are where they are widest.
-    widest: f64,
-    /// Bricks, slab by slab.
+    /// Parts of the uniform that are the same for all slabs.
+    uniform: uniforms::ScatterSlabUniform,
+    /// Half extents of an unstretched kernel in (w·i, w·j, z).
+    half_extents: DVec3,
+    /// Maximum stretch of kernels.
+    max_stretch: f64,
+    /// Bricks of all slabs, slab by slab.
     bricks: wgpu::Buffer,
-    /// Bricks of slab k are `starts[k] .. starts[k + 1]` of the list.
+    /// Starts of the slabs' lists: slab k has the bricks `starts[k] .. starts[k + 1]`.
     starts: Vec<u32>,
-    /// Sums, as integers.
+    /// Sums per pixel, as fixed-point integers.
     pub sheets: wgpu::Buffer,
     footprints: wgpu::Buffer,
     table: wgpu::Buffer,
 }
 
-/// What of a voxel is splatted.
+/// Quantity that is splatted for each voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Splat {
-    /// The voxel's density.
+pub(crate) enum SplatQuantity {
+    /// Density, classified after summation.
     Density,
-    /// The voxel's extinction, for lights.
+    /// Extinction, for lights.
     Extinction,
-    /// The voxel's density, colour and extinction, for the eye.
+    /// Density, colour and extinction, for the eye.
     Material,
 }
 
-impl Splat {
-    /// `SPLAT` of `scatter/slab.wgsl`.
+impl SplatQuantity {
+    /// Returns the constant `SPLAT` of `scatter/slab.wgsl`.
     pub(crate) fn constant(self) -> (&'static str, f64) {
         let code = match self {
             Self::Density => 0.0,
@@ -63,8 +62,8 @@ impl Splat {
         ("SPLAT", code)
     }
 
-    /// Sums per pixel.
-    fn sums(self) -> u32 {
+    /// Returns the number of sums per pixel.
+    fn sum_count(self) -> u32 {
         match self {
             Self::Density | Self::Extinction => 1,
             Self::Material => 5,
@@ -72,29 +71,29 @@ impl Splat {
     }
 }
 
-/// How voxels are splatted.
+/// Parameters of splatting: kernel, quadrature and order.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Splatting {
-    pub kernel: Kernel,
-    pub quadrature: Quadrature,
+pub(crate) struct SplatParameters {
+    pub kernel: ReconstructionKernel,
+    pub quadrature: SlabQuadrature,
     pub order: SheetOrder,
 }
 
-/// What tells one pipeline of the scattering passes from another.
+/// Pipeline variant shared by the scattering passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ScatterVariant {
-    pub reconstruction: Reconstruction,
+    pub reconstruction: ReconstructionVariant,
     pub order: SheetOrder,
-    pub splat: Splat,
+    pub splat: SplatQuantity,
 }
 
 impl ScatterVariant {
-    /// The variant of one of the passes.
-    pub(crate) fn of(self, shader: &'static str) -> ScatterPass {
+    /// Creates the variant of one of the passes.
+    pub(crate) fn for_shader(self, shader: &'static str) -> ScatterPass {
         ScatterPass { shader, variant: self }
     }
 
-    /// `ORDER` and `SPLAT`: what passes know that do not evaluate kernels.
+    /// Returns `ORDER` and `SPLAT`, the constants of passes that evaluate no kernels.
     pub(crate) fn sheet_constants(self) -> [(&'static str, f64); 2] {
         let order = match self.order {
             SheetOrder::ImageAligned => 0.0,
@@ -104,58 +103,58 @@ impl ScatterVariant {
         [("ORDER", order), self.splat.constant()]
     }
 
-    /// All that there is.
-    pub(crate) fn constants(self) -> Constants {
+    /// Returns all constants of passes that evaluate kernels.
+    pub(crate) fn constants(self) -> ShaderConstants {
         let mut constants = self.reconstruction.constants();
         constants.extend(self.sheet_constants());
         constants
     }
 }
 
-/// One of the passes that evaluate kernels.
+/// Pipeline variant of a pass that evaluates kernels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct ScatterPass {
     shader: &'static str,
     variant: ScatterVariant,
 }
 
-impl Variant for ScatterPass {
+impl PipelineVariant for ScatterPass {
     fn shader(&self) -> &'static str {
         self.shader
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         self.variant.constants()
     }
 }
 
-impl Scatterer {
-    /// Prepares a stack of sheets of which `layers` are kept. Only bricks of `seen` are splatted.
+impl SheetScatterer {
+    /// Prepares a stack of sheets, of which `layers` are stored at a time. Only bricks of `seen` are splatted.
     pub(crate) fn new(
-        gpu: Gpu<'_>,
+        gpu: VolumeContext<'_>,
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
-        Splatting { kernel, quadrature, order }: Splatting,
-        (what, table): (Splat, &Table),
+        SplatParameters { kernel, quadrature, order }: SplatParameters,
+        (what, table): (SplatQuantity, &TransferTable),
         seen: &BrickSet,
         layers: u32,
     ) -> Result<Self, GpuError> {
-        let Gpu { context, volume, .. } = gpu;
+        let VolumeContext { context, volume, .. } = gpu;
         let sheets_from_index = sheets_from_index(frame);
         let dims = volume.volume.dims();
         let slices = (order != SheetOrder::ImageAligned).then(|| SliceOrder::new(frame, dims));
-        let tabled = if slices.is_some() { round(kernel) } else { kernel };
-        let half = half_extents(frame, &sheets_from_index, tabled);
+        let tabulated_kernel = if slices.is_some() { isotropic_kernel(kernel) } else { kernel };
+        let half = half_extents(frame, &sheets_from_index, tabulated_kernel);
         let widest = frame.widest_stretch();
         let (starts, listed) = match &slices {
-            None => slab_lists(frame, &sheets_from_index, voxels.among(seen), half.z * widest),
-            Some(slices) => slice_lists(slices, voxels.among(seen)),
+            None => slab_lists(frame, &sheets_from_index, voxels.bricks_in(seen), half.z * widest),
+            Some(slices) => slice_lists(slices, voxels.bricks_in(seen)),
         };
         let axis = slices
             .map_or([0.0; 3], |slices| std::array::from_fn(|axis| f32::from(u8::from(axis == slices.axis))));
         let [x, y, z] = rows(&sheets_from_index);
-        let uniform = uniforms::Scatter {
-            frame: uniforms::SheetFrame::new(frame),
+        let uniform = uniforms::ScatterSlabUniform {
+            frame: uniforms::SheetFrameUniform::new(frame),
             sheets_from_index_x: x,
             sheets_from_index_y: y,
             sheets_from_index_z: z,
@@ -166,7 +165,7 @@ impl Scatterer {
             light_dims: dims.map(|n| n as u32),
             sheet_count: starts.len() as u32 - 1,
             first_slice: slices.map_or(0.0, |slices| slices.first as f32),
-            slice_step: slices.map_or(0.0, |slices| slices.step as f32),
+            slice_step: slices.map_or(0.0, |slices| slices.direction as f32),
             axis,
             extinction_unit: table.largest_extinction().max(1e-9),
             ..bytemuck::Zeroable::zeroed()
@@ -174,29 +173,30 @@ impl Scatterer {
         Ok(Self {
             frame: frame.clone(),
             variant: ScatterVariant {
-                reconstruction: Reconstruction::new(kernel, quadrature).ending(volume.ends_of_all()),
+                reconstruction: ReconstructionVariant::new(kernel, quadrature)
+                    .with_boundaries(volume.possible_boundaries()),
                 order,
                 splat: what,
             },
             slices,
             uniform,
-            half,
-            widest,
+            half_extents: half,
+            max_stretch: widest,
             bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
             starts,
-            sheets: sums(context, "Scatterer::sheets", layers * what.sums(), frame.size)?,
+            sheets: sums(context, "Scatterer::sheets", layers * what.sum_count(), frame.size)?,
             table: table.buffer.clone(),
             footprints: context.buffer(
                 "Scatterer::footprints",
-                &footprint_table(tabled),
+                &footprint_table(tabulated_kernel),
                 wgpu::BufferUsages::STORAGE,
             ),
         })
     }
 
-    /// This stack seen from a light volume: `divisor` data voxels per light voxel.
+    /// Sets the parameters for splatting back into a light volume, with `divisor` data voxels per light voxel.
     #[must_use]
-    pub(crate) fn towards_grid(
+    pub(crate) fn with_light_grid(
         mut self,
         first_pixel: [f32; 2],
         cube_face: bool,
@@ -209,49 +209,48 @@ impl Scatterer {
         self
     }
 
-    /// What tells pipelines of its passes from others.
+    /// Returns the pipeline variant of the stack's passes.
     pub(crate) fn variant(&self) -> ScatterVariant {
         self.variant
     }
 
-    /// Sheets of the stack.
+    /// Returns the number of sheets in the stack.
     pub(crate) fn sheet_count(&self) -> u32 {
         self.starts.len() as u32 - 1
     }
 
-    /// Bricks, sheet by sheet.
+    /// Returns the list of bricks, sheet by sheet.
     pub(crate) fn bricks(&self) -> &wgpu::Buffer {
         &self.bricks
     }
 
-    /// Footprint tables.
+    /// Returns the footprint tables.
     pub(crate) fn footprints(&self) -> &wgpu::Buffer {
         &self.footprints
     }
 
-    /// How many times wider kernels are where they are widest.
-    pub(crate) fn widest(&self) -> f64 {
-        self.widest
+    /// Returns the maximum stretch of kernels.
+    pub(crate) fn max_stretch(&self) -> f64 {
+        self.max_stretch
     }
 
-    /// Whether anything is splatted into slab `k`.
+    /// Returns true if any brick is splatted into slab `k`.
     pub(crate) fn is_filled(&self, k: u32) -> bool {
         k < self.sheet_count() && self.starts[k as usize] < self.starts[k as usize + 1]
     }
 
-    /// What shaders know about slab `k`, for kernels that are nowhere narrower than `least_stretch`
-    /// voxels per voxel.
-    pub(crate) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::Scatter {
-        // A slice of voxels has no depth of its own.
+    /// Builds the uniform of slab `k`, for kernels of at least `least_stretch` times the voxels' width.
+    pub(crate) fn uniform(&self, k: u32, least_stretch: f64) -> uniforms::ScatterSlabUniform {
+        // Slices of voxels have no depth of their own, and so one stretch for all.
         let stretch = if self.slices.is_some() {
-            self.widest
+            self.max_stretch
         } else {
             self.frame.stretch_at(f64::from(k)).max(least_stretch)
         };
         let pitch = self.frame.pitch_at(self.frame.depth_of(f64::from(k))) / self.frame.voxel_edge;
         let starts = &self.starts[k as usize..=k as usize + 1];
-        uniforms::Scatter {
-            half: (self.half * stretch).as_vec3().into(),
+        uniforms::ScatterSlabUniform {
+            half_extents: (self.half_extents * stretch).as_vec3().into(),
             stretch: stretch as f32,
             k,
             first: starts[0],
@@ -261,37 +260,38 @@ impl Scatterer {
         }
     }
 
-    /// What shaders know of a slab, as a buffer.
-    pub(crate) fn uniform_buffer(&self, context: &Context, k: u32, least_stretch: f64) -> wgpu::Buffer {
+    /// Creates the uniform buffer of slab `k`.
+    pub(crate) fn uniform_buffer(&self, context: &GpuContext, k: u32, least_stretch: f64) -> wgpu::Buffer {
         let uniform = self.uniform(k, least_stretch);
         context.buffer("Scatterer::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// The bind group of passes with footprints.
+    /// Creates the bind group of passes with footprints.
     pub(crate) fn bind_group(
         &self,
-        context: &Context,
-        pipeline: &Pipeline,
+        context: &GpuContext,
+        pipeline: &ShaderPipeline,
         uniform: &wgpu::Buffer,
         with_sheets: bool,
     ) -> wgpu::BindGroup {
-        let mut entries = vec![buffer("bound_scatter", uniform), buffer("footprint_table", &self.footprints)];
+        let mut entries =
+            vec![bind_buffer("bound_scatter", uniform), bind_buffer("footprint_table", &self.footprints)];
         if with_sheets {
-            entries.push(buffer("sheets", &self.sheets));
+            entries.push(bind_buffer("sheets", &self.sheets));
         }
         pass::bind(context, "Scatterer::bind_group", pipeline, 1, &entries)
     }
 
-    /// Splats the voxels of slab `k`, and counts them.
+    /// Splats the voxels of slab `k`, and counts the footprints.
     pub(crate) fn splat(
         &self,
-        gpu: Gpu<'_>,
-        Scattering { voxels, counter }: &Scattering,
+        gpu: VolumeContext<'_>,
+        ScatterState { voxels, counter }: &ScatterState,
         k: u32,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Gpu { context, shaders, .. } = gpu;
-        let pipeline = shaders.pipeline(&self.variant.of("scatter/splat.wgsl"))?;
+        let VolumeContext { context, shaders, .. } = gpu;
+        let pipeline = shaders.pipeline(&self.variant.for_shader("scatter/splat.wgsl"))?;
         let uniform = self.uniform_buffer(context, k, 1.0);
         let own = pass::bind(
             context,
@@ -299,28 +299,28 @@ impl Scatterer {
             &pipeline,
             0,
             &[
-                buffer("bricks", &self.bricks),
-                buffer("table", &self.table),
-                buffer("voxels", &voxels.buffer),
-                buffer("splats", counter),
+                bind_buffer("bricks", &self.bricks),
+                bind_buffer("table", &self.table),
+                bind_buffer("voxels", &voxels.buffer),
+                bind_buffer("splats", counter),
             ],
         );
         let shared = self.bind_group(context, &pipeline, &uniform, true);
         let [start, end] = [self.starts[k as usize], self.starts[k as usize + 1]];
-        let workgroups = listed_bricks::workgroups(end - start);
+        let workgroups = brick_list::two_workgroups_per_brick(end - start);
         pass::dispatch(encoder, "Scatterer::splat", &pipeline, &[&own, &shared], workgroups);
         Ok(())
     }
 
-    /// Bytes of sheets and lists.
+    /// Returns the size of sheets and lists, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.sheets.size() + self.bricks.size()
     }
 }
 
-/// Integer sums, one per pixel of so many layers; they begin at zero.
+/// Creates a zeroed buffer of integer sums, one per pixel of each layer.
 pub(crate) fn sums(
-    context: &Context,
+    context: &GpuContext,
     label: &'static str,
     layers: u32,
     [width, height]: [u32; 2],
@@ -335,7 +335,7 @@ pub(crate) fn sums(
             help: "the gathering engine makes the same picture without it",
         });
     }
-    Ok(context.empty_buffer(&wgpu::BufferDescriptor {
+    Ok(context.uninitialised_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
@@ -343,27 +343,28 @@ pub(crate) fn sums(
     }))
 }
 
-/// The round kernel that stands for one: that of the same variance, ⅓ of the other two.
-fn round(kernel: Kernel) -> Kernel {
+/// Returns the isotropic kernel that replaces one: a Gaussian of the same variance, ⅓ for the others.
+fn isotropic_kernel(kernel: ReconstructionKernel) -> ReconstructionKernel {
     match kernel {
-        Kernel::Gaussian { .. } => kernel,
-        Kernel::BSpline | Kernel::Prefiltered => Kernel::Gaussian { sigma: (1.0f64 / 3.0).sqrt() },
+        ReconstructionKernel::Gaussian { .. } => kernel,
+        ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => {
+            ReconstructionKernel::Gaussian { sigma: (1.0f64 / 3.0).sqrt() }
+        }
     }
 }
 
-/// `ORDER` of `scatter/slab.wgsl`.
-/// Index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the frame's rays,
-/// point = origin + w·i · right + w·j · down + z · forward.
+/// Returns the map from index space to (w·i, w·j, z), where w = 1 + z · `inverse_distance`: the inverse of the
+/// frame's rays, point = origin + w·i · right + w·j · down + z · forward.
 fn sheets_from_index(frame: &SheetFrame) -> DAffine3 {
     let matrix3 = DMat3::from_cols(frame.origin.per_i, frame.origin.per_j, frame.direction.base).inverse();
     DAffine3 { matrix3, translation: -(matrix3 * frame.origin.base) }
 }
 
-/// Half a kernel's extents in (w·i, w·j, z). That of the Gaussian is a cylinder along the ray; the
-/// others are cubes along the axes of the grid.
-fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel) -> DVec3 {
+/// Returns half the extents of a kernel in (w·i, w·j, z). The Gaussian is bounded by a cylinder along the ray, others
+/// by cubes along the axes of the grid.
+fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: ReconstructionKernel) -> DVec3 {
     let rows = sheets_from_index.matrix3.transpose();
-    if !matches!(kernel, Kernel::Gaussian { .. }) {
+    if !matches!(kernel, ReconstructionKernel::Gaussian { .. }) {
         return RADIUS
             * DVec3::new(
                 rows.x_axis.abs().element_sum(),
@@ -371,7 +372,7 @@ fn half_extents(frame: &SheetFrame, sheets_from_index: &DAffine3, kernel: Kernel
                 rows.z_axis.abs().element_sum(),
             );
     }
-    // A point of the cylinder is off the voxel by up to the radius along the ray and by as much across.
+    // A point of the cylinder is up to the radius away from the voxel along the ray, and as far across it.
     let [w, h] = frame.size.map(f64::from);
     let depth = rows.z_axis.length();
     let deepest = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]

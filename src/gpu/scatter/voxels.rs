@@ -1,4 +1,4 @@
-//! The voxels that scattering splats: a list, brick by brick, of everything that is not empty.
+//! Voxel lists of the scattering engine: all non-empty bricks, brick by brick.
 
 use std::sync::Arc;
 
@@ -6,51 +6,50 @@ use rayon::prelude::*;
 
 use crate::data::{BRICK_EDGE, Volume};
 use crate::gpu::volume::GpuVolume;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::plan::BrickSet;
 
-/// Words of a brick: two voxels to each.
+/// Number of words per brick, with two voxels in each.
 const BRICK_WORDS: usize = BRICK_EDGE * BRICK_EDGE * BRICK_EDGE / 2;
 
-/// Densities of all bricks that hold any, or of all, as `scatter/splat.wgsl` reads them.
+/// Densities of the non-empty bricks, or of all, in the layout that `scatter/splat.wgsl` reads.
 #[derive(Debug)]
 pub(crate) struct ScatterVoxels {
-    /// Two 16-bit normalised densities per word, 8³ voxels per brick.
+    /// Buffer with two 16-bit normalised densities per word, and 8³ voxels per brick.
     pub buffer: wgpu::Buffer,
-    /// For each brick of the volume the word where its voxels begin; `None` for empty ones.
+    /// Word where the voxels of each brick of the volume begin; `None` for empty bricks.
     pub first_word: Vec<Option<u32>>,
-    /// The word where each brick's voxels begin, for shaders; −1 for empty ones.
+    /// Buffer with the word where each brick's voxels begin, for shaders; −1 for empty bricks.
     pub first_words: wgpu::Buffer,
-    /// Whether empty bricks are listed, too.
-    pub holds_all: bool,
+    /// `true` if empty bricks are listed, too.
+    pub has_empty_bricks: bool,
 }
 
-/// What a picture scatters, and where it counts how often.
+/// Voxels that a picture scatters, and the counter of its footprints.
 #[derive(Debug)]
-pub(crate) struct Scattering {
+pub(crate) struct ScatterState {
     pub voxels: Arc<ScatterVoxels>,
-    /// One word: footprints so far.
+    /// Buffer of one word: number of footprints so far.
     pub counter: wgpu::Buffer,
 }
 
-impl Scattering {
-    /// Scattering for one picture, whose footprints are counted from zero.
-    pub(crate) fn new(context: &Context, voxels: Arc<ScatterVoxels>) -> Self {
+impl ScatterState {
+    /// Creates the state for one picture, whose footprints are counted from zero.
+    pub(crate) fn new(context: &GpuContext, voxels: Arc<ScatterVoxels>) -> Self {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         Self { voxels, counter: context.buffer("Scattering::counter", &[0u32], usage) }
     }
 }
 
 impl ScatterVoxels {
-    /// Lists a volume's voxels; with `all` also bricks of nothing but zeros, which a transfer function
-    /// may show.
+    /// Lists a volume's voxels; with `all` also bricks of zeros, which a transfer function may show.
     ///
     /// # Errors
-    /// When they are more than a buffer of the adapter can hold.
-    pub(crate) fn new(context: &Context, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
+    /// Returns an error if they exceed the adapter's largest buffer.
+    pub(crate) fn new(context: &GpuContext, volume: &GpuVolume, all: bool) -> Result<Self, GpuError> {
         let [nx, ny, nz] = volume.bricks.dims;
         let layers: Vec<_> =
-            (0..nz).into_par_iter().map(|z| layer_words(&volume.volume, z, [nx, ny], all)).collect();
+            (0..nz).into_par_iter().map(|z| encode_layer(&volume.volume, z, [nx, ny], all)).collect();
         let bricks = layers.iter().flatten().filter(|words| words.is_some()).count();
         let bytes = (bricks * BRICK_WORDS * 4) as u64;
         let limit = context.device.limits().max_storage_buffer_binding_size;
@@ -68,29 +67,29 @@ impl ScatterVoxels {
             first_word.push(words.is_some().then_some(listed.len() as u32));
             listed.extend(words.into_iter().flatten());
         }
-        // A binding cannot be empty.
+        // Bindings must not be empty.
         listed.resize(listed.len().max(1), 0);
         let buffer = context.buffer("ScatterVoxels::buffer", &listed, wgpu::BufferUsages::STORAGE);
         let words: Vec<i32> = first_word.iter().map(|word| word.map_or(-1, |word| word as i32)).collect();
         let first_words = context.buffer("ScatterVoxels::first_words", &words, wgpu::BufferUsages::STORAGE);
-        Ok(Self { buffer, first_word, first_words, holds_all: all })
+        Ok(Self { buffer, first_word, first_words, has_empty_bricks: all })
     }
 
-    /// Bricks of a set that hold anything: coordinates and first word.
-    pub(crate) fn among<'a>(&'a self, set: &'a BrickSet) -> impl Iterator<Item = ([usize; 3], u32)> + 'a {
+    /// Returns the non-empty bricks of a set: coordinates and first word.
+    pub(crate) fn bricks_in<'a>(&'a self, set: &'a BrickSet) -> impl Iterator<Item = ([usize; 3], u32)> + 'a {
         let [nx, ny, _] = set.dims;
         set.positions()
             .filter_map(move |[x, y, z]| Some(([x, y, z], self.first_word[x + nx * (y + ny * z)]?)))
     }
 
-    /// Bytes of the list.
+    /// Returns the size of the list, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.buffer.size() + self.first_words.size()
     }
 }
 
-/// The words of every brick of layer `z`, `None` for those without anything, unless `all` are wanted.
-fn layer_words(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
+/// Encodes every brick of layer `z`; `None` for empty ones, unless `all` is set.
+fn encode_layer(volume: &Volume, z: usize, [nx, ny]: [usize; 2], all: bool) -> Vec<Option<Vec<u32>>> {
     let dims = volume.dims();
     let first = z * BRICK_EDGE;
     let slices: Vec<Vec<f32>> =

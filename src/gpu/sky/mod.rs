@@ -1,11 +1,13 @@
-//! The light of a sky: how open to it each place is.
+//! Sky visibility (ambient occlusion): a volume that stores how much of the sky each point sees, as the two moments
+//! that correspond to the spherical harmonics of orders 0 and 1.
 //!
-//! Blocks of voxels get a mean extinction, light is followed through them from many directions, and what arrives is
-//! gathered into two moments over the directions: their mean V₀ and V₁.
+//! Extinction is averaged over blocks of voxels, light is swept through them from many directions, and the
+//! transmittance is summed into two moments over directions: the mean transmittance V₀, and the mean V₁ of
+//! transmittance times direction.
 
-pub(super) mod batches;
-pub(super) mod blocks;
-pub(super) mod build;
+pub(super) mod direction_batches;
+pub(super) mod extinction_blocks;
+pub(super) mod fill;
 pub(super) mod floor_map;
 pub(super) mod sheets;
 pub(super) mod sweep;

@@ -1,11 +1,11 @@
-//! The light along the rays of a batch of directions, slice by slice.
+//! Sheets of a sweep: light along the rays of a batch of directions, slice by slice.
 
 use crate::gpu::volume::texture_3d;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 
-/// Columns and rows of rays, and a layer for each slice of each direction of a batch.
+/// 3D texture with columns and rows of rays, and a layer for each slice of each direction in a batch.
 ///
-/// Layers of a 3D texture: those of an array would be filtered in half the time, but drivers take far longer to clear them.
+/// A 2D array would be filtered in half the time, but drivers take far longer to clear it.
 #[derive(Debug)]
 pub(crate) struct RaySheets {
     pub view: wgpu::TextureView,
@@ -14,12 +14,12 @@ pub(crate) struct RaySheets {
 }
 
 impl RaySheets {
-    /// Room for so many columns, rows and layers.
+    /// Creates a texture of this many columns, rows and layers.
     ///
     /// # Errors
-    /// When memory is out.
+    /// Returns an error if memory is exhausted.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         size: [usize; 3],
         format: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {
@@ -29,7 +29,7 @@ impl RaySheets {
         Ok(Self { view, size, format })
     }
 
-    /// Bytes of the texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texel = u64::from(self.format.block_copy_size(None).unwrap_or(8));
         texel * self.size.iter().map(|&n| n as u64).product::<u64>()

@@ -1,57 +1,58 @@
-//! The march of light along the rays of a batch of directions.
+//! Sweep of light along the parallel rays of a batch of directions.
 
 use glam::DVec3;
 
-use super::batches::{Batches, Rays};
+use super::direction_batches::{DirectionBatches, DirectionRays};
 use super::sheets::RaySheets;
 use crate::gpu::GpuError;
-use crate::gpu::pipelines::binding::{Named, buffer, sampler};
+use crate::gpu::pipelines::binding::{NamedResource, bind_buffer, sampler};
+use crate::gpu::pipelines::pipeline_variant::{ColorVariant, PipelineVariant, ShaderConstants, flag};
 use crate::gpu::pipelines::uniforms;
-use crate::gpu::pipelines::variant::{ColorVariant, Constants, Variant, flag};
 use crate::gpu::resources::pass;
-use crate::gpu::volume::Gpu;
+use crate::gpu::volume::VolumeContext;
 use crate::plan::SweepFrame;
 
-/// A batch of directions in which light is followed through blocks, by a shader that imports `sky/rays.wgsl`.
+/// Pass that sweeps light through blocks in a batch of directions, with a shader that imports `sky/rays.wgsl`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SweepPass<'a> {
     pub shader: &'static str,
-    /// Whether light has one colour all through (`bounces/sweep.wgsl`).
+    /// `true` if all light has the same colour (`bounces/sweep.wgsl`).
     pub one_color: bool,
-    pub rays: &'a [Rays],
-    /// Blocks along x, y and z.
+    pub rays: &'a [DirectionRays],
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// What is filled: a layer for each slice of each direction, or for each direction.
+    /// Target: a layer for each slice of each direction, or one for each direction.
     pub sheets: &'a RaySheets,
-    /// Whether nothing has been summed before.
+    /// `true` for the first batch, before which the sums are undefined.
     pub is_first: bool,
-    /// One over all directions: what makes their sum a mean.
+    /// One over the number of directions, which turns sums into means.
     pub share: f32,
 }
 
 impl SweepPass<'_> {
-    /// Records it: light that arrives from directions goes through blocks into sheets, both of which are among the `entries`.
-    /// Returns what the passes that gather from these need to know.
+    /// Records the pass; `entries` include the blocks that light passes through and the target sheets. `arriving` is
+    /// the radiance that enters the grid from a direction. Returns the uniform, which the pass that gathers from the
+    /// sheets also binds.
     pub(crate) fn record(
         &self,
-        gpu: Gpu<'_>,
-        entries: &[Named<'_>],
-        arriving: impl Fn(DVec3) -> DVec3,
+        gpu: VolumeContext<'_>,
+        entries: &[NamedResource<'_>],
+        radiance: impl Fn(DVec3) -> DVec3,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<wgpu::Buffer, GpuError> {
         let Self { shader, one_color, rays, dims, sheets, is_first, share } = *self;
         let edge = gpu.volume.scene.smallest_edge();
-        // What is left over has no weight, and no rays.
-        let mut packed = [bytemuck::Zeroable::zeroed(); uniforms::MAX_SKY_RAYS];
+        // Unused slots of the uniform have weight 0 and no rays.
+        let mut packed = [bytemuck::Zeroable::zeroed(); uniforms::MAX_BATCH_DIRECTIONS];
         let mut layer = 0;
         let mut tiles: Vec<u32> = Vec::new();
-        for (slot, Rays { frame, tiles: own }) in packed.iter_mut().zip(rays) {
-            *slot = pack(frame, edge, (layer, tiles.len()), arriving(frame.towards));
+        for (slot, DirectionRays { frame, tiles: own }) in packed.iter_mut().zip(rays) {
+            *slot = pack_rays(frame, edge, (layer, tiles.len()), radiance(frame.towards));
             layer += frame.slices();
             tiles.extend(&own.0);
         }
         let reciprocal = |size: [usize; 3]| size.map(|n| 1.0 / n as f32);
-        let uniform = uniforms::Sweep {
+        let uniform = uniforms::SweepUniform {
             dims: dims.map(|n| n as u32),
             share,
             block_scale: reciprocal(dims.map(|n| n + 2)),
@@ -61,12 +62,12 @@ impl SweepPass<'_> {
             rays: packed,
         };
         let uniform = gpu.uniform("Sweep::uniform", uniform);
-        let tiles = gpu.list("Sweep::tiles", &tiles);
+        let tiles = gpu.storage("Sweep::tiles", &tiles);
         let pipeline = gpu.shaders.pipeline_into(&ColorVariant { shader, one_color }, sheets.format)?;
         let mut own = vec![
-            buffer("bound_sweep", &uniform),
+            bind_buffer("bound_sweep", &uniform),
             sampler("clamped", &gpu.volume.clamped),
-            buffer("tiles", &tiles),
+            bind_buffer("tiles", &tiles),
         ];
         own.extend_from_slice(entries);
         let own = gpu.bind("Sweep::own", &pipeline, 0, &own);
@@ -76,18 +77,23 @@ impl SweepPass<'_> {
     }
 }
 
-/// The rays of a direction for the shaders, from which so much light arrives; `edge` is that of a voxel, and layer and tile are
-/// the first among all.
-fn pack(frame: &SweepFrame, edge: f64, (layer, tile): (usize, usize), arriving: DVec3) -> uniforms::SkyRays {
-    uniforms::SkyRays {
-        towards: frame.towards.as_vec3().into(),
+/// Packs the rays of a direction for the shaders; `edge` is that of a voxel, and `layer` and `tile` are the first
+/// ones of this direction.
+fn pack_rays(
+    frame: &SweepFrame,
+    edge: f64,
+    (layer, tile): (usize, usize),
+    arriving: DVec3,
+) -> uniforms::SweepRaysUniform {
+    uniforms::SweepRaysUniform {
+        direction_to_light: frame.towards.as_vec3().into(),
         step: (frame.step / edge) as f32,
         drift: frame.drift.as_vec2().into(),
         first: frame.first.map(|at| at as f32),
         size: frame.size,
         axis: frame.axis as u32,
-        rises: u32::from(frame.rises),
-        arriving: arriving.as_vec3().into(),
+        is_ascending: u32::from(frame.is_ascending),
+        incoming_radiance: arriving.as_vec3().into(),
         layer: layer as u32,
         weight: 1.0,
         first_tile: tile as u32,
@@ -96,34 +102,34 @@ fn pack(frame: &SweepFrame, edge: f64, (layer, tile): (usize, usize), arriving: 
     }
 }
 
-/// What tells one pipeline that gathers from a sweep from another.
+/// Pipeline variant of a pass that gathers from swept sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct GatherVariant {
+pub(crate) struct SweepGatherVariant {
     pub shader: &'static str,
-    /// Directions of a batch.
+    /// Number of directions in a batch.
     directions: usize,
-    /// Whether none comes after it, of a shader that stores the mean then.
+    /// `true` for the last batch, which stores the mean; `None` for shaders that store no mean.
     is_last: Option<bool>,
 }
 
-impl GatherVariant {
-    /// That of a shader which stores no mean.
-    pub(crate) fn of(shader: &'static str, batches: &Batches) -> Self {
-        Self { shader, directions: batches.each(), is_last: None }
+impl SweepGatherVariant {
+    /// Creates the variant of a shader that stores no mean.
+    pub(crate) fn new(shader: &'static str, batches: &DirectionBatches) -> Self {
+        Self { shader, directions: batches.directions_per_batch(), is_last: None }
     }
 
-    /// That of a shader which stores the mean when a batch is the last.
-    pub(crate) fn with_mean(shader: &'static str, batches: &Batches, batch: usize) -> Self {
-        Self { is_last: Some(batch + 1 == batches.count()), ..Self::of(shader, batches) }
+    /// Creates the variant of a shader that stores the mean after the last batch.
+    pub(crate) fn with_mean(shader: &'static str, batches: &DirectionBatches, batch: usize) -> Self {
+        Self { is_last: Some(batch + 1 == batches.count()), ..Self::new(shader, batches) }
     }
 }
 
-impl Variant for GatherVariant {
+impl PipelineVariant for SweepGatherVariant {
     fn shader(&self) -> &'static str {
         self.shader
     }
 
-    fn constants(&self) -> Constants {
+    fn constants(&self) -> ShaderConstants {
         let mut constants = vec![("DIRECTIONS", self.directions as f64)];
         constants.extend(self.is_last.map(|is_last| flag("IS_LAST", is_last)));
         constants

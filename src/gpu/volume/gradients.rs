@@ -1,24 +1,24 @@
-//! Gradients of the pyramid in a texture of their own, while memory allows.
+//! Precomputed gradients of the pyramid in a texture, where memory allows.
 
 use std::ops::Range;
 
 use super::GpuVolume;
-use super::prefilter::{level_of, uniform_and_list};
-use crate::gpu::pipelines::binding::{buffer, view_of};
-use crate::gpu::pipelines::variant::Only;
+use super::pyramid::{level_buffers, level_view};
+use crate::gpu::pipelines::binding::{bind_buffer, bind_view};
+use crate::gpu::pipelines::pipeline_variant::SingleVariant;
 use crate::gpu::resources::pass;
-use crate::gpu::volume::listed_bricks;
-use crate::gpu::{Context, GpuError, ShaderLibrary};
+use crate::gpu::volume::brick_list;
+use crate::gpu::{GpuContext, GpuError, ShaderLibrary};
 
-/// Most bytes that gradients may take: 512³ voxels need 1.29 GB, with coarser levels. Beyond that, a
-/// volume's gradients are twelve fetches of the pyramid each.
-const MAX_BYTES: u64 = 3 << 29;
+/// Maximum size of the gradient texture, in bytes: 512³ voxels need 1.29 GB with the coarser levels. Larger volumes
+/// take each gradient from twelve fetches of the pyramid.
+const MAX_GRADIENT_BYTES: u64 = 3 << 29;
 
-/// Makes the texture beside a pyramid; `None` where it would take too much memory.
-pub(crate) fn texture(context: &Context, pyramid: &wgpu::Texture) -> Option<wgpu::Texture> {
+/// Creates the gradient texture for a pyramid; `None` if it would be too large or memory is exhausted.
+pub(crate) fn gradient_texture(context: &GpuContext, pyramid: &wgpu::Texture) -> Option<wgpu::Texture> {
     let size = pyramid.size();
     let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
-    if bytes(texels) > MAX_BYTES {
+    if gradient_bytes(texels) > MAX_GRADIENT_BYTES {
         return None;
     }
     let texture = context.texture(&wgpu::TextureDescriptor {
@@ -31,18 +31,18 @@ pub(crate) fn texture(context: &Context, pyramid: &wgpu::Texture) -> Option<wgpu
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         view_formats: &[],
     });
-    // Pictures do without.
+    // Not an error: without the texture, shaders compute gradients from the pyramid.
     texture.inspect_err(|err| log::info!("no texture of gradients: {err}")).ok()
 }
 
-/// Bytes for so many texels of the finest level: 8 each, and a seventh for the coarser levels.
-pub(crate) fn bytes(texels: u64) -> u64 {
+/// Returns the size in bytes for `texels` texels of the finest level: 8 each, and a seventh for the coarser levels.
+pub(crate) fn gradient_bytes(texels: u64) -> u64 {
     texels * 64 / 7
 }
 
-/// Fills some bricks of one level from the pyramid, which must be complete.
-pub(crate) fn fill(
-    context: &Context,
+/// Fills the gradients of some bricks of one level. The pyramid must be complete.
+pub(crate) fn fill_gradients(
+    context: &GpuContext,
     shaders: &ShaderLibrary,
     volume: &GpuVolume,
     level: u32,
@@ -51,21 +51,21 @@ pub(crate) fn fill(
 ) -> Result<(), GpuError> {
     let Some(gradients) = &volume.gradients else { return Ok(()) };
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let pipeline = shaders.pipeline(&Only("volume/gradients.wgsl"))?;
-    let (uniform, list) = uniform_and_list(context, level, bricks);
+    let pipeline = shaders.pipeline(&SingleVariant("volume/gradients.wgsl"))?;
+    let (uniform, list) = level_buffers(context, level, bricks);
     let bind_group = pass::bind(
         context,
         "Gradients::bind_group",
         &pipeline,
         0,
         &[
-            view_of("source", &level_of(&volume.pyramid, level)),
-            buffer("bound_resample", &uniform),
-            view_of("gradients", &level_of(gradients, level)),
-            buffer("bricks", &list),
+            bind_view("source", &level_view(&volume.pyramid, level)),
+            bind_buffer("bound_resample", &uniform),
+            bind_view("gradients", &level_view(gradients, level)),
+            bind_buffer("bricks", &list),
         ],
     );
-    let groups = listed_bricks::workgroups(bricks.len().max(1) as u32);
+    let groups = brick_list::two_workgroups_per_brick(bricks.len().max(1) as u32);
     pass::dispatch(encoder, "Gradients::fill", &pipeline, &[&bind_group], groups);
     Ok(())
 }

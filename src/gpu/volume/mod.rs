@@ -1,92 +1,93 @@
-//! The volume on the GPU: density with its border once more around it, and the pyramid made from it.
+//! Volume on the GPU: density texture with a replicated border, and the pyramid made from it.
 
+pub(super) mod brick_list;
+pub(super) mod cell_list;
 pub(super) mod gradients;
-pub(super) mod listed_bricks;
-pub(super) mod listed_cells;
-pub(super) mod materials;
-pub(super) mod prefilter;
+pub(super) mod preclassified;
 pub(super) mod presence;
-mod shapes;
+pub(super) mod pyramid;
+mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
-pub(crate) use shapes::texture_3d;
+pub(crate) use texture_shapes::texture_3d;
+pub(crate) use textures::create_volume_textures;
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
-pub(crate) use textures::textures;
 
 use std::sync::Arc;
 
 use half::f16;
 
-use self::presence::Presence;
-use self::shapes::padded;
-use self::textures::{Textures, density_is_unorm, unorm16};
-use super::resources::pool::ResourcePool;
-use super::resources::tools::Tools;
-use super::{Context, GpuError};
-use crate::data::{BRICK_EDGE, Bricks, CELL_EDGE, Volume};
-use crate::gpu::pipelines::binding::{Named, Pipeline, buffer, sampler, view_of};
-use crate::gpu::pipelines::uniforms::Grid;
-use crate::gpu::pipelines::variant::Ends;
+use self::presence::PresenceTexture;
+use self::texture_shapes::pyramid_dims;
+use self::textures::{VolumeTextures, density_is_unorm, unorm16};
+use super::resources::gpu_tools::GpuTools;
+use super::resources::resource_pool::ResourcePool;
+use super::{GpuContext, GpuError};
+use crate::data::{BRICK_EDGE, BrickBounds, CELL_EDGE, Volume};
+use crate::gpu::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
+use crate::gpu::pipelines::pipeline_variant::GridBoundaries;
+use crate::gpu::pipelines::uniforms::GridUniform;
 use crate::math::SceneSpace;
 
-/// Upload block: small enough that one takes a few milliseconds.
+/// Size of an upload step in bytes, small enough for a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
 
-/// What every pass over a volume works with.
+/// Inputs shared by all passes over a volume: device, pipelines, volume and pool.
 #[derive(Clone, Copy)]
-pub(crate) struct Gpu<'a> {
-    pub context: &'a Context,
+pub(crate) struct VolumeContext<'a> {
+    pub context: &'a GpuContext,
     pub shaders: &'a super::ShaderLibrary,
     pub volume: &'a GpuVolume,
-    /// Bound where a shader declares a light volume and a light has none.
+    /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
     pub placeholder: &'a wgpu::TextureView,
     pub pool: &'a ResourcePool,
 }
 
-impl<'a> Gpu<'a> {
-    /// Tools together with a volume.
-    pub(crate) fn new(tools: &'a Tools, volume: &'a GpuVolume) -> Self {
-        let Tools { context, shaders, pool, placeholder } = tools;
+impl<'a> VolumeContext<'a> {
+    /// Combines the tools of a device with a volume.
+    pub(crate) fn new(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
+        let GpuTools { context, shaders, pool, placeholder } = tools;
         Self { context, shaders, volume, placeholder, pool }
     }
 }
 
-impl Gpu<'_> {
-    /// A uniform for what is being recorded.
+impl VolumeContext<'_> {
+    /// Returns a pooled uniform buffer for the submission being recorded.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
     }
 
-    /// A list for what is being recorded; the buffer may be longer.
-    pub(crate) fn list<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+    /// Returns a pooled storage buffer for the submission being recorded; it may be longer than `values`.
+    pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
         self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
     }
 
-    /// A list in a buffer of so many bytes at least: lists of any length up to that use one.
-    pub(crate) fn list_with_room<T: bytemuck::NoUninit>(
+    /// Returns a pooled storage buffer of at least `room` bytes, so that lists of any length up to that share one
+    /// buffer.
+    pub(crate) fn storage_of_at_least<T: bytemuck::NoUninit>(
         &self,
         label: &'static str,
         values: &[T],
         room: u64,
     ) -> wgpu::Buffer {
-        self.pool.buffer_with_room(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+        self.pool.buffer_of_at_least(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
     }
 
-    /// Binds resources to a group of a pipeline.
+    /// Creates a bind group, cached in the pool.
     pub(crate) fn bind(
         &self,
         label: &str,
-        pipeline: &Pipeline,
+        pipeline: &ShaderPipeline,
         group: usize,
-        entries: &[Named<'_>],
+        entries: &[NamedResource<'_>],
     ) -> wgpu::BindGroup {
         self.pool.bind(self.context, label, pipeline, group, entries)
     }
 
-    /// Bind group 1 of passes that look at a pyramid alone.
-    pub(crate) fn bind_pyramid(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
+    /// Creates bind group 1 of passes that read a pyramid but not the density texture.
+    pub(crate) fn bind_pyramid(&self, pipeline: &ShaderPipeline, pyramid: &PyramidViews) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         self.bind(
@@ -94,79 +95,83 @@ impl Gpu<'_> {
             pipeline,
             1,
             &[
-                buffer("bound_grid", &grid),
-                view_of("pyramid_texture", &pyramid.all),
-                view_of("presence_texture", self.presence(Levels::All)),
+                bind_buffer("bound_grid", &grid),
+                bind_view("pyramid_texture", &pyramid.all),
+                bind_view("presence_texture", self.presence(PyramidLevels::All)),
                 sampler("clamped", &volume.clamped),
             ],
         )
     }
 
-    /// Bind group 1 of passes that look at a pyramid alone, and at what of it is there in that.
-    pub(crate) fn bind_pyramid_alone(&self, pipeline: &Pipeline, pyramid: &LevelViews) -> wgpu::BindGroup {
+    /// Creates bind group 1 of passes that read a pyramid without presence.
+    pub(crate) fn bind_pyramid_without_presence(
+        &self,
+        pipeline: &ShaderPipeline,
+        pyramid: &PyramidViews,
+    ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(0));
         let entries = [
-            buffer("bound_grid", &grid),
-            view_of("pyramid_texture", &pyramid.all),
+            bind_buffer("bound_grid", &grid),
+            bind_view("pyramid_texture", &pyramid.all),
             sampler("clamped", &volume.clamped),
         ];
         self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
     }
 
-    /// Bind group 1 of the passes that sample density.
+    /// Creates bind group 1 of passes that sample density.
     pub(crate) fn bind_volume(
         &self,
-        pipeline: &Pipeline,
+        pipeline: &ShaderPipeline,
         dilation: i32,
-        levels: Levels,
-        pyramids: Pyramids<'_>,
+        levels: PyramidLevels,
+        pyramids: PassPyramids<'_>,
     ) -> wgpu::BindGroup {
         let volume = self.volume;
         let grid = self.uniform("Volume::grid", volume.grid(dilation));
         let mut entries = vec![
-            buffer("bound_grid", &grid),
-            view_of("density_texture", &volume.density_view),
-            view_of("pyramid_texture", levels.choose(pyramids.own)),
-            view_of("presence_texture", self.presence(levels)),
+            bind_buffer("bound_grid", &grid),
+            bind_view("density_texture", &volume.density_view),
+            bind_view("pyramid_texture", levels.choose(pyramids.primary)),
+            bind_view("presence_texture", self.presence(levels)),
             sampler("clamped", &volume.clamped),
             sampler("nearest", &volume.nearest),
         ];
-        entries.extend(pyramids.lighting.map(|views| view_of("lighting_pyramid", levels.choose(views))));
+        entries.extend(pyramids.lighting.map(|views| bind_view("lighting_pyramid", levels.choose(views))));
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
-    /// The texture of what is there where voxels are missing, or what is bound in its place.
-    pub(crate) fn presence(&self, levels: Levels) -> &wgpu::TextureView {
+    /// Returns the view of the presence texture if voxels are missing, else the placeholder.
+    pub(crate) fn presence(&self, levels: PyramidLevels) -> &wgpu::TextureView {
         self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
 }
 
-/// The pyramids that a pass reads: of densities, or of what voxels mean ([`materials`]).
+/// Pyramids that a pass reads: of densities, or of pre-classified voxels ([`preclassified`]).
 #[derive(Clone, Copy)]
-pub(crate) struct Pyramids<'a> {
-    pub own: &'a LevelViews,
-    /// Of what attenuates light, for passes that look at both.
-    pub lighting: Option<&'a LevelViews>,
+pub(crate) struct PassPyramids<'a> {
+    pub primary: &'a PyramidViews,
+    /// Pyramid of what attenuates light, for eye passes that cast near-field rays.
+    pub lighting: Option<&'a PyramidViews>,
 }
 
-/// The levels of the pyramid that a pass may read.
+/// Range of pyramid levels that a pass may read.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Levels {
-    /// No kernel is stretched.
+pub(crate) enum PyramidLevels {
+    /// Level 0 alone, for kernels that are not stretched.
     Finest,
-    /// Kernels are stretched.
+    /// All levels, for stretched kernels.
     All,
 }
 
-impl Levels {
-    /// What kernels need that are stretched or not.
-    pub(crate) fn of(is_stretched: bool) -> Self {
+impl PyramidLevels {
+    /// Returns the levels that stretched or unstretched kernels need.
+    pub(crate) fn for_stretch(is_stretched: bool) -> Self {
         if is_stretched { Self::All } else { Self::Finest }
     }
 
-    /// The view that has these levels.
-    pub(crate) fn choose(self, views: &LevelViews) -> &wgpu::TextureView {
+    /// Selects the view with these levels.
+    pub(crate) fn choose(self, views: &PyramidViews) -> &wgpu::TextureView {
         match self {
             Self::Finest => &views.finest,
             Self::All => &views.all,
@@ -174,17 +179,17 @@ impl Levels {
     }
 }
 
-/// A texture of the pyramid as a whole, and its finest level alone: a software driver works out the sizes of
-/// levels for each lane and fetch where there are several.
+/// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
+/// computes the level sizes for each lane and fetch, which the second view avoids.
 #[derive(Debug)]
-pub(crate) struct LevelViews {
-    /// Every level.
+pub(crate) struct PyramidViews {
+    /// View of all levels of the pyramid.
     pub all: wgpu::TextureView,
-    /// Level 0.
+    /// View of level 0 of the pyramid.
     finest: wgpu::TextureView,
 }
 
-impl LevelViews {
+impl PyramidViews {
     fn new(texture: &wgpu::Texture) -> Self {
         let all = wgpu::TextureViewDescriptor::default();
         let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
@@ -192,53 +197,53 @@ impl LevelViews {
     }
 }
 
-/// A volume's textures and bricks.
+/// Textures, samplers and brick data of a volume.
 #[derive(Debug)]
 pub(crate) struct GpuVolume {
-    /// What is on the GPU; kept for re-upload and for the CPU side of the passes.
+    /// Volume that is uploaded; kept for later uploads and for the passes' work on the CPU.
     pub volume: Arc<Volume>,
-    /// Density ranges of 8³ bricks.
-    pub bricks: Arc<Bricks>,
-    /// How the grid lies in scene space.
+    /// Density ranges of bricks of 8³ voxels.
+    pub bricks: Arc<BrickBounds>,
+    /// Transform between index space and scene space.
     pub scene: SceneSpace,
     density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
     pub pyramid: wgpu::Texture,
-    pub pyramid_views: LevelViews,
-    /// What is there, where voxels are missing.
-    pub presence: Option<Presence>,
-    /// The bricks of its levels that hold anything.
+    pub pyramid_views: PyramidViews,
+    /// Presence texture, if voxels are missing.
+    pub presence: Option<PresenceTexture>,
+    /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid.
     pub filled_levels: Vec<Vec<u32>>,
-    /// Gradients of the pyramid, while memory allows.
+    /// Gradients of the pyramid; `None` if they take too much memory.
     pub gradients: Option<wgpu::Texture>,
-    /// Views of the gradients.
-    pub gradients_views: Option<LevelViews>,
+    /// Views of the gradient texture.
+    pub gradients_views: Option<PyramidViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
-    unorm: bool,
-    grid: Grid,
+    is_unorm: bool,
+    grid: GridUniform,
 }
 
 impl GpuVolume {
-    /// Makes the textures; nothing is uploaded yet, but for what is known of which voxels are there.
+    /// Creates the textures. Nothing is uploaded yet, except a `presence` texture that is passed in.
     ///
     /// # Errors
-    /// When the adapter cannot hold them.
+    /// Returns an error if the adapter cannot hold the textures.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         volume: &Arc<Volume>,
-        bricks: &Arc<Bricks>,
-        presence: Option<Presence>,
+        bricks: &Arc<BrickBounds>,
+        presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let Textures { density, pyramid } = textures(context, volume, dims)?;
+        let VolumeTextures { density, pyramid } = create_volume_textures(context, volume, dims)?;
         let presence = match presence {
-            None => Presence::new(context, volume, dims)?,
+            None => PresenceTexture::new(context, volume, dims)?,
             known => known,
         };
-        let padded = padded(dims);
+        let padded = pyramid_dims(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
-        let grid = Grid {
+        let grid = GridUniform {
             dims: dims.map(|n| n as f32),
             dilation: 0,
             density_scale: reciprocal(dims.map(|n| n + 2)),
@@ -248,17 +253,17 @@ impl GpuVolume {
             cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
             pad2: 0.0,
         };
-        let gradients = gradients::texture(context, &pyramid);
+        let gradients = gradients::gradient_texture(context, &pyramid);
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
-            filled_levels: prefilter::filled_levels(bricks, &pyramid, presence.is_some()),
-            gradients_views: gradients.as_ref().map(LevelViews::new),
+            filled_levels: pyramid::nonempty_bricks(bricks, &pyramid, presence.is_some()),
+            gradients_views: gradients.as_ref().map(PyramidViews::new),
             gradients,
-            pyramid_views: LevelViews::new(&pyramid),
+            pyramid_views: PyramidViews::new(&pyramid),
             pyramid,
             presence,
             clamped: context.sampler("Volume::clamped"),
@@ -266,27 +271,27 @@ impl GpuVolume {
                 label: Some("Volume::nearest"),
                 ..Default::default()
             }),
-            unorm: density_is_unorm(context, volume),
+            is_unorm: density_is_unorm(context, volume),
             grid,
         })
     }
 
-    /// How many slices one upload step takes.
+    /// Returns the number of z-slices per upload step.
     pub(crate) fn slices_per_step(&self) -> usize {
         let [nx, ny, _] = self.volume.dims();
         (UPLOAD_BYTES / (nx * ny * 2)).max(1)
     }
 
-    /// Uploads some z-slices, each with a voxel more on either side of its rows and columns; the first and the last slice
-    /// also once more before and behind them.
-    pub(crate) fn upload(&self, context: &Context, slices: std::ops::Range<usize>) {
+    /// Uploads some z-slices, each with a replicated border of one voxel; the first and last slices are also
+    /// replicated in front and behind.
+    pub(crate) fn upload(&self, context: &GpuContext, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
         let [nx, ny, nz] = self.volume.dims();
         let encode =
-            |density: f32| if self.unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
+            |density: f32| if self.is_unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
         let first = if slices.start == 0 { 0 } else { slices.start + 1 };
         let end = if slices.end == nz { nz + 2 } else { slices.end + 1 };
-        // What a texel of padding repeats.
+        // Voxel that a texel of the border replicates.
         let voxel = |texel: usize, n: usize| texel.saturating_sub(1).min(n - 1);
         let words: Vec<u16> = (first..end)
             .into_par_iter()
@@ -321,31 +326,32 @@ impl GpuVolume {
         );
     }
 
-    /// Where what is shown ends with the data, if nothing is known of what is shown.
-    pub(crate) fn ends_of_all(&self) -> Ends {
-        if self.presence.is_some() { Ends::AtMissing } else { Ends::BetweenFaces }
+    /// Returns the grid boundaries that can be visible with any transfer function.
+    pub(crate) fn possible_boundaries(&self) -> GridBoundaries {
+        if self.presence.is_some() { GridBoundaries::MissingVoxels } else { GridBoundaries::OppositeFaces }
     }
 
-    /// The uniform that describes the grid to a pass whose samples see `dilation` cells around theirs.
-    pub(crate) fn grid(&self, dilation: i32) -> Grid {
-        Grid { dilation, ..self.grid }
+    /// Returns the uniform of the grid, for a pass whose samples reach `dilation` cells beyond their own.
+    pub(crate) fn grid(&self, dilation: i32) -> GridUniform {
+        GridUniform { dilation, ..self.grid }
     }
 
-    /// Bytes of its textures.
+    /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let texels = |texture: &wgpu::Texture| {
             let size = texture.size();
             u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
         };
-        // Two channels, where voxels are missing; the coarser levels of the pyramid add a seventh.
+        // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
         let channels = if self.presence.is_some() { 2 } else { 1 };
-        let gradients = self.gradients.as_ref().map_or(0, |texture| gradients::bytes(texels(texture)));
-        let presence = self.presence.as_ref().map_or(0, Presence::bytes);
+        let gradients =
+            self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(texels(texture)));
+        let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
         2 * texels(&self.density) + channels * texels(&self.pyramid) * 16 / 7 + presence + gradients
     }
 }
 
-/// Bricks along each axis of a grid.
+/// Returns the number of bricks along each axis of a grid.
 pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| n.div_ceil(BRICK_EDGE))
 }

@@ -1,43 +1,46 @@
-//! Where voxels are missing: the share of kernels that lies on those that are there, and how it changes, in a texture
-//! beside the pyramid and like it, level by level. Made here and uploaded, since few volumes have any.
+//! Presence texture of volumes with missing voxels: presence (the fraction of the kernel on existing voxels) and its
+//! differences.
+//!
+//! A mip pyramid parallel to that of density. Computed on the CPU and uploaded, since few volumes have missing
+//! voxels.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::LevelViews;
-use super::shapes::{PYRAMID_PADDING, padded, texture_3d};
-use crate::data::{Missing, Volume};
-use crate::gpu::{Context, GpuError};
+use super::PyramidViews;
+use super::texture_shapes::{PYRAMID_PADDING, pyramid_dims, texture_3d};
+use crate::data::{MissingVoxels, Volume};
+use crate::gpu::{GpuContext, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
 
-/// The coarsest level.
+/// Index of the coarsest level.
 const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
 
-/// Bytes of a texel: the share, and its changes along x, y and z.
+/// Size of a texel in bytes: presence, and its differences along x, y and z.
 const TEXEL_BYTES: usize = 4;
 
-/// Steps from 0 to 1 of signed bytes. Software drivers interpolate these in floating point, and unsigned ones in eight
-/// bits, which turns normals.
-const STEPS: f32 = 127.0;
+/// Number of steps from 0 to 1 of signed bytes. Software drivers interpolate signed bytes in floating point, but
+/// unsigned ones in eight bits, which tilts normals.
+const SNORM_STEPS: f32 = 127.0;
 
-/// Texels of level 0 per upload step: some 20 ms, and 16 MiB while it is made.
+/// Number of texels of level 0 per upload step: some 20 ms, and 16 MiB of temporary memory.
 const STEP_TEXELS: usize = 1 << 20;
 
-/// The texture, for a volume in which voxels are missing.
+/// Presence texture of a volume with missing voxels.
 #[derive(Debug)]
-pub(crate) struct Presence {
+pub(crate) struct PresenceTexture {
     pub texture: wgpu::Texture,
-    pub views: LevelViews,
+    pub views: PyramidViews,
 }
 
-impl Presence {
-    /// Makes it for a volume, if it had these dimensions; `None` where no voxel is missing.
+impl PresenceTexture {
+    /// Creates the texture for a volume as if it had these dimensions; `None` if no voxel is missing.
     ///
     /// # Errors
-    /// When the adapter cannot hold it.
+    /// Returns an error if the adapter cannot hold it.
     pub(crate) fn new(
-        context: &Context,
+        context: &GpuContext,
         volume: &Volume,
         dims: [usize; 3],
     ) -> Result<Option<Self>, GpuError> {
@@ -48,16 +51,16 @@ impl Presence {
             mip_level_count: MAX_LEVEL + 1,
             ..texture_3d(
                 "Volume::presence",
-                padded(dims),
+                pyramid_dims(dims),
                 wgpu::TextureFormat::Rgba8Snorm,
                 wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             )
         })?;
-        let views = LevelViews::new(&texture);
+        let views = PyramidViews::new(&texture);
         Ok(Some(Self { texture, views }))
     }
 
-    /// The slices of its coarsest level, cut into short steps.
+    /// Returns the slices of the coarsest level, split into short upload steps.
     pub(crate) fn steps(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let size = self.texture.size();
         let slices = (size.depth_or_array_layers >> MAX_LEVEL) as usize;
@@ -66,10 +69,10 @@ impl Presence {
         (0..slices).step_by(each).map(move |first| first..slices.min(first + each))
     }
 
-    /// Uploads some slices of the coarsest level, and of all levels what lies there.
-    pub(crate) fn upload(&self, context: &Context, volume: &Volume, slices: Range<usize>) {
+    /// Computes and uploads some slices of the coarsest level, with the corresponding slices of all finer levels.
+    pub(crate) fn upload(&self, context: &GpuContext, volume: &Volume, slices: Range<usize>) {
         let Some(missing) = volume.missing() else { return };
-        for (mip_level, slab) in (0..).zip(levels_of(missing, volume.dims(), slices.clone())) {
+        for (mip_level, slab) in (0..).zip(presence_levels(missing, volume.dims(), slices.clone())) {
             let kept = slices.start << (MAX_LEVEL - mip_level)..slices.end << (MAX_LEVEL - mip_level);
             let [width, height, _] = slab.dims.map(|n| n as u32);
             context.queue.write_texture(
@@ -90,7 +93,7 @@ impl Presence {
         }
     }
 
-    /// Bytes of its texture.
+    /// Returns the size of the texture, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.texture.size();
         let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -99,45 +102,46 @@ impl Presence {
     }
 }
 
-/// Shares at the texels of some slices of a level.
-struct Slab {
-    /// Texels along x and y, and slices.
+/// Presence at the texels of some slices of one level.
+struct PresenceSlab {
+    /// Number of texels along x and y, and number of slices.
     dims: [usize; 3],
-    /// The first slice, among those of the whole level …
-    first: usize,
-    /// … of which there are so many.
-    depth: usize,
-    shares: Vec<f32>,
+    /// Index of the first slice within the level.
+    first_slice: usize,
+    /// Number of slices of the whole level.
+    level_depth: usize,
+    values: Vec<f32>,
 }
 
-/// Of every level, the finest first, at least the slices that lie in those of the coarsest, and one to either side.
-fn levels_of(missing: &Missing, dims: [usize; 3], coarsest: Range<usize>) -> Vec<Slab> {
-    let depth = padded(dims)[2];
-    // Changes are seen from the neighbours of a slice.
+/// Computes all levels, finest first: at least the slices within the given ones of the coarsest level, and one to
+/// either side.
+fn presence_levels(missing: &MissingVoxels, dims: [usize; 3], coarsest: Range<usize>) -> Vec<PresenceSlab> {
+    let depth = pyramid_dims(dims)[2];
+    // Differences read the neighbouring slices.
     let widened = coarsest.start.saturating_sub(1)..(coarsest.end + 1).min(depth >> MAX_LEVEL);
-    // Of each level those that the next is made from: texel i of 2i − 1 … 2i + 2.
+    // Slices of each level that the next is computed from: texel i from 2i − 1 … 2i + 2.
     let mut slices = vec![widened];
     for level in (0..MAX_LEVEL).rev() {
         let Range { start, end } = slices[slices.len() - 1].clone();
         slices.push((2 * start).saturating_sub(1)..(2 * end + 1).min(depth >> level));
     }
-    let mut slabs: Vec<Slab> = Vec::with_capacity(slices.len());
+    let mut slabs: Vec<PresenceSlab> = Vec::with_capacity(slices.len());
     for kept in slices.into_iter().rev() {
         let slab = match slabs.last() {
-            None => prefiltered(missing, dims, kept),
-            Some(finer) => finer.halved(kept),
+            None => prefiltered_presence(missing, dims, kept),
+            Some(finer) => finer.downsample(kept),
         };
         slabs.push(slab);
     }
     slabs
 }
 
-/// Slices of level 0: 1 where a voxel is there, else 0, blurred as densities are (`shaders/volume/prefilter.wgsl`). Around
-/// the grid is nothing.
-fn prefiltered(missing: &Missing, dims: [usize; 3], slices: Range<usize>) -> Slab {
-    let [nx, ny, depth] = padded(dims);
+/// Computes slices of level 0: 1 for voxels that exist, else 0, blurred like densities
+/// (`shaders/volume/prefilter.wgsl`). Outside the grid is 0.
+fn prefiltered_presence(missing: &MissingVoxels, dims: [usize; 3], slices: Range<usize>) -> PresenceSlab {
+    let [nx, ny, depth] = pyramid_dims(dims);
     let voxel = |texel: usize, n: usize| texel.checked_sub(PYRAMID_PADDING).filter(|&voxel| voxel < n);
-    // A blurred slice is made from its neighbours, too.
+    // The blur along z reads the neighbouring slices, too.
     let first = slices.start.saturating_sub(1);
     let count = (slices.end + 1).min(depth) - first;
     let share = |at: usize| {
@@ -148,20 +152,21 @@ fn prefiltered(missing: &Missing, dims: [usize; 3], slices: Range<usize>) -> Sla
         if missing.contains(x + dims[0] * (y + dims[1] * z)) { 0.0 } else { 1.0 }
     };
     let shares = (0..nx * ny * count).into_par_iter().map(share).collect();
-    let start = Slab { dims: [nx, ny, count], first, depth, shares };
+    let start =
+        PresenceSlab { dims: [nx, ny, count], first_slice: first, level_depth: depth, values: shares };
     (0..3).fold(start, |slab, axis| {
         let kept = if axis == 2 { slices.clone() } else { 0..slab.dims[axis] };
-        slab.resampled(axis, kept, 1, |at| {
+        slab.filter_axis(axis, kept, 1, |at| {
             [(at - 1, 1.0 / 12.0), (at, 5.0 / 6.0), (at + 1, 1.0 / 12.0), (at + 1, 0.0)]
         })
     })
 }
 
-impl Slab {
-    /// Slices of the next level (`shaders/volume/downsample.wgsl`).
-    fn halved(&self, slices: Range<usize>) -> Self {
+impl PresenceSlab {
+    /// Computes slices of the next coarser level (`shaders/volume/downsample.wgsl`).
+    fn downsample(&self, slices: Range<usize>) -> Self {
         let halve = |slab: &Self, axis: usize, kept: Range<usize>| {
-            slab.resampled(axis, kept, 2, |at| {
+            slab.filter_axis(axis, kept, 2, |at| {
                 let taps = [2 * at - 1, 2 * at, 2 * at + 1, 2 * at + 2];
                 let weights = [1.0 / 16.0, 7.0 / 16.0, 7.0 / 16.0, 1.0 / 16.0];
                 std::array::from_fn(|tap| (taps[tap], weights[tap]))
@@ -171,9 +176,9 @@ impl Slab {
         halve(&halve(&halve(self, 2, slices), 0, 0..nx / 2), 1, 0..ny / 2)
     }
 
-    /// Sums of four texels along an axis, of which there are `step` for one of the result, which has places `kept`: `taps`
-    /// are their places, which may lie beyond the outermost of the level and mean it then, with their weights.
-    fn resampled(
+    /// Filters along an axis with four taps, at one result for `step` texels. `taps` gives the texels and weights for
+    /// each position in `kept`; texels beyond the ends of the level are clamped.
+    fn filter_axis(
         &self,
         axis: usize,
         kept: Range<usize>,
@@ -181,7 +186,7 @@ impl Slab {
         taps: impl Fn(i64) -> [(i64, f32); 4] + Sync,
     ) -> Self {
         let stride: usize = self.dims[..axis].iter().product();
-        let (mut dims, mut first, mut depth) = (self.dims, self.first, self.depth);
+        let (mut dims, mut first, mut depth) = (self.dims, self.first_slice, self.level_depth);
         dims[axis] = kept.len();
         let (mut start, mut count) = (0, self.dims[axis]);
         if axis == 2 {
@@ -193,34 +198,34 @@ impl Slab {
             let row = at / (stride * dims[axis]) * (stride * self.dims[axis]) + below;
             let value = |place: i64| {
                 let place = place.clamp(0, count as i64 - 1) as usize - start;
-                self.shares[row + place * stride]
+                self.values[row + place * stride]
             };
             taps(along as i64).iter().map(|&(place, weight)| weight * value(place)).sum()
         };
         let shares = (0..dims.iter().product::<usize>()).into_par_iter().map(sum).collect();
-        Self { dims, first, depth, shares }
+        Self { dims, first_slice: first, level_depth: depth, values: shares }
     }
 
-    /// Some of its slices as texels.
+    /// Encodes some slices as texels.
     fn texels(&self, slices: &Range<usize>) -> Vec<i8> {
         let slice = self.dims[0] * self.dims[1];
-        let kept = (slices.start - self.first) * slice..(slices.end - self.first) * slice;
+        let kept = (slices.start - self.first_slice) * slice..(slices.end - self.first_slice) * slice;
         kept.into_par_iter().flat_map_iter(|at| self.texel(at)).collect()
     }
 
-    /// The share at a place of its list, and the differences of its neighbours; beyond the outermost texel is the
-    /// outermost, as a sampler has it.
+    /// Encodes the texel at an index: presence, and differences of its neighbours, clamped at the border like a
+    /// sampler does.
     fn texel(&self, at: usize) -> [i8; TEXEL_BYTES] {
         let change = |axis: usize| {
             let stride: usize = self.dims[..axis].iter().product();
             let place = at / stride % self.dims[axis];
             let before = if place > 0 { at - stride } else { at };
-            let behind = if place + 1 < self.dims[axis] { at + stride } else { at };
-            (STEPS * (self.shares[behind] - self.shares[before])).round() as i8
+            let next = if place + 1 < self.dims[axis] { at + stride } else { at };
+            (SNORM_STEPS * (self.values[next] - self.values[before])).round() as i8
         };
-        // Over all of its range, which is twice as many steps.
-        let share = 2.0 * self.shares[at] - 1.0;
-        [(STEPS * share).round() as i8, change(0), change(1), change(2)]
+        // Presence uses the whole signed range, −1 … 1, which doubles its resolution.
+        let share = 2.0 * self.values[at] - 1.0;
+        [(SNORM_STEPS * share).round() as i8, change(0), change(1), change(2)]
     }
 }
 
@@ -231,7 +236,7 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
-    fn sieve(dims: [usize; 3]) -> (Volume, f32) {
+    fn volume_with_holes(dims: [usize; 3]) -> (Volume, f32) {
         let values: Vec<f32> =
             (0..dims.iter().product::<usize>()).map(|at| if at % 5 == 0 { f32::NAN } else { 1.0 }).collect();
         let there = values.iter().filter(|value| value.is_finite()).count() as f32;
@@ -241,13 +246,13 @@ mod tests {
     #[test]
     fn levels_keep_the_sum_of_what_is_there() {
         let dims = [13, 9, 7];
-        let (volume, there) = sieve(dims);
-        let slabs = levels_of(volume.missing().unwrap(), dims, 0..16 >> MAX_LEVEL);
+        let (volume, there) = volume_with_holes(dims);
+        let slabs = presence_levels(volume.missing().unwrap(), dims, 0..16 >> MAX_LEVEL);
         assert_eq!(slabs.len(), MAX_LEVEL as usize + 1);
         assert_eq!(slabs[0].dims, [24, 24, 16]);
         for (level, slab) in (0..).zip(&slabs) {
-            let sum = slab.shares.iter().sum::<f32>() * 8f32.powi(level);
-            // Coarse texels at the outermost edge count what spreads beyond twice.
+            let sum = slab.values.iter().sum::<f32>() * 8f32.powi(level);
+            // Clamping at the border counts what spreads beyond it twice.
             assert!((sum / there - 1.0).abs() < 0.02, "level {level}: {sum} of {there}");
         }
     }
@@ -258,12 +263,12 @@ mod tests {
         let values: Vec<f32> =
             (0..dims.iter().product::<usize>()).map(|at| if at % 16 < 8 { f32::NAN } else { 1.0 }).collect();
         let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap();
-        let slabs = levels_of(volume.missing().unwrap(), dims, 0..padded(dims)[2] >> MAX_LEVEL);
+        let slabs = presence_levels(volume.missing().unwrap(), dims, 0..pyramid_dims(dims)[2] >> MAX_LEVEL);
         let [nx, ny, _] = slabs[0].dims;
         let row = nx * (PYRAMID_PADDING + 2 + ny * (PYRAMID_PADDING + 2));
         let along_x: Vec<[i8; TEXEL_BYTES]> =
             (0..16).map(|x| slabs[0].texel(row + PYRAMID_PADDING + x)).collect();
-        // The prefilter of a step: 1/12, 11/12, 1.
+        // Prefiltered step function: 1/12, 11/12, 1.
         assert_eq!([6, 7, 8, 9].map(|x: usize| along_x[x][0]), [-127, -106, 106, 127]);
         assert_eq!([5, 6, 7, 8, 9, 10].map(|x: usize| along_x[x][1]), [0, 11, 116, 116, 11, 0]);
         assert!(along_x.iter().all(|texel| texel[2..] == [0; 2]), "{along_x:?}");
@@ -272,12 +277,13 @@ mod tests {
     #[test]
     fn slab_by_slab_it_is_the_same() {
         let dims = [7, 9, 21];
-        let (volume, _) = sieve(dims);
+        let (volume, _) = volume_with_holes(dims);
         let missing = volume.missing().unwrap();
-        let coarsest = padded(dims)[2] >> MAX_LEVEL;
-        let at_once = levels_of(missing, dims, 0..coarsest);
+        let coarsest = pyramid_dims(dims)[2] >> MAX_LEVEL;
+        let at_once = presence_levels(missing, dims, 0..coarsest);
         for first in 0..coarsest {
-            for ((level, whole), slab) in (0..).zip(&at_once).zip(levels_of(missing, dims, first..first + 1))
+            for ((level, whole), slab) in
+                (0..).zip(&at_once).zip(presence_levels(missing, dims, first..first + 1))
             {
                 let kept = first << (MAX_LEVEL - level)..(first + 1) << (MAX_LEVEL - level);
                 assert_eq!(slab.texels(&kept), whole.texels(&kept), "slice {first}, level {level}");

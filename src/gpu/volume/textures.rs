@@ -1,29 +1,34 @@
-//! The textures that a volume's voxels become, and the numbers in them.
+//! Density and pyramid textures of a volume, and their number formats.
 
 #[cfg(feature = "testing")]
 use half::f16;
 
-use super::shapes::{padded, texture_3d};
+use super::texture_shapes::{pyramid_dims, texture_3d};
 use crate::data::{BRICK_EDGE, Volume, VoxelType};
 use crate::gpu::context::pair_format;
-use crate::gpu::{Context, GpuError};
+use crate::gpu::{GpuContext, GpuError};
 use crate::plan::MAX_STRETCH_LEVEL;
 
-/// Voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has a brick more.
+/// Maximum number of voxels along an axis: brick coordinates are packed into ten bits each, and the pyramid has one
+/// brick more.
 const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 
-/// What a volume's voxels become.
+/// Textures that are created for a volume.
 #[derive(Debug)]
-pub(crate) struct Textures {
+pub(crate) struct VolumeTextures {
     pub density: wgpu::Texture,
     pub pyramid: wgpu::Texture,
 }
 
-/// The textures of a volume, if it had these dimensions.
+/// Creates the textures of a volume as if it had these dimensions.
 ///
 /// # Errors
-/// When the adapter cannot hold them.
-pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> Result<Textures, GpuError> {
+/// Returns an error if the adapter cannot hold them.
+pub(crate) fn create_volume_textures(
+    context: &GpuContext,
+    volume: &Volume,
+    dims: [usize; 3],
+) -> Result<VolumeTextures, GpuError> {
     if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
         return Err(GpuError::OverLimit {
             what: "the volume".to_owned(),
@@ -43,7 +48,7 @@ pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> 
         mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
         ..texture_3d(
             "Volume::pyramid",
-            padded(dims),
+            pyramid_dims(dims),
             if volume.missing().is_some() {
                 pair_format(context.storage_format)
             } else {
@@ -52,24 +57,26 @@ pub(crate) fn textures(context: &Context, volume: &Volume, dims: [usize; 3]) -> 
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         )
     })?;
-    Ok(Textures { density, pyramid })
+    Ok(VolumeTextures { density, pyramid })
 }
 
-/// A density in 16 normalised bits.
+/// Converts a density to a 16-bit normalised integer.
 pub(super) fn unorm16(density: f32) -> u16 {
     (density.clamp(0.0, 1.0) * 65535.0).round() as u16
 }
 
-/// 16-bit floats carry 11 bits and are quickest on software drivers: enough for 8-bit data. Anything
-/// finer goes to 16 normalised bits where the adapter has them.
-pub(super) fn density_is_unorm(context: &Context, volume: &Volume) -> bool {
+/// Returns true if density is stored in 16-bit normalised integers.
+///
+/// 16-bit floats have 11 significant bits and are fastest on software drivers: enough for 8-bit data. Finer data use
+/// normalised integers, where the adapter has them.
+pub(super) fn density_is_unorm(context: &GpuContext, volume: &Volume) -> bool {
     let eight_bits = matches!(volume.samples().voxel_type(), VoxelType::U8 | VoxelType::I8);
-    context.unorm16 && !eight_bits
+    context.has_unorm16 && !eight_bits
 }
 
-/// A density as the GPU will have it: the reference rounds the same way.
+/// Returns a density as rounded by the texture format; the reference renderer rounds the same way.
 #[cfg(feature = "testing")]
-pub fn stored_density(context: &Context, volume: &Volume, density: f32) -> f32 {
+pub fn stored_density(context: &GpuContext, volume: &Volume, density: f32) -> f32 {
     if density_is_unorm(context, volume) {
         f32::from(unorm16(density)) / 65535.0
     } else {

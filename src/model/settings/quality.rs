@@ -1,15 +1,17 @@
-//! How truly light is computed, in one word that stands for several settings.
+//! Quality levels: presets of slab thickness, shadow algorithm, kernels and near field.
 
 use crate::model::{
-    Gradients, Kernel, NearField, ReverseKernel, Sampling, Settings, ShadowAlgorithm, Shadows, Slabs,
+    GradientSource, NearFieldRay, ReconstructionKernel, ReverseKernel, SamplingSettings, Settings,
+    ShadowAlgorithm, ShadowSettings, SlabMode,
 };
 
 impl Settings {
-    /// This look, drawn as truly as another one: with its slabs, kernels, normals and light volumes, and by its way to
-    /// shadows where both have any. Classification and the cures for darkness belong to the look.
+    /// Returns this look, rendered at the quality of another: with its slabs, kernels, normals and light volumes, and
+    /// with its shadow algorithm if both have shadows. Classification, and the remedies against dark images, stay
+    /// those of this look.
     #[must_use]
-    pub fn drawn_as(self, other: &Self) -> Self {
-        let Shadows {
+    pub fn with_quality_of(self, other: &Self) -> Self {
+        let ShadowSettings {
             algorithm,
             deposit,
             kernel,
@@ -33,7 +35,7 @@ impl Settings {
         } = other.shadows;
         let own = self.shadows.algorithm;
         let algorithm = if own.is_on() && algorithm.is_on() { algorithm } else { own };
-        let shadows = Shadows {
+        let shadows = ShadowSettings {
             algorithm,
             deposit,
             kernel,
@@ -49,76 +51,78 @@ impl Settings {
             ..self.shadows
         };
         let classification = self.sampling.classification;
-        Self { shadows, sampling: Sampling { classification, ..other.sampling.clone() }, ..self }
+        Self { shadows, sampling: SamplingSettings { classification, ..other.sampling.clone() }, ..self }
     }
 }
 
-/// A level of quality. Settings hold what it stands for, and not the word: a level can be chosen and then refined.
+/// Quality level. Settings store the individual values, not the level, so that they can be changed after it was
+/// chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quality {
-    /// Light volumes alone.
+pub enum QualityPreset {
+    /// Light volumes, without near-field rays.
     Fast,
-    /// Light volumes, and short rays near what is seen.
+    /// Light volumes, and short near-field rays.
     Standard,
-    /// Light volumes, and longer rays.
+    /// Light volumes, and longer near-field rays.
     Fine,
-    /// Rays all the way, and the thinnest slabs.
+    /// Rays from every sample to the light, and the thinnest slabs.
     Exact,
 }
 
-/// What a level stands for.
-struct Level {
+/// Settings that a quality level sets.
+struct QualitySettings {
     algorithm: ShadowAlgorithm,
-    near_field: NearField,
-    /// Of the eye, in smallest edges of voxels, and whether all are as thick.
+    near_field: NearFieldRay,
+    /// Thickness of the eye's slabs, in smallest voxel edges; the largest if they are adaptive.
     slab: f64,
-    slabs: Slabs,
-    /// Of the light pass or of the rays, likewise.
+    slabs: SlabMode,
+    /// Slab thickness of the light pass or step of shadow rays, in smallest voxel edges.
     shadow_slab: f64,
-    /// Of the light pass or of the rays.
-    shadow_kernel: Kernel,
-    gradients: Gradients,
+    /// Kernel of the light pass or of shadow rays.
+    shadow_kernel: ReconstructionKernel,
+    gradients: GradientSource,
 }
 
-impl Quality {
-    /// From the quickest to the truest.
+impl QualityPreset {
+    /// All levels, from the fastest to the most accurate.
     pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
 
-    fn level(self) -> Level {
-        let splat = |near_field, slabs, slab| Level {
+    fn settings(self) -> QualitySettings {
+        let splat = |near_field, slabs, slab| QualitySettings {
             algorithm: ShadowAlgorithm::Splat,
             near_field,
             slab,
             slabs,
             shadow_slab: 1.0,
-            // What it blurs more than the B-spline is less than a light volume does, and a sixth of the fetches.
-            shadow_kernel: Kernel::Prefiltered,
-            gradients: Gradients::Volume,
+            // Its blur beyond the B-spline's is less than that of a light volume, at a sixth of the fetches.
+            shadow_kernel: ReconstructionKernel::Prefiltered,
+            gradients: GradientSource::Volume,
         };
         match self {
-            Self::Fast => splat(NearField::Off, Slabs::Even, 0.5),
-            // Even slabs as thick show on steep surfaces as wood grain.
-            Self::Standard => splat(NearField::Short, Slabs::ByNeed, 1.0),
-            // Thinner slabs come no nearer to the limit.
-            Self::Fine => {
-                Level { gradients: Gradients::Kernel, ..splat(NearField::Long, Slabs::ByNeed, 1.0) }
-            }
-            Self::Exact => Level {
+            Self::Fast => splat(NearFieldRay::Off, SlabMode::Even, 0.5),
+            // Even slabs of this thickness show as wood grain on steep surfaces.
+            Self::Standard => splat(NearFieldRay::Short, SlabMode::ByNeed, 1.0),
+            // Thinner slabs do not get closer to the converged image.
+            Self::Fine => QualitySettings {
+                gradients: GradientSource::Kernel,
+                ..splat(NearFieldRay::Long, SlabMode::ByNeed, 1.0)
+            },
+            Self::Exact => QualitySettings {
                 algorithm: ShadowAlgorithm::Direct,
-                near_field: NearField::Short,
+                near_field: NearFieldRay::Short,
                 slab: 0.25,
-                slabs: Slabs::Even,
+                slabs: SlabMode::Even,
                 shadow_slab: 0.25,
-                shadow_kernel: Kernel::BSpline,
-                gradients: Gradients::Kernel,
+                shadow_kernel: ReconstructionKernel::BSpline,
+                gradients: GradientSource::Kernel,
             },
         }
     }
 
-    /// Sets all that the level stands for. Shadows that are off stay off.
+    /// Applies all settings of the level. Disabled shadows stay disabled.
     pub fn apply(self, settings: &mut Settings) {
-        let Level { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
-            self.level();
+        let QualitySettings { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
+            self.settings();
         (settings.sampling.slab, settings.sampling.slabs) = (slab, slabs);
         settings.sampling.gradients = gradients;
         let shadows = &mut settings.shadows;
@@ -130,8 +134,8 @@ impl Quality {
         }
     }
 
-    /// The level that settings are at, if they are at one.
-    pub fn of(settings: &Settings) -> Option<Self> {
+    /// Returns the level that the settings match, if any.
+    pub fn from_settings(settings: &Settings) -> Option<Self> {
         Self::ALL.into_iter().find(|level| {
             let mut applied = settings.clone();
             level.apply(&mut applied);
@@ -147,36 +151,40 @@ mod tests {
     #[test]
     fn settings_are_at_the_level_that_was_applied() {
         let mut settings = Settings::default();
-        for level in Quality::ALL {
+        for level in QualityPreset::ALL {
             level.apply(&mut settings);
-            assert_eq!(Quality::of(&settings), Some(level));
+            assert_eq!(QualityPreset::from_settings(&settings), Some(level));
         }
         settings.sampling.slab = 0.7;
-        assert_eq!(Quality::of(&settings), None);
+        assert_eq!(QualityPreset::from_settings(&settings), None);
     }
 
     #[test]
     fn looks_are_drawn_as_truly_as_others_and_stay_what_they_are() {
         let mut exact = Settings::default();
-        Quality::Exact.apply(&mut exact);
+        QualityPreset::Exact.apply(&mut exact);
         (exact.shadows.gain, exact.shadows.balance, exact.shading.ambient) = (2.0, 3.0, 0.9);
         let mut look = Settings::default();
         look.shadows.balance = 1.7;
-        look.sampling.classification = crate::model::Classification::Pre;
-        let drawn = look.clone().drawn_as(&exact);
-        assert_eq!(Quality::of(&drawn), Some(Quality::Exact));
+        look.sampling.classification = crate::model::ClassificationOrder::Pre;
+        let drawn = look.clone().with_quality_of(&exact);
+        assert_eq!(QualityPreset::from_settings(&drawn), Some(QualityPreset::Exact));
         assert_eq!((drawn.shadows.gain, drawn.shadows.balance), (1.0, 1.7));
         assert_eq!(drawn.sampling.classification, look.sampling.classification);
         assert_eq!(drawn.shading, look.shading);
         exact.shadows.algorithm = ShadowAlgorithm::Off;
-        assert_eq!(look.drawn_as(&exact).shadows.algorithm, ShadowAlgorithm::Splat, "a look has shadows");
+        assert_eq!(
+            look.with_quality_of(&exact).shadows.algorithm,
+            ShadowAlgorithm::Splat,
+            "a look has shadows"
+        );
     }
 
     #[test]
     fn shadows_that_are_off_stay_off() {
         let mut settings = Settings::default();
         settings.shadows.algorithm = ShadowAlgorithm::Off;
-        Quality::Exact.apply(&mut settings);
+        QualityPreset::Exact.apply(&mut settings);
         assert_eq!(settings.shadows.algorithm, ShadowAlgorithm::Off);
     }
 }

@@ -1,18 +1,19 @@
-//! Bringing settings into range, so that nothing typed or loaded can reach a shader as NaN, as a
+//! Sanitising of settings: clamping to valid ranges, so that no typed or loaded value reaches a shader as NaN, as a
 //! negative extinction or as an endless loop.
 
-use crate::data::single_line;
+use crate::data::sanitised_line;
 use crate::model::{
-    AreaShadows, Background, Camera, ClipPlane, ControlPoint, CropBox, Cuts, Floor, Hood, Kept, Kernel,
-    Light, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
-    MAX_LEAST_BLOCKS, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_NAME,
-    MAX_PICTURE_RADIANCE, MAX_PLANE_OFFSET, MAX_POINTS, MIN_CROP, MIN_EXPOSURE, Output, SKY_DIRECTIONS,
-    Sampling, Scattering, Settings, Shading, Shadows, Sky, SkyPicture,
+    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ControlPoint, CropBox, EnvironmentLight,
+    FloorSettings, LightSettings, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_ENVIRONMENT_RADIANCE,
+    MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT,
+    MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_PLANE_OFFSET, MAX_POINTS,
+    MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel, SKY_DIRECTIONS,
+    SamplingSettings, SavedEntry, ScatteringSettings, Settings, ShadowSettings, SkySettings, Spotlight,
 };
 
 impl Settings {
-    /// Brings every number into its documented range, so that nothing typed or loaded can reach a
-    /// shader as NaN, as a negative extinction or as an endless loop, and names and lists to lengths that can be shown.
+    /// Clamps every number to its documented range, so that no typed or loaded value reaches a shader as NaN, as a
+    /// negative extinction or as an endless loop; truncates names and lists to lengths that can be shown.
     pub fn sanitise(&mut self) {
         let number = |value: &mut f64, low: f64, high: f64, fallback: f64| {
             *value = if value.is_finite() { value.clamp(low, high) } else { fallback };
@@ -27,14 +28,14 @@ impl Settings {
                 *c = if c.is_finite() { c.clamp(-limit, limit) } else { 0.0 };
             }
         };
-        let kernel = |kernel: &mut Kernel| {
-            if let Kernel::Gaussian { sigma } = kernel {
+        let kernel = |kernel: &mut ReconstructionKernel| {
+            if let ReconstructionKernel::Gaussian { sigma } = kernel {
                 *sigma = if sigma.is_finite() { sigma.clamp(0.4, 0.8) } else { 0.6 };
             }
         };
         let default = Self::default();
-        self.sanitise_kept();
-        let views = self.kept.iter_mut().filter_map(Kept::as_view_mut);
+        self.sanitise_saved();
+        let views = self.kept.iter_mut().filter_map(SavedEntry::as_view_mut);
         for camera in views.chain([&mut self.camera]) {
             let Camera {
                 projection: _,
@@ -56,7 +57,7 @@ impl Settings {
         }
         self.lights.truncate(crate::model::MAX_LIGHTS);
         for light in &mut self.lights {
-            let Light {
+            let LightSettings {
                 name,
                 kind: _,
                 position,
@@ -65,7 +66,7 @@ impl Settings {
                 on: _,
                 casts_shadows: _,
                 lock: _,
-                hood: Hood { on: _, half_angle_deg, rim_deg },
+                hood: Spotlight { on: _, half_angle_deg, rim_deg },
                 density_scale,
                 shape: _,
                 size,
@@ -73,14 +74,14 @@ impl Settings {
                 aspect,
                 turn_deg,
             } = light;
-            *name = single_line(name, MAX_NAME);
+            *name = sanitised_line(name, MAX_NAME_CHARS);
             point(position, 1e6);
             rgb(color);
             number(intensity, 0.0, 1e3, 1.0);
-            number(half_angle_deg, 1.0, 89.0, Hood::default().half_angle_deg);
-            number(rim_deg, 0.0, 89.0, Hood::default().rim_deg);
+            number(half_angle_deg, 1.0, 89.0, Spotlight::default().half_angle_deg);
+            number(rim_deg, 0.0, 89.0, Spotlight::default().rim_deg);
             number(density_scale, 0.0, 1e3, 1.0);
-            let fresh = Light::default();
+            let fresh = LightSettings::default();
             number(size, 0.0, MAX_LIGHT_SIZE, fresh.size);
             number(angle_deg, 0.0, MAX_LIGHT_ANGLE_DEG, fresh.angle_deg);
             number(aspect, 1.0 / MAX_LIGHT_ASPECT, MAX_LIGHT_ASPECT, 1.0);
@@ -95,15 +96,15 @@ impl Settings {
             }
             function.sort();
         }
-        self.range = self.range.sane();
+        self.range = self.range.sanitised();
         self.volume.sanitise();
         self.labels.sanitise();
         number(&mut self.lighting.scale, 0.0, 1e3, 1.0);
-        let Cuts { crop, plane } = &mut self.cuts;
+        let Clipping { crop, plane } = &mut self.cuts;
         let CropBox { on: _, low, high, effect: _ } = crop;
         for axis in 0..3 {
-            number(&mut low[axis], 0.0, 1.0 - MIN_CROP, 0.0);
-            number(&mut high[axis], low[axis] + MIN_CROP, 1.0, 1.0);
+            number(&mut low[axis], 0.0, 1.0 - MIN_CROP_EXTENT, 0.0);
+            number(&mut high[axis], low[axis] + MIN_CROP_EXTENT, 1.0, 1.0);
         }
         let ClipPlane { on: _, normal, offset, effect: _ } = plane;
         point(normal, 1e6);
@@ -111,18 +112,18 @@ impl Settings {
             *normal = ClipPlane::default().normal;
         }
         number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
-        let Floor { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.floor;
+        let FloorSettings { on: _, height, radius, color, opacity, shadow_only: _ } = &mut self.floor;
         number(height, -MAX_FLOOR_HEIGHT, MAX_FLOOR_HEIGHT, default.floor.height);
         number(radius, 0.1, MAX_FLOOR_RADIUS, default.floor.radius);
         rgb(color);
         number(opacity, 0.0, 1.0, 1.0);
-        let Sky {
+        let SkySettings {
             mode: _,
             intensity,
             zenith,
             horizon,
             ground,
-            picture: SkyPicture { name, mean, slope },
+            picture: EnvironmentLight { name, mean, slope },
             tilt_deg,
             turn_deg,
             density_scale,
@@ -131,19 +132,26 @@ impl Settings {
         } = &mut self.sky;
         number(intensity, 0.0, 1e3, default.sky.intensity);
         [zenith, horizon, ground].into_iter().for_each(rgb);
-        *name = single_line(name, MAX_NAME);
+        *name = sanitised_line(name, MAX_NAME_CHARS);
         for c in mean {
-            number(c, 0.0, MAX_PICTURE_RADIANCE, 1.0);
+            number(c, 0.0, MAX_ENVIRONMENT_RADIANCE, 1.0);
         }
         for slope in slope {
-            point(slope, MAX_PICTURE_RADIANCE);
+            point(slope, MAX_ENVIRONMENT_RADIANCE);
         }
         number(tilt_deg, -360.0, 360.0, 0.0);
         number(turn_deg, -1e6, 1e6, 0.0);
         number(density_scale, 0.0, 1e3, 1.0);
         *directions = (*directions).clamp(*SKY_DIRECTIONS.start(), *SKY_DIRECTIONS.end());
-        let Scattering { bounces, albedo, strength, anisotropy, density_scale, directions, resolution: _ } =
-            &mut self.scattering;
+        let ScatteringSettings {
+            bounces,
+            albedo,
+            strength,
+            anisotropy,
+            density_scale,
+            directions,
+            resolution: _,
+        } = &mut self.scattering;
         *bounces = (*bounces).min(MAX_BOUNCES);
         number(albedo, 0.0, 1.0, default.scattering.albedo);
         number(strength, 0.0, 100.0, 1.0);
@@ -154,7 +162,7 @@ impl Settings {
         if !(length.is_finite() && length > 0.0) {
             self.opacity_unit = default.opacity_unit;
         }
-        let Shading { emission, ambient, diffuse, specular, shininess, surface_gradient, sides: _ } =
+        let PhongShading { emission, ambient, diffuse, specular, shininess, surface_gradient, sides: _ } =
             &mut self.shading;
         number(emission, 0.0, 100.0, default.shading.emission);
         number(ambient, 0.0, 10.0, default.shading.ambient);
@@ -162,7 +170,7 @@ impl Settings {
         number(specular, 0.0, 10.0, default.shading.specular);
         number(shininess, 1.0, 1e3, default.shading.shininess);
         number(surface_gradient, 1e-6, 10.0, default.shading.surface_gradient);
-        let Shadows {
+        let ShadowSettings {
             algorithm: _,
             strength,
             ambient_offset,
@@ -181,10 +189,10 @@ impl Settings {
             storage: _,
             reverse_kernel: _,
             near_field: _,
-            area: AreaShadows { samples, resolution: _ },
+            area: AreaLightSampling { samples, resolution: _ },
             least_blocks,
         } = &mut self.shadows;
-        *least_blocks = (*least_blocks).clamp(1, MAX_LEAST_BLOCKS);
+        *least_blocks = (*least_blocks).clamp(1, MAX_MIN_BLOCKS);
         number(strength, 0.0, 1.0, default.shadows.strength);
         number(ambient_offset, 0.0, 1.0, default.shadows.ambient_offset);
         number(gain, 0.0, 100.0, default.shadows.gain);
@@ -194,7 +202,7 @@ impl Settings {
         number(slab, 0.25, 2.0, default.shadows.slab);
         kernel(light_kernel);
         *samples = (*samples).clamp(1, MAX_LIGHT_SAMPLES);
-        let Sampling {
+        let SamplingSettings {
             kernel: eye_kernel,
             slab,
             slabs: _,
@@ -206,7 +214,8 @@ impl Settings {
         } = &mut self.sampling;
         number(slab, 0.25, 2.0, default.sampling.slab);
         kernel(eye_kernel);
-        let Output { background: Background { top, bottom }, tone_map: _, exposure } = &mut self.output;
+        let OutputSettings { background: Background { top, bottom }, tone_map: _, exposure } =
+            &mut self.output;
         rgb(top);
         rgb(bottom);
         number(exposure, MIN_EXPOSURE, MAX_EXPOSURE, default.output.exposure);
@@ -216,23 +225,23 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Length;
+    use crate::model::OpacityLength;
 
     #[test]
     fn nonsense_becomes_usable() {
         let mut settings = Settings::default();
         settings.camera.distance = f64::NAN;
         settings.shadows.slab = 0.0;
-        settings.lights = vec![Light { intensity: -3.0, ..Light::default() }; 20];
+        settings.lights = vec![LightSettings { intensity: -3.0, ..LightSettings::default() }; 20];
         settings.transfer.points.push(ControlPoint::new(f64::NAN, [2.0; 3], 0.1));
-        settings.opacity_unit = Length::Mm(0.0);
+        settings.opacity_unit = OpacityLength::Mm(0.0);
         settings.sanitise();
         assert_eq!(settings.camera.distance, 5.2);
         assert_eq!(settings.shadows.slab, 0.25);
         assert_eq!(settings.lights.len(), 8);
         assert_eq!(settings.lights[0].intensity, 0.0);
         assert!(settings.transfer.points.is_empty());
-        assert_eq!(settings.opacity_unit, Length::Voxels(1.0));
+        assert_eq!(settings.opacity_unit, OpacityLength::Voxels(1.0));
     }
 
     #[test]
@@ -243,7 +252,7 @@ mod tests {
         settings.lighting.curve.points = settings.transfer.points.clone();
         settings.sanitise();
         let name = &settings.lights[0].name;
-        assert!(name.starts_with("Sun[2Jxx") && name.chars().count() == MAX_NAME, "{name}");
+        assert!(name.starts_with("Sun[2Jxx") && name.chars().count() == MAX_NAME_CHARS, "{name}");
         let lengths = [&settings.transfer, &settings.lighting.curve].map(|function| function.points.len());
         assert_eq!(lengths, [MAX_POINTS; 2]);
     }

@@ -1,66 +1,67 @@
-//! How light is attenuated on its way.
+//! Shadow settings: algorithm, light volumes, near field, area lights and remedies against dark images.
 
 use serde::{Deserialize, Serialize};
 
-/// The largest light bias: the radius of the kernel.
+/// Largest light bias, in voxels: the radius of the kernel.
 pub const MAX_BIAS_VOXELS: f64 = 2.0;
 
 use crate::math::SceneSpace;
-use crate::model::{Kernel, Quadrature};
+use crate::model::{ReconstructionKernel, SlabQuadrature};
 
-/// Where attenuated light comes from.
+/// Algorithm that computes the attenuated light at a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShadowAlgorithm {
-    /// Light reaches everything.
+    /// Shadows off: light is not attenuated.
     Off,
-    /// A light volume filled by sheet-buffer splatting (P §3.5, the paper's variant 3).
+    /// Light volume filled by sheet-buffer splatting (P §3.5, the paper's variant 3).
     Splat,
-    /// A light volume filled by a ray from every voxel to the light (P §3.4, eq. 8, variant 2).
+    /// Light volume filled by a ray from every voxel to the light (P §3.4, eq. 8, variant 2).
     Raycast,
-    /// No light volume: a ray to the light from every sample (P §3.3, eq. 7, variant 1).
+    /// Direct rays to the light from every sample, without a light volume (P §3.3, eq. 7, variant 1).
     Direct,
 }
 
 impl ShadowAlgorithm {
-    /// Whether light is attenuated on its way.
+    /// Returns true if shadows are enabled.
     pub fn is_on(self) -> bool {
         self != Self::Off
     }
 
-    /// Whether attenuation is kept in a light volume.
+    /// Returns true if the algorithm stores attenuation in a light volume.
     pub fn has_volume(self) -> bool {
         matches!(self, Self::Splat | Self::Raycast)
     }
 }
 
-/// Which transmittance of a slab counts: in a sheet what it deposits in the light volume, on a ray
-/// to the light where the first slab lies.
+/// Choice of a slab's transmittance: the value that a sheet deposits in the light volume, or the position of the
+/// first slab on a ray to the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Deposit {
-    /// In front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.
+pub enum DepositMode {
+    /// Transmittance in front of the slab: P eq. 7, 8 and 10 read literally; first order in the slab's thickness.
     Front,
-    /// The mean over the slab, T·(1 − e^−τ)/τ; second order.
+    /// Mean transmittance over the slab, T·(1 − e^−τ)/τ; second order.
     SlabMean,
 }
 
-/// Resolution of the light volume per axis, relative to the data, from the finest.
+/// Resolution of a light volume per axis relative to the data, from the finest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Resolution {
-    /// One light voxel per voxel.
+pub enum LightVolumeResolution {
+    /// Full resolution: one light voxel per data voxel.
     Full,
-    /// ½ per axis: an eighth of the memory and time.
+    /// Half resolution per axis: an eighth of the memory and time.
     Half,
-    /// ¼ per axis.
+    /// Quarter resolution per axis: a 64th of the memory.
     Quarter,
 }
 
-impl Resolution {
-    /// This, or as much finer as a volume of so many voxels needs to have that many blocks along its longest edge.
+impl LightVolumeResolution {
+    /// Returns this resolution, or a finer one if a volume of `dims` voxels needs it for `least` blocks along its
+    /// longest edge.
     #[must_use]
-    pub fn with_blocks(self, dims: [usize; 3], least: u32) -> Self {
+    pub fn with_min_blocks(self, dims: [usize; 3], least: u32) -> Self {
         let longest = dims.into_iter().max().unwrap_or(1);
         let has_enough = |resolution: Self| longest.div_ceil(resolution.divisor()) >= least as usize;
         match self {
@@ -70,7 +71,7 @@ impl Resolution {
         }
     }
 
-    /// Data voxels per light voxel along an axis.
+    /// Returns the number of data voxels per light voxel along an axis.
     pub fn divisor(self) -> usize {
         match self {
             Self::Full => 1,
@@ -80,55 +81,55 @@ impl Resolution {
     }
 }
 
-/// How the values of a light volume are stored.
+/// Number format of a light volume's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Precision {
-    /// 16-bit floats: 11 bits at full light, and as many in the dark.
+pub enum LightVolumePrecision {
+    /// 16-bit floats: 11 significant bits, at full light as in deep shadow.
     Half,
-    /// A byte per voxel, as the paper has it: half the memory, 256 steps.
+    /// 8 bits per voxel, as in the paper: half the memory, 256 levels.
     Byte,
 }
 
-/// What is kept of several lights.
+/// Storage of several lights: separate volumes or a combined one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightStorage {
-    /// Whichever takes less memory and loses nothing.
+    /// Automatic choice: the one that takes less memory and loses nothing.
     Auto,
-    /// An attenuation volume for each light: highlights, and colours that can be changed at once.
+    /// Attenuation volume for each light: with highlights, and colours that can be changed at once.
     PerLight,
-    /// One volume of the diffuse light of all (P §4): no highlights from lights that cast shadows, and
-    /// every change of one fills the volumes of all again.
+    /// Combined volume of the diffuse light of all (P §4): no highlights from lights with shadows, and every change
+    /// of one light recomputes all.
     Combined,
 }
 
-/// The kernel with which sheets are splatted back into a light volume that is gathered.
+/// Kernel of the back-projection from sheets into a gathered light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReverseKernel {
-    /// A tent, one voxel to either side: as narrow as the look-up allows.
+    /// Tent of one voxel to either side: as narrow as the look-up allows.
     Tent,
-    /// That of the light pass (P §3.5).
+    /// Kernel of the light pass (P §3.5).
     Forward,
 }
 
-/// The last voxels before a sample, where a ray finds its light and not the light volume.
+/// Length of the near-field ray: the last voxels before a sample, where a ray replaces the light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NearField {
-    /// The light volume alone (P §3.5).
+pub enum NearFieldRay {
+    /// Light volume only, without a ray (P §3.5).
     Off,
-    /// Three voxels.
+    /// Short ray of four steps, three voxels long.
     Short,
-    /// Eight.
+    /// Long ray of seven steps, eight voxels long.
     Long,
 }
 
-impl NearField {
-    /// How many steps the ray has; the widths are ½ ½ 1 1 1½ 1½ 2 smallest edges of voxels, and the last is longer by
-    /// half a voxel of the light volume. What lies nearest to a sample shades it most, and is blurred least.
-    pub fn steps(self) -> u32 {
+impl NearFieldRay {
+    /// Returns the number of steps of the ray; their widths are ½ ½ 1 1 1½ 1½ 2 smallest voxel edges, and the last is
+    /// longer by half a voxel of the light volume. Material close to a sample shades it most, and is blurred least.
+    pub fn step_count(self) -> u32 {
         match self {
             Self::Off => 0,
             Self::Short => 4,
@@ -136,98 +137,98 @@ impl NearField {
         }
     }
 
-    /// How many of the steps lead no farther than that, in smallest edges of voxels; but two at least, for what lies within
-    /// a voxel no light volume knows.
+    /// Returns the number of steps that lead no farther than `length_voxels` smallest voxel edges; at least two,
+    /// because a light volume does not resolve what lies within one voxel.
     pub fn steps_within(self, length_voxels: f64) -> u32 {
         let within = |&steps: &u32| Self::length_voxels(steps) <= length_voxels;
-        (2..=self.steps()).rev().find(within).unwrap_or(2).min(self.steps())
+        (2..=self.step_count()).rev().find(within).unwrap_or(2).min(self.step_count())
     }
 
-    /// How long so many steps are, in smallest edges of voxels, but for what the last has more.
+    /// Returns the length of the first `steps` steps in smallest voxel edges, without the extension of the last.
     pub fn length_voxels(steps: u32) -> f64 {
         (0..steps).map(Self::width_voxels).sum()
     }
 
-    /// Width of a step, in smallest edges of voxels, but for what the last has more.
+    /// Returns the width of a step in smallest voxel edges, without the extension of the last.
     pub fn width_voxels(step: u32) -> f64 {
         0.5 * f64::from(1 + step / 2)
     }
 }
 
-/// As many points of a light as are followed at most.
+/// Largest number of sample points per area light.
 pub const MAX_LIGHT_SAMPLES: u32 = 64;
 
-/// How lights that have a size are followed: as so many point lights, in one light volume.
+/// Sampling of area lights: each is replaced by point lights that share one light volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct AreaShadows {
-    /// From how many points of each.
+pub struct AreaLightSampling {
+    /// Number of sample points per light.
     pub samples: u32,
-    /// How finely, at most: penumbrae have no fine detail.
-    pub resolution: Resolution,
+    /// Finest resolution of the light volume: penumbrae have no fine detail.
+    pub resolution: LightVolumeResolution,
 }
 
-impl Default for AreaShadows {
+impl Default for AreaLightSampling {
     fn default() -> Self {
-        Self { samples: MAX_LIGHT_SAMPLES, resolution: Resolution::Half }
+        Self { samples: MAX_LIGHT_SAMPLES, resolution: LightVolumeResolution::Half }
     }
 }
 
-/// How light is attenuated on its way, and the cures for darkness (P §4).
+/// Shadow settings, including the remedies against dark images (P §4).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Shadows {
-    /// Off, or how the light volume is filled.
+pub struct ShadowSettings {
+    /// Algorithm that fills the light volume, or off.
     pub algorithm: ShadowAlgorithm,
-    /// 0: no shadows, 1: full ones.
+    /// Shadow strength: 0 for no shadows, 1 for full ones.
     pub strength: f64,
-    /// Added to the attenuated light everywhere.
+    /// Offset added to the attenuated light everywhere.
     pub ambient_offset: f64,
-    /// Multiplies the attenuated light, which is then cut at 1.
+    /// Factor for the attenuated light, which is then clamped to 1.
     pub gain: f64,
-    /// Moves the lookup towards the light, in voxels, 0 … 2 (the kernel's radius).
+    /// Offset of the look-up towards the light, in voxels, 0 … 2 (the kernel's radius).
     pub bias_voxels: f64,
-    /// Multiplies the lights while shadows are on, so that the picture is as bright as without.
+    /// Exposure compensation: factor for the lights while shadows are on, so that the image is as bright as without.
     pub balance: f64,
-    /// Coloured shadows: how much of the light of their own hue pure colours of the lighting transfer function let through,
-    /// 0 (none: shadows are grey) … 1.
+    /// Coloured shadows: share of light of their own hue that pure colours of the lighting transfer function let
+    /// through, 0 (grey shadows) … 1.
     pub transmission: f64,
-    /// Whether the window measures the balance anew after changes that light depends on. No picture depends on it:
-    /// what is found stands in `balance`.
+    /// Re-measures the balance automatically after changes of the light, in the window only. It does not affect the
+    /// image itself: the measured value is stored in `balance`.
     pub keep_balanced: bool,
-    /// Each voxel takes the light of the first sheet that touches it (the paper's mode without
-    /// weight volume).
+    /// First touch: each voxel takes the light of the first sheet that touches it (the paper's mode without weight
+    /// volume).
     pub first_touch: bool,
-    /// Which transmittance a sheet deposits.
-    pub deposit: Deposit,
+    /// Transmittance of a slab that a sheet deposits.
+    pub deposit: DepositMode,
     /// Kernel of the light pass.
-    pub kernel: Kernel,
+    pub kernel: ReconstructionKernel,
     /// Slab thickness of the light pass, in smallest edges of the light volume's voxels.
     pub slab: f64,
     /// Quadrature of the light pass.
-    pub quadrature: Quadrature,
+    pub quadrature: SlabQuadrature,
     /// Resolution of the light volumes.
-    pub resolution: Resolution,
-    /// How they are stored.
-    pub precision: Precision,
-    /// One for each light, or one for all.
+    pub resolution: LightVolumeResolution,
+    /// Number format of the light volumes.
+    pub precision: LightVolumePrecision,
+    /// Storage: one volume for each light, or one for all.
     pub storage: LightStorage,
-    /// Kernel of the way back from sheets to voxels.
+    /// Kernel of the back-projection from sheets to voxels.
     pub reverse_kernel: ReverseKernel,
-    /// Where rays say how much light arrives, and not the light volume. The bias has no effect then.
-    pub near_field: NearField,
-    /// Lights that have a size.
-    pub area: AreaShadows,
-    /// In how many blocks along the volume's longest edge soft light is found at least, as far as there are voxels: that of
-    /// lights that have a size, of the sky, and light that bounces. What is small in voxels is as large in the picture as
-    /// anything else.
+    /// Near-field ray that replaces the light volume close to a sample. The bias has no effect then.
+    pub near_field: NearFieldRay,
+    /// Sampling of area lights.
+    pub area: AreaLightSampling,
+    /// Minimum number of blocks along the volume's longest edge for soft light, if the volume has as many voxels:
+    /// light of area lights, of the sky, and bounced light. A volume of few voxels fills the image as much as a large
+    /// one.
     pub least_blocks: u32,
 }
 
-/// As many can be asked for, whatever the resolution.
-pub const MAX_LEAST_BLOCKS: u32 = 256;
+/// Largest minimum number of blocks, at any resolution.
+pub const MAX_MIN_BLOCKS: u32 = 256;
 
-impl Default for Shadows {
+impl Default for ShadowSettings {
     fn default() -> Self {
         Self {
             algorithm: ShadowAlgorithm::Splat,
@@ -239,29 +240,33 @@ impl Default for Shadows {
             transmission: 0.0,
             keep_balanced: false,
             first_touch: false,
-            deposit: Deposit::SlabMean,
-            kernel: Kernel::BSpline,
+            deposit: DepositMode::SlabMean,
+            kernel: ReconstructionKernel::BSpline,
             slab: 1.0,
-            quadrature: Quadrature::One,
-            resolution: Resolution::Full,
-            precision: Precision::Half,
+            quadrature: SlabQuadrature::One,
+            resolution: LightVolumeResolution::Full,
+            precision: LightVolumePrecision::Half,
             storage: LightStorage::Auto,
             reverse_kernel: ReverseKernel::Tent,
-            near_field: NearField::Short,
-            area: AreaShadows::default(),
-            // What a volume of 128³ voxels has at a quarter.
+            near_field: NearFieldRay::Short,
+            area: AreaLightSampling::default(),
+            // Number of blocks of a volume of 128³ voxels at quarter resolution.
             least_blocks: 32,
         }
     }
 }
 
-impl Shadows {
-    /// The resolution of soft light in a volume of so many voxels, for which another is set.
-    pub fn soft(&self, resolution: Resolution, dims: [usize; 3]) -> Resolution {
-        resolution.with_blocks(dims, self.least_blocks)
+impl ShadowSettings {
+    /// Returns the resolution of soft light in a volume of `dims` voxels, if `resolution` is set.
+    pub fn soft_resolution(
+        &self,
+        resolution: LightVolumeResolution,
+        dims: [usize; 3],
+    ) -> LightVolumeResolution {
+        resolution.with_min_blocks(dims, self.least_blocks)
     }
 
-    /// Distance between the samples of a ray to a light, in scene units: the slab's thickness.
+    /// Returns the sampling distance of a ray to a light, in scene units: the slab's thickness.
     pub fn ray_step(&self, scene: &SceneSpace) -> f64 {
         self.slab * scene.smallest_edge()
     }
@@ -273,14 +278,14 @@ mod tests {
 
     #[test]
     fn small_volumes_have_as_many_blocks_as_large_ones() {
-        let of = |longest: usize, resolution: Resolution, least| {
-            resolution.with_blocks([longest / 2, longest, 1], least)
+        let of = |longest: usize, resolution: LightVolumeResolution, least| {
+            resolution.with_min_blocks([longest / 2, longest, 1], least)
         };
-        assert_eq!(of(128, Resolution::Quarter, 32), Resolution::Quarter);
-        assert_eq!(of(124, Resolution::Quarter, 32), Resolution::Half);
-        assert_eq!(of(24, Resolution::Quarter, 32), Resolution::Full);
-        assert_eq!(of(24, Resolution::Quarter, 1), Resolution::Quarter);
-        assert_eq!(of(512, Resolution::Half, 32), Resolution::Half);
-        assert_eq!(of(512, Resolution::Full, 32), Resolution::Full);
+        assert_eq!(of(128, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Quarter);
+        assert_eq!(of(124, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Half);
+        assert_eq!(of(24, LightVolumeResolution::Quarter, 32), LightVolumeResolution::Full);
+        assert_eq!(of(24, LightVolumeResolution::Quarter, 1), LightVolumeResolution::Quarter);
+        assert_eq!(of(512, LightVolumeResolution::Half, 32), LightVolumeResolution::Half);
+        assert_eq!(of(512, LightVolumeResolution::Full, 32), LightVolumeResolution::Full);
     }
 }

@@ -1,13 +1,13 @@
-//! Colour maps that are known to read well, each as nine evenly spaced sRGB colours.
+//! Predefined colour maps, each as nine evenly spaced sRGB colours, and their application to transfer functions.
 
 use crate::model::{ControlPoint, Easing, TransferFunction};
 
-/// Colours along a scale.
+/// Colour map with nine evenly spaced stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ColorMap {
-    /// What menus call it.
+    /// Name of the map in menus.
     pub name: &'static str,
-    /// 0xRRGGBB, from the low end to the high one.
+    /// Stops as 0xRRGGBB, from the low end to the high one.
     stops: [u32; 9],
 }
 
@@ -78,11 +78,11 @@ pub const COLOR_MAPS: [ColorMap; 15] = [
     },
 ];
 
-/// Points nearer to each other than this share of the range get no stop between them.
-const NEAREST: f64 = 0.02;
+/// Minimum distance between control points, as a share of the range: a nearer stop gets no point of its own.
+const MIN_STOP_DISTANCE: f64 = 0.02;
 
 impl ColorMap {
-    /// The sRGB colour at a place from 0 to 1.
+    /// Returns the sRGB colour at a position from 0 to 1.
     pub fn at(&self, place: f64) -> [f32; 3] {
         let place = place.clamp(0.0, 1.0) * 8.0;
         let low = (place as usize).min(7);
@@ -96,16 +96,16 @@ impl ColorMap {
 }
 
 impl TransferFunction {
-    /// Colours the visible values by a map, from the last that is invisible to the last point, or the other
-    /// way round. Opacities stay as they are; there are more points afterwards, where colours bend.
-    pub fn color_by(&mut self, map: &ColorMap, reversed: bool) {
+    /// Colours the visible values by a map, from the last invisible point to the last point, or in reverse. Opacities
+    /// stay unchanged; points are added at the map's stops.
+    pub fn apply_color_map(&mut self, map: &ColorMap, reversed: bool) {
         let Some((low, high)) = self.visible_range() else { return };
         let span = (high - low).max(1e-300);
         for stop in 0..=8 {
             let value = low + span * f64::from(stop) / 8.0;
-            let near = |point: &ControlPoint| (point.value - value).abs() <= NEAREST * span;
+            let near = |point: &ControlPoint| (point.value - value).abs() <= MIN_STOP_DISTANCE * span;
             if !self.points.iter().any(near) {
-                self.cut_at(value);
+                self.split_at(value);
             }
         }
         for point in &mut self.points {
@@ -114,18 +114,18 @@ impl TransferFunction {
         }
     }
 
-    /// From the last point before anything is visible to the last point.
+    /// Returns the range from the last point before anything is visible to the last point.
     fn visible_range(&self) -> Option<(f64, f64)> {
         let first = self.points.iter().position(|point| point.opacity > 0.0)?;
         Some((self.points[first.saturating_sub(1)].value, self.points.last()?.value))
     }
 
-    /// Opacities the other way round along the values that have points.
-    pub fn invert(&mut self) {
-        // What stays until the next point would have to stay since the one before.
+    /// Mirrors opacities and colours along the range of values of the points.
+    pub fn mirror(&mut self) {
+        // A step, which holds until the next point, would have to hold since the previous one.
         for index in (0..self.points.len()).rev() {
             if self.points[index].easing == Easing::Step {
-                self.straighten(index);
+                self.linearise_segment(index);
             }
         }
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
@@ -133,7 +133,7 @@ impl TransferFunction {
         for point in &mut self.points {
             point.value = sum - point.value;
         }
-        // The way from a point to the next is now the way from the next to it.
+        // A segment's easing now belongs to the point at its other end.
         let ways = self.points.len() - 1;
         let mut easings: Vec<_> = self.points[..ways].iter().map(|point| point.easing).collect();
         easings.reverse();
@@ -143,7 +143,7 @@ impl TransferFunction {
         }
     }
 
-    /// Moves all points along the values, and spreads them around their middle.
+    /// Moves all points along the value axis, and scales their distances from the middle.
     pub fn shift_and_stretch(&mut self, shift: f64, stretch: f64) {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
         let middle = f64::midpoint(first.value, last.value);
@@ -179,7 +179,7 @@ mod tests {
         let before = ramp();
         for reversed in [false, true] {
             let mut function = before.clone();
-            function.color_by(&COLOR_MAPS[0], reversed);
+            function.apply_color_map(&COLOR_MAPS[0], reversed);
             assert!(function.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
             for i in 0..=60 {
                 let value = f64::from(i) * 5.0;
@@ -202,7 +202,7 @@ mod tests {
         function.points[1].opacity = 0.7;
         function.points[2].easing = Easing::Smooth;
         let before = function.clone();
-        function.invert();
+        function.mirror();
         for value in [10.0, 101.0, 150.0, 199.0, 230.0, 260.0] {
             let apart = (function.opacity_at(300.0 - value) - before.opacity_at(value)).abs();
             assert!(apart < 1e-9, "{value}: {apart}");
@@ -214,9 +214,9 @@ mod tests {
     fn inverting_twice_and_stretching_back_change_nothing() {
         let before = ramp();
         let mut function = before.clone();
-        function.invert();
+        function.mirror();
         assert_eq!(function.points[0].opacity, 0.9);
-        function.invert();
+        function.mirror();
         function.shift_and_stretch(20.0, 2.0);
         assert_eq!(function.points[0].value, 150.0 - 300.0 + 20.0);
         function.shift_and_stretch(-20.0, 1.0);

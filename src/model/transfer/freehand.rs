@@ -1,46 +1,48 @@
-//! Curves that are drawn by hand: a stroke becomes few points.
+//! Freehand drawing of opacity curves: a stroke is simplified to a few control points.
 
 use super::{ControlPoint, Easing, TransferFunction};
 
-/// Places along a stroke: as many as pixels of a wide editor.
-const PLACES: usize = 1024;
+/// Number of samples along a stroke: as many as pixels of a wide editor.
+const STROKE_SAMPLES: usize = 1024;
 
-/// How far a curve of few points may lie from the hand's, in opacity: a hand trembles by as much.
+/// Tolerance of the simplified curve, in opacity: the tremor of a hand.
 const TOLERANCE: f64 = 0.012;
 
-/// The most points that a stroke becomes; a finer one is followed less closely.
-const MOST: usize = 16;
+/// Largest number of points per stroke; a more detailed one is followed less closely.
+const MAX_STROKE_POINTS: usize = 16;
 
-/// Share of what is shown in which the old curve ends and the drawn one begins.
-const EDGE: f64 = 1.0 / 2048.0;
+/// Gap between the old curve and the drawn one, as a share of the shown values.
+const EDGE_GAP: f64 = 1.0 / 2048.0;
 
 impl TransferFunction {
-    /// The curve with a stroke in the place of what it had there: pairs of value and opacity, as they were drawn; where the
-    /// hand went back, the later one counts. Colours stay those of their values. `span`: how many values are shown.
+    /// Returns the curve with the part under a stroke replaced: `stroke` has pairs of value and opacity in drawing
+    /// order; if the hand went back, the later ones apply. Colours are kept at their values. `span`: range of the
+    /// values that the editor shows.
     #[must_use]
     pub fn with_stroke(&self, stroke: &[[f64; 2]], span: f64) -> Self {
         let values = || stroke.iter().map(|[value, _]| *value);
         let (low, high) =
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-        let is_usable = stroke.iter().flatten().all(|number| number.is_finite()) && high - low > span * EDGE;
+        let is_usable =
+            stroke.iter().flatten().all(|number| number.is_finite()) && high - low > span * EDGE_GAP;
         if !is_usable {
             return self.clone();
         }
-        let drawn = simplified(&sampled(stroke, low, high));
-        let edge = span * EDGE;
+        let drawn = simplify_polyline(&resample_stroke(stroke, low, high));
+        let edge = span * EDGE_GAP;
         let point = |[value, opacity]: [f64; 2]| {
             ControlPoint::new(value, self.point_at(value).color, opacity.clamp(0.0, 1.0))
         };
         let mut curve = self.clone();
-        // Beside the stroke the curve stays as it was.
+        // The curve stays unchanged on both sides of the stroke.
         if self.points.first().is_some_and(|point| point.value < low - edge) {
-            curve.cut_at(low - edge);
+            curve.split_at(low - edge);
         }
         if self.points.last().is_some_and(|point| point.value > high + edge) {
-            curve.cut_at(high + edge);
+            curve.split_at(high + edge);
         }
         curve.points.retain(|point| point.value <= low - edge || point.value >= high + edge);
-        // The way from the last point before the stroke is no longer its own.
+        // The segment from the last point before the stroke loses its easing.
         if let Some(before) = curve.points.iter_mut().rfind(|point| point.value < low) {
             before.easing = Easing::Linear;
         }
@@ -50,10 +52,10 @@ impl TransferFunction {
     }
 }
 
-/// The stroke as a curve: an opacity at each of [`PLACES`] places.
-fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
-    let place = |value: f64| ((value - low) / (high - low) * (PLACES - 1) as f64).round() as usize;
-    let mut opacities = vec![f64::NAN; PLACES];
+/// Resamples the stroke at [`STROKE_SAMPLES`] evenly spaced values.
+fn resample_stroke(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
+    let place = |value: f64| ((value - low) / (high - low) * (STROKE_SAMPLES - 1) as f64).round() as usize;
+    let mut opacities = vec![f64::NAN; STROKE_SAMPLES];
     for pair in stroke.windows(2) {
         let ([from, a], [to, b]) = (pair[0], pair[1]);
         let (first, last) = (place(from), place(to));
@@ -61,10 +63,10 @@ fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
         for step in 0..=steps {
             let share = step as f64 / steps as f64;
             let at = (first as f64 + (last as f64 - first as f64) * share).round() as usize;
-            opacities[at.min(PLACES - 1)] = a + (b - a) * share;
+            opacities[at.min(STROKE_SAMPLES - 1)] = a + (b - a) * share;
         }
     }
-    let value = |at: usize| low + (high - low) * at as f64 / (PLACES - 1) as f64;
+    let value = |at: usize| low + (high - low) * at as f64 / (STROKE_SAMPLES - 1) as f64;
     opacities
         .into_iter()
         .enumerate()
@@ -73,12 +75,12 @@ fn sampled(stroke: &[[f64; 2]], low: f64, high: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// As few of the points as follow the curve: those that lie furthest from what the others say (Ramer 1972, Douglas and
-/// Peucker 1973), by opacity alone.
-fn simplified(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+/// Simplifies a polyline by repeatedly adding the point with the largest error in opacity (Ramer 1972, Douglas and
+/// Peucker 1973).
+fn simplify_polyline(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let (Some(last), true) = (curve.len().checked_sub(1), curve.len() > 2) else { return curve.to_vec() };
     let mut kept = vec![0, last];
-    while kept.len() < MOST {
+    while kept.len() < MAX_STROKE_POINTS {
         let furthest = kept
             .windows(2)
             .filter_map(|pair| {
@@ -119,7 +121,7 @@ mod tests {
         let hill = |value: f64| 0.5 + 0.4 * (value / 100.0 * std::f64::consts::TAU).sin();
         let stroke: Vec<_> = (200..=800).map(|at| [at as f64 / 10.0, hill(at as f64 / 10.0)]).collect();
         let curve = ramp().with_stroke(&stroke, 100.0);
-        assert!(curve.points.len() <= MOST + 4, "{}", curve.points.len());
+        assert!(curve.points.len() <= MAX_STROKE_POINTS + 4, "{}", curve.points.len());
         for value in [21.0, 33.0, 50.0, 66.0, 79.0] {
             let off = curve.opacity_at(value) - hill(value);
             assert!(off.abs() < 2.0 * TOLERANCE, "{value}: {off}");

@@ -1,15 +1,15 @@
-//! Transfer functions: from a value in data units to colour and opacity.
+//! Transfer functions: mapping from a value in data units to colour and opacity.
 //!
-//! Opacity is per opacity unit (a length in `Settings`): the extinction is
-//! μ = −ln(1 − opacity) / unit, so that the look does not depend on the slab thickness (P eq. 6).
+//! Opacity is per opacity unit (a length in `Settings`): the extinction is μ = −ln(1 − opacity) / unit, so that the
+//! look does not depend on the slab thickness (P eq. 6).
 
-mod added_point;
-pub(super) mod baked;
-pub(super) mod categories;
+mod add_point;
+pub(super) mod baked_transfer;
 pub(super) mod color_map;
+pub(super) mod colored_shadows;
 mod freehand;
+pub(super) mod label_colors;
 pub(super) mod oklab;
-pub(super) mod transmitted;
 
 use serde::{Deserialize, Serialize};
 
@@ -17,57 +17,57 @@ use super::{BakedTransfer, linear_from_oklab, oklab_from_linear};
 use crate::data::ValueRange;
 pub use crate::math::{linear_from_srgb, srgb_from_linear};
 
-/// Entries of a baked table; values between are interpolated.
+/// Number of entries of a baked table; values between them are interpolated.
 pub const LUT_SIZE: usize = 1024;
 
-/// Most points of a function: those of the largest tables that programs exchange.
+/// Largest number of points of a function: that of the largest tables in exchange formats.
 pub const MAX_POINTS: usize = 4096;
 
-/// Opacities are cut here so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque
-/// within one unit for every display.
+/// Largest opacity, so that extinction stays finite: 0.9999 per unit is e^−9.2, opaque within one unit for every
+/// display.
 pub const MAX_OPACITY: f64 = 0.9999;
 
-/// Straight pieces that stand for a smooth way.
-pub const STEPS: u32 = 8;
+/// Number of linear pieces that approximate a smooth segment.
+pub const SMOOTH_SEGMENT_PIECES: u32 = 8;
 
-/// How opacity runs between two control points.
+/// Interpolation of opacity between two control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Interpolation {
-    /// The opacity itself is linear: what editors show and users expect.
+pub enum OpacityInterpolation {
+    /// Linear in opacity: as editors show it and users expect.
     #[default]
     Opacity,
-    /// The extinction −ln(1 − opacity) is linear: what makes closed-form checks exact.
+    /// Linear in extinction −ln(1 − opacity): makes closed-form checks exact.
     Extinction,
 }
 
-/// How colours between two control points are mixed.
+/// Colour space in which colours between control points are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Mixing {
-    /// As light: linear RGB.
+pub enum ColorMixing {
+    /// Linear RGB, as light mixes.
     #[default]
     Light,
-    /// As they are seen: Oklab, where lightness is even and mixtures stay clean.
+    /// Oklab, perceptually: lightness is even, and mixtures stay saturated.
     Seen,
 }
 
-/// How a transfer function goes from one control point to the next.
+/// Shape of the segment from one control point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Easing {
-    /// Straight.
+    /// Linear interpolation to the next point.
     #[default]
     Linear,
-    /// With level ends: 3t² − 2t³.
+    /// Smoothstep with level ends: 3t² − 2t³.
     Smooth,
-    /// It stays as it is until the next point.
+    /// Constant until the next point.
     Step,
 }
 
 impl Easing {
-    /// How much of the next point there is at a share of the way to it.
-    fn share(self, t: f64) -> f64 {
+    /// Returns the weight of the next point at a fraction of the segment.
+    fn weight(self, t: f64) -> f64 {
         match self {
             Self::Linear => t,
             Self::Smooth => t * t * (3.0 - 2.0 * t),
@@ -76,23 +76,23 @@ impl Easing {
     }
 }
 
-/// A point of a transfer function.
+/// Control point of a transfer function.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ControlPoint {
-    /// In data units.
+    /// Position on the value axis, in data units.
     pub value: f64,
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     #[serde(default = "white")]
     pub color: [f32; 3],
-    /// Per opacity unit, 0 … 1.
+    /// Opacity per opacity unit, 0 … 1.
     pub opacity: f64,
-    /// The way to the next point.
+    /// Shape of the segment to the next point.
     #[serde(default)]
     pub easing: Easing,
 }
 
 impl ControlPoint {
-    /// A point from which it goes straight to the next.
+    /// Creates a point with a linear segment to the next.
     pub fn new(value: f64, color: [f32; 3], opacity: f64) -> Self {
         Self { value, color, opacity, easing: Easing::Linear }
     }
@@ -105,30 +105,29 @@ fn white() -> [f32; 3] {
 /// Colour and opacity over the value axis; constant beyond the outermost points.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TransferFunction {
-    /// In ascending order of value ([`Self::sort`] restores it).
+    /// Control points in ascending order of value ([`Self::sort`] restores it).
     pub points: Vec<ControlPoint>,
-    /// How opacity runs between the points.
+    /// Interpolation of opacity between the points.
     #[serde(default)]
-    pub interpolation: Interpolation,
-    /// How colours between the points are mixed.
+    pub interpolation: OpacityInterpolation,
+    /// Colour space of the interpolation between the points.
     #[serde(default)]
-    pub mixing: Mixing,
+    pub mixing: ColorMixing,
 }
 
-/// −ln(1 − α) with α cut at [`MAX_OPACITY`]: optical depth of one opacity unit.
+/// Returns −ln(1 − α) with α clamped to [`MAX_OPACITY`]: optical depth of one opacity unit.
 fn optical_depth(opacity: f64) -> f64 {
     -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p()
 }
 
 impl TransferFunction {
-    /// Puts the points in ascending order of value; points at the same value keep their order,
-    /// which makes a step.
+    /// Sorts the points by value; points at the same value keep their order, which makes a jump.
     pub fn sort(&mut self) {
         self.points.sort_by(|a, b| a.value.total_cmp(&b.value));
     }
 
-    /// Linear RGB and optical depth per opacity unit at a value.
-    pub fn at(&self, value: f64) -> ([f64; 3], f64) {
+    /// Returns linear RGB and optical depth per opacity unit at a value.
+    pub fn sample(&self, value: f64) -> ([f64; 3], f64) {
         let color = |point: &ControlPoint| point.color.map(|c| linear_from_srgb(f64::from(c)));
         let Some(first) = self.points.first() else { return ([1.0; 3], 0.0) };
         let upper = self.points.partition_point(|point| point.value <= value);
@@ -137,44 +136,44 @@ impl TransferFunction {
         }
         let a = &self.points[upper - 1];
         let Some(b) = self.points.get(upper) else { return (color(a), optical_depth(a.opacity)) };
-        let t = a.easing.share((value - a.value) / (b.value - a.value));
+        let t = a.easing.weight((value - a.value) / (b.value - a.value));
         let mix = |x: f64, y: f64| x + (y - x) * t;
         let depth = match self.interpolation {
-            Interpolation::Opacity => optical_depth(mix(a.opacity, b.opacity)),
-            Interpolation::Extinction => mix(optical_depth(a.opacity), optical_depth(b.opacity)),
+            OpacityInterpolation::Opacity => optical_depth(mix(a.opacity, b.opacity)),
+            OpacityInterpolation::Extinction => mix(optical_depth(a.opacity), optical_depth(b.opacity)),
         };
         let (ca, cb) = (color(a), color(b));
         let mixed = |ca: [f64; 3], cb: [f64; 3]| std::array::from_fn(|i| mix(ca[i], cb[i]));
         let rgb = match self.mixing {
-            Mixing::Light => mixed(ca, cb),
-            Mixing::Seen => linear_from_oklab(mixed(oklab_from_linear(ca), oklab_from_linear(cb))),
+            ColorMixing::Light => mixed(ca, cb),
+            ColorMixing::Seen => linear_from_oklab(mixed(oklab_from_linear(ca), oklab_from_linear(cb))),
         };
         (rgb, depth)
     }
 
-    /// A point on the curve.
+    /// Returns a point on the curve at a value.
     pub fn point_at(&self, value: f64) -> ControlPoint {
-        let color = self.at(value).0.map(|c| srgb_from_linear(c) as f32);
+        let color = self.sample(value).0.map(|c| srgb_from_linear(c) as f32);
         ControlPoint::new(value, color, self.opacity_at(value))
     }
 
-    /// How the function goes on at a value.
+    /// Returns the easing of the segment that contains a value.
     pub(crate) fn easing_at(&self, value: f64) -> Easing {
         let index = self.points.partition_point(|point| point.value <= value);
         index.checked_sub(1).map_or(Easing::Linear, |before| self.points[before].easing)
     }
 
-    /// Replaces the way from a point to the next by straight ones, if it is not: a step by a jump, a smooth way by
-    /// [`STEPS`] pieces. Returns how many points there are more.
-    pub(crate) fn straighten(&mut self, index: usize) -> usize {
+    /// Replaces a non-linear segment by linear ones: a step by a jump, a smooth segment by [`SMOOTH_SEGMENT_PIECES`]
+    /// pieces. Returns the number of added points.
+    pub(crate) fn linearise_segment(&mut self, index: usize) -> usize {
         let (Some(&point), Some(&next)) = (self.points.get(index), self.points.get(index + 1)) else {
             return 0;
         };
         let between: Vec<ControlPoint> = match point.easing {
             Easing::Linear => Vec::new(),
             Easing::Smooth => {
-                let share = |step: u32| f64::from(step) / f64::from(STEPS);
-                (1..STEPS)
+                let share = |step: u32| f64::from(step) / f64::from(SMOOTH_SEGMENT_PIECES);
+                (1..SMOOTH_SEGMENT_PIECES)
                     .map(|step| self.point_at(point.value + (next.value - point.value) * share(step)))
                     .collect()
             }
@@ -186,16 +185,16 @@ impl TransferFunction {
         count
     }
 
-    /// Adds a point on the curve, which stays as it is (a smooth way nearly so). Returns its index.
-    pub fn cut_at(&mut self, value: f64) -> usize {
+    /// Adds a point on the curve without changing it (a smooth segment nearly so), and returns its index.
+    pub fn split_at(&mut self, value: f64) -> usize {
         let upper = self.points.partition_point(|point| point.value <= value);
         if self.easing_at(value) == Easing::Smooth {
-            self.straighten(upper - 1);
+            self.linearise_segment(upper - 1);
         }
         self.insert_on_curve(value)
     }
 
-    /// Adds a point on the curve, with ways as before to both sides. Returns its index.
+    /// Adds a point on the curve, which inherits the segment's easing, and returns its index.
     pub fn insert_on_curve(&mut self, value: f64) -> usize {
         let point = self.point_at(value);
         let index = self.points.partition_point(|point| point.value <= value);
@@ -204,18 +203,18 @@ impl TransferFunction {
         index
     }
 
-    /// The opacity per opacity unit at a value, as an editor shows it.
+    /// Returns the opacity per opacity unit at a value, as an editor shows it.
     pub fn opacity_at(&self, value: f64) -> f64 {
-        1.0 - (-self.at(value).1).exp()
+        1.0 - (-self.sample(value).1).exp()
     }
 
-    /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene
-    /// units, `scale` multiplies the extinction.
+    /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene units, `scale` is a
+    /// factor for the extinction.
     pub fn bake(&self, range: ValueRange, unit: f64, scale: f64) -> BakedTransfer {
         let entries: Vec<_> = (0..LUT_SIZE)
             .map(|i| {
                 let value = range.low + range.span() * i as f64 / (LUT_SIZE - 1) as f64;
-                let (rgb, depth) = self.at(value);
+                let (rgb, depth) = self.sample(value);
                 [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, (depth * scale / unit) as f32]
             })
             .collect();
@@ -227,7 +226,7 @@ impl TransferFunction {
 mod tests {
     use super::*;
 
-    fn ramp(interpolation: Interpolation) -> TransferFunction {
+    fn ramp(interpolation: OpacityInterpolation) -> TransferFunction {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         TransferFunction {
             points: vec![point(10.0, 0.0), point(20.0, 0.8)],
@@ -238,16 +237,16 @@ mod tests {
 
     #[test]
     fn opacity_is_linear_or_extinction_is() {
-        assert!((ramp(Interpolation::Opacity).opacity_at(15.0) - 0.4).abs() < 1e-12);
-        let (_, depth) = ramp(Interpolation::Extinction).at(15.0);
+        assert!((ramp(OpacityInterpolation::Opacity).opacity_at(15.0) - 0.4).abs() < 1e-12);
+        let (_, depth) = ramp(OpacityInterpolation::Extinction).sample(15.0);
         assert!((depth - -0.5 * 0.2f64.ln()).abs() < 1e-12);
-        assert_eq!(ramp(Interpolation::Opacity).opacity_at(5.0), 0.0);
-        assert!((ramp(Interpolation::Opacity).opacity_at(99.0) - 0.8).abs() < 1e-12);
+        assert_eq!(ramp(OpacityInterpolation::Opacity).opacity_at(5.0), 0.0);
+        assert!((ramp(OpacityInterpolation::Opacity).opacity_at(99.0) - 0.8).abs() < 1e-12);
     }
 
     #[test]
     fn ways_between_points_have_their_shapes() {
-        let mut function = ramp(Interpolation::Opacity);
+        let mut function = ramp(OpacityInterpolation::Opacity);
         for (easing, quarter, half) in
             [(Easing::Linear, 0.2, 0.4), (Easing::Smooth, 0.8 * 0.15625, 0.4), (Easing::Step, 0.0, 0.0)]
         {
@@ -261,31 +260,31 @@ mod tests {
 
     #[test]
     fn seen_mixtures_have_even_lightness() {
-        let mut function = ramp(Interpolation::Opacity);
+        let mut function = ramp(OpacityInterpolation::Opacity);
         (function.points[0].color, function.points[1].color) = ([0.0, 0.0, 1.0], [1.0, 1.0, 0.0]);
-        let lightness = |function: &TransferFunction, value| oklab_from_linear(function.at(value).0)[0];
+        let lightness = |function: &TransferFunction, value| oklab_from_linear(function.sample(value).0)[0];
         let even = |function: &TransferFunction| {
             let middle = f64::midpoint(lightness(function, 10.0), lightness(function, 20.0));
             (lightness(function, 15.0) - middle).abs() < 1e-3
         };
         assert!(!even(&function), "light mixes brighter than it looks");
-        function.mixing = Mixing::Seen;
+        function.mixing = ColorMixing::Seen;
         assert!(even(&function));
-        let ends = [function.at(10.0).0, function.at(20.0).0];
+        let ends = [function.sample(10.0).0, function.sample(20.0).0];
         assert!(ends.iter().flatten().zip([0.0, 0.0, 1.0, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 
     #[test]
     fn points_on_the_curve_leave_it_as_it_is() {
-        for mixing in [Mixing::Light, Mixing::Seen] {
+        for mixing in [ColorMixing::Light, ColorMixing::Seen] {
             for easing in [Easing::Linear, Easing::Step] {
-                let mut function = TransferFunction { mixing, ..ramp(Interpolation::Opacity) };
+                let mut function = TransferFunction { mixing, ..ramp(OpacityInterpolation::Opacity) };
                 function.points[0].easing = easing;
                 let before = function.clone();
                 assert_eq!(function.insert_on_curve(13.0), 1);
                 for i in 0..40 {
                     let value = 9.0 + f64::from(i) * 0.3;
-                    let ((a, x), (b, y)) = (before.at(value), function.at(value));
+                    let ((a, x), (b, y)) = (before.sample(value), function.sample(value));
                     assert!((x - y).abs() < 1e-9, "{mixing:?} {easing:?} {value}");
                     assert!(
                         a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
@@ -301,11 +300,11 @@ mod tests {
         for (easing, more, apart) in
             [(Easing::Linear, 0, 1e-9), (Easing::Step, 1, 1e-9), (Easing::Smooth, 7, 0.01)]
         {
-            let mut function = ramp(Interpolation::Opacity);
+            let mut function = ramp(OpacityInterpolation::Opacity);
             function.points[0].easing = easing;
             let before = function.clone();
-            assert_eq!(function.clone().straighten(0), more, "{easing:?}");
-            let index = function.cut_at(13.0);
+            assert_eq!(function.clone().linearise_segment(0), more, "{easing:?}");
+            let index = function.split_at(13.0);
             assert_eq!(function.points[index].value, 13.0);
             for i in 0..100 {
                 let value = 9.03 + f64::from(i) * 0.12;
@@ -313,12 +312,12 @@ mod tests {
                 assert!(found < apart, "{easing:?} at {value}: {found}");
             }
         }
-        assert_eq!(ramp(Interpolation::Opacity).straighten(1), 0, "nothing follows");
+        assert_eq!(ramp(OpacityInterpolation::Opacity).linearise_segment(1), 0, "nothing follows");
     }
 
     #[test]
     fn two_points_at_one_value_make_a_step() {
-        let mut function = ramp(Interpolation::Opacity);
+        let mut function = ramp(OpacityInterpolation::Opacity);
         function.points[1].value = 10.0;
         assert_eq!(function.opacity_at(9.999), 0.0);
         assert!((function.opacity_at(10.0) - 0.8).abs() < 1e-12);
@@ -326,8 +325,8 @@ mod tests {
 
     #[test]
     fn visibility_never_hides_what_can_be_seen() {
-        let baked = ramp(Interpolation::Opacity).bake(ValueRange::new(0.0, 100.0), 1.0, 1.0);
-        let visible = baked.visibility();
+        let baked = ramp(OpacityInterpolation::Opacity).bake(ValueRange::new(0.0, 100.0), 1.0, 1.0);
+        let visible = baked.visibility_test();
         assert!(!visible(0.0, 0.09));
         for i in 0..=1000 {
             let density = i as f32 / 1000.0;
@@ -339,7 +338,7 @@ mod tests {
     fn full_opacity_stays_finite() {
         let solid = TransferFunction {
             points: vec![ControlPoint::new(0.0, [1.0; 3], 1.0)],
-            interpolation: Interpolation::Opacity,
+            interpolation: OpacityInterpolation::Opacity,
             ..TransferFunction::default()
         };
         assert!(solid.bake(ValueRange::UNIT, 0.01, 1.0).entries.iter().all(|entry| entry[3].is_finite()));

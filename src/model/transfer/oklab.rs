@@ -1,21 +1,21 @@
-//! Oklab: colours by lightness, and by how green or red, blue or yellow they look (Ottosson 2020, the
-//! matrices of 2021-01-25). Equal steps look equally large, so that mixtures stay clean and lightness even.
+//! Oklab colour space: lightness, green to red, and blue to yellow (Ottosson 2020, the matrices of 2021-01-25). Equal
+//! steps look equally large, so that interpolation keeps lightness even and mixtures saturated.
 
 use crate::model::srgb_from_linear;
 
-/// Linear RGB to lightness (0 … 1), green to red, blue to yellow.
+/// Converts linear RGB to Oklab: lightness (0 … 1), green to red, blue to yellow.
 pub fn oklab_from_linear(rgb: [f64; 3]) -> [f64; 3] {
     let cones = product(&CONES_FROM_RGB, rgb).map(f64::cbrt);
     product(&LAB_FROM_CONES, cones)
 }
 
-/// Oklab as linear RGB; what no display can show is cut at 0 and 1.
+/// Converts Oklab to linear RGB; colours outside the gamut are clipped to 0 and 1.
 pub fn linear_from_oklab(lab: [f64; 3]) -> [f64; 3] {
     let cones = product(&CONES_FROM_LAB, lab).map(|root| root * root * root);
     product(&RGB_FROM_CONES, cones).map(|c| c.clamp(0.0, 1.0))
 }
 
-/// A colour in Oklab as lightness, chroma and hue in degrees (0 … 360; 0 for greys).
+/// Converts Oklab to lightness, chroma and hue in degrees (0 … 360; 0 for greys).
 pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
     let chroma = (a * a + b * b).sqrt();
     // Rounding gives greys a chroma of 1e-8, and any hue.
@@ -23,13 +23,13 @@ pub fn lch_from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
     [l, chroma, hue]
 }
 
-/// A colour in Oklab from lightness, chroma and hue in degrees.
+/// Converts lightness, chroma and hue in degrees to Oklab.
 pub fn lab_from_lch([l, chroma, hue_deg]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = hue_deg.to_radians().sin_cos();
     [l, chroma * cos, chroma * sin]
 }
 
-/// A colour by lightness, chroma and hue in degrees as control points have it: sRGB. What no display can show is cut.
+/// Converts lightness, chroma and hue in degrees to sRGB, as control points store it; clipped to the gamut.
 pub fn srgb_from_lch(lch: [f64; 3]) -> [f32; 3] {
     linear_from_oklab(lab_from_lch(lch)).map(|c| srgb_from_linear(c).clamp(0.0, 1.0) as f32)
 }

@@ -1,54 +1,54 @@
-//! Sets of bricks: which hold something, which are near, how far the nearest is.
+//! Sets of bricks, with dilation and distance transform.
 //!
-//! Distances are Chebyshev's (the largest of the three coordinate differences), so that everything
-//! nearer than a brick's distance is a cube of empty bricks that a ray can leave in one step.
+//! Distances are Chebyshev's (the largest of the three coordinate differences), so that everything nearer than a
+//! brick's distance is a cube of empty bricks that a ray can leave in one step.
 
-/// A set of bricks of a grid.
+/// Set of bricks of a grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BrickSet {
-    /// Bricks along x, y, z.
+    /// Number of bricks along x, y, z.
     pub dims: [usize; 3],
-    /// Whether each brick is in the set, x fastest.
+    /// Membership flag of each brick, x fastest.
     pub members: Vec<bool>,
 }
 
 impl BrickSet {
-    /// A set from its members' flags.
+    /// Creates a set from the membership flags.
     pub fn new(dims: [usize; 3], members: Vec<bool>) -> Self {
         debug_assert_eq!(members.len(), dims.iter().product::<usize>());
         Self { dims, members }
     }
 
-    /// Every brick.
+    /// Creates the set of all bricks.
     pub fn full(dims: [usize; 3]) -> Self {
         Self::new(dims, vec![true; dims.iter().product()])
     }
 
-    /// What is in either of two sets of one grid.
+    /// Returns the union of two sets on the same grid.
     pub fn union(&self, other: &Self) -> Self {
         let members = self.members.iter().zip(&other.members).map(|(a, b)| *a || *b).collect();
         Self::new(self.dims, members)
     }
 
-    /// What is in this set and not in the other, of the same grid.
-    pub fn without(&self, other: &Self) -> Self {
+    /// Returns the difference of two sets on the same grid: members of this one that are not in the other.
+    pub fn difference(&self, other: &Self) -> Self {
         let members = self.members.iter().zip(&other.members).map(|(a, b)| *a && !*b).collect();
         Self::new(self.dims, members)
     }
 
-    /// Whether all of this set is in the other, of the same grid.
-    pub fn is_within(&self, other: &Self) -> bool {
+    /// Returns true if this set is a subset of the other, on the same grid.
+    pub fn is_subset(&self, other: &Self) -> bool {
         self.dims == other.dims && self.members.iter().zip(&other.members).all(|(a, b)| !*a || *b)
     }
 
-    /// The set and everything up to `reach` bricks from it.
+    /// Returns the set dilated by `reach` bricks.
     pub fn dilated(&self, reach: usize) -> Self {
         let near = self.distances().into_iter().map(|distance| usize::from(distance) <= reach).collect();
         Self::new(self.dims, near)
     }
 
-    /// The set seen on a grid with bricks `factor` times as large: a coarse brick is in it when any
-    /// of its bricks is.
+    /// Returns the set on a grid with bricks `factor` times as large: a coarse brick is a member if any of its bricks
+    /// is.
     pub fn coarsened(&self, factor: usize, dims: [usize; 3]) -> Self {
         let mut coarse = Self::new(dims, vec![false; dims.iter().product()]);
         for (at, _) in self.members.iter().enumerate().filter(|(_, member)| **member) {
@@ -59,7 +59,7 @@ impl BrickSet {
         coarse
     }
 
-    /// The reverse of [`Self::coarsened`]: all bricks that lie in a coarse brick of the set.
+    /// Returns the bricks inside the coarse bricks of this set, the reverse of [`Self::coarsened`].
     pub fn refined(&self, factor: usize, dims: [usize; 3]) -> Self {
         let mut fine = Self::new(dims, vec![false; dims.iter().product()]);
         for at in 0..fine.members.len() {
@@ -70,22 +70,22 @@ impl BrickSet {
         fine
     }
 
-    /// Coordinates of the members.
+    /// Iterates over the coordinates of the members.
     pub fn positions(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         (0..self.members.len()).filter(|&at| self.members[at]).map(|at| self.position(at))
     }
 
-    /// Distance of every brick to the nearest member, cut at 255; 0 for members.
+    /// Returns the distance of every brick to the nearest member, limited to 255; 0 for members.
     pub fn distances(&self) -> Vec<u8> {
         let mut distances: Vec<u8> =
             self.members.iter().map(|&member| if member { 0 } else { 255 }).collect();
-        // Chebyshev's distance separates by axis: the distance over two axes is the least, over the
-        // third, of max(distance so far, step); a forward and a backward sweep per axis find it.
+        // Chebyshev's distance separates by axis: the distance over three axes is the minimum over the third axis of
+        // max(distance over the first two, step); a forward and a backward sweep per axis find it.
         let [nx, ny, nz] = self.dims;
         for (stride, length) in [(1, nx), (nx, ny), (nx * ny, nz)] {
             for start in 0..distances.len() {
                 if start / stride % length == 0 {
-                    sweep(&mut distances, start, stride, length);
+                    distance_transform_line(&mut distances, start, stride, length);
                 }
             }
         }
@@ -101,15 +101,15 @@ impl BrickSet {
     }
 }
 
-/// One line of a separable Chebyshev transform: `out[i]` = min over j of max(`in[j]`, |i − j|).
-fn sweep(distances: &mut [u8], start: usize, stride: usize, length: usize) {
+/// Transforms one line of the separable Chebyshev distance: `out[i]` = min over j of max(`in[j]`, |i − j|).
+fn distance_transform_line(distances: &mut [u8], start: usize, stride: usize, length: usize) {
     let line: Vec<u8> = (0..length).map(|i| distances[start + i * stride]).collect();
     if line.iter().all(|&d| d == 255) || line.iter().all(|&d| d == 0) {
         return;
     }
     for i in 0..length {
         let mut best = line[i];
-        // Nothing further away than the best so far can improve on it.
+        // Elements further away than the best distance so far cannot improve it.
         let mut step = 1;
         while step < usize::from(best) && (step <= i || i + step < length) {
             let left = if step <= i { line[i - step] } else { 255 };
@@ -157,8 +157,8 @@ mod tests {
         assert_eq!(fine.dilated(1).positions().count(), 2 * 2 * 2);
         let coarse = fine.coarsened(2, [3, 3, 3]);
         assert_eq!(coarse.positions().collect::<Vec<_>>(), [[2, 0, 0]]);
-        assert!(fine.is_within(&coarse.refined(2, [5, 5, 5])));
-        assert!(!coarse.refined(2, [5, 5, 5]).is_within(&fine));
-        assert_eq!(fine.dilated(1).without(&fine).positions().count(), 7);
+        assert!(fine.is_subset(&coarse.refined(2, [5, 5, 5])));
+        assert!(!coarse.refined(2, [5, 5, 5]).is_subset(&fine));
+        assert_eq!(fine.dilated(1).difference(&fine).positions().count(), 7);
     }
 }

@@ -1,55 +1,55 @@
-//! Sets of cells, a word of 64 bits for each brick.
+//! Sets of cells, as bit masks of 64 bits for each brick.
 
 use crate::plan::BrickSet;
 
 /// Cells along the edge of a brick.
-const PER_BRICK: usize = 4;
+const CELLS_PER_BRICK_EDGE: usize = 4;
 
-/// The first layer of a brick's cells along each axis.
-const LAYERS: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0xffff];
+/// Masks of the first layer of a brick's cells along each axis.
+const FIRST_LAYER_MASKS: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0xffff];
 
-/// A set of the cells of a grid of bricks.
+/// Set of cells of a grid of bricks.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CellSet {
-    /// Bricks along x, y, z.
+    /// Number of bricks along x, y, z.
     pub dims: [usize; 3],
-    /// For each brick, x fastest, a bit for each of its 4³ cells, x fastest.
+    /// Mask of each brick, x fastest, with a bit for each of its 4³ cells, x fastest.
     pub masks: Vec<u64>,
 }
 
 impl CellSet {
-    /// Every cell.
+    /// Creates the set of all cells.
     pub fn full(dims: [usize; 3]) -> Self {
         Self { dims, masks: vec![u64::MAX; dims.iter().product()] }
     }
 
-    /// What is in this set and not in the other, of the same grid.
+    /// Returns the difference of two sets on the same grid: members of this one that are not in the other.
     #[must_use]
-    pub fn without(&self, other: &Self) -> Self {
+    pub fn difference(&self, other: &Self) -> Self {
         let masks = self.masks.iter().zip(&other.masks).map(|(a, b)| a & !b).collect();
         Self { dims: self.dims, masks }
     }
 
-    /// What is in either of two sets of one grid.
+    /// Returns the union of two sets on the same grid.
     #[must_use]
-    pub fn with(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         let masks = self.masks.iter().zip(&other.masks).map(|(a, b)| a | b).collect();
         Self { dims: self.dims, masks }
     }
 
-    /// The set moved by one cell along an axis, forwards or back, in a grid that ends with cell `last`: what lies beyond
-    /// its border belongs to the cells there, from which it moves in, and into which it moves out.
+    /// Returns the set shifted by one cell along an axis, in a grid whose last cell is `last`, with clamped borders:
+    /// border cells are repeated outside, so that they shift in from there and stay when they shift out.
     #[must_use]
-    pub fn stepped(&self, axis: usize, forwards: bool, last: usize) -> Self {
-        let layer = LAYERS[axis];
+    pub fn shifted(&self, axis: usize, forwards: bool, last: usize) -> Self {
+        let layer = FIRST_LAYER_MASKS[axis];
         let step = 1 << (2 * axis);
         let stride: usize = self.dims[..axis].iter().product();
         let count = self.dims[axis];
-        let end = step * (PER_BRICK - 1);
-        let within_last: u64 = (0..=last % PER_BRICK).map(|at| layer << (step * at)).sum();
+        let end = step * (CELLS_PER_BRICK_EDGE - 1);
+        let within_last: u64 = (0..=last % CELLS_PER_BRICK_EDGE).map(|at| layer << (step * at)).sum();
         let mask = |(at, &mask): (usize, &u64)| {
             let brick = at / stride % count;
-            let is_last = brick == last / PER_BRICK;
+            let is_last = brick == last / CELLS_PER_BRICK_EDGE;
             let moved = if forwards {
                 let before = if brick > 0 { self.masks[at - stride] >> end & layer } else { 0 };
                 (mask & !(layer << end)) << step | before
@@ -58,14 +58,14 @@ impl CellSet {
                 (mask & !layer) >> step | behind
             };
             let first_border = if brick == 0 { layer } else { 0 };
-            let last_border = if is_last { layer << (step * (last % PER_BRICK)) } else { 0 };
+            let last_border = if is_last { layer << (step * (last % CELLS_PER_BRICK_EDGE)) } else { 0 };
             let grid = if is_last { within_last } else { u64::MAX };
             (moved | mask & (first_border | last_border)) & grid
         };
         Self { dims: self.dims, masks: self.masks.iter().enumerate().map(mask).collect() }
     }
 
-    /// The cells, `factor` times as large, of a grid of `bricks` that hold any of these.
+    /// Returns the cells of a grid of `bricks`, with cells `factor` times as large, that contain any member.
     #[must_use]
     pub fn coarsened(&self, factor: usize, bricks: [usize; 3]) -> Self {
         let mut coarse = Self { dims: bricks, masks: vec![0; bricks.iter().product()] };
@@ -73,56 +73,62 @@ impl CellSet {
         coarse
     }
 
-    /// Puts in a cell; none outside the grid.
+    /// Adds a cell; cells outside the grid are ignored.
     pub fn insert(&mut self, cell: [usize; 3]) {
-        if let Some((at, bit)) = self.place(cell) {
+        if let Some((at, bit)) = self.brick_and_bit(cell) {
             self.masks[at] |= bit;
         }
     }
 
-    /// Whether a cell is in it.
+    /// Returns true if a cell is a member.
     pub fn contains(&self, cell: [usize; 3]) -> bool {
-        self.place(cell).is_some_and(|(at, bit)| self.masks[at] & bit != 0)
+        self.brick_and_bit(cell).is_some_and(|(at, bit)| self.masks[at] & bit != 0)
     }
 
-    /// The brick and the bit of a cell.
-    fn place(&self, cell: [usize; 3]) -> Option<(usize, u64)> {
-        let [x, y, z] = cell.map(|c| c / PER_BRICK);
+    /// Returns the index of a cell's brick and the bit of the cell.
+    fn brick_and_bit(&self, cell: [usize; 3]) -> Option<(usize, u64)> {
+        let [x, y, z] = cell.map(|c| c / CELLS_PER_BRICK_EDGE);
         let [nx, ny, nz] = self.dims;
-        let [i, j, k] = cell.map(|c| c % PER_BRICK);
+        let [i, j, k] = cell.map(|c| c % CELLS_PER_BRICK_EDGE);
         let is_inside = x < nx && y < ny && z < nz;
-        is_inside.then(|| (x + nx * (y + ny * z), 1 << (i + PER_BRICK * (j + PER_BRICK * k))))
+        is_inside.then(|| {
+            (x + nx * (y + ny * z), 1 << (i + CELLS_PER_BRICK_EDGE * (j + CELLS_PER_BRICK_EDGE * k)))
+        })
     }
 
-    /// Whether all of this set is in the other.
-    pub fn is_within(&self, other: &Self) -> bool {
+    /// Returns true if this set is a subset of the other.
+    pub fn is_subset(&self, other: &Self) -> bool {
         self.dims == other.dims && self.masks.iter().zip(&other.masks).all(|(a, b)| a & !b == 0)
     }
 
-    /// The bricks with any cells, and those.
+    /// Iterates over the bricks that contain members, with their masks.
     pub fn bricks(&self) -> impl Iterator<Item = ([usize; 3], u64)> + '_ {
         let [nx, ny, _] = self.dims;
         let brick = move |(at, &mask): (usize, &u64)| ([at % nx, at / nx % ny, at / (nx * ny)], mask);
         self.masks.iter().enumerate().filter(|(_, mask)| **mask != 0).map(brick)
     }
 
-    /// The cells, brick by brick.
+    /// Iterates over the members, brick by brick.
     pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         self.bricks().flat_map(|(brick, mask)| {
             let bits = (0..u64::BITS as usize).filter(move |bit| mask >> bit & 1 == 1);
             bits.map(move |bit| {
-                let within = [bit % PER_BRICK, bit / PER_BRICK % PER_BRICK, bit / (PER_BRICK * PER_BRICK)];
-                std::array::from_fn(|axis| brick[axis] * PER_BRICK + within[axis])
+                let within = [
+                    bit % CELLS_PER_BRICK_EDGE,
+                    bit / CELLS_PER_BRICK_EDGE % CELLS_PER_BRICK_EDGE,
+                    bit / (CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE),
+                ];
+                std::array::from_fn(|axis| brick[axis] * CELLS_PER_BRICK_EDGE + within[axis])
             })
         })
     }
 
-    /// The bricks that have any of the cells.
+    /// Returns the bricks that contain any member.
     pub fn to_bricks(&self) -> BrickSet {
         BrickSet::new(self.dims, self.masks.iter().map(|&mask| mask != 0).collect())
     }
 
-    /// How many cells there are.
+    /// Returns the number of members.
     pub fn count(&self) -> usize {
         self.masks.iter().map(|mask| mask.count_ones() as usize).sum()
     }
@@ -136,15 +142,15 @@ mod tests {
     fn sets_are_compared_cell_by_cell() {
         let a = CellSet { dims: [2, 1, 1], masks: vec![0b0110, 0] };
         let b = CellSet { dims: [2, 1, 1], masks: vec![0b0111, 8] };
-        assert!(a.is_within(&b) && !b.is_within(&a));
-        assert_eq!(b.without(&a).masks, [1, 8]);
+        assert!(a.is_subset(&b) && !b.is_subset(&a));
+        assert_eq!(b.difference(&a).masks, [1, 8]);
         assert_eq!(a.bricks().collect::<Vec<_>>(), [([0, 0, 0], 0b0110)]);
         assert_eq!((a.count(), b.to_bricks().positions().count()), (2, 2));
         assert_eq!(b.cells().collect::<Vec<_>>(), [[0, 0, 0], [1, 0, 0], [2, 0, 0], [7, 0, 0]]);
-        assert!(b.is_within(&CellSet::full([2, 1, 1])));
+        assert!(b.is_subset(&CellSet::full([2, 1, 1])));
     }
 
-    /// Cells of 3 × 2 × 2 bricks.
+    /// Makes a set with the given members, on a grid of 3 × 2 × 2 bricks.
     fn set(members: &[[usize; 3]]) -> CellSet {
         let mut set = CellSet { dims: [3, 2, 2], masks: vec![0; 12] };
         for &cell in members {
@@ -164,10 +170,10 @@ mod tests {
                     *at = if forwards { (*at + 1).min(last[axis]) } else { at.saturating_sub(1) };
                     cell
                 }));
-                // What moves in has been beyond the border.
+                // Clamped borders: cells that shift in from outside.
                 let is_at_border = |cell: &&[usize; 3]| [0, last[axis]].contains(&cell[axis]);
                 members.iter().filter(is_at_border).for_each(|&cell| expected.insert(cell));
-                assert_eq!(set(&members).stepped(axis, forwards, last[axis]), expected, "{axis} {forwards}");
+                assert_eq!(set(&members).shifted(axis, forwards, last[axis]), expected, "{axis} {forwards}");
             }
         }
     }

@@ -1,55 +1,56 @@
-//! The eye's sheets.
+//! Sheet frame of the eye: rays and slabs of a camera.
 
 use glam::{DMat3, DVec2};
 
-use super::sheet_frame::{Placement, SheetFrame};
+use super::sheet_frame::{ProjectionPlacement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{Camera, PREINTEGRATED_STEPS, Projection, Settings, THIN_SLABS};
+use crate::model::{Camera, MAX_SLAB_PARTS, PREINTEGRATED_STEPS, Projection, Settings};
 use crate::plan::PixelWindow;
 
-/// Most slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
-/// that very flat voxels do not make a ray endless.
+/// Maximum number of slabs at a thickness of 1: more than the diagonal of a volume of 2048³ voxels, and few enough
+/// that very flat voxels do not make rays endless.
 const MAX_SLABS: f64 = 4096.0;
 
-/// Nearest distance from a perspective eye that is drawn, as a share of the distance to the target.
-const NEAR_SHARE: f64 = 1e-3;
+/// Near plane of a perspective eye, as a share of the distance to the target.
+const NEAR_PLANE_SHARE: f64 = 1e-3;
 
-/// Thickest slabs of a preview, in edges of the smallest voxel: its kernel reaches as far to either side.
-const THICKEST_PREVIEW: f64 = 2.0;
+/// Maximum thickness of a preview's slabs, in edges of the smallest voxel: the kernel's radius.
+const MAX_PREVIEW_SLAB: f64 = 2.0;
 
-/// How thick they are in widths of its pixels. As thick as those, they show stripes on flat faces that are seen at steep
-/// angles: an engine block is 0.7 % off thin slabs (root of the mean square) with 1.4 voxels, and 0.3 % with one.
-const PREVIEW_SHARE: f64 = 0.7;
+/// Thickness of a preview's slabs in widths of its pixels. At 1 they show stripes on flat faces that are seen at
+/// steep angles: with 1.4 voxels an engine block differs by 0.7 % (root mean square) from thin slabs, with one voxel
+/// by 0.3 %.
+const PREVIEW_SLAB_PER_PIXEL: f64 = 0.7;
 
-/// Thickness of slabs for a preview, in edges of the smallest voxel, where pictures have `slab`.
+/// Returns the slab thickness for a preview, in edges of the smallest voxel, where full pictures have `slab`.
 ///
-/// It is 0.7 of what the preview's pixels are wide where they are narrowest: it can show no finer shapes
-/// along its rays than across them. `size`: pixels of the preview.
+/// It is 0.7 times the width of the preview's pixels where they are narrowest: shapes along rays cannot be finer than
+/// across them. `size`: pixels of the preview.
 pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f64) -> f64 {
     let frame = eye_frame(camera, scene, size, slab);
     let width = frame.pitch_at(frame.first_depth) / (frame.slab / slab);
-    // One is enough for a preview however large: it may show a little wood grain.
-    slab.max((PREVIEW_SHARE * width).clamp(1.0, THICKEST_PREVIEW))
+    // At least one voxel, however large the preview: slight wood grain is acceptable.
+    slab.max((PREVIEW_SLAB_PER_PIXEL * width).clamp(1.0, MAX_PREVIEW_SLAB))
 }
 
-/// The sheets of a picture with some settings: the thinnest, if slabs are as thin as they need to be, and of
-/// pre-integrated slabs their steps.
+/// Returns the sheet frame of a picture: with the thinnest slabs for slabs by need, and with the steps for
+/// pre-integrated slabs.
 pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<PixelWindow>) -> SheetFrame {
     let frame = eye_frame(&settings.camera, scene, window, settings.thickest_slab());
-    if settings.has_slabs_by_need() {
-        frame.divided(THIN_SLABS)
+    if settings.has_adaptive_slabs() {
+        frame.with_divided_slabs(MAX_SLAB_PARTS)
     } else if settings.has_preintegrated_slabs() {
-        frame.divided(PREINTEGRATED_STEPS)
+        frame.with_divided_slabs(PREINTEGRATED_STEPS)
     } else {
         frame
     }
 }
 
-/// The sheets that a camera sees, `slab` smallest voxel edges thick.
+/// Returns the sheet frame of a camera, with slabs `slab` smallest voxel edges thick.
 ///
-/// The anchor plane goes through the middle of the volume when that lies well in front of the eye,
-/// else through the target (both are arbitrary; the first keeps slabs in phase while panning). Of a part of a
-/// picture, the sheets are that part of those of the whole.
+/// The anchor plane passes through the middle of the volume if that is well in front of the eye, else through the
+/// target (both are arbitrary; the first keeps slabs in phase while panning). For a part of a picture, the sheets are
+/// the corresponding part of the whole picture's.
 pub fn eye_frame(
     camera: &Camera,
     scene: &SceneSpace,
@@ -59,7 +60,7 @@ pub fn eye_frame(
     let PixelWindow { whole, first, size } = window.into();
     let view = camera.scene_from_view();
     let axes = DMat3::from_cols(view.x_axis, -view.y_axis, -view.z_axis);
-    let eye = camera.eye();
+    let eye = camera.position();
     let to_middle = -eye.dot(axes.z_axis);
     let distance = match camera.projection {
         Projection::Orthographic => to_middle,
@@ -73,13 +74,13 @@ pub fn eye_frame(
         Projection::Perspective => (
             pitch_at_target * distance / camera.distance,
             1.0 / distance,
-            NEAR_SHARE * camera.distance - distance,
+            NEAR_PLANE_SHARE * camera.distance - distance,
         ),
     };
     let pixels = |[i, j]: [u32; 2]| DVec2::new(f64::from(i), f64::from(j));
     SheetFrame::new(
         scene,
-        &Placement {
+        &ProjectionPlacement {
             axes,
             anchor: eye + axes.z_axis * distance,
             inverse_distance,
@@ -96,7 +97,7 @@ pub fn eye_frame(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Fit;
+    use crate::model::FovReference;
     use glam::{DAffine3, DVec3};
 
     fn scene() -> SceneSpace {
@@ -106,9 +107,11 @@ mod tests {
     #[test]
     fn rays_are_the_cameras_rays() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            for (distance, fit, size) in
-                [(0.4, Fit::Height, [64, 48]), (3.0, Fit::Height, [20, 48]), (3.0, Fit::Frame, [20, 48])]
-            {
+            for (distance, fit, size) in [
+                (0.4, FovReference::Height, [64, 48]),
+                (3.0, FovReference::Height, [20, 48]),
+                (3.0, FovReference::Frame, [20, 48]),
+            ] {
                 let target = [0.1, -0.2, 0.05];
                 let camera = Camera { projection, target, distance, fit, ..Camera::default() };
                 let frame = eye_frame(&camera, &scene(), size, 1.0);
@@ -129,8 +132,8 @@ mod tests {
     #[test]
     fn parts_of_a_picture_see_what_the_whole_sees() {
         for projection in [Projection::Perspective, Projection::Orthographic] {
-            // Parts that are wide of a picture that is narrow.
-            let camera = Camera { projection, fit: Fit::Frame, ..Camera::default() };
+            // Wide parts of a narrow picture.
+            let camera = Camera { projection, fit: FovReference::Frame, ..Camera::default() };
             let whole = eye_frame(&camera, &scene(), [48, 64], 1.0);
             let part = PixelWindow { whole: [48, 64], first: [20, 30], size: [16, 9] };
             let part = eye_frame(&camera, &scene(), part, 1.0);
@@ -154,7 +157,7 @@ mod tests {
         let frame = eye_frame(&Camera::default(), &scene(), [28, 21], width);
         let narrowest = frame.pitch_at(frame.first_depth) / scene().smallest_edge();
         assert!(
-            (1.0..2.0).contains(&width) && (width / narrowest / PREVIEW_SHARE - 1.0).abs() < 0.05,
+            (1.0..2.0).contains(&width) && (width / narrowest / PREVIEW_SLAB_PER_PIXEL - 1.0).abs() < 0.05,
             "{width}"
         );
     }
@@ -164,7 +167,8 @@ mod tests {
         let far = eye_frame(&Camera::default(), &scene(), [64, 48], 1.0);
         let last = far.first_depth + f64::from(far.slab_count) * far.slab;
         for corner in scene().support_corners() {
-            let depth = (corner - Camera::default().eye()).dot(-Camera::default().scene_from_view().z_axis)
+            let depth = (corner - Camera::default().position())
+                .dot(-Camera::default().scene_from_view().z_axis)
                 - 1.0 / far.inverse_distance;
             assert!(far.first_depth <= depth + 1e-9 && depth - 1e-9 <= last);
         }

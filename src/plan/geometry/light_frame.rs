@@ -1,72 +1,70 @@
-//! A light's sheets: one view for a light outside the volume, six (the faces of a cube around it)
-//! for a perspective light inside or close by.
+//! Sheet frames of a light: one view for a light outside the volume, six (the faces of a cube map) for a perspective
+//! light inside or close by.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::sheet_frame::{Placement, SheetFrame};
+use super::sheet_frame::{ProjectionPlacement, SheetFrame};
 use crate::math::SceneSpace;
-use crate::model::{LightKind, SceneLight, Shadows};
+use crate::model::{LightGeometry, SceneLight, ShadowSettings};
 
-/// A perspective light nearer than this many radii of the volume is split into six views: beyond
-/// it, the volume fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
+/// Distance in radii of the volume below which a perspective light is split into six views: beyond it, the volume
+/// fits a cone of ± asin(1/1.5) = 42°, no wider than one face of a cube.
 const SPLIT_RADII: f64 = 1.5;
 
-/// Most pixels across a sheet: very flat voxels would need more than a texture can hold, and get
-/// pixels wider than their smallest edge instead.
+/// Maximum number of pixels across a sheet: very flat voxels would need more than a texture can hold, and get pixels
+/// wider than their smallest edge instead.
 const MAX_PIXELS: f64 = 2000.0;
 
-/// Least width of the reverse kernel across the sheets, in light voxels.
+/// Minimum width of the reverse kernel across the sheets, in light voxels.
 ///
-/// Sheets are drawn with kernels no
-/// narrower than a voxel and hold nothing finer, however many pixels they have per voxel: one pixel's
-/// kernel, which takes 4² of them, will do. It does so for all lights that are not split into six views:
-/// what is nearest to a light 1.5 radii away has a third of its distance, and pixels a third of a voxel wide.
+/// Sheets are drawn with kernels no narrower than a voxel and hold nothing finer, however many pixels they have per
+/// voxel: so the kernel of one pixel, with 4² fetches, suffices. This holds for all lights that are not split into
+/// six views: the nearest point to a light 1.5 radii away is at a third of its distance, with pixels a third of a
+/// voxel wide.
 pub const MIN_KERNEL_VOXELS: f64 = 0.3125;
 
-/// Largest width of the reverse kernel in pixels: close to a light inside the volume pixels become
-/// arbitrarily small, and there the kernel gets narrower still instead of ever more fetches.
+/// Maximum width of the reverse kernel in pixels: close to a light inside the volume, pixels become arbitrarily
+/// small, and the kernel is narrowed there rather than taking ever more fetches.
 pub const MAX_KERNEL_PIXELS: f64 = 4.0;
 
-/// One view of a light: a stack of sheets and where a point of the volume lies on them.
+/// View of a light: a stack of sheets, and the projection of points onto them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightView {
-    /// Rays and slabs.
+    /// Rays and slabs of the view.
     pub frame: SheetFrame,
     /// Columns: the sheets' x and y axes and the direction away from the light, in scene space.
     pub axes: DMat3,
-    /// Where the axis meets the anchor plane, in scene space.
+    /// Intersection of the axis with the anchor plane, in scene space.
     pub anchor: DVec3,
     /// Position of pixel (0, 0) on the anchor plane, in pixels from the axis.
     pub first_pixel: DVec2,
-    /// Width of the reverse kernel along the axis, in scene units: one voxel of the light volume (its
-    /// smallest edge).
+    /// Width of the reverse kernel along the axis, in scene units: one voxel of the light volume (its smallest edge).
     pub kernel_edge: f64,
-    /// Whether this view owns only the quarter-space where its axis dominates (a cube's face).
+    /// True for a face of a cube map, which covers only the quarter-space where its axis dominates.
     pub cube_face: bool,
 }
 
-/// Position on a view's sheets.
+/// Position of a point on a view's sheets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SheetPosition {
-    /// In pixels; pixel centres at integers.
+    /// Pixel coordinates; pixel centres are at integers.
     pub pixel: DVec2,
-    /// In slabs; slab middles at integers.
+    /// Slab coordinate; the middles of slabs are at integers.
     pub slab: f64,
-    /// Width of the reverse kernel here, in pixels.
+    /// Width of the reverse kernel at this position, in pixels.
     pub kernel_pixels: f64,
-    /// Length of the reverse kernel here, in slabs.
+    /// Length of the reverse kernel at this position, in slabs.
     pub kernel_slabs: f64,
 }
 
 impl LightView {
-    /// Where a point in scene space lies; `None` for what another view owns or what lies in the
-    /// plane of the light.
-    pub fn position(&self, point: DVec3) -> Option<SheetPosition> {
+    /// Projects a point in scene space; `None` if another view covers it or it lies in the plane of the light.
+    pub fn project(&self, point: DVec3) -> Option<SheetPosition> {
         let local = self.axes.transpose() * (point - self.anchor);
         let spread = 1.0 + local.z * self.frame.inverse_distance;
         if self.cube_face {
             let depth = spread / self.frame.inverse_distance;
-            // A hundred-thousandth more, so that rounding leaves no voxel between two faces.
+            // A tolerance of 1e-5, so that rounding leaves no voxel between two faces.
             let limit = depth * 1.000_01;
             if !(depth > 0.0 && local.x.abs() <= limit && local.y.abs() <= limit) {
                 return None;
@@ -85,18 +83,18 @@ impl LightView {
         })
     }
 
-    /// Width of the reverse kernel in pixels where these are `pitch` wide.
+    /// Returns the width of the reverse kernel in pixels of width `pitch`.
     fn kernel_pixels(&self, pitch: f64) -> f64 {
         (MIN_KERNEL_VOXELS * self.kernel_edge / pitch).clamp(1.0, MAX_KERNEL_PIXELS)
     }
 
-    /// Width of the reverse kernel in slabs: slabs do not widen with depth, nor does it.
+    /// Returns the length of the reverse kernel in slabs, which is constant over depth.
     pub fn kernel_slabs(&self) -> f64 {
         self.kernel_edge / self.frame.slab
     }
 
-    /// Whether the reverse kernel is a pixel wide at every depth, and a slab deep; never said of a cube's face,
-    /// whose pixels are as small as they get, at the light.
+    /// Returns true if the reverse kernel is one pixel wide at every depth, and one slab long; always false for a
+    /// cube face, whose pixels become arbitrarily small at the light.
     pub fn kernel_is_narrow(&self) -> bool {
         !self.cube_face
             && self.kernel_pixels(self.frame.pitch_at(self.frame.first_depth)) < 1.0 + 1e-9
@@ -104,29 +102,29 @@ impl LightView {
     }
 }
 
-/// The views of a light over a scene, with the pitch, slab and resolution that `shadows` asks for.
-pub fn light_views(light: &SceneLight, shadows: &Shadows, scene: &SceneSpace) -> Vec<LightView> {
+/// Returns the views of a light over a scene, with the pitch, slabs and resolution that `shadows` specifies.
+pub fn light_views(light: &SceneLight, shadows: &ShadowSettings, scene: &SceneSpace) -> Vec<LightView> {
     let radius = scene.support_radius();
     let edge = (scene.smallest_edge() * shadows.resolution.divisor() as f64).max(2.0 * radius / MAX_PIXELS);
     let position = DVec3::from(light.position);
     match light.kind {
-        LightKind::Parallel => {
+        LightGeometry::Parallel => {
             vec![outside_view(scene, -light.direction(), 0.0, edge, shadows)]
         }
-        LightKind::Perspective if position.length() >= SPLIT_RADII * radius => {
+        LightGeometry::Perspective if position.length() >= SPLIT_RADII * radius => {
             vec![outside_view(scene, -position / position.length(), 1.0 / position.length(), edge, shadows)]
         }
-        LightKind::Perspective => cube_views(scene, position, edge, shadows.slab),
+        LightGeometry::Perspective => cube_views(scene, position, edge, shadows.slab),
     }
 }
 
-/// A light that looks along `forward` at the origin, from `1 / inverse_distance` away.
+/// Creates the view of a light that looks along `forward` at the origin, from a distance of `1 / inverse_distance`.
 fn outside_view(
     scene: &SceneSpace,
     forward: DVec3,
     inverse_distance: f64,
     edge: f64,
-    shadows: &Shadows,
+    shadows: &ShadowSettings,
 ) -> LightView {
     let axes = axes_along(forward);
     let pixel_of = |point: DVec3| {
@@ -134,12 +132,13 @@ fn outside_view(
         DVec2::new(local.x, local.y) / (edge * (1.0 + local.z * inverse_distance))
     };
     let pixels = scene.support_corners().map(pixel_of);
-    // Of light along rows of voxels, a pixel of its own goes through each: no row takes light from those beside it.
+    // Pixels are aligned with voxels: for light along rows of voxels, each row has a pixel of its own, and none
+    // receives light of its neighbours.
     let row = pixel_of(middle_voxel(scene, shadows.resolution.divisor()));
     let low = (pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)) - row).floor() + row;
     let high = (pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)) - row).ceil() + row;
     let size = (high - low).round() + 1.0;
-    let place = Placement {
+    let place = ProjectionPlacement {
         axes,
         anchor: DVec3::ZERO,
         inverse_distance,
@@ -149,10 +148,11 @@ fn outside_view(
         slab: shadows.slab * edge,
         near: f64::NEG_INFINITY,
     };
-    view(scene, &place, false)
+    make_view(scene, &place, false)
 }
 
-/// The voxel of a light volume next to the middle, in scene space: half a voxel beside it where their number is even.
+/// Returns the centre of the light volume's voxel next to the middle, in scene space: half a voxel off if their
+/// number is even.
 fn middle_voxel(scene: &SceneSpace, divisor: usize) -> DVec3 {
     let index = scene.dims.map(|n| {
         let voxel = (n as f64 / 2.0 / divisor as f64).floor();
@@ -161,11 +161,11 @@ fn middle_voxel(scene: &SceneSpace, divisor: usize) -> DVec3 {
     scene.scene_from_index.transform_point3(DVec3::from(index))
 }
 
-/// Six views around a light at `position`.
+/// Creates the six views around a light at `position`.
 fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<LightView> {
     let farthest = scene.support_corners().iter().map(|corner| corner.distance(position)).fold(0.0, f64::max);
-    // Pixels are a voxel wide halfway to the farthest corner: stretch at most 2 behind it. A whole
-    // number of slabs, so that slab faces pass through the light.
+    // Pixels are a voxel wide halfway to the farthest corner, so that the stretch behind it is at most 2. The
+    // distance is a whole number of slabs, so that slab faces pass through the light.
     let thickness = slab * edge;
     let anchor_distance = (farthest / 2.0 / thickness).ceil().max(1.0) * thickness;
     // Half the face, and the widest kernel beyond its edges.
@@ -174,7 +174,7 @@ fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<
     faces
         .into_iter()
         .map(|forward| {
-            let place = Placement {
+            let place = ProjectionPlacement {
                 axes: axes_along(forward),
                 anchor: position + forward * anchor_distance,
                 inverse_distance: 1.0 / anchor_distance,
@@ -182,16 +182,16 @@ fn cube_views(scene: &SceneSpace, position: DVec3, edge: f64, slab: f64) -> Vec<
                 first_pixel: DVec2::splat(-half),
                 size: [(2.0 * half) as u32 + 1; 2],
                 slab: thickness,
-                // Nothing behind the light.
+                // Nothing behind the light is sampled.
                 near: -anchor_distance,
             };
-            view(scene, &place, true)
+            make_view(scene, &place, true)
         })
         .filter(|view| view.frame.slab_count > 0)
         .collect()
 }
 
-fn view(scene: &SceneSpace, place: &Placement, cube_face: bool) -> LightView {
+fn make_view(scene: &SceneSpace, place: &ProjectionPlacement, cube_face: bool) -> LightView {
     LightView {
         frame: SheetFrame::new(scene, place),
         axes: place.axes,
@@ -202,8 +202,8 @@ fn view(scene: &SceneSpace, place: &Placement, cube_face: bool) -> LightView {
     }
 }
 
-/// Axes with z along `forward`, by the shortest turn from straight down. They change continuously
-/// with the light except where it shines straight up, the rarest of directions.
+/// Returns axes with z along `forward`, by the shortest rotation from straight down. They change continuously with
+/// the light except where it shines straight up, the rarest of directions.
 fn axes_along(forward: DVec3) -> DMat3 {
     let from = DVec3::NEG_Z;
     let turn = if from.dot(forward) < -1.0 + 1e-12 {
@@ -223,22 +223,26 @@ mod tests {
         SceneSpace::new([40, 30, 20], DAffine3::from_scale(DVec3::new(1.0, 1.2, 2.0)))
     }
 
-    fn views(kind: LightKind, position: [f64; 3]) -> Vec<LightView> {
-        light_views(&SceneLight { kind, position, ..SceneLight::default() }, &Shadows::default(), &scene())
+    fn views(kind: LightGeometry, position: [f64; 3]) -> Vec<LightView> {
+        light_views(
+            &SceneLight { kind, position, ..SceneLight::default() },
+            &ShadowSettings::default(),
+            &scene(),
+        )
     }
 
     #[test]
     fn positions_invert_rays() {
         for (kind, position) in [
-            (LightKind::Parallel, [1.0, 2.0, 3.0]),
-            (LightKind::Perspective, [1.0, 2.0, 3.0]),
-            (LightKind::Perspective, [0.1, 0.2, 0.0]),
+            (LightGeometry::Parallel, [1.0, 2.0, 3.0]),
+            (LightGeometry::Perspective, [1.0, 2.0, 3.0]),
+            (LightGeometry::Perspective, [0.1, 0.2, 0.0]),
         ] {
             for view in views(kind, position) {
                 let (i, j, k) =
                     (view.frame.size[0] as f64 / 2.0 + 1.0, view.frame.size[1] as f64 / 2.0 - 2.0, 7.0);
                 let point = view.frame.point(i, j, view.frame.depth_of(k));
-                let found = view.position(scene().scene_from_index.transform_point3(point)).unwrap();
+                let found = view.project(scene().scene_from_index.transform_point3(point)).unwrap();
                 assert!((found.pixel - DVec2::new(i, j)).length() < 1e-9, "{found:?}");
                 assert!((found.slab - k).abs() < 1e-9, "{found:?}");
             }
@@ -248,9 +252,9 @@ mod tests {
     #[test]
     fn every_voxel_has_room_for_its_kernel() {
         for (kind, position) in [
-            (LightKind::Parallel, [0.3, -2.0, 1.0]),
-            (LightKind::Perspective, [2.0, 2.0, 1.0]),
-            (LightKind::Perspective, [0.2, 0.1, 0.3]),
+            (LightGeometry::Parallel, [0.3, -2.0, 1.0]),
+            (LightGeometry::Perspective, [2.0, 2.0, 1.0]),
+            (LightGeometry::Perspective, [0.2, 0.1, 0.3]),
         ] {
             let views = views(kind, position);
             let [nx, ny, nz] = scene().dims;
@@ -260,7 +264,7 @@ mod tests {
                         let voxel = DVec3::new(x as f64, y as f64, z as f64);
                         let point = scene().scene_from_index.transform_point3(voxel);
                         let owners: Vec<_> =
-                            views.iter().filter_map(|v| Some((v, v.position(point)?))).collect();
+                            views.iter().filter_map(|v| Some((v, v.project(point)?))).collect();
                         assert!(!owners.is_empty(), "nobody lights {voxel}");
                         for (view, at) in owners {
                             let reach = 2.0 * at.kernel_pixels;
@@ -280,18 +284,18 @@ mod tests {
         let nearest = SPLIT_RADII * scene().support_radius();
         for direction in [DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 2.0, 0.3)] {
             let position = (direction.normalize() * nearest * 1.000_001).to_array();
-            for view in views(LightKind::Perspective, position) {
+            for view in views(LightGeometry::Perspective, position) {
                 assert!(view.kernel_is_narrow(), "{position:?}");
             }
         }
-        assert!(!views(LightKind::Perspective, [0.1, 0.2, 0.0])[0].kernel_is_narrow());
+        assert!(!views(LightGeometry::Perspective, [0.1, 0.2, 0.0])[0].kernel_is_narrow());
     }
 
     #[test]
     fn flat_voxels_do_not_need_endless_sheets() {
         let flat = SceneSpace::new([10, 10, 400], DAffine3::from_scale(DVec3::new(0.01, 0.01, 5.0)));
         let light = SceneLight { position: [1.0, 1.0, 1.0], ..SceneLight::default() };
-        for view in light_views(&light, &Shadows::default(), &flat) {
+        for view in light_views(&light, &ShadowSettings::default(), &flat) {
             assert!(view.frame.size.iter().all(|&n| n <= 2048), "{:?}", view.frame.size);
             assert!(view.frame.slab_count <= 2048);
         }

@@ -1,32 +1,32 @@
-//! Parts of pictures: those that are larger than a texture can be are drawn piece by piece.
+//! Pixel windows: parts of pictures for tiled rendering, where a picture exceeds the size of a texture.
 
-/// Which pixels of a picture are drawn.
+/// Part of a picture that is drawn, as a rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PixelWindow {
-    /// Columns and rows of the whole picture.
+    /// Width and height of the whole picture.
     pub whole: [u32; 2],
     /// Column and row of the first pixel.
     pub first: [u32; 2],
-    /// Columns and rows that are drawn.
+    /// Width and height of the part.
     pub size: [u32; 2],
 }
 
 impl From<[u32; 2]> for PixelWindow {
-    /// All of a picture.
+    /// Creates the window of a whole picture.
     fn from(size: [u32; 2]) -> Self {
         Self { whole: size, first: [0, 0], size }
     }
 }
 
 impl PixelWindow {
-    /// The part of a picture with `samples` pixels for each pixel along an edge.
+    /// Returns the same part of a supersampled picture, with `samples` pixels for each pixel along an edge.
     #[must_use]
-    pub fn finer(self, samples: u32) -> Self {
+    pub fn supersampled(self, samples: u32) -> Self {
         let finer = |pixels: [u32; 2]| pixels.map(|n| n * samples);
         Self { whole: finer(self.whole), first: finer(self.first), size: finer(self.size) }
     }
 
-    /// The part and up to `margin` pixels around it, as far as the picture goes.
+    /// Returns the part with up to `margin` pixels around it, within the picture.
     #[must_use]
     pub fn widened(self, margin: u32) -> Self {
         let begin = self.first.map(|n| n.saturating_sub(margin));
@@ -34,7 +34,7 @@ impl PixelWindow {
         Self { whole: self.whole, first: begin, size: [end(0) - begin[0], end(1) - begin[1]] }
     }
 
-    /// Cuts a picture into bands of rows, top down, and each band into parts, left to right. No part has an
+    /// Divides a picture into bands of rows, from the top, and each band into parts, from the left. No part has an
     /// edge over `longest`, nor more than `most` pixels, unless a single row has.
     pub fn bands(whole: [u32; 2], longest: u32, most: u32) -> impl Iterator<Item = Vec<Self>> {
         let width = whole[0].min(longest.max(1));
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn finer_parts_lie_where_they_lay() {
         let part = PixelWindow { whole: [10, 8], first: [4, 2], size: [3, 1] };
-        let finer = part.finer(2);
+        let finer = part.supersampled(2);
         assert_eq!(finer, PixelWindow { whole: [20, 16], first: [8, 4], size: [6, 2] });
         let wider = part.widened(3);
         assert_eq!(wider, PixelWindow { whole: [10, 8], first: [1, 0], size: [9, 6] });

@@ -1,4 +1,4 @@
-//! Directions from which the light of a sky comes, and the rays that follow it through a grid.
+//! Sweep frames: directions of sky light, and parallel rays in each direction through a grid of blocks.
 
 use std::f64::consts::PI;
 
@@ -6,9 +6,10 @@ use glam::{DVec2, DVec3};
 
 use crate::math::SceneSpace;
 
-/// Unit vectors towards `count` parts of the sky of equal size.
+/// Returns unit vectors towards `count` parts of the sphere of equal size.
 ///
-/// A Fibonacci sphere, zᵢ = 1 − (2i + 1)/K at the angle iπ(3 − √5), in an order in which each is as far as can be from all before it, so that the first few are a fair set, too.
+/// A Fibonacci sphere, zᵢ = 1 − (2i + 1)/K at the angle iπ(3 − √5), ordered so that each direction is the farthest
+/// from all before it (farthest-point ordering); so the first few are evenly spread, too.
 pub fn sweep_directions(count: u32) -> Vec<DVec3> {
     let golden = PI * (3.0 - 5f64.sqrt());
     let direction = |i: u32| {
@@ -20,7 +21,7 @@ pub fn sweep_directions(count: u32) -> Vec<DVec3> {
     let mut left: Vec<DVec3> = (0..count).map(direction).collect();
     let mut ordered: Vec<DVec3> = Vec::with_capacity(left.len());
     while !left.is_empty() {
-        // The largest cosine to any before: the smaller, the farther.
+        // The largest cosine to any direction before: the smaller it is, the farther away.
         let nearest = |of: &DVec3| ordered.iter().map(|known| known.dot(*of)).fold(-1.0, f64::max);
         let farthest = (0..left.len()).min_by(|&a, &b| nearest(&left[a]).total_cmp(&nearest(&left[b])));
         ordered.extend(farthest.map(|at| left.remove(at)));
@@ -28,10 +29,11 @@ pub fn sweep_directions(count: u32) -> Vec<DVec3> {
     ordered
 }
 
-/// Unit vectors towards `count` parts of the half of the sky above, which light a surface that faces `up` equally.
+/// Returns unit vectors towards `count` parts of the hemisphere above, each of which contributes equally to the
+/// irradiance of a surface that faces `up`.
 ///
-/// Even over the disc under that half, they lie denser above than near the horizon, as the cosine has it: a spiral with
-/// rᵢ = √((i + ½)/K) at the angle iπ(3 − √5).
+/// They are uniform over the disc under the hemisphere, so denser above than near the horizon, as the cosine demands:
+/// a spiral with rᵢ = √((i + ½)/K) at the angle iπ(3 − √5).
 pub fn directions_above(up: DVec3, count: u32) -> Vec<DVec3> {
     let golden = PI * (3.0 - 5f64.sqrt());
     let (right, front) = up.any_orthonormal_pair();
@@ -43,35 +45,35 @@ pub fn directions_above(up: DVec3, count: u32) -> Vec<DVec3> {
     (0..count).map(direction).collect()
 }
 
-/// Parallel rays through a grid of blocks of voxels, which cross its slices along one axis of the grid in their middles: a
-/// place in every slice is between the same four rays all along a step.
+/// Parallel rays through a grid of blocks of voxels. They cross its slices along one axis of the grid at their
+/// middles, so that any position stays between the same four rays during a whole step.
 ///
-/// In block units; slices are counted as the light meets them.
+/// Lengths are in blocks; slices are counted in the direction of the light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepFrame {
-    /// Unit vector towards where the light comes from, in scene space.
+    /// Unit vector towards the source of the light, in scene space.
     pub towards: DVec3,
-    /// The axis of the grid that the slices lie across: that along which the light goes fastest.
+    /// Grid axis across which the slices lie: the one along which the light advances fastest.
     pub axis: usize,
-    /// Whether light goes up that axis.
-    pub rises: bool,
-    /// Blocks along x, y and z.
+    /// True if light travels in the positive direction of that axis.
+    pub is_ascending: bool,
+    /// Number of blocks along x, y and z.
     pub dims: [usize; 3],
-    /// How far a ray gets from slice to slice along the two axes that follow `axis`, in turn.
+    /// Displacement of a ray from slice to slice, in blocks along the two axes that follow `axis` cyclically.
     pub drift: DVec2,
-    /// Where ray (0, 0) crosses the first slice, along those.
+    /// Position at which ray (0, 0) crosses the first slice, along the two axes that follow `axis`.
     pub first: [i32; 2],
-    /// Rays along those.
+    /// Number of rays along the two axes that follow `axis`.
     pub size: [u32; 2],
-    /// Scene units of a ray between two slices.
+    /// Length of a ray between two slices, in scene units.
     pub step: f64,
 }
 
 impl SweepFrame {
-    /// The rays from a direction through blocks of `divisor`³ voxels.
+    /// Creates the rays from a direction through blocks of `divisor`³ voxels.
     pub fn new(scene: &SceneSpace, divisor: usize, towards: DVec3) -> Self {
         let dims = scene.dims.map(|n| n.div_ceil(divisor));
-        // Blocks per scene unit of the way, against the light.
+        // Blocks per scene unit along the ray, against the direction of light.
         let speed = scene.index_from_scene.transform_vector3(towards) / divisor as f64;
         let along = speed.to_array();
         let axis =
@@ -80,46 +82,47 @@ impl SweepFrame {
         let across = [(axis + 1) % 3, (axis + 2) % 3];
         let drift = across.map(|axis| -along[axis] * step);
         let last = dims[axis] as f64 - 1.0;
-        // A place x of slice n lies at x − n · drift among the rays.
+        // A position x in slice n has ray coordinate x − n · drift.
         let first = drift.map(|drift| (-last * drift).min(0.0).floor() as i32);
         let size = [0, 1].map(|side| {
             let end = dims[across[side]] as f64 - 1.0 + (-last * drift[side]).max(0.0);
-            // One more to interpolate with.
+            // One more ray to interpolate with.
             (end.ceil() as i32 - first[side] + 2) as u32
         });
-        Self { towards, axis, rises: along[axis] < 0.0, dims, drift: drift.into(), first, size, step }
+        Self { towards, axis, is_ascending: along[axis] < 0.0, dims, drift: drift.into(), first, size, step }
     }
 
-    /// Slices.
+    /// Returns the number of slices.
     pub fn slices(&self) -> usize {
         self.dims[self.axis]
     }
 
-    /// The block at a place of a slice: [slice, across, across].
-    pub fn block(&self, slice: f64, across: DVec2) -> DVec3 {
+    /// Returns the block coordinates of a position in a slice.
+    pub fn block_position(&self, slice: f64, across: DVec2) -> DVec3 {
         let last = self.slices() as f64 - 1.0;
         let mut at = [0.0; 3];
-        at[self.axis] = if self.rises { slice } else { last - slice };
+        at[self.axis] = if self.is_ascending { slice } else { last - slice };
         at[(self.axis + 1) % 3] = across.x;
         at[(self.axis + 2) % 3] = across.y;
         at.into()
     }
 
-    /// The slice of a place in blocks, which may lie between slices and beyond the grid, and where it is across them.
-    pub fn along(&self, block: DVec3) -> (f64, DVec2) {
+    /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
+    /// its position across.
+    pub fn slice_position(&self, block: DVec3) -> (f64, DVec2) {
         let along = block[self.axis];
-        let slice = if self.rises { along } else { self.slices() as f64 - 1.0 - along };
+        let slice = if self.is_ascending { along } else { self.slices() as f64 - 1.0 - along };
         (slice, DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]))
     }
 
-    /// The slice of a place in blocks, which may lie between slices and beyond the grid, and where it is among the rays
-    /// there.
-    pub fn place(&self, block: DVec3) -> (f64, DVec2) {
-        let (slice, across) = self.along(block);
+    /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
+    /// its ray coordinates in that slice.
+    pub fn ray_position(&self, block: DVec3) -> (f64, DVec2) {
+        let (slice, across) = self.slice_position(block);
         (slice, across - self.drift * slice - DVec2::new(self.first[0].into(), self.first[1].into()))
     }
 
-    /// Where a ray crosses a slice, along the two axes that follow `axis`.
+    /// Returns the position at which a ray crosses a slice, along the two axes that follow `axis`.
     pub fn crossing(&self, ray: [u32; 2], slice: usize) -> DVec2 {
         let ray = DVec2::new(
             f64::from(ray[0]) + f64::from(self.first[0]),
@@ -149,7 +152,7 @@ mod tests {
             let some = &all[..taken];
             let mean = some.iter().sum::<DVec3>().length() / taken as f64;
             assert!(mean < 0.25, "{taken}: {mean}");
-            // Nowhere is farther from all of them than 80°.
+            // No direction is more than 80° from all of them.
             let farthest = all.iter().map(|a| some.iter().map(|b| a.dot(*b)).fold(-1.0, f64::max));
             assert!(farthest.fold(1.0, f64::min) > 80f64.to_radians().cos(), "{taken}");
         }
@@ -160,7 +163,7 @@ mod tests {
         for up in [DVec3::Z, DVec3::NEG_Y] {
             let all = directions_above(up, 64);
             let mean = all.iter().sum::<DVec3>() / 64.0;
-            // The mean of ω cos θ over π, over that of cos θ.
+            // Mean of ω cos θ over π, divided by that of cos θ.
             assert!((mean - up * 2.0 / 3.0).length() < 0.01, "{mean}");
             assert!(
                 all.iter().all(|towards| towards.dot(up) > 0.05 && (towards.length() - 1.0).abs() < 1e-12)
@@ -178,14 +181,14 @@ mod tests {
                 let [nx, ny, nz] = frame.dims;
                 for block in (0..nx * ny * nz).map(|at| [at % nx, at / nx % ny, at / (nx * ny)]) {
                     let wanted = DVec3::from(block.map(|at| at as f64));
-                    let (slice, ray) = frame.place(wanted);
+                    let (slice, ray) = frame.ray_position(wanted);
                     assert!(ray.min_element() >= -1e-9, "{ray}");
                     let next = ray.floor() + 1.0;
                     assert!(next.x < f64::from(frame.size[0]) && next.y < f64::from(frame.size[1]), "{ray}");
-                    // There and back.
+                    // Converts back.
                     let nearest = [ray.x.floor() as u32, ray.y.floor() as u32];
                     let across = frame.crossing(nearest, slice as usize) + ray.fract();
-                    let found = frame.block(slice, across);
+                    let found = frame.block_position(slice, across);
                     assert!((found - wanted).length() < 1e-9, "{found} {wanted}");
                 }
             }
@@ -197,7 +200,7 @@ mod tests {
         let scene = SceneSpace::new([16, 16, 16], DAffine3::IDENTITY);
         let slanting = DVec3::new(3.0, 0.0, 4.0).normalize();
         let frame = SweepFrame::new(&scene, 2, slanting);
-        assert_eq!((frame.axis, frame.rises), (2, false));
+        assert_eq!((frame.axis, frame.is_ascending), (2, false));
         // Two voxels are a quarter of half the edge.
         assert!((frame.step - 0.25 / 0.8).abs() < 1e-12, "{}", frame.step);
         assert!((frame.drift - DVec2::new(-0.75, 0.0)).length() < 1e-12, "{}", frame.drift);

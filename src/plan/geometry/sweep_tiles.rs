@@ -1,27 +1,29 @@
-//! Where rays of a sweep have to be followed: slices in which something is met or looked up, tile by tile of rays.
+//! Sweep tiles: the range of slices in which the rays of a sweep are followed, for each tile of rays.
 
 use glam::{DVec2, DVec3};
 
 use crate::data::{BRICK_EDGE, CELL_EDGE};
 use crate::plan::{CellSet, SweepFrame, TILE_EDGE};
 
-/// Most boxes for which tiles are found, unless there are more bricks: a direction takes some 20 ns for each.
-const MOST_BOXES: usize = 4096;
+/// Maximum number of boxes around single cells; beyond it there is one per brick. Each takes some 20 ns per
+/// direction.
+const MAX_CELL_BOXES: usize = 4096;
 
-/// Where the slice begins in a tile's entry that is one beyond the last, above the first. Grids have 2048 slices at most.
+/// Bit at which the end slice (exclusive) begins in a tile's entry, above the first slice. Grids have 2048 slices at
+/// most.
 pub const END_SLICE_BIT: u32 = 16;
 
-/// Rays and slices to either side that make up for the rounding of shaders.
-const SLACK: f64 = 0.01;
+/// Margin in rays and slices to either side, for rounding in shaders.
+const ROUNDING_MARGIN: f64 = 0.01;
 
-/// Boxes around the cells of a set of blocks and around what lies between them and their neighbours, in blocks: first
-/// corners, and last. Of many cells those around all of a brick.
+/// Returns boxes around the cells of a set of blocks, extended by interpolation to their neighbours: lower and upper
+/// corners, in blocks. If there are many cells, the boxes surround bricks.
 pub fn boxes_around(cells: &CellSet) -> Vec<[DVec3; 2]> {
     let around = |first: [usize; 3], edge: usize| {
         let low = DVec3::from(first.map(|at| at as f64));
         [low - 1.0, low + edge as f64]
     };
-    if cells.count() > MOST_BOXES {
+    if cells.count() > MAX_CELL_BOXES {
         return cells
             .bricks()
             .map(|(brick, _)| around(brick.map(|at| at * BRICK_EDGE), BRICK_EDGE))
@@ -30,32 +32,35 @@ pub fn boxes_around(cells: &CellSet) -> Vec<[DVec3; 2]> {
     cells.cells().map(|cell| around(cell.map(|at| at * CELL_EDGE), CELL_EDGE)).collect()
 }
 
-/// The slices of a direction's rays that have to be followed.
+/// Slices in which the rays of a direction have to be followed.
 ///
-/// An entry for each tile of 8 × 8 rays, row by row: the first slice, and from bit 16 on one beyond the last; of tiles
-/// without any both are 0.
+/// An entry for each tile of 8 × 8 rays, row by row: the first slice, and from bit 16 on the end slice (exclusive);
+/// both are 0 for tiles without any.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SweepTiles(pub Vec<u32>);
 
 impl SweepTiles {
-    /// The slices from the first to the last in which a tile's rays are in one of the boxes, in blocks.
-    pub fn through(frame: &SweepFrame, boxes: &[[DVec3; 2]]) -> Self {
+    /// Computes for each tile the slices from the first to the last in which its rays are in one of the boxes, in
+    /// blocks.
+    pub fn covering(frame: &SweepFrame, boxes: &[[DVec3; 2]]) -> Self {
         let [columns, rows] = frame.size.map(|n| n.div_ceil(TILE_EDGE) as usize);
         let mut spans = vec![[u32::MAX, 0]; columns * rows];
         let last_slice = frame.slices() as f64 - 1.0;
         let first_ray = DVec2::new(frame.first[0].into(), frame.first[1].into());
         let edge = f64::from(TILE_EDGE);
         for [low, high] in boxes {
-            let [(near, across_low), (far, across_high)] = [low, high].map(|corner| frame.along(*corner));
+            let [(near, across_low), (far, across_high)] =
+                [low, high].map(|corner| frame.slice_position(*corner));
             let (near, far) = if near < far { (near, far) } else { (far, near) };
-            let [first, last] = [(near - SLACK).ceil().max(0.0), (far + SLACK).floor().min(last_slice)];
+            let [first, last] =
+                [(near - ROUNDING_MARGIN).ceil().max(0.0), (far + ROUNDING_MARGIN).floor().min(last_slice)];
             if first > last {
                 continue;
             }
             let drifts = [frame.drift * first, frame.drift * last];
             let ends = [
-                across_low - drifts[0].max(drifts[1]) - first_ray - SLACK,
-                across_high - drifts[0].min(drifts[1]) - first_ray + SLACK,
+                across_low - drifts[0].max(drifts[1]) - first_ray - ROUNDING_MARGIN,
+                across_high - drifts[0].min(drifts[1]) - first_ray + ROUNDING_MARGIN,
             ];
             let tile = |at: f64, count: usize| (at / edge).floor().clamp(0.0, count as f64 - 1.0) as usize;
             for row in tile(ends[0].y, rows)..=tile(ends[1].y, rows) {
@@ -83,7 +88,7 @@ mod tests {
         sweep_directions(26).into_iter().map(|towards| SweepFrame::new(&scene, 1, towards)).collect()
     }
 
-    /// Whether a tile's rays are followed in a slice.
+    /// Returns true if a tile's rays are followed in a slice.
     fn is_followed(frame: &SweepFrame, tiles: &SweepTiles, ray: [u32; 2], slice: u32) -> bool {
         let [column, row] = ray.map(|at| at / TILE_EDGE);
         let entry = tiles.0[(row * frame.size[0].div_ceil(TILE_EDGE) + column) as usize];
@@ -98,11 +103,11 @@ mod tests {
             cells.insert(cell);
         }
         for frame in frames(dims) {
-            let tiles = SweepTiles::through(&frame, &boxes_around(&cells));
+            let tiles = SweepTiles::covering(&frame, &boxes_around(&cells));
             for ray in (0..frame.size[1]).flat_map(|y| (0..frame.size[0]).map(move |x| [x, y])) {
                 for slice in 0..frame.slices() {
-                    let at = frame.block(slice as f64, frame.crossing(ray, slice));
-                    // Blocks that the ray passes between, or that it is looked up from.
+                    let at = frame.block_position(slice as f64, frame.crossing(ray, slice));
+                    // Blocks that the ray passes between, or that look it up.
                     let is_near = cells.cells().any(|cell| {
                         let low = DVec3::from(cell.map(|c| (c * CELL_EDGE) as f64));
                         at.cmpgt(low - 1.0).all() && at.cmplt(low + 2.0).all()
@@ -122,9 +127,9 @@ mod tests {
         let boxes = boxes_around(&all);
         assert_eq!((boxes.len(), boxes[1]), (216, [DVec3::new(7.0, -1.0, -1.0), DVec3::new(16.0, 8.0, 8.0)]));
         for frame in frames([48; 3]) {
-            let tiles = SweepTiles::through(&frame, &boxes);
+            let tiles = SweepTiles::covering(&frame, &boxes);
             for block in [DVec3::ZERO, DVec3::splat(47.0), DVec3::new(3.0, 40.0, 21.0)] {
-                let (slice, ray) = frame.place(block);
+                let (slice, ray) = frame.ray_position(block);
                 let ray = [ray.x as u32, ray.y as u32];
                 assert!(is_followed(&frame, &tiles, ray, slice as u32), "{frame:?}: {block}");
             }
@@ -134,7 +139,7 @@ mod tests {
     #[test]
     fn nothing_is_followed_nowhere() {
         for frame in frames([9, 8, 7]) {
-            let tiles = SweepTiles::through(&frame, &[]);
+            let tiles = SweepTiles::covering(&frame, &[]);
             assert!(tiles.0.iter().all(|entry| *entry == 0));
         }
     }

@@ -1,124 +1,131 @@
-//! What the volume is made from that holds light which has bounced.
+//! Key of the volume of bounced light.
 
-use super::lit_lights::LitLights;
-use super::one_color::OneColor;
-use super::received::LightLook;
-use super::sky::SkyLook;
+use super::light_lookup::LightAppearance;
+use super::lit_lights::ActiveLights;
+use super::sky::SkyAppearance;
 use super::table::{EyeTableKey, OpacityKey};
-use crate::model::{Classification, Remains, Resolution, Scattering};
-use crate::plan::{Request, VolumeKey};
+use super::uniform_light_color::UniformLightColor;
+use crate::model::{ClassificationOrder, ClippedPart, LightVolumeResolution, ScatteringSettings};
+use crate::plan::{RenderRequest, VolumeKey};
 
-/// Everything that bounced light is made from: what it meets, in which colours, and all light that there is.
+/// Inputs of the volume of bounced light: the material with its colours, and all light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BouncesKey {
     volume: VolumeKey,
     opacity: OpacityKey,
-    /// What it bounces off has colours.
+    /// Colours of the material that light bounces off.
     colors: EyeTableKey,
-    classification: Classification,
-    shading_cut: Remains,
-    /// Each light, and whether material attenuates it.
-    lights: Vec<(LightLook, bool)>,
+    classification: ClassificationOrder,
+    shading_cut: ClippedPart,
+    /// Look of each light, with a flag for those that material attenuates.
+    lights: Vec<(LightAppearance, bool)>,
     balance: f64,
-    /// How many points stand for lights that have a size.
+    /// Number of points that represent an area light.
     points: u32,
-    sky: Option<SkyLook>,
+    sky: Option<SkyAppearance>,
     emission: f64,
-    /// That of all light, if there is one.
-    one_color: Option<OneColor>,
+    /// Single colour of all light, if there is one.
+    one_color: Option<UniformLightColor>,
     albedo: f64,
     density_scale: f64,
     bounces: u32,
     directions: u32,
-    resolution: Resolution,
-    /// That of previews.
-    previewed: Resolution,
+    resolution: LightVolumeResolution,
+    /// Resolution of a preview's volume.
+    preview_resolution: LightVolumeResolution,
 }
 
-/// Most points that stand for a light: what has bounced shows no edge of a shadow.
-const MOST_POINTS: u32 = 8;
+/// Maximum number of points for an area light: bounced light shows no edges of shadows.
+const MAX_LIGHT_POINTS: u32 = 8;
 
-/// Previews follow so many bounces, in so many directions: the end of the series is told from them nearly as from more.
+/// Maximum number of bounces in previews, with as many directions: the rest of the series is extrapolated from them
+/// nearly as well as from more.
 const PREVIEW_BOUNCES: u32 = 3;
-/// See [`PREVIEW_BOUNCES`].
+/// Maximum number of directions in previews, see [`PREVIEW_BOUNCES`].
 const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl BouncesKey {
-    /// The key of the volume that a picture needs; `None` where no light bounces.
-    pub fn of(request: &Request) -> Option<Self> {
+    /// Creates the key of the volume that a picture needs; `None` if no light bounces.
+    pub fn new(request: &RenderRequest) -> Option<Self> {
         let settings = &request.settings;
-        let Scattering {
+        let ScatteringSettings {
             bounces,
             albedo,
-            // Where it is looked up.
+            // Applied where the volume is looked up.
             strength: _,
-            // Of what has not bounced yet.
+            // Applies only to light that has not bounced yet.
             anisotropy: _,
             density_scale,
             directions,
             resolution,
         } = settings.scattering;
-        let lights = LitLights::of(settings);
+        let lights = ActiveLights::from_settings(settings);
         let has_area = lights.shadowed().iter().any(|lit| lit.light.area.is_some());
         settings.has_bounces().then(|| Self {
-            volume: request.shown_volume(),
-            opacity: OpacityKey::of(settings),
-            colors: EyeTableKey::of(settings),
+            volume: request.volume_key(),
+            opacity: OpacityKey::new(settings),
+            colors: EyeTableKey::new(settings),
             classification: settings.classification(),
-            shading_cut: settings.cuts.shading(),
-            lights: lights.all().iter().map(|lit| (LightLook::of(&lit.light), lit.is_shadowed())).collect(),
+            shading_cut: settings.cuts.shadowing_part(),
+            lights: lights
+                .all()
+                .iter()
+                .map(|lit| (LightAppearance::new(&lit.light), lit.is_shadowed()))
+                .collect(),
             balance: settings.shadows.balance,
-            points: if has_area { settings.shadows.area.samples.min(MOST_POINTS) } else { 1 },
-            sky: SkyLook::of(settings),
+            points: if has_area { settings.shadows.area.samples.min(MAX_LIGHT_POINTS) } else { 1 },
+            sky: SkyAppearance::new(settings),
             emission: settings.shading.emission,
-            one_color: OneColor::of(settings),
+            one_color: UniformLightColor::detect(settings),
             albedo,
             density_scale,
             bounces,
             directions,
-            resolution: settings.shadows.soft(resolution, request.volume.dims),
-            previewed: settings.shadows.soft(Resolution::Quarter, request.volume.dims),
+            resolution: settings.shadows.soft_resolution(resolution, request.volume.dims),
+            preview_resolution: settings
+                .shadows
+                .soft_resolution(LightVolumeResolution::Quarter, request.volume.dims),
         })
     }
 
-    /// The key of a preview's volume.
+    /// Returns the key of a preview's volume.
     #[must_use]
-    pub fn coarse(&self) -> Self {
+    pub fn for_preview(&self) -> Self {
         Self {
             bounces: self.bounces.min(PREVIEW_BOUNCES),
             directions: self.directions.min(PREVIEW_DIRECTIONS),
-            resolution: self.previewed,
+            resolution: self.preview_resolution,
             points: 1,
             ..self.clone()
         }
     }
 
-    /// The colour of all light, if there is one.
-    pub fn one_color(&self) -> Option<OneColor> {
+    /// Returns the single colour of all light, if there is one.
+    pub fn one_color(&self) -> Option<UniformLightColor> {
         self.one_color
     }
 
-    /// How many bounces are followed.
+    /// Returns the number of simulated bounces.
     pub fn bounces(&self) -> u32 {
         self.bounces
     }
 
-    /// In how many directions light is followed on its last bounce.
+    /// Returns the number of directions in which light is followed on its last bounce.
     pub fn directions(&self) -> u32 {
         self.directions
     }
 
-    /// And on all before.
+    /// Returns the number of directions for all bounces except the last.
     pub fn directions_of_a_bounce(&self) -> u32 {
-        Scattering::directions_of_a_bounce(self.directions)
+        ScatteringSettings::inner_bounce_directions(self.directions)
     }
 
-    /// How finely.
-    pub fn resolution(&self) -> Resolution {
+    /// Returns the resolution of the volume.
+    pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
     }
 
-    /// How many points stand for lights that have a size.
+    /// Returns the number of points that represent an area light.
     pub fn points(&self) -> u32 {
         self.points
     }

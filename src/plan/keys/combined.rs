@@ -1,44 +1,44 @@
-//! What the combined light volume is made from.
+//! Key of the combined light volume.
 
 use super::light::LightKey;
-use super::lit_lights::LitLights;
-use super::received::{LightLook, ReceivedLight};
+use super::light_lookup::{LightAppearance, LightLookupKey};
+use super::lit_lights::ActiveLights;
 use super::table::EyeTableKey;
-use crate::model::{Length, Remains, Settings, Sides};
-use crate::plan::{RenderOptions, Request};
+use crate::model::{ClippedPart, LitSides, OpacityLength, Settings};
+use crate::plan::{RenderOptions, RenderRequest};
 
-/// Everything that the volume is made from that holds the diffuse light of all shadowed lights (P §4).
+/// Inputs of the volume that holds the diffuse light of all shadowed lights (P §4).
 #[derive(Debug, Clone, PartialEq)]
 pub struct CombinedKey {
-    lights: Vec<(LightLook, Option<LightKey>)>,
-    received: ReceivedLight,
-    /// Density step from which a sample counts as a surface, and the length to which it refers.
+    lights: Vec<(LightAppearance, Option<LightKey>)>,
+    received: LightLookupKey,
+    /// Density gradient from which a sample counts as a surface, and the length to which it refers.
     surface_gradient: f64,
-    unit: Length,
-    /// To which side of a surface opacity falls, where only that is lit.
+    unit: OpacityLength,
+    /// Eye's table, which decides on the lit side of a surface, if only one side is lit.
     sides: Option<EyeTableKey>,
-    /// Faces that are seen have normals of their own.
-    seen: Remains,
-    /// What is left of light that counts as none.
+    /// Visible cuts: their faces have normals of their own.
+    seen: ClippedPart,
+    /// Transmittance below which light counts as none.
     min_transmittance: f32,
 }
 
 impl CombinedKey {
-    /// The key for the lights of a picture; `None` where each keeps its own volume.
-    pub fn of(request: &Request, options: &RenderOptions) -> Option<Self> {
+    /// Creates the key for the lights of a picture; `None` if each light keeps its own volume.
+    pub fn new(request: &RenderRequest, options: &RenderOptions) -> Option<Self> {
         let settings: &Settings = &request.settings;
-        // A preview moves one light: the volumes of the others serve it again and again.
-        (settings.combines_lights() && request.coarse.is_none()).then(|| Self {
-            lights: LitLights::of(settings)
+        // A preview moves only one light, and reuses the volumes of the others.
+        (settings.combines_lights() && request.preview_resolution.is_none()).then(|| Self {
+            lights: ActiveLights::from_settings(settings)
                 .shadowed()
                 .iter()
-                .map(|lit| (LightLook::of(&lit.light), LightKey::of(request, lit.index)))
+                .map(|lit| (LightAppearance::new(&lit.light), LightKey::new(request, lit.index)))
                 .collect(),
-            received: ReceivedLight::of(settings),
+            received: LightLookupKey::new(settings),
             surface_gradient: settings.shading.surface_gradient,
             unit: settings.opacity_unit,
-            sides: (settings.shading.sides == Sides::One).then(|| EyeTableKey::of(settings)),
-            seen: settings.cuts.seen(),
+            sides: (settings.shading.sides == LitSides::One).then(|| EyeTableKey::new(settings)),
+            seen: settings.cuts.visible_part(),
             min_transmittance: options.min_transmittance,
         })
     }

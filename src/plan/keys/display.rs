@@ -1,37 +1,37 @@
-//! What the shown picture is made from, besides its linear light.
+//! Key of the displayed picture, apart from its linear light.
 
-use crate::model::{Depth, Output};
-use crate::plan::{PixelWindow, RenderOptions, Request};
+use crate::model::{OutputSettings, PixelFormat};
+use crate::plan::{PixelWindow, RenderOptions, RenderRequest};
 
-/// Everything that turns linear light into what is shown: nothing else depends on it, so that a change of it costs
-/// one display pass.
+/// Inputs of the conversion from linear light to the displayed picture: nothing else depends on them, so that a
+/// change costs only one display pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplayKey {
-    output: Output,
+    output: OutputSettings,
     transparent: bool,
     exposure: f32,
-    /// Background gradients span the whole picture.
+    /// Displayed part; background gradients span the whole picture.
     shown: PixelWindow,
     samples: u32,
-    depth: Depth,
+    depth: PixelFormat,
 }
 
 impl DisplayKey {
-    /// The key of what a request shows.
-    pub fn of(request: &Request, options: &RenderOptions) -> Self {
+    /// Creates the key of the displayed picture of a request.
+    pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
         Self {
             output: request.settings.output.clone(),
             transparent: options.transparent,
             exposure: options.exposure,
-            shown: options.shown(request),
+            shown: options.displayed_window(request),
             samples: options.samples,
             depth: options.depth,
         }
     }
 
-    /// What the same request shows with another exposure.
+    /// Returns the key with another exposure.
     #[must_use]
-    pub fn exposed(self, exposure: f32) -> Self {
+    pub fn with_exposure(self, exposure: f32) -> Self {
         Self { exposure, ..self }
     }
 }

@@ -1,92 +1,93 @@
-//! What linear pictures are made from: the volume as the eye sees it, and the floor under it.
+//! Keys of linear pictures: the volume as seen by the eye, and the floor below it.
 
 use super::bounces::BouncesKey;
 use super::light::LightKey;
-use super::lit_lights::{Attenuation, LitLights};
-use super::received::{LightLook, ReceivedLight};
-use super::sky::{SkyKey, SkyLook};
+use super::light_lookup::{LightAppearance, LightLookupKey};
+use super::lit_lights::{ActiveLights, AttenuationMethod};
+use super::sky::{SkyAppearance, SkyKey};
 use super::table::{EyeTableKey, OpacityKey, TransmissionKey};
 use crate::model::{
-    Camera, Classification, Depth, Engine, Floor, Gradients, Kernel, Length, Quadrature, Remains, Sampling,
-    Settings, Shading, ShadowAlgorithm, Shadows, SheetOrder, Slabs,
+    Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
+    PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
+    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature,
 };
-use crate::plan::{CombinedKey, PixelWindow, RenderOptions, Request, VolumeKey};
+use crate::plan::{CombinedKey, PixelWindow, RenderOptions, RenderRequest, VolumeKey};
 
-/// Everything that the eye pass makes a linear picture from.
+/// Inputs of the linear picture of the eye pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeKey {
     volume: VolumeKey,
     window: PixelWindow,
     camera: Camera,
     curve: EyeTableKey,
-    shading: Shading,
-    /// The length to which gradients of surfaces refer.
-    unit: Length,
+    shading: PhongShading,
+    /// Length to which gradients of surfaces refer.
+    unit: OpacityLength,
     sampling: SamplingKey,
-    seen: Remains,
-    shading_cut: Remains,
-    received: ReceivedLight,
+    seen: ClippedPart,
+    shading_cut: ClippedPart,
+    received: LightLookupKey,
     lights: Vec<EyeLightKey>,
-    /// Diffuse light of all shadowed lights, which are not among `lights` then.
+    /// Combined diffuse light of all shadowed lights, which are then absent from `lights`.
     combined: Option<CombinedKey>,
-    /// The sky, and the volume that says how open to it each place is.
-    sky: Option<SkyLook>,
+    /// Sky, and the volume of its visibility.
+    sky: Option<SkyAppearance>,
     sky_volume: Option<SkyKey>,
-    /// Light that has bounced, in a volume, and what is shown of it; and where matter scatters light on its first bounce.
+    /// Volume of bounced light with the factor of its display, and the anisotropy of the first scattering.
     bounces: Option<(BouncesKey, f64)>,
     anisotropy: f64,
-    /// What rays to lights meet, where samples cast them.
-    rays: Option<RaysKey>,
+    /// Inputs of shadow rays, if samples cast any.
+    rays: Option<ShadowRaysKey>,
     options: RenderOptions,
 }
 
-/// A light, and what attenuates it.
+/// Look of a light, and its attenuation.
 #[derive(Debug, Clone, PartialEq)]
 struct EyeLightKey {
-    look: LightLook,
-    attenuation: Attenuation,
-    /// The volume from which its attenuation is read, if it has one.
+    look: LightAppearance,
+    attenuation: AttenuationMethod,
+    /// Key of its attenuation volume, if it has one.
     volume: Option<LightKey>,
 }
 
-/// How sheets are filled.
+/// Inputs of the sampling of sheets.
 #[derive(Debug, Clone, PartialEq)]
 struct SamplingKey {
-    kernel: Kernel,
+    kernel: ReconstructionKernel,
     slab: f64,
-    slabs: Slabs,
-    quadrature: Quadrature,
-    gradients: Gradients,
-    classification: Classification,
-    engine: Engine,
-    /// Only scattering has an order.
+    slabs: SlabMode,
+    quadrature: SlabQuadrature,
+    gradients: GradientSource,
+    classification: ClassificationOrder,
+    engine: RenderEngine,
+    /// Sheet order, if the scattering engine is used.
     order: Option<SheetOrder>,
 }
 
-/// What rays from samples or from the floor to lights meet.
+/// Inputs of shadow rays from samples or from the floor to lights.
 #[derive(Debug, Clone, PartialEq)]
-struct RaysKey {
+struct ShadowRaysKey {
     opacity: OpacityKey,
     transmission: Option<TransmissionKey>,
-    classification: Classification,
-    shadows: Shadows,
+    classification: ClassificationOrder,
+    shadows: ShadowSettings,
 }
 
 impl SamplingKey {
-    fn of(settings: &Settings) -> Self {
-        let Sampling { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
+    fn new(settings: &Settings) -> Self {
+        let SamplingSettings { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
             settings.sampling;
         let classification = settings.classification();
-        let order = settings.scatters().then_some(order);
+        let order = settings.uses_scattering_engine().then_some(order);
         Self { kernel, slab, slabs, quadrature, gradients, classification, engine, order }
     }
 }
 
-impl RaysKey {
-    fn of(settings: &Settings) -> Self {
+impl ShadowRaysKey {
+    fn new(settings: &Settings) -> Self {
         Self {
-            opacity: OpacityKey::of(settings),
-            transmission: TransmissionKey::of(settings),
+            opacity: OpacityKey::new(settings),
+            transmission: TransmissionKey::new(settings),
             classification: settings.sampling.classification,
             shadows: settings.shadows.clone(),
         }
@@ -94,23 +95,23 @@ impl RaysKey {
 }
 
 impl EyeKey {
-    /// The key of the picture that is made with these light volumes, one for each light of the settings that has
-    /// any, or with their combination; and with these volumes of the sky and of bounced light.
-    pub fn of(
-        request: &Request,
+    /// Creates the key of the picture that is made with these light volumes, one for each light of the settings that
+    /// has any, or with their combination; and with these volumes of sky visibility and of bounced light.
+    pub fn new(
+        request: &RenderRequest,
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
         (sky_volume, bounces): (Option<&SkyKey>, Option<&BouncesKey>),
     ) -> Self {
-        let Request { volume: _, settings, size: _, coarse: _ } = request;
+        let RenderRequest { volume: _, settings, size: _, preview_resolution: _ } = request;
         let Settings {
             schema: _,
             camera,
             lights: _,
-            // In the key of the volume.
+            // Part of the volume's key.
             range: _,
-            // In the keys of the volume and of the tables.
+            // Parts of the keys of the volume and of the tables.
             labels: _,
             transfer: _,
             lighting: _,
@@ -124,72 +125,72 @@ impl EyeKey {
             sampling: _,
             output: _,
             kept: _,
-            // In the identity of the volume that it is made into.
+            // Part of the identity of the corrected volume.
             volume: _,
         } = settings;
-        let lit = LitLights::of(settings);
+        let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };
         let lights = own.iter().map(|lit| EyeLightKey {
-            look: LightLook::of(&lit.light),
+            look: LightAppearance::new(&lit.light),
             attenuation: lit.attenuation,
             volume: volumes.get(lit.index).cloned().flatten(),
         });
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         Self {
-            volume: request.shown_volume(),
-            window: options.window(request),
+            volume: request.volume_key(),
+            window: options.sample_window(request),
             camera: camera.clone(),
-            curve: EyeTableKey::of(settings),
+            curve: EyeTableKey::new(settings),
             shading: shading.clone(),
             unit: *opacity_unit,
-            sampling: SamplingKey::of(settings),
-            seen: cuts.seen(),
-            shading_cut: cuts.shading(),
-            received: ReceivedLight::of(settings),
+            sampling: SamplingKey::new(settings),
+            seen: cuts.visible_part(),
+            shading_cut: cuts.shadowing_part(),
+            received: LightLookupKey::new(settings),
             lights: lights.collect(),
             combined: combined.cloned(),
-            sky: SkyLook::of(settings),
+            sky: SkyAppearance::new(settings),
             sky_volume: sky_volume.cloned(),
             bounces: bounces.map(|key| (key.clone(), scattering.strength * scattering.albedo)),
             anisotropy: scattering.anisotropy,
-            rays: casts_rays.then(|| RaysKey::of(settings)),
-            options: computing(options),
+            rays: casts_rays.then(|| ShadowRaysKey::new(settings)),
+            options: without_display_options(options),
         }
     }
 }
 
-/// Options as far as they say how light is computed: not how it is shown, nor how the work is cut.
-fn computing(options: &RenderOptions) -> RenderOptions {
+/// Returns the options that affect the computation of light, with those of display and scheduling reset.
+fn without_display_options(options: &RenderOptions) -> RenderOptions {
     RenderOptions {
         transparent: false,
         exposure: 1.0,
         timed: false,
         light_parts: 1,
-        depth: Depth::Eight,
+        depth: PixelFormat::Eight,
         ..options.clone()
     }
 }
 
-/// Everything that the floor pass makes the light on the floor from.
+/// Inputs of the light on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FloorKey {
-    /// What covers it, under which lights.
+    /// Volume in front of the floor, and its lights.
     eye: EyeKey,
-    floor: Floor,
-    rays: RaysKey,
+    floor: FloorSettings,
+    rays: ShadowRaysKey,
     /// Lights may be combined for the eye, but not for the floor.
-    lights: LitLights,
+    lights: ActiveLights,
 }
 
 impl FloorKey {
-    /// The key of the floor under a picture; `None` without floor.
-    pub fn of(request: &Request, eye: &EyeKey) -> Option<Self> {
+    /// Creates the key of the floor under a picture; `None` if there is no floor.
+    pub fn new(request: &RenderRequest, eye: &EyeKey) -> Option<Self> {
         let settings = &request.settings;
         settings.floor.on.then(|| Self {
             eye: eye.clone(),
             floor: settings.floor.clone(),
-            rays: RaysKey::of(settings),
-            lights: LitLights::of(settings),
+            rays: ShadowRaysKey::new(settings),
+            lights: ActiveLights::from_settings(settings),
         })
     }
 }

@@ -1,83 +1,84 @@
-//! What the attenuation volume of a light is made from.
+//! Key of a light's attenuation volume.
 
 use super::table::{OpacityKey, TransmissionKey};
 use crate::model::{
-    AreaShadows, Classification, Deposit, Engine, Hood, Kernel, LightArea, LightKind, Precision, Quadrature,
-    Remains, Resolution, ReverseKernel, Sampling, SceneLight, Settings, ShadowAlgorithm, Shadows,
+    AreaLightSampling, ClassificationOrder, ClippedPart, DepositMode, LightArea, LightGeometry,
+    LightVolumePrecision, LightVolumeResolution, ReconstructionKernel, RenderEngine, ReverseKernel,
+    SamplingSettings, SceneLight, Settings, ShadowAlgorithm, ShadowSettings, SlabQuadrature, Spotlight,
 };
-use crate::plan::{Request, VolumeKey};
+use crate::plan::{RenderRequest, VolumeKey};
 
-/// Everything that one light's attenuation volume is made from.
+/// Inputs of the attenuation volume of one light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightKey {
     volume: VolumeKey,
-    kind: LightKind,
-    /// The position, or for a parallel light the direction: moving it outwards changes nothing.
-    placed: [f64; 3],
-    /// Angles of the hood, if there is one.
+    kind: LightGeometry,
+    /// Position, or for a parallel light the direction, so that moving it outwards changes nothing.
+    position_or_direction: [f64; 3],
+    /// Angles of the hood in degrees, if there is one.
     hood_deg: Option<[f64; 2]>,
     density_scale: f64,
-    /// How large it is, and from how many points it is followed; `None` of a point.
+    /// Area of the light, and the number of points on it; `None` for a point light.
     area: Option<(LightArea, u32)>,
     algorithm: ShadowAlgorithm,
-    classification: Classification,
-    engine: Engine,
+    classification: ClassificationOrder,
+    engine: RenderEngine,
     opacity: OpacityKey,
     transmission: Option<TransmissionKey>,
     first_touch: bool,
-    deposit: Deposit,
-    kernel: Kernel,
-    /// Only what is gathered back has one of its own.
+    deposit: DepositMode,
+    kernel: ReconstructionKernel,
+    /// Reverse kernel, which only the gathering engine has.
     reverse_kernel: ReverseKernel,
     slab: f64,
-    quadrature: Quadrature,
-    resolution: Resolution,
-    precision: Precision,
-    shading_cut: Remains,
+    quadrature: SlabQuadrature,
+    resolution: LightVolumeResolution,
+    precision: LightVolumePrecision,
+    shading_cut: ClippedPart,
 }
 
-/// Previews follow lights that have a size from so many points.
+/// Maximum number of points on an area light in previews.
 const PREVIEW_SAMPLES: u32 = 16;
 
 impl LightKey {
-    /// The key of this light's volume for a preview, at a resolution that is no finer.
+    /// Returns the key of this light's volume for a preview, at a resolution that is no finer.
     #[must_use]
-    pub fn coarse(&self, resolution: Resolution) -> Self {
+    pub fn for_preview(&self, resolution: LightVolumeResolution) -> Self {
         let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
         Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
     }
 
-    /// How many point lights stand for the light.
+    /// Returns the number of point lights that represent the light.
     pub fn samples(&self) -> u32 {
         self.area.map_or(1, |(_, samples)| samples)
     }
 
-    /// Whether there is a transmittance for each colour of light.
+    /// Returns true if there is a transmittance for each colour channel.
     pub fn has_colors(&self) -> bool {
         self.transmission.is_some()
     }
 
-    /// Resolution of the light volume.
-    pub fn resolution(&self) -> Resolution {
+    /// Returns the resolution of the light volume.
+    pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
     }
 
-    /// How its values are stored.
-    pub fn precision(&self) -> Precision {
+    /// Returns the storage format of transmittances.
+    pub fn precision(&self) -> LightVolumePrecision {
         self.precision
     }
 
-    /// The key of light `index` of a request; `None` when it needs no attenuation volume.
-    pub fn of(request: &Request, index: usize) -> Option<Self> {
+    /// Creates the key of light `index` of a request; `None` if it needs no attenuation volume.
+    pub fn new(request: &RenderRequest, index: usize) -> Option<Self> {
         let Settings {
             schema: _,
             camera,
             lights,
-            // In the key of the volume.
+            // Part of the volume's key.
             range: _,
-            // In those of the volume and of opacities.
+            // Parts of the keys of the volume and of opacities.
             labels: _,
-            // In the key of opacities.
+            // Parts of the key of opacities.
             transfer: _,
             lighting: _,
             opacity_unit: _,
@@ -88,7 +89,7 @@ impl LightKey {
             cuts,
             floor: _,
             sampling:
-                Sampling {
+                SamplingSettings {
                     kernel: _,
                     slab: _,
                     slabs: _,
@@ -100,10 +101,10 @@ impl LightKey {
                 },
             output: _,
             kept: _,
-            // In the identity of the volume that it is made into.
+            // Part of the identity of the corrected volume.
             volume: _,
         } = &request.settings;
-        let light = lights.get(index)?.in_scene(camera);
+        let light = lights.get(index)?.resolve(camera);
         let SceneLight {
             kind,
             position,
@@ -111,14 +112,14 @@ impl LightKey {
             intensity: _,
             on: _,
             casts_shadows: _,
-            hood: Hood { on: hooded, half_angle_deg, rim_deg },
+            hood: Spotlight { on: hooded, half_angle_deg, rim_deg },
             density_scale,
             area,
         } = &light;
-        let hooded = *hooded && *kind == LightKind::Perspective;
-        let Shadows {
+        let hooded = *hooded && *kind == LightGeometry::Perspective;
+        let ShadowSettings {
             algorithm,
-            // In the resolution of soft light.
+            // Part of the resolution of soft light.
             least_blocks: _,
             strength: _,
             ambient_offset: _,
@@ -136,17 +137,17 @@ impl LightKey {
             precision,
             storage: _,
             reverse_kernel,
-            // Where it is looked up.
+            // Applied where light is looked up.
             near_field: _,
-            area: AreaShadows { samples, resolution: _ },
+            area: AreaLightSampling { samples, resolution: _ },
         } = shadows;
         let wanted = algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
-            volume: request.shown_volume(),
+            volume: request.volume_key(),
             kind: *kind,
-            placed: match kind {
-                LightKind::Parallel => light.direction().into(),
-                LightKind::Perspective => *position,
+            position_or_direction: match kind {
+                LightGeometry::Parallel => light.direction().into(),
+                LightGeometry::Perspective => *position,
             },
             hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
             density_scale: *density_scale,
@@ -154,14 +155,14 @@ impl LightKey {
             algorithm: *algorithm,
             classification: request.settings.classification(),
             // Rays need no sheets.
-            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { Engine::Gather },
-            opacity: OpacityKey::of(&request.settings),
-            transmission: TransmissionKey::of(&request.settings),
+            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { RenderEngine::Gather },
+            opacity: OpacityKey::new(&request.settings),
+            transmission: TransmissionKey::new(&request.settings),
             first_touch: *first_touch,
             deposit: *deposit,
             kernel: *kernel,
             reverse_kernel: if *algorithm == ShadowAlgorithm::Splat
-                && *engine == Engine::Gather
+                && *engine == RenderEngine::Gather
                 && !*first_touch
             {
                 *reverse_kernel
@@ -170,14 +171,14 @@ impl LightKey {
             },
             slab: *slab,
             quadrature: *quadrature,
-            // One volume for all lights has one resolution.
+            // A combined volume has one resolution for all lights.
             resolution: if request.settings.combines_lights() {
                 shadows.resolution
             } else {
-                light.resolution(shadows, request.volume.dims)
+                light.volume_resolution(shadows, request.volume.dims)
             },
             precision: *precision,
-            shading_cut: cuts.shading(),
+            shading_cut: cuts.shadowing_part(),
         })
     }
 }

@@ -1,74 +1,74 @@
-//! The lights of a picture, resolved once: eye, floor and light passes share their order.
+//! Lights of a picture, resolved once, in the order that eye, floor and light passes share.
 
 use crate::model::{MAX_LIGHTS, SceneLight, Settings, ShadowAlgorithm};
 
-/// How material attenuates a light on its way.
+/// Method by which a light's attenuation is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Attenuation {
-    /// Not at all.
+pub enum AttenuationMethod {
+    /// No attenuation: the light casts no shadows.
     None,
-    /// As its light volume says.
+    /// Lookup in the light's attenuation volume.
     Volume,
-    /// By a ray from every sample.
+    /// Ray to the light from every sample.
     Rays,
 }
 
-/// A light that is on.
+/// Light that is switched on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LitLight {
-    /// Place of the light in the settings.
+pub struct ActiveLight {
+    /// Index of the light in the settings.
     pub index: usize,
-    /// Where and what it is.
+    /// Light resolved into scene space.
     pub light: SceneLight,
-    /// What attenuates it.
-    pub attenuation: Attenuation,
+    /// Method of its attenuation.
+    pub attenuation: AttenuationMethod,
 }
 
-impl LitLight {
-    /// Whether material attenuates it.
+impl ActiveLight {
+    /// Returns true if material attenuates the light.
     pub fn is_shadowed(&self) -> bool {
-        self.attenuation != Attenuation::None
+        self.attenuation != AttenuationMethod::None
     }
 }
 
-/// The lights of a picture that are on, those that material attenuates first, each kind in the order of the
-/// settings: the order in which shaders expect them.
+/// Lights of a picture that are on: those that material attenuates first, each group in the order of the settings.
+/// Shaders expect this order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LitLights(Vec<LitLight>);
+pub struct ActiveLights(Vec<ActiveLight>);
 
-impl LitLights {
+impl ActiveLights {
     /// Resolves the lights of a look.
-    pub fn of(settings: &Settings) -> Self {
+    pub fn from_settings(settings: &Settings) -> Self {
         let shadowed = match settings.shadows.algorithm {
-            ShadowAlgorithm::Off => Attenuation::None,
-            ShadowAlgorithm::Splat | ShadowAlgorithm::Raycast => Attenuation::Volume,
-            ShadowAlgorithm::Direct => Attenuation::Rays,
+            ShadowAlgorithm::Off => AttenuationMethod::None,
+            ShadowAlgorithm::Splat | ShadowAlgorithm::Raycast => AttenuationMethod::Volume,
+            ShadowAlgorithm::Direct => AttenuationMethod::Rays,
         };
         let on = settings.lights.iter().enumerate().filter(|(_, light)| light.on).take(MAX_LIGHTS);
         let mut lights: Vec<_> = on
-            .map(|(index, light)| LitLight {
+            .map(|(index, light)| ActiveLight {
                 index,
-                light: light.in_scene(&settings.camera),
-                attenuation: if light.needs_volume() { shadowed } else { Attenuation::None },
+                light: light.resolve(&settings.camera),
+                attenuation: if light.needs_volume() { shadowed } else { AttenuationMethod::None },
             })
             .collect();
         lights.sort_by_key(|lit| !lit.is_shadowed());
         Self(lights)
     }
 
-    /// All of them.
-    pub fn all(&self) -> &[LitLight] {
+    /// Returns all lights that are on.
+    pub fn all(&self) -> &[ActiveLight] {
         &self.0
     }
 
-    /// Those that material attenuates, which come first.
-    pub fn shadowed(&self) -> &[LitLight] {
+    /// Returns the lights that material attenuates, which come first.
+    pub fn shadowed(&self) -> &[ActiveLight] {
         let count = self.0.iter().take_while(|lit| lit.is_shadowed()).count();
         &self.0[..count]
     }
 
-    /// Those that nothing attenuates, which come last.
-    pub fn unshadowed(&self) -> &[LitLight] {
+    /// Returns the lights without shadows, which come last.
+    pub fn unshadowed(&self) -> &[ActiveLight] {
         &self.0[self.shadowed().len()..]
     }
 }
@@ -76,20 +76,21 @@ impl LitLights {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Light, Shadows};
+    use crate::model::{LightSettings, ShadowSettings};
 
     #[test]
     fn shadowed_lights_come_first_in_the_order_of_the_settings() {
-        let light = |on: bool, casts_shadows: bool| Light { on, casts_shadows, ..Light::default() };
+        let light =
+            |on: bool, casts_shadows: bool| LightSettings { on, casts_shadows, ..LightSettings::default() };
         let lights = vec![light(true, false), light(true, true), light(false, true), light(true, true)];
         let mut settings = Settings { lights, ..Settings::default() };
         let order = |settings: &Settings| {
-            let lit = LitLights::of(settings);
-            let indices = |lights: &[LitLight]| lights.iter().map(|lit| lit.index).collect::<Vec<_>>();
+            let lit = ActiveLights::from_settings(settings);
+            let indices = |lights: &[ActiveLight]| lights.iter().map(|lit| lit.index).collect::<Vec<_>>();
             (indices(lit.shadowed()), indices(lit.unshadowed()))
         };
         assert_eq!(order(&settings), (vec![1, 3], vec![0]));
-        settings.shadows = Shadows { algorithm: ShadowAlgorithm::Off, ..Shadows::default() };
+        settings.shadows = ShadowSettings { algorithm: ShadowAlgorithm::Off, ..ShadowSettings::default() };
         assert_eq!(order(&settings), (vec![], vec![0, 1, 3]));
     }
 }

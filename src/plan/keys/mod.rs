@@ -1,71 +1,71 @@
-//! Keys: what each product of the renderer is made from.
+//! Keys: the inputs of each product of the renderer.
 //!
-//! A product is kept together with its key, and is stale exactly when the key that a picture needs differs.
-//! Settings are taken apart without `..`, so that a new field does not compile until it is classified.
+//! A product is cached together with its key, and is stale exactly if the key that a picture needs differs. Settings
+//! are destructured without `..`, so that a new field does not compile until it is classified.
 
 mod bounces;
 mod combined;
 mod display;
 mod eye;
 mod light;
+mod light_lookup;
 mod lit_lights;
-mod one_color;
-mod received;
 mod sky;
 mod table;
 #[cfg(test)]
 mod tests;
+mod uniform_light_color;
 
 pub use bounces::BouncesKey;
 pub use combined::CombinedKey;
 pub use display::DisplayKey;
 pub use eye::{EyeKey, FloorKey};
 pub use light::LightKey;
-pub use lit_lights::{Attenuation, LitLight, LitLights};
-pub use one_color::OneColor;
+pub use lit_lights::{ActiveLight, ActiveLights, AttenuationMethod};
 pub use sky::SkyKey;
 pub use table::{EyeTableKey, OpacityKey, TablesKey};
+pub use uniform_light_color::UniformLightColor;
 
-use super::{RenderOptions, Request, VolumeKey};
+use super::{RenderOptions, RenderRequest, VolumeKey};
 
-/// The keys of everything that a picture needs.
+/// Keys of all products that a picture needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameKeys {
     /// Density, pyramid and gradients on the GPU.
     pub volume: VolumeKey,
-    /// Both lookup tables, and where they show anything.
+    /// Lookup tables of both transfer functions, and the cells that they show.
     pub tables: TablesKey,
     /// Attenuation volume of each light of the settings, at the resolution of the settings; `None` for lights
     /// without.
     pub lights: Vec<Option<LightKey>>,
-    /// The diffuse light of all of them in one volume, where the settings ask for it.
+    /// Combined diffuse light of all lights, if the settings request it.
     pub combined: Option<CombinedKey>,
-    /// How open to the sky each place is, where there is one.
+    /// Volume of sky visibility, if there is one.
     pub sky: Option<SkyKey>,
-    /// Light that has bounced, where any does.
+    /// Volume of bounced light, if any light bounces.
     pub bounces: Option<BouncesKey>,
     /// Linear light of the volume.
     pub eye: EyeKey,
     /// Linear light on the floor, if there is one.
     pub floor: Option<FloorKey>,
-    /// What is shown of both.
+    /// Display of both on screen or in a file.
     pub display: DisplayKey,
 }
 
 impl FrameKeys {
-    /// The keys of a picture: a pure function of what is asked for.
-    pub fn of(request: &Request, options: &RenderOptions) -> Self {
+    /// Computes the keys of a picture: a pure function of request and options.
+    pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
         let lights: Vec<_> =
-            (0..request.settings.lights.len()).map(|index| LightKey::of(request, index)).collect();
-        let combined = CombinedKey::of(request, options);
-        let sky = SkyKey::of(request);
-        let bounces = BouncesKey::of(request);
-        let eye = EyeKey::of(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
+            (0..request.settings.lights.len()).map(|index| LightKey::new(request, index)).collect();
+        let combined = CombinedKey::new(request, options);
+        let sky = SkyKey::new(request);
+        let bounces = BouncesKey::new(request);
+        let eye = EyeKey::new(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
         Self {
-            volume: request.shown_volume(),
-            tables: TablesKey::of(request),
-            floor: FloorKey::of(request, &eye),
-            display: DisplayKey::of(request, options),
+            volume: request.volume_key(),
+            tables: TablesKey::new(request),
+            floor: FloorKey::new(request, &eye),
+            display: DisplayKey::new(request, options),
             lights,
             combined,
             sky,
@@ -74,8 +74,8 @@ impl FrameKeys {
         }
     }
 
-    /// How many light volumes of this picture another one does not have.
-    pub fn lights_missing_in(&self, other: &Self) -> usize {
+    /// Returns the number of light volumes of this picture that another picture does not have.
+    pub fn count_lights_missing_in(&self, other: &Self) -> usize {
         self.lights
             .iter()
             .flatten()

@@ -1,82 +1,84 @@
-//! What the volume is made from that says how open to the sky each place is.
+//! Key of the volume of sky visibility.
 
 use super::table::OpacityKey;
-use crate::model::{Classification, Remains, Resolution, SceneAxis, Settings, SkyMode};
-use crate::plan::{Request, VolumeKey};
+use crate::model::{ClassificationOrder, ClippedPart, LightVolumeResolution, SceneAxis, Settings, SkyMode};
+use crate::plan::{RenderRequest, VolumeKey};
 
-/// Everything that the volume of the sky's visibility is made from: no colours, no brightness, no turn.
+/// Inputs of the volume of sky visibility: no colours, no brightness, no rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkyKey {
     volume: VolumeKey,
     opacity: OpacityKey,
-    classification: Classification,
-    shading_cut: Remains,
+    classification: ClassificationOrder,
+    shading_cut: ClippedPart,
     density_scale: f64,
     directions: u32,
-    resolution: Resolution,
-    /// That of previews.
-    previewed: Resolution,
+    resolution: LightVolumeResolution,
+    /// Resolution of a preview's volume.
+    preview_resolution: LightVolumeResolution,
 }
 
-/// Previews follow light from so many directions at most: with 6 a tooth's picture is 2.8 % of white from that of 64 (root mean
-/// square), with 14 it is 0.7 %, and with 26 it would be 0.6 %.
+/// Maximum number of directions in previews: with 6, the picture of a tooth differs by 2.8 % of white from that with
+/// 64 (root mean square), with 14 by 0.7 %, and with 26 by 0.6 %.
 const PREVIEW_DIRECTIONS: u32 = 14;
 
 impl SkyKey {
-    /// The key of the volume that a picture needs; `None` where nothing attenuates a sky.
-    pub fn of(request: &Request) -> Option<Self> {
+    /// Creates the key of the volume that a picture needs; `None` if nothing attenuates a sky.
+    pub fn new(request: &RenderRequest) -> Option<Self> {
         let settings = &request.settings;
         settings.has_sky_volume().then(|| Self {
-            volume: request.shown_volume(),
-            opacity: OpacityKey::of(settings),
+            volume: request.volume_key(),
+            opacity: OpacityKey::new(settings),
             classification: settings.classification(),
-            shading_cut: settings.cuts.shading(),
+            shading_cut: settings.cuts.shadowing_part(),
             density_scale: settings.sky.density_scale,
             directions: settings.sky.directions,
-            resolution: settings.shadows.soft(settings.sky.resolution, request.volume.dims),
-            previewed: settings.shadows.soft(Resolution::Quarter, request.volume.dims),
+            resolution: settings.shadows.soft_resolution(settings.sky.resolution, request.volume.dims),
+            preview_resolution: settings
+                .shadows
+                .soft_resolution(LightVolumeResolution::Quarter, request.volume.dims),
         })
     }
 
-    /// The key of a preview's volume.
+    /// Returns the key of a preview's volume.
     #[must_use]
-    pub fn coarse(&self) -> Self {
+    pub fn for_preview(&self) -> Self {
         let directions = self.directions.min(PREVIEW_DIRECTIONS);
-        Self { directions, resolution: self.previewed, ..self.clone() }
+        Self { directions, resolution: self.preview_resolution, ..self.clone() }
     }
 
-    /// From how many directions light is followed.
+    /// Returns the number of directions from which light is followed.
     pub fn directions(&self) -> u32 {
         self.directions
     }
 
-    /// How finely.
-    pub fn resolution(&self) -> Resolution {
+    /// Returns the resolution of the volume.
+    pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
     }
 
-    /// What multiplies the extinction.
+    /// Returns the factor of the extinction.
     pub fn density_scale(&self) -> f64 {
         self.density_scale
     }
 }
 
-/// A sky as samples see it.
+/// Look of a sky from samples.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct SkyLook {
+pub(super) struct SkyAppearance {
     mode: SkyMode,
     intensity: f64,
     colors: [[f32; 3]; 3],
     lean_deg: [f64; 2],
-    /// Of a picture of surroundings: their mean, and its slopes.
+    /// Mean radiance of an environment map, and its slopes.
     picture: Option<([f64; 3], [[f64; 3]; 3])>,
-    /// What it leans from.
+    /// Axis relative to which the sky is tilted.
     up: Option<SceneAxis>,
 }
 
-impl SkyLook {
-    /// What samples see; `None` where there is no sky.
-    pub(super) fn of(settings: &Settings) -> Option<Self> {
+impl SkyAppearance {
+    /// Extracts the look of the sky; `None` if there is none.
+    pub(super) fn new(settings: &Settings) -> Option<Self> {
         let sky = &settings.sky;
         let is_plain = sky.mode == SkyMode::White;
         let is_gradient = sky.mode == SkyMode::Gradient;

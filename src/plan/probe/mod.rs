@@ -1,89 +1,92 @@
-//! What is at a point of the picture, and what light gets there: answers for a pointer, on the CPU, by
-//! single rays.
+//! Probe of the picture at a point: value, opacity and arriving light, computed on the CPU by single rays.
 
 mod rays;
 
 use glam::DVec3;
 
-use self::rays::{Rays, Way};
+use self::rays::{LightSegment, VolumeRays};
 use crate::data::Volume;
 use crate::math::luminance;
-use crate::model::{BakedTransfer, LightKind, SceneLight, Settings, Sides};
+use crate::model::{BakedTransfer, LightGeometry, LitSides, SceneLight, Settings};
 use crate::plan::sweep_directions;
 
-/// What is seen somewhere in the picture.
+/// Probe result at a position of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
-    /// In scene space.
+    /// Position in scene space.
     pub point: DVec3,
-    /// In index space.
+    /// Position in index space.
     pub index: DVec3,
-    /// In millimetres, as the file places it.
+    /// Position in world space, in millimetres.
     pub world_mm: DVec3,
-    /// The value there, in data units.
+    /// Value of the volume, in data units.
     pub value: f64,
-    /// Opacity there, per opacity unit of the eye's transfer function.
+    /// Opacity per opacity unit of the eye's transfer function.
     pub opacity: f64,
-    /// What gets there, for every light of the settings.
-    pub lights: Vec<Arrival>,
-    /// How open it is to the sky, if there is one: 1 for a place or a surface with nothing in the way.
+    /// Light that arrives, for every light of the settings.
+    pub lights: Vec<LightArrival>,
+    /// Sky visibility, if there is a sky: 1 for a position or a surface with nothing in the way.
     pub sky: Option<f64>,
 }
 
-/// What of a light arrives at a point.
+/// Arriving part of a light at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arrival {
-    /// Share that material lets through, 0 … 1; 1 for lights that cast no shadows.
+pub struct LightArrival {
+    /// Transmittance of the material, 0 … 1; 1 for lights that cast no shadows.
     pub transmittance: f64,
-    /// Share that the hood lets through.
+    /// Share that the hood lets through, 0 … 1.
     pub hood: f64,
-    /// Cosine between the surface's normal and the direction to the light, never less than 0 where both sides are lit;
-    /// `None` where nothing is a surface.
+    /// Cosine between the surface's normal and the direction to the light, never negative if both sides are lit;
+    /// `None` where there is no surface.
     pub facing: Option<f64>,
-    /// Between which distances from the point, in scene units, most of what is lost on the way from the light's middle is
-    /// lost; none where hardly anything is, or where the light casts no shadows.
+    /// Range of distances from the point, in scene units, in which most of the light from the light's centre is lost;
+    /// `None` if hardly any is, or if the light casts no shadows.
     pub blocked: Option<[f64; 2]>,
 }
 
-/// Rays to the sky: a few milliseconds.
-const PROBED_DIRECTIONS: u32 = 64;
+/// Number of rays to the sky: a few milliseconds.
+const SKY_DIRECTIONS: u32 = 64;
 
-/// Rays to each light that has a size, at most: of what it loses a reader sees whole per cents.
-const PROBED_POINTS: u32 = 16;
+/// Maximum number of rays to each area light: losses are displayed in whole per cent.
+const MAX_LIGHT_POINTS: u32 = 16;
 
-/// Looks along a ray (in scene space) and says what is seen there; `None` if nothing is.
+/// Traces a ray (in scene space) and returns the probe at the first visible position; `None` if nothing is visible.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
-    let volume = &volume.showing(settings.shown(&volume.ranges()));
-    let (settings, range) = (&*settings.as_drawn(volume), volume.table_range());
+    let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges()));
+    let (settings, range) = (&*settings.resolved_for(volume), volume.table_range());
     let is_by_label = volume.shown_labels().is_some();
-    let rays = Rays { volume, scene: volume.scene(), is_by_label };
+    let rays = VolumeRays { volume, scene: volume.scene(), is_by_label };
     let scene = &rays.scene;
-    let eye = settings.baked_eye(range, scene);
-    let seen = settings.cuts.seen().region(scene);
-    let point = rays.first_seen(&eye, &seen, origin, direction)?;
+    let eye = settings.bake_eye(range, scene);
+    let seen = settings.cuts.visible_part().region(scene);
+    let point = rays.first_visible(&eye, &seen, origin, direction)?;
     let index = scene.index_from_scene.transform_point3(point);
-    // As the file has it, beyond what is shown, too.
+    // Not clamped to the shown range.
     let value = rays.value(index, &eye);
-    let lighting = settings.baked_lighting(range, scene);
-    let met_by_colors = settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.met_by(color)));
-    let is_one_sided = settings.shading.sides == Sides::One;
-    // Opacity falls towards high densities: into a solid, too, in which it rises.
-    let falls = is_one_sided && !is_by_label && eye.side(rays.field(index, &eye).0) < 0.0;
+    let lighting = settings.bake_lighting(range, scene);
+    let met_by_colors =
+        settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.for_light_color(color)));
+    let is_one_sided = settings.shading.sides == LitSides::One;
+    // True if opacity falls towards high densities; never for solid labels, in which it rises.
+    let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).0) < 0.0;
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
-    let shading_cut = settings.cuts.shading().region(scene);
+    let shading_cut = settings.cuts.shadowing_part().region(scene);
     let sky = settings.sky.is_on().then(|| {
         if !settings.has_sky_volume() {
             return 1.0;
         }
         let left = |towards: DVec3| {
-            let depth =
-                rays.optical_depth(&lighting, &shading_cut, Way { point, towards, distance: f64::INFINITY });
+            let depth = rays.optical_depth(
+                &lighting,
+                &shading_cut,
+                LightSegment { point, towards, distance: f64::INFINITY },
+            );
             (-depth * settings.sky.density_scale).exp()
         };
-        // Of a surface, the share of the half of the sky that it faces, each direction by its cosine.
+        // For a surface, sky visibility over the hemisphere that it faces, weighted by the cosine.
         let facing = |towards: DVec3| if normal == DVec3::ZERO { 1.0 } else { normal.dot(towards).max(0.0) };
-        let directions = sweep_directions(PROBED_DIRECTIONS);
+        let directions = sweep_directions(SKY_DIRECTIONS);
         let open: f64 = directions.iter().map(|&towards| facing(towards) * left(towards)).sum();
         open / directions.into_iter().map(facing).sum::<f64>().max(1e-9)
     });
@@ -91,14 +94,14 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         .lights
         .iter()
         .map(|light| {
-            let light = light.in_scene(&settings.camera);
+            let light = light.resolve(&settings.camera);
             let is_shadowed = light.needs_volume() && settings.shadows.algorithm.is_on();
-            // The mean over what shines of it.
-            let points = light.points(settings.shadows.area.samples.min(PROBED_POINTS));
+            // The mean over points of an area light.
+            let points = light.sample_lights(settings.shadows.area.samples.min(MAX_LIGHT_POINTS));
             let mean =
                 |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
             let left = |light: &SceneLight| {
-                let way = way(light, point);
+                let way = segment_to_light(light, point);
                 let of_color = |table: &BakedTransfer| {
                     let depth = rays.optical_depth(table, &shading_cut, way);
                     (-depth * light.density_scale).exp()
@@ -110,14 +113,18 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
             };
             let through_hood = |light: &SceneLight| {
                 let cone = light.cone();
-                cone.share(cone.axis.dot(-way(light, point).towards))
+                cone.attenuation(cone.axis.dot(-segment_to_light(light, point).towards))
             };
-            let middle = way(&light, point);
-            let blocked = is_shadowed.then(|| rays.blocked(&lighting, &shading_cut, middle)).flatten();
-            // Of a light that has a size, what has risen of it.
-            let risen = light.risen(point, normal, 1.0);
-            let facing = if is_one_sided && light.casts_shadows { risen.facing } else { risen.middle.abs() };
-            Arrival {
+            let middle = segment_to_light(&light, point);
+            let blocked = is_shadowed.then(|| rays.blocked_range(&lighting, &shading_cut, middle)).flatten();
+            // For an area light, the part above the surface's horizon.
+            let risen = light.above_horizon(point, normal, 1.0);
+            let facing = if is_one_sided && light.casts_shadows {
+                risen.mean_cosine
+            } else {
+                risen.centre_cosine.abs()
+            };
+            LightArrival {
                 transmittance: if is_shadowed { mean(&left) } else { 1.0 },
                 hood: mean(&through_hood),
                 facing: (normal != DVec3::ZERO).then_some(facing),
@@ -130,28 +137,30 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         index,
         world_mm: volume.world_from_index().transform_point3(index),
         value,
-        opacity: settings.transfer.opacity_at(range.at(volume.density_of(value))),
+        opacity: settings.transfer.opacity_at(range.value_at(volume.density_of(value))),
         lights,
         sky,
     })
 }
 
-/// The way from a point to a light.
-fn way(light: &SceneLight, point: DVec3) -> Way {
+/// Returns the segment from a point to a light.
+fn segment_to_light(light: &SceneLight, point: DVec3) -> LightSegment {
     let distance = match light.kind {
-        LightKind::Parallel => f64::INFINITY,
-        LightKind::Perspective => DVec3::from(light.position).distance(point),
+        LightGeometry::Parallel => f64::INFINITY,
+        LightGeometry::Perspective => DVec3::from(light.position).distance(point),
     };
-    Way { point, towards: light.towards(point), distance }
+    LightSegment { point, towards: light.direction_from(point), distance }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::Samples;
-    use crate::model::{ControlPoint, Length, Light, LightShape, ShadowAlgorithm, SkyMode, TransferFunction};
+    use crate::model::{
+        ControlPoint, LightSettings, LightShape, OpacityLength, ShadowAlgorithm, SkyMode, TransferFunction,
+    };
 
-    /// A slab of stuff at z = 10 … 13 over a block at z = 0 … 5.
+    /// Makes a slab at z = 10 … 13 over a block at z = 0 … 5.
     fn slab_over_block() -> (Volume, Settings) {
         let n = 16;
         let values = (0..n * n * n)
@@ -169,10 +178,10 @@ mod tests {
         };
         let settings = Settings {
             transfer,
-            opacity_unit: Length::Voxels(1.0),
+            opacity_unit: OpacityLength::Voxels(1.0),
             lights: vec![
-                Light { position: [0.0, 0.0, 3.0], ..Light::default() },
-                Light { position: [3.0, 0.0, 0.0], casts_shadows: false, ..Light::default() },
+                LightSettings { position: [0.0, 0.0, 3.0], ..LightSettings::default() },
+                LightSettings { position: [3.0, 0.0, 0.0], casts_shadows: false, ..LightSettings::default() },
             ],
             ..Settings::default()
         };
@@ -180,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_under_something_is_less_open_to_the_sky() {
+    fn covered_surfaces_see_less_sky() {
         let (volume, mut settings) = slab_over_block();
         let top = DVec3::new(0.0, 0.0, -0.3);
         let open = |settings: &Settings, from: DVec3| {
@@ -188,7 +197,7 @@ mod tests {
         };
         assert_eq!(open(&settings, DVec3::new(0.0, 0.0, 3.0)), None);
         settings.sky.mode = SkyMode::White;
-        // The top of the block, from the side, under the slab and without it.
+        // The top of the block, seen from the side, with and without the slab above it.
         let aside = DVec3::new(-3.0, 0.0, 0.4);
         let below = open(&settings, aside).unwrap();
         let mut bare = settings.clone();
@@ -200,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_thing_met_is_what_is_seen() {
+    fn the_first_visible_surface_is_probed() {
         let (volume, settings) = slab_over_block();
         let from_below = probe(&volume, &settings, DVec3::new(0.0, 0.0, -3.0), DVec3::Z).unwrap();
         assert!((from_below.index.z - 0.0).abs() < 1.0, "{from_below:?}");
@@ -215,11 +224,11 @@ mod tests {
         );
     }
 
-    /// Voxels that a file declares as padding, with a value that the curve shows, are neither seen nor counted.
+    /// Tests that voxels declared as padding, with a value that the curve shows, are neither visible nor attenuating.
     #[test]
-    fn what_is_missing_is_not_met() {
+    fn missing_voxels_are_invisible() {
         let (volume, mut settings) = slab_over_block();
-        // What is seen is a face, not the middle of what lies behind it.
+        // Opaque, so that the probe hits a face and not the middle of the layer.
         settings.transfer.points[1].opacity = 0.99;
         let look = |volume: &Volume| probe(volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
         let without_slab = volume.clone().with_padding(0.5).expect("the block");
@@ -231,43 +240,43 @@ mod tests {
             seen.expect("the block's side").lights[0].transmittance
         });
         assert!(uncovered > 2.0 * below, "{uncovered} {below}");
-        // Beside voxels that are missing, too, the value is that of voxels which are there; and the surface faces them.
+        // Beside missing voxels, the value is that of present ones, and the surface faces the missing ones.
         let layers = look(&volume.with_padding(0.0).expect("the layers")).expect("the slab");
         assert!((layers.value - 0.5).abs() < 1e-6, "{layers:?}");
         assert!(layers.lights[0].facing.is_some_and(|facing| facing > 0.9), "{layers:?}");
     }
 
     #[test]
-    fn what_is_cut_away_is_not_met() {
-        use crate::model::{ClipPlane, CutEffect};
+    fn cut_material_is_invisible() {
+        use crate::model::{ClipEffect, ClipPlane};
         let (volume, mut settings) = slab_over_block();
         let look = |settings: &Settings| {
             probe(&volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).expect("something")
         };
         let whole = look(&settings);
-        // Between the layers: the upper one is cut away.
+        // The plane between the layers cuts away the upper one.
         settings.cuts.plane =
             ClipPlane { on: true, normal: [0.0, 0.0, 1.0], offset: 0.1, ..ClipPlane::default() };
         let below = look(&settings);
         assert!(below.index.z < 7.0 && whole.index.z > 9.0, "{below:?}");
-        settings.cuts.plane.effect = CutEffect::Hidden;
+        settings.cuts.plane.effect = ClipEffect::Hidden;
         let shaded = look(&settings);
         assert_eq!(shaded.index, below.index);
         assert!(shaded.lights[0].transmittance < 0.4 * below.lights[0].transmittance, "{shaded:?} {below:?}");
-        settings.cuts.plane.effect = CutEffect::Shadowless;
+        settings.cuts.plane.effect = ClipEffect::Shadowless;
         assert_eq!(look(&settings).index, whole.index);
-        // Through the block: the face looks where the plane does.
+        // A plane through the block: its face has the plane's normal.
         settings.cuts.plane =
             ClipPlane { on: true, normal: [0.0, 0.6, 0.8], offset: -0.5, ..ClipPlane::default() };
         let facing = look(&settings).lights[0].facing.expect("a face");
         assert!((facing - 0.8).abs() < 0.2, "{facing}");
     }
 
-    /// The same layers with values turned around, under the curve turned around, face the same way.
+    /// Tests that layers with inverted values, under an inverted curve, face the same way.
     #[test]
     fn surfaces_face_where_opacity_falls() {
         let (volume, mut settings) = slab_over_block();
-        // What is seen is the slab's face, not its middle.
+        // Opaque, so that the probe hits the slab's face and not its middle.
         settings.transfer.points[1].opacity = 0.99;
         let from_above = |volume: &Volume, settings: &Settings| {
             let seen = probe(volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
@@ -284,18 +293,18 @@ mod tests {
             point.value = 1.0 - point.value;
         }
         assert!((from_above(&turned, &settings) - rising).abs() < 1e-6);
-        // Lit from below it faces away, unless both sides are lit.
+        // Lit from below, the surface faces away, unless both sides are lit.
         settings.lights[0].position = [0.0, 0.0, -3.0];
         assert!(from_above(&turned, &settings) < -0.9);
-        settings.shading.sides = Sides::Two;
+        settings.shading.sides = LitSides::Two;
         assert!(from_above(&turned, &settings) > 0.9);
     }
 
     #[test]
-    fn of_labels_one_is_met_and_none_between_two() {
+    fn labels_are_not_interpolated() {
         use crate::model::LabelLook;
         let n = 16;
-        // A box of label 9 in a box of label 3, with nothing around.
+        // A box of label 9 inside a box of label 3, with nothing around.
         let value = |at: usize| {
             let [x, y, z] = [at % n, at / n % n, at / n / n].map(|c| c.abs_diff(8).max(c.abs_diff(7)));
             match x.max(y).max(z) {
@@ -306,8 +315,8 @@ mod tests {
         };
         let samples = Samples::U8((0..n * n * n).map(value).collect());
         let volume = Volume::with_spacing("boxes", [n; 3], DVec3::ONE, samples).unwrap();
-        let mut settings = Settings { lights: vec![Light::default()], ..Settings::default() };
-        let look = |visible| LabelLook { opacity: 0.95, visible, ..LabelLook::of(9) };
+        let mut settings = Settings { lights: vec![LightSettings::default()], ..Settings::default() };
+        let look = |visible| LabelLook { opacity: 0.95, visible, ..LabelLook::default_for(9) };
         settings.labels = [(3, look(true)), (9, look(true))].into_iter().collect();
         let found = |settings: &Settings| {
             let rows = (0..20).flat_map(|x| (0..20).map(move |y| [x, y].map(|c| f64::from(c) / 12.0 - 0.8)));
@@ -317,7 +326,7 @@ mod tests {
         };
         let values = found(&settings);
         assert!(values.len() > 100 && values.iter().all(|&value| value == 3.0), "{values:?}");
-        settings.labels.entry(3).visible = false;
+        settings.labels.entry_mut(3).visible = false;
         let values = found(&settings);
         assert!(values.len() > 30 && values.iter().all(|&value| value == 9.0), "{values:?}");
         let seen = probe(&volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).unwrap();
@@ -326,9 +335,9 @@ mod tests {
     }
 
     #[test]
-    fn it_is_said_where_light_is_lost() {
+    fn blocked_ranges_are_reported() {
         let (volume, settings) = slab_over_block();
-        // The top of the block at z = 5.5, below the slab at 9.5 … 13.5: an eighth of a scene unit each.
+        // The top of the block at z = 5.5, below the slab at 9.5 … 13.5: eight voxels are one scene unit.
         let from = DVec3::new(-3.0, 0.0, 0.4);
         let towards = (DVec3::new(0.0, 0.0, -0.3) - from).normalize();
         let seen = probe(&volume, &settings, from, towards).expect("the block's top");
@@ -341,10 +350,10 @@ mod tests {
     }
 
     #[test]
-    fn of_a_light_with_a_size_the_mean_arrives() {
+    fn area_lights_arrive_as_a_mean() {
         let (volume, mut settings) = slab_over_block();
-        // The block's side, below the slab: a light straight above is hidden; of one as wide as it is far away some is seen
-        // beside the slab.
+        // The block's side, below the slab: a light straight above is hidden; part of an area light as wide as its
+        // distance is visible beside the slab.
         let arriving = |settings: &Settings| {
             let seen = probe(&volume, settings, DVec3::new(-3.0, 0.0, -0.375), DVec3::X);
             seen.expect("the block's side").lights[0].transmittance

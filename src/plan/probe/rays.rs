@@ -1,97 +1,102 @@
-//! A volume along single rays: where something is seen, what attenuates light, which way surfaces face.
+//! Single rays through a volume on the CPU: first visible position, attenuation of light, surface normals.
 
 use glam::DVec3;
 
-use crate::data::{Missing, Volume};
-use crate::math::{Bounds, Region, SceneSpace};
+use crate::data::{MissingVoxels, Volume};
+use crate::math::{Aabb, ClipRegion, SceneSpace};
 use crate::model::BakedTransfer;
 
-/// Share of the light to the eye that must have been met for something to count as seen: half.
-const SEEN: f64 = 0.5;
+/// Share of the ray's total opacity at which a position counts as visible: half.
+const VISIBLE_SHARE: f64 = 0.5;
 
-/// Less than this share of a ray's light met: nothing is seen.
-const NOTHING: f64 = 0.03;
+/// Opacity of a ray below which nothing is visible.
+const MIN_OPACITY: f64 = 0.03;
 
-/// The optical depth of what hardly dims a light: a tenth.
-const LITTLE: f64 = 0.1;
+/// Optical depth below which a light is hardly attenuated: a tenth.
+const MIN_BLOCKING_DEPTH: f64 = 0.1;
 
-/// Share of a loss that lies before what is called its place, and behind it: the surface that is seen takes some, too.
-const ENDS: f64 = 0.25;
+/// Share of the loss that is excluded at either end of its range: the visible surface causes some, too.
+const EXCLUDED_LOSS: f64 = 0.25;
 
-/// Voxel edges (the smallest) per step of a ray.
-const STEP: f64 = 0.5;
+/// Step of a ray, in edges of the smallest voxel.
+const STEP_EDGES: f64 = 0.5;
 
-/// The way from a point towards a light.
+/// Segment from a point towards a light.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
-    /// Where it begins, in scene space.
+pub(super) struct LightSegment {
+    /// Start of the segment, in scene space.
     pub(super) point: DVec3,
-    /// Of length 1.
+    /// Unit vector towards the light.
     pub(super) towards: DVec3,
-    /// How far away the light is, in scene units; it may be infinitely far.
+    /// Distance to the light in scene units; may be infinite.
     pub(super) distance: f64,
 }
 
-/// A volume and what makes it visible, for single rays.
-pub(super) struct Rays<'a> {
+/// Volume and scene for tracing single rays.
+pub(super) struct VolumeRays<'a> {
     pub(super) volume: &'a Volume,
     pub(super) scene: SceneSpace,
-    /// Voxels are classified, and then what they are is mixed.
+    /// True if voxels are classified before interpolation.
     pub(super) is_by_label: bool,
 }
 
-impl Rays<'_> {
-    /// The box of the voxels, in index space: nothing lies outside.
-    fn grid(&self) -> Bounds {
-        Bounds::of_grid(self.volume.dims(), 0.0)
+impl VolumeRays<'_> {
+    /// Returns the box of voxel centres, in index space: there is nothing outside.
+    fn grid(&self) -> Aabb {
+        Aabb::of_grid(self.volume.dims(), 0.0)
     }
 
     fn step(&self) -> f64 {
-        STEP * self.scene.smallest_edge()
+        STEP_EDGES * self.scene.smallest_edge()
     }
 
-    /// Where a ray enters what remains of the grid and where it leaves it, from its origin on.
-    fn span(&self, remains: &Region, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+    /// Returns the distances at which a ray enters and leaves the uncut part of the grid, not before its origin.
+    fn span(&self, remains: &ClipRegion, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let origin = self.scene.index_from_scene.transform_point3(origin);
         let direction = self.scene.index_from_scene.transform_vector3(direction);
-        let (enter, leave) = remains.within(&self.grid()).span(origin, direction);
+        let (enter, leave) = remains.intersection(&self.grid()).ray_interval(origin, direction);
         let enter = enter.max(0.0);
         (enter < leave).then_some((enter, leave))
     }
 
-    /// Where half of what a ray meets has been met.
-    pub(super) fn first_seen(
+    /// Returns the position at which a ray has reached half of its total opacity.
+    pub(super) fn first_visible(
         &self,
         table: &BakedTransfer,
-        seen: &Region,
+        seen: &ClipRegion,
         origin: DVec3,
         direction: DVec3,
     ) -> Option<DVec3> {
         let (enter, leave) = self.span(seen, origin, direction)?;
         let step = self.step();
-        let mut met = Vec::new();
+        let mut accumulated = Vec::new();
         let mut transmittance = 1.0;
         let mut at = enter + 0.5 * step;
         while at < leave && transmittance > 0.01 {
             let tau = self.extinction(table, origin + direction * at) * step;
             transmittance *= (-tau).exp();
-            met.push((at, 1.0 - transmittance));
+            accumulated.push((at, 1.0 - transmittance));
             at += step;
         }
         let all = 1.0 - transmittance;
-        if all < NOTHING {
+        if all < MIN_OPACITY {
             return None;
         }
-        let (at, _) = met.into_iter().find(|&(_, opacity)| opacity >= SEEN * all)?;
+        let (at, _) = accumulated.into_iter().find(|&(_, opacity)| opacity >= VISIBLE_SHARE * all)?;
         Some(origin + direction * at)
     }
 
-    /// Steps from one beyond a point towards a light, each as its distance and the optical depth of what it meets: what is
-    /// seen does not shade itself.
-    fn steps(&self, table: &BakedTransfer, remains: &Region, way: Way) -> impl Iterator<Item = (f64, f64)> {
-        let Way { point, towards, distance } = way;
+    /// Iterates over the steps of a ray towards a light, as distance and optical depth. It starts one step away from
+    /// the point, so that a surface does not shade itself.
+    fn steps(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> impl Iterator<Item = (f64, f64)> {
+        let LightSegment { point, towards, distance } = way;
         let step = self.step();
-        // Where there is nothing on the way there are no steps.
+        // A ray that misses the grid has no steps.
         let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
         let first = (enter / step).ceil().max(1.0) as usize;
         let last = (leave.min(distance) / step).floor().max(1.0) as usize;
@@ -101,14 +106,24 @@ impl Rays<'_> {
         })
     }
 
-    /// ∫ extinction from a step beyond a point towards a light.
-    pub(super) fn optical_depth(&self, table: &BakedTransfer, remains: &Region, way: Way) -> f64 {
+    /// Returns ∫ extinction towards a light, from one step away from a point.
+    pub(super) fn optical_depth(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> f64 {
         self.steps(table, remains, way).map(|(_, depth)| depth).sum()
     }
 
-    /// Between which distances from a point towards a light all but a quarter of its loss at either end happens; none where
-    /// hardly anything is lost.
-    pub(super) fn blocked(&self, table: &BakedTransfer, remains: &Region, way: Way) -> Option<[f64; 2]> {
+    /// Returns the range of distances from a point towards a light that contains all of the loss except a quarter at
+    /// either end; `None` if hardly anything is lost.
+    pub(super) fn blocked_range(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> Option<[f64; 2]> {
         let mut sum = 0.0;
         let met: Vec<(f64, f64)> = self
             .steps(table, remains, way)
@@ -118,28 +133,31 @@ impl Rays<'_> {
             })
             .collect();
         let reaches = |share: f64| met.iter().find(|(_, met)| *met >= share * sum).map(|(at, _)| *at);
-        (sum >= LITTLE).then(|| Some([reaches(ENDS)?, reaches(1.0 - ENDS)?])).flatten()
+        (sum >= MIN_BLOCKING_DEPTH)
+            .then(|| Some([reaches(EXCLUDED_LOSS)?, reaches(1.0 - EXCLUDED_LOSS)?]))
+            .flatten()
     }
 
     fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
         let index = self.scene.index_from_scene.transform_point3(point);
         if self.is_by_label {
-            let (extinction, there) = self.between_voxels(index, |value| self.voxel_extinction(table, value));
-            return extinction * there;
+            let (extinction, presence) = self.interpolate(index, |value| self.voxel_extinction(table, value));
+            return extinction * presence;
         }
         let (density, there) = self.field(index, table);
         table.sample(density)[3] * there
     }
 
-    /// The extinction of a voxel with that value.
+    /// Returns the extinction of a voxel with the given value.
     fn voxel_extinction(&self, table: &BakedTransfer, value: f64) -> f64 {
         table.sample(self.volume.density_of(value))[3]
     }
 
-    /// What surfaces are found in, and the share of the voxels nearby that are there: the density between voxels, linearly;
-    /// that of the border beyond it; 0 where no voxel nearby is there. Among labels whether there is material.
+    /// Returns the field in which surfaces are found, and the presence: the density, interpolated linearly, clamped
+    /// at the border, and 0 where no voxel nearby is present. For labels, 1 in material and 0 outside is interpolated
+    /// instead.
     pub(super) fn field(&self, index: DVec3, table: &BakedTransfer) -> (f64, f64) {
-        self.between_voxels(index, |value| {
+        self.interpolate(index, |value| {
             if self.is_by_label {
                 f64::from(u8::from(self.voxel_extinction(table, value) > 0.0))
             } else {
@@ -148,16 +166,17 @@ impl Rays<'_> {
         })
     }
 
-    /// The value between voxels, linearly; of labels the one of which most is seen, or is there at all.
+    /// Returns the value, interpolated linearly between voxels; for labels, the most visible one nearby, or any that
+    /// is present.
     pub(super) fn value(&self, index: DVec3, table: &BakedTransfer) -> f64 {
         if !self.is_by_label {
-            return self.between_voxels(index, |value| value).0;
+            return self.interpolate(index, |value| value).0;
         }
         let dims = self.volume.dims();
-        // A voxel that is not seen counts where all around it are not seen either.
+        // An invisible voxel counts only if all around it are invisible, too.
         let seen = |value: f64| self.voxel_extinction(table, value).max(1e-12);
         let mut parts: Vec<(f64, f64)> = Vec::new();
-        for (voxel, weight) in self.around(index) {
+        for (voxel, weight) in self.nearest_voxels(index) {
             let [x, y, z] = voxel;
             let value = self.volume.value(x, y, z);
             if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
@@ -172,11 +191,11 @@ impl Rays<'_> {
     }
 
     fn is_missing(&self, voxel: usize) -> bool {
-        self.volume.missing().is_some_and(|missing: &Missing| missing.contains(voxel))
+        self.volume.missing().is_some_and(|missing: &MissingVoxels| missing.contains(voxel))
     }
 
-    /// The voxels around a point, with their weights.
-    fn around(&self, index: DVec3) -> impl Iterator<Item = ([usize; 3], f64)> {
+    /// Iterates over the eight voxels around a point, with their linear weights.
+    fn nearest_voxels(&self, index: DVec3) -> impl Iterator<Item = ([usize; 3], f64)> {
         let dims = self.volume.dims();
         let last = DVec3::from(dims.map(|n| (n - 1) as f64));
         let at = index.clamp(DVec3::ZERO, last);
@@ -191,11 +210,11 @@ impl Rays<'_> {
         })
     }
 
-    /// The mean of what the voxels around a point that are there are, by their weights, and the sum of these.
-    fn between_voxels(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
+    /// Returns the weighted mean of `of` over the present voxels around a point, and the sum of their weights.
+    fn interpolate(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
         let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
-        for ([x, y, z], weight) in self.around(index) {
+        for ([x, y, z], weight) in self.nearest_voxels(index) {
             if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
                 continue;
             }
@@ -205,11 +224,17 @@ impl Rays<'_> {
         if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
     }
 
-    /// ∇ of the field in scene space, by central differences over a voxel, and `turned` times that of a solid of density 1
-    /// which ends where voxels are missing, at the faces of the grid and where it is cut.
-    pub(super) fn gradient(&self, point: DVec3, seen: &Region, turned: f64, table: &BakedTransfer) -> DVec3 {
+    /// Returns ∇ of the field in scene space, by central differences over a voxel, plus `turned` times that of a
+    /// solid of density 1 which ends at missing voxels, at the faces of the grid and at cuts.
+    pub(super) fn gradient(
+        &self,
+        point: DVec3,
+        seen: &ClipRegion,
+        turned: f64,
+        table: &BakedTransfer,
+    ) -> DVec3 {
         let edge = self.scene.smallest_edge();
-        let seen = seen.within(&self.grid());
+        let seen = seen.intersection(&self.grid());
         let index_of = |point| self.scene.index_from_scene.transform_point3(point);
         let here = self.field(index_of(point), table).0;
         let at = |offset: DVec3| {

@@ -1,4 +1,4 @@
-//! The picture: sheets composited front to back as seen from the eye (P eq. 9).
+//! Eye pass: sheets composited front to back as seen from the eye (P eq. 9).
 
 mod preintegrated;
 
@@ -8,55 +8,55 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::Reference;
-use super::back_project::Attenuation;
-use super::remains::cut::Remaining;
-use super::shade::{Sampled, Shader};
-use super::sheet::{Cutting, Sample, Stack};
-use crate::model::{BakedTransfer, THIN_SLABS};
+use super::back_project::AttenuationVolume;
+use super::extent::cut::UncutRegion;
+use super::shade::{ShadedSample, Shader};
+use super::sheet_stack::{CutTreatment, SheetStack, SlabContribution};
+use crate::model::{BakedTransfer, MAX_SLAB_PARTS};
 use crate::plan::SheetFrame;
 use crate::plan::picture_frame;
 
-/// A slab is divided that may make up more than this share of what is seen along a ray.
-const MUCH: f64 = 1.0 / 8.0;
+/// Share of what is visible along a ray above which a slab is divided.
+const MAX_SLAB_SHARE: f64 = 1.0 / 8.0;
 
-/// The density is expected to change across a slab by this many times what its gradient in the middle says.
-const CURVED: f64 = 1.25;
+/// Safety factor of the density's expected change across a slab over that of the gradient at its middle.
+const CHANGE_SAFETY: f64 = 1.25;
 
-/// So many slabs are held in memory at once.
-const SLABS_AT_ONCE: u32 = 32;
+/// Number of slabs held in memory at once.
+const SLABS_IN_MEMORY: u32 = 32;
 
 impl Reference<'_> {
-    /// The eye's rays and slabs for a picture of some size.
+    /// Returns the eye's rays and slabs for a picture of the given size.
     pub fn eye_frame(&self, size: [u32; 2]) -> SheetFrame {
         picture_frame(self.settings, &self.scene, size)
     }
 
-    /// The mean densities of slab `k`, row by row from the top left.
+    /// Returns the mean densities of slab `k`, row by row from the top left.
     pub fn eye_sheet(&self, size: [u32; 2], k: u32) -> Vec<f64> {
         self.eye_stack(&self.eye_frame(size)).densities(k)
     }
 
-    /// Linear, premultiplied RGBA before tone mapping, row by row from the top left. Attenuation
-    /// volumes are those of the lights in their order, this reference's or another renderer's.
+    /// Renders the picture: linear, premultiplied RGBA before tone mapping, row by row from the top left.
+    /// `attenuations` holds a volume for each light in order, from this reference or another renderer.
     ///
     /// C += T·(1 − e^−τ)·c, T ← T·e^−τ; no ray ends early.
-    pub fn picture(&self, size: [u32; 2], attenuations: &[Option<Attenuation>]) -> Vec<[f64; 4]> {
+    pub fn picture(&self, size: [u32; 2], attenuations: &[Option<AttenuationVolume>]) -> Vec<[f64; 4]> {
         let frame = self.eye_frame(size);
         let stack = self.eye_stack(&frame);
-        let faces = self.faces();
+        let faces = self.visible_faces();
         let shader = Shader::new(self, attenuations);
-        if self.settings.has_slabs_by_need() {
+        if self.settings.has_adaptive_slabs() {
             return self.picture_by_need(&stack, &shader);
         }
         if self.settings.has_preintegrated_slabs() {
             return self.picture_preintegrated(&stack, &shader);
         }
-        // Colour so far, and in place of alpha the transmittance.
+        // Accumulated colour, with the transmittance in place of alpha.
         let mut rays = vec![[0.0, 0.0, 0.0, 1.0]; stack.pixel_count()];
         let margin = frame.gradient_steps().1;
-        for first in (0..frame.slab_count).step_by(SLABS_AT_ONCE as usize) {
-            let slabs = first..(first + SLABS_AT_ONCE).min(frame.slab_count);
-            let sheets = Sheets::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
+        for first in (0..frame.slab_count).step_by(SLABS_IN_MEMORY as usize) {
+            let slabs = first..(first + SLABS_IN_MEMORY).min(frame.slab_count);
+            let sheets = SheetDensities::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
             let materials: Vec<_> = slabs.clone().into_par_iter().map(|k| stack.materials(k)).collect();
             rays.par_iter_mut().enumerate().for_each(|(pixel, ray)| {
                 for k in slabs.clone() {
@@ -73,10 +73,11 @@ impl Reference<'_> {
                         shader.gradient(sample.point, level)
                     };
                     let density = sheets.at(k)[pixel];
-                    // Faces look to where the solid ends, whichever way its opacity runs.
-                    let gradient = gradient + self.ends(&faces, sample.point, level) * shader.turned(density);
-                    let color =
-                        shader.color(&Sampled { point: sample.point, density, gradient, level }, sample.rgb);
+                    // Normals of faces point out of the solid, whichever way opacity changes with density.
+                    let gradient = gradient
+                        + self.end_gradient(&faces, sample.point, level) * shader.normal_sign(density);
+                    let color = shader
+                        .color(&ShadedSample { point: sample.point, density, gradient, level }, sample.rgb);
                     let opacity = -(-sample.optical_depth).exp_m1();
                     for channel in 0..3 {
                         ray[channel] += ray[3] * opacity * color[channel];
@@ -88,76 +89,83 @@ impl Reference<'_> {
         rays.into_iter().map(|[r, g, b, transmittance]| [r, g, b, 1.0 - transmittance]).collect()
     }
 
-    /// The gradient that ends of solids have of their own: at faces, and where voxels are missing.
-    fn ends(&self, faces: &Remaining, point: DVec3, level: f64) -> DVec3 {
+    /// Returns the gradient at the ends of solids: at faces, and at missing voxels.
+    fn end_gradient(&self, faces: &UncutRegion, point: DVec3, level: f64) -> DVec3 {
         self.face_gradient(faces, point, level) + self.missing_gradient(point, level)
     }
 
-    fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> Stack<'r> {
+    fn eye_stack<'r>(&'r self, frame: &'r SheetFrame) -> SheetStack<'r> {
         let sampling = &self.settings.sampling;
-        Stack::new(self, frame, sampling.kernel, sampling.quadrature, Cutting::Seen(self.seen()))
+        SheetStack::new(
+            self,
+            frame,
+            sampling.kernel,
+            sampling.quadrature,
+            CutTreatment::Visible(self.visible_region()),
+        )
     }
 }
 
-/// A ray, so far.
-struct Ray {
+/// State of a ray during compositing.
+struct CompositedRay {
     pixel: u32,
     /// Linear, premultiplied RGB, and the transmittance.
-    seen: [f64; 4],
+    color_and_transmittance: [f64; 4],
 }
 
 impl Reference<'_> {
-    /// As [`Self::picture`], with slabs of the stack four at a time where no more is needed.
-    pub(super) fn picture_by_need(&self, stack: &Stack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
-        let table = self.settings.baked_eye(self.range, &self.scene);
+    /// Renders [`Self::picture`] with slabs by need: four slabs of the stack at a time where that suffices.
+    pub(super) fn picture_by_need(&self, stack: &SheetStack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
+        let table = self.settings.bake_eye(self.range, &self.scene);
         let seen = |pixel: usize| {
-            let mut ray = Ray { pixel: pixel as u32, seen: [0.0, 0.0, 0.0, 1.0] };
-            for first in (0..stack.frame.slab_count).step_by(THIN_SLABS as usize) {
-                if self.is_enough(stack, shader, &table, &ray, first) {
-                    self.add_slab(stack, shader, &table, &mut ray, first, THIN_SLABS);
+            let mut ray =
+                CompositedRay { pixel: pixel as u32, color_and_transmittance: [0.0, 0.0, 0.0, 1.0] };
+            for first in (0..stack.frame.slab_count).step_by(MAX_SLAB_PARTS as usize) {
+                if self.needs_no_division(stack, shader, &table, &ray, first) {
+                    self.add_slab(stack, shader, &table, &mut ray, first, MAX_SLAB_PARTS);
                 } else {
-                    (first..first + THIN_SLABS)
+                    (first..first + MAX_SLAB_PARTS)
                         .for_each(|k| self.add_slab(stack, shader, &table, &mut ray, k, 1));
                 }
             }
-            let [r, g, b, transmittance] = ray.seen;
+            let [r, g, b, transmittance] = ray.color_and_transmittance;
             [r, g, b, 1.0 - transmittance]
         };
         (0..stack.pixel_count()).into_par_iter().map(seen).collect()
     }
 
-    /// Whether one sample may stand for the whole slab that begins at one of the stack.
-    fn is_enough(
+    /// Returns true if one sample suffices for the undivided slab that begins at slab `first` of the stack.
+    fn needs_no_division(
         &self,
-        stack: &Stack<'_>,
+        stack: &SheetStack<'_>,
         shader: &Shader<'_>,
         table: &BakedTransfer,
-        ray: &Ray,
+        ray: &CompositedRay,
         first: u32,
     ) -> bool {
-        let is_whole = (first..first + THIN_SLABS).all(|k| stack.remains(ray.pixel, k));
+        let is_whole = (first..first + MAX_SLAB_PARTS).all(|k| stack.is_uncut(ray.pixel, k));
         let frame = stack.frame;
-        let [i, j] = stack.place_of(ray.pixel);
-        let middle = f64::from(first) + 0.5 * f64::from(THIN_SLABS - 1);
+        let [i, j] = stack.pixel_position(ray.pixel);
+        let middle = f64::from(first) + 0.5 * f64::from(MAX_SLAB_PARTS - 1);
         let depth = frame.depth_of(middle);
         let point = frame.point(i, j, depth);
-        let thickness = f64::from(THIN_SLABS) * frame.slab;
+        let thickness = f64::from(MAX_SLAB_PARTS) * frame.slab;
         let density = stack.density_at([i, j, middle]);
-        // Scene space has the length of the ray in it: one unit of depth is 1 / cos θ long there.
+        // Scene space contains the obliquity: one unit of depth is 1 / cos θ long there.
         let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
         let change = shader.prefiltered_gradient(point, frame.stretch_level(depth)).dot(along).abs();
-        let change = 0.5 * CURVED * thickness * change;
-        // Where there is nothing in the middle nobody asks how much of that is there.
+        let change = 0.5 * CHANGE_SAFETY * thickness * change;
+        // Presence is not evaluated where the middle shows nothing.
         let is_asked = table.sample(density)[3] > 0.0;
-        let most_there = if is_asked { self.most_there(stack, along, [i, j, middle]) } else { 1.0 };
-        let largest = most_there * table.largest_extinction(density - change, density + change);
-        let share = ray.seen[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();
-        is_whole && share <= MUCH
+        let most_there = if is_asked { self.max_presence(stack, along, [i, j, middle]) } else { 1.0 };
+        let largest = most_there * table.max_extinction_in(density - change, density + change);
+        let share = ray.color_and_transmittance[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();
+        is_whole && share <= MAX_SLAB_SHARE
     }
 
-    /// At most so large a share of the undivided slab around `k` is there, where voxels are missing.
-    fn most_there(&self, stack: &Stack<'_>, along: DVec3, [i, j, k]: [f64; 3]) -> f64 {
-        // Voxels that are classified are there by themselves.
+    /// Returns an upper bound of the presence within the undivided slab around `k`, near missing voxels.
+    fn max_presence(&self, stack: &SheetStack<'_>, along: DVec3, [i, j, k]: [f64; 3]) -> f64 {
+        // The presence of classified voxels is part of their spread extinction.
         if self.presence.is_none() || self.classified.is_some() {
             return 1.0;
         }
@@ -165,47 +173,47 @@ impl Reference<'_> {
         let depth = frame.depth_of(k);
         let rise =
             self.missing_gradient(frame.point(i, j, depth), frame.stretch_level(depth)).dot(along).abs();
-        let thickness = f64::from(THIN_SLABS) * frame.slab;
-        (stack.presence_at([i, j, k]) + 0.5 * CURVED * thickness * rise).min(1.0)
+        let thickness = f64::from(MAX_SLAB_PARTS) * frame.slab;
+        (stack.presence_at([i, j, k]) + 0.5 * CHANGE_SAFETY * thickness * rise).min(1.0)
     }
 
-    /// Composites what a slab shows that is `width` of the stack's thick.
+    /// Composites a slab that is `width` slabs of the stack thick.
     fn add_slab(
         &self,
-        stack: &Stack<'_>,
+        stack: &SheetStack<'_>,
         shader: &Shader<'_>,
         table: &BakedTransfer,
-        ray: &mut Ray,
+        ray: &mut CompositedRay,
         first: u32,
         width: u32,
     ) {
-        let [i, j] = stack.place_of(ray.pixel);
+        let [i, j] = stack.pixel_position(ray.pixel);
         let middle = f64::from(first) + 0.5 * f64::from(width - 1);
         let density = stack.density_at([i, j, middle]);
         let found = stack.sample_of(ray.pixel, middle, f64::from(width), table.sample(density));
-        let Some(Sample { point, rgb, optical_depth }) = found else { return };
+        let Some(SlabContribution { point, rgb, optical_depth }) = found else { return };
         let level = stack.frame.stretch_level(stack.frame.depth_of(middle));
-        let faces: DVec3 = self.ends(&self.faces(), point, level);
-        let gradient = shader.gradient(point, level) + faces * shader.turned(density);
-        let color = shader.color(&Sampled { point, density, gradient, level }, rgb);
+        let faces: DVec3 = self.end_gradient(&self.visible_faces(), point, level);
+        let gradient = shader.gradient(point, level) + faces * shader.normal_sign(density);
+        let color = shader.color(&ShadedSample { point, density, gradient, level }, rgb);
         let opacity = -(-optical_depth).exp_m1();
-        let left = ray.seen[3];
-        for (seen, color) in ray.seen.iter_mut().zip(color) {
+        let left = ray.color_and_transmittance[3];
+        for (seen, color) in ray.color_and_transmittance.iter_mut().zip(color) {
             *seen += left * opacity * color;
         }
-        ray.seen[3] = left * (-optical_depth).exp();
+        ray.color_and_transmittance[3] = left * (-optical_depth).exp();
     }
 }
 
-/// Some neighbouring sheets of a stack.
-struct Sheets<'s> {
+/// Densities of some neighbouring sheets of a stack.
+struct SheetDensities<'s> {
     frame: &'s SheetFrame,
     first: u32,
     densities: Vec<Vec<f64>>,
 }
 
-impl<'s> Sheets<'s> {
-    fn new(stack: &Stack<'s>, slabs: Range<u32>) -> Self {
+impl<'s> SheetDensities<'s> {
+    fn new(stack: &SheetStack<'s>, slabs: Range<u32>) -> Self {
         let slabs = slabs.start..slabs.end.min(stack.frame.slab_count);
         let densities = slabs.clone().into_par_iter().map(|k| stack.densities(k)).collect();
         Self { frame: stack.frame, first: slabs.start, densities }
@@ -215,8 +223,8 @@ impl<'s> Sheets<'s> {
         &self.densities[(k - self.first) as usize]
     }
 
-    /// The gradient in index space from neighbouring sheets and pixels: what the differences are the
-    /// products of, by Cramer's rule. Nothing lies before the first slab or behind the last.
+    /// Returns the gradient in index space from differences between neighbouring sheets and pixels, by Cramer's rule.
+    /// Densities are 0 before the first slab and behind the last.
     fn gradient(&self, pixel: u32, k: u32) -> DVec3 {
         let [width, height] = self.frame.size;
         let (pixels, slabs) = self.frame.gradient_steps();

@@ -1,68 +1,68 @@
-//! The picture in slabs of two steps, through which opacity is integrated and which are shaded in layers.
+//! Eye pass with pre-integrated slabs: opacity is integrated over slabs of two steps, which are shaded in layers.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::model::{BakedTransfer, LUT_SIZE};
 use crate::reference::Reference;
-use crate::reference::shade::{Sampled, Shader};
-use crate::reference::sheet::Stack;
+use crate::reference::shade::{ShadedSample, Shader};
+use crate::reference::sheet_stack::SheetStack;
 
-/// Steps of a layer behind which it ends.
+/// Number of steps after which a layer ends.
 const LAYER_STEPS: u32 = 4;
 
-/// Optical depth of its last step below which it ends a step earlier.
-const SOFT: f64 = 0.5;
+/// Optical depth of the last step below which a layer ends a step earlier.
+const SOFT_DEPTH: f64 = 0.5;
 
 /// Share of a ray above which the steps of a layer count.
-const FAINT: f64 = 1.0 / 16.0;
+const FAINT_SHARE: f64 = 1.0 / 16.0;
 
 /// Optical depth of a step that shows nothing.
-const EMPTY: f64 = 4e-6;
+const EMPTY_DEPTH: f64 = 4e-6;
 
-/// Steps that are shaded at once.
-struct Layer {
-    /// Of what is seen along the ray.
+/// Layer: steps that are shaded at once.
+struct ShadingLayer {
+    /// Share of what is visible along the ray.
     share: f64,
-    /// Sum of shares times places, in slabs of the stack.
-    places: f64,
+    /// Sum of shares times positions, in slabs of the stack.
+    weighted_positions: f64,
     /// Sum of shares times densities.
-    densities: f64,
-    /// Steps since it is more than faint.
+    weighted_densities: f64,
+    /// Steps since the share is above [`FAINT_SHARE`].
     steps: u32,
 }
 
-impl Layer {
-    const NOTHING: Self = Self { share: 0.0, places: 0.0, densities: 0.0, steps: 0 };
+impl ShadingLayer {
+    const NOTHING: Self = Self { share: 0.0, weighted_positions: 0.0, weighted_densities: 0.0, steps: 0 };
 
-    /// Adds the share that is seen of half a step which begins at a place.
-    fn add(&mut self, share: f64, place: f64, half: Half) {
-        let Half { depth, density } = half;
-        // The quotient approximates 1/τ − 1/(e^τ − 1), the mean place of what is seen of even material.
+    /// Adds the visible share of half a step that begins at a position.
+    fn add(&mut self, share: f64, place: f64, half: HalfStep) {
+        let HalfStep { depth, density } = half;
+        // The quotient approximates 1/τ − 1/(e^τ − 1), the mean position of visible light in a homogeneous medium.
         let within = (6.0 + depth) / (12.0 + depth * (4.0 + depth));
         self.share += share;
-        self.places += share * (place + 0.5 * within);
-        self.densities += share * density;
+        self.weighted_positions += share * (place + 0.5 * within);
+        self.weighted_densities += share * density;
     }
 }
 
-/// Half of a step.
+/// One half of a step.
 #[derive(Clone, Copy)]
-struct Half {
-    /// Optical depth.
+struct HalfStep {
+    /// Optical depth of the half step.
     depth: f64,
-    /// The mean of those at its ends.
+    /// Mean of the densities at its ends.
     density: f64,
 }
 
-/// A transfer function with its extinction integrated.
-struct Integrated {
+/// Transfer function with its integrated extinction.
+struct IntegratedTable {
     table: BakedTransfer,
-    /// From the first entry to each, with entries 1 apart.
+    /// Integrals from the first entry to each, with a distance of 1 between entries.
     integrals: Vec<f64>,
 }
 
-impl Integrated {
+impl IntegratedTable {
     fn new(table: BakedTransfer) -> Self {
         let mut sum = 0.0;
         let steps = table.entries.windows(2).map(|pair| {
@@ -73,18 +73,18 @@ impl Integrated {
         Self { table, integrals }
     }
 
-    /// Mean extinction between two densities; of close ones, that of the entry nearest to `alike`.
+    /// Returns the mean extinction between two densities; for close ones, that of the entry nearest to `alike`.
     fn mean(&self, from: f64, to: f64, alike: f64) -> f64 {
         let [a, b] = [from, to].map(|density| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64);
         if (b - a).abs() < 1.0 {
             let nearest = (alike.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64).round() as usize;
             return f64::from(self.table.entries[nearest][3]);
         }
-        (self.up_to(b) - self.up_to(a)) / (b - a)
+        (self.integral_to(b) - self.integral_to(a)) / (b - a)
     }
 
-    /// The integral up to a position in the table.
-    fn up_to(&self, at: f64) -> f64 {
+    /// Returns the integral up to a position in the table.
+    fn integral_to(&self, at: f64) -> f64 {
         let low = (at as usize).min(LUT_SIZE - 2);
         let (first, second) = (self.integrals[low], self.integrals[low + 1]);
         first + (second - first) * (at - low as f64)
@@ -92,9 +92,9 @@ impl Integrated {
 }
 
 impl Reference<'_> {
-    /// As [`Self::picture`], in layers of pre-integrated steps.
-    pub(super) fn picture_preintegrated(&self, stack: &Stack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
-        let integrated = Integrated::new(self.settings.baked_eye(self.range, &self.scene));
+    /// Renders [`Self::picture`] in layers of pre-integrated steps.
+    pub(super) fn picture_preintegrated(&self, stack: &SheetStack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
+        let integrated = IntegratedTable::new(self.settings.bake_eye(self.range, &self.scene));
         let seen = |pixel: usize| self.layers(stack, shader, &integrated, pixel as u32);
         (0..stack.pixel_count()).into_par_iter().map(seen).collect()
     }
@@ -102,17 +102,17 @@ impl Reference<'_> {
     /// Composites the layers along the ray of a pixel: linear, premultiplied RGBA.
     fn layers(
         &self,
-        stack: &Stack<'_>,
+        stack: &SheetStack<'_>,
         shader: &Shader<'_>,
-        integrated: &Integrated,
+        integrated: &IntegratedTable,
         pixel: u32,
     ) -> [f64; 4] {
-        let [i, j] = stack.place_of(pixel);
+        let [i, j] = stack.pixel_position(pixel);
         let count = i64::from(stack.frame.slab_count);
         let mut color = DVec3::ZERO;
         let mut left = 1.0;
-        let mut layer = Layer::NOTHING;
-        // From the middle of a slab to that of the next.
+        let mut layer = ShadingLayer::NOTHING;
+        // Each step reaches from the middle of a slab to that of the next.
         for k in -1..=count {
             let halves = Self::halves(stack, integrated, [i, j, k as f64]);
             for (number, half) in halves.into_iter().enumerate() {
@@ -120,45 +120,45 @@ impl Reference<'_> {
                 layer.add(seen, k as f64 + 0.5 * number as f64, half);
                 left -= seen;
             }
-            layer.steps += u32::from(layer.share > FAINT);
+            layer.steps += u32::from(layer.share > FAINT_SHARE);
             let last_depth: f64 = halves.iter().map(|half| half.depth).sum();
-            let most = if last_depth < SOFT { LAYER_STEPS - 1 } else { LAYER_STEPS };
-            if layer.share > 0.0 && (layer.steps >= most || last_depth < EMPTY || k == count) {
+            let most = if last_depth < SOFT_DEPTH { LAYER_STEPS - 1 } else { LAYER_STEPS };
+            if layer.share > 0.0 && (layer.steps >= most || last_depth < EMPTY_DEPTH || k == count) {
                 color += self.shaded_layer(stack, shader, integrated, [i, j], &layer);
-                layer = Layer::NOTHING;
+                layer = ShadingLayer::NOTHING;
             }
         }
         [color.x, color.y, color.z, 1.0 - left]
     }
 
-    /// The halves of a step from the middle of slab `k` to that of the next.
-    fn halves(stack: &Stack<'_>, integrated: &Integrated, [i, j, k]: [f64; 3]) -> [Half; 2] {
+    /// Returns the halves of a step from the middle of slab `k` to that of the next.
+    fn halves(stack: &SheetStack<'_>, integrated: &IntegratedTable, [i, j, k]: [f64; 3]) -> [HalfStep; 2] {
         let ends = [[i, j, k], [i, j, k + 1.0]];
         let length = stack.length_between(ends);
         let [a, b] = ends.map(|end| stack.density_around(end));
         let there = ends.map(|end| stack.presence_at(end)).iter().sum::<f64>() / 2.0;
         let middle = 0.5 * (a + b);
-        [[a, middle], [middle, b]].map(|[from, to]| Half {
+        [[a, middle], [middle, b]].map(|[from, to]| HalfStep {
             depth: 0.5 * length * there * integrated.mean(from, to, middle),
             density: 0.5 * (from + to),
         })
     }
 
-    /// The light of a layer from where its opacity lies, times its share.
+    /// Shades a layer at its mean position, and multiplies by its share.
     fn shaded_layer(
         &self,
-        stack: &Stack<'_>,
+        stack: &SheetStack<'_>,
         shader: &Shader<'_>,
-        integrated: &Integrated,
+        integrated: &IntegratedTable,
         [i, j]: [f64; 2],
-        layer: &Layer,
+        layer: &ShadingLayer,
     ) -> DVec3 {
-        let depth = stack.frame.depth_of(layer.places / layer.share);
-        let density = layer.densities / layer.share;
+        let depth = stack.frame.depth_of(layer.weighted_positions / layer.share);
+        let density = layer.weighted_densities / layer.share;
         let (point, level) = (stack.frame.point(i, j, depth), stack.frame.stretch_level(depth));
-        let ends = self.ends(&self.faces(), point, level);
-        let gradient = shader.gradient(point, level) + ends * shader.turned(density);
+        let ends = self.end_gradient(&self.visible_faces(), point, level);
+        let gradient = shader.gradient(point, level) + ends * shader.normal_sign(density);
         let [r, g, b, _] = integrated.table.sample(density);
-        DVec3::from(shader.color(&Sampled { point, density, gradient, level }, [r, g, b])) * layer.share
+        DVec3::from(shader.color(&ShadedSample { point, density, gradient, level }, [r, g, b])) * layer.share
     }
 }

@@ -1,69 +1,70 @@
-//! What the voxels mean, where they are classified before kernels spread them.
+//! Pre-classification: voxels are classified before kernels spread them.
 
 use super::pyramid::Pyramid;
-use super::{Beyond, Field, Rounding};
+use super::{BorderMode, DensityField, Rounding};
 use crate::model::BakedTransfer;
 
-/// Whose transfer function classifies.
+/// Transfer function by which voxels are classified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::reference) enum Side {
-    /// What the eye sees.
+pub(crate) enum TransferSide {
+    /// Transfer function of the eye.
     Eye,
-    /// What attenuates light, or the colour of it that is followed.
+    /// Transfer function of lights, for the colour channel that is followed.
     Lighting,
-    /// What attenuates light from all around, of which all colours are attenuated alike.
-    Around,
+    /// Transfer function of indirect light, which attenuates all colours alike.
+    Indirect,
 }
 
-/// All of them.
-pub(in crate::reference) const SIDES: [Side; 3] = [Side::Eye, Side::Lighting, Side::Around];
+/// All transfer functions, in the order of their declaration.
+pub(crate) const ALL_TRANSFER_SIDES: [TransferSide; 3] =
+    [TransferSide::Eye, TransferSide::Lighting, TransferSide::Indirect];
 
-/// Voxels as a transfer function classifies them.
+/// Voxels after classification by a transfer function.
 #[derive(Debug, Clone)]
-pub(in crate::reference) struct Classified {
-    /// The extinction as a share of the largest, in place of a density.
-    pub field: Field,
-    /// The same, spread.
+pub(crate) struct ClassifiedVoxels {
+    /// Extinction as a share of the largest, in place of a density.
+    pub field: DensityField,
+    /// Pyramid of the shares of extinction.
     pub shares: Pyramid,
-    /// Colours times shares, spread.
+    /// Pyramids of colours times shares, one for each channel.
     pub colors: [Pyramid; 3],
-    /// How much extinction a share is.
+    /// Table that converts a share to extinction.
     pub table: BakedTransfer,
 }
 
-impl Classified {
-    /// Classifies the densities of voxels. `presence` is what is there where some are missing: others stand in for these,
-    /// and what is spread fades with what is there.
-    pub(in crate::reference) fn of(
-        densities: &Field,
+impl ClassifiedVoxels {
+    /// Classifies the densities of voxels. If some are missing, `presence` is their presence pyramid: missing voxels
+    /// have substitute values, and the spread values are multiplied by presence.
+    pub(crate) fn classify(
+        densities: &DensityField,
         table: &BakedTransfer,
         presence: Option<&Pyramid>,
         width: f64,
         rounding: Option<Rounding>,
     ) -> Self {
-        let largest = f64::from(table.most_extinction()).max(1e-20);
-        let beyond = if presence.is_some() { Beyond::Border } else { Beyond::Nothing };
+        let largest = f64::from(table.max_extinction()).max(1e-20);
+        let beyond = if presence.is_some() { BorderMode::Clamp } else { BorderMode::Zero };
         let field_of = |channel: usize| {
             let share = |&density: &f64| associated(table.sample(density))[channel] / largest;
             let shares = densities.densities.iter().map(share).collect();
-            Field { dims: densities.dims, densities: shares, beyond }
+            DensityField { dims: densities.dims, densities: shares, border: beyond }
         };
-        let spread = |channel: usize| Pyramid::faded(&field_of(channel), width, rounding, presence);
+        let spread = |channel: usize| Pyramid::with_presence(&field_of(channel), width, rounding, presence);
         Self {
-            field: Field { beyond: Beyond::Nothing, ..field_of(3) },
+            field: DensityField { border: BorderMode::Zero, ..field_of(3) },
             shares: spread(3),
             colors: [0, 1, 2].map(spread),
-            table: BakedTransfer::of_shares(table.most_extinction()),
+            table: BakedTransfer::linear_ramp(table.max_extinction()),
         }
     }
 }
 
-/// A material with its colours weighted by its extinction.
-pub(in crate::reference) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+/// Multiplies the colours of a material by its extinction.
+pub(crate) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     [r * extinction, g * extinction, b * extinction, extinction]
 }
 
-/// The reverse.
-pub(in crate::reference) fn straight([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
+/// Divides the colours of a material by its extinction, the inverse of [`associated`].
+pub(crate) fn unassociated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     if extinction <= 0.0 { [0.0; 4] } else { [r / extinction, g / extinction, b / extinction, extinction] }
 }

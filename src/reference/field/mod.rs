@@ -1,57 +1,57 @@
-//! Densities on a grid, as the renderer stores them, and the trilinear fetch from any grid.
+//! Density field on a grid, as the renderer stores it, and trilinear interpolation in any grid.
 
-pub(in crate::reference) mod classified;
-pub(in crate::reference) mod pyramid;
+pub(crate) mod classified;
+pub(crate) mod pyramid;
 
 use glam::DVec3;
 
 use crate::data::Volume;
 
-/// How a number is rounded when it is stored; for the GPU's half floats, f32 → f16 → f32.
+/// Rounding of a number when it is stored; for the GPU's half floats, f32 → f16 → f32.
 pub type Rounding = fn(f32) -> f32;
 
-/// The densities of a volume, or other numbers on its grid.
+/// Densities of a volume, or other numbers on its grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
-    /// Voxels along x, y, z.
+pub struct DensityField {
+    /// Number of voxels along x, y, z.
     pub dims: [usize; 3],
     /// One density per voxel, x fastest.
     pub densities: Vec<f64>,
-    /// What is beyond the grid.
-    pub beyond: Beyond,
+    /// Values outside the grid.
+    pub border: BorderMode,
 }
 
-/// What lies beyond a grid.
+/// Extension of a field outside its grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beyond {
-    /// The border again.
-    Border,
-    /// 0.
-    Nothing,
+pub enum BorderMode {
+    /// Values at the border are repeated (clamp to edge).
+    Clamp,
+    /// Values outside the grid are 0.
+    Zero,
 }
 
-impl Field {
-    /// The densities of a volume, each rounded as it will be stored.
+impl DensityField {
+    /// Creates the densities of a volume, each rounded as it will be stored.
     pub fn with_rounding(volume: &Volume, round: impl Fn(f32) -> f32) -> Self {
         let dims = volume.dims();
         let densities = (0..dims[2])
             .flat_map(|z| volume.slice_densities(z))
             .map(|density| f64::from(round(density)))
             .collect();
-        Self { dims, densities, beyond: Beyond::Border }
+        Self { dims, densities, border: BorderMode::Clamp }
     }
 
-    /// 1 where a voxel is there and 0 where it is missing, if any is.
-    pub(in crate::reference) fn of_presence(volume: &Volume) -> Option<Self> {
+    /// Creates the presence of voxels, 1 for present and 0 for missing ones; `None` if no voxel is missing.
+    pub(crate) fn from_presence(volume: &Volume) -> Option<Self> {
         let missing = volume.missing()?;
         let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
         let densities = (0..volume.voxel_count()).map(there).collect();
-        Some(Self { dims: volume.dims(), densities, beyond: Beyond::Nothing })
+        Some(Self { dims: volume.dims(), densities, border: BorderMode::Zero })
     }
 
-    /// The density of one voxel, or of what is beyond the grid.
+    /// Returns the density of one voxel, inside the grid or outside.
     pub fn at(&self, x: i64, y: i64, z: i64) -> f64 {
-        if self.beyond == Beyond::Nothing && !self.has(x, y, z) {
+        if self.border == BorderMode::Zero && !self.contains(x, y, z) {
             return 0.0;
         }
         let nearest = |c: i64, n: usize| c.clamp(0, n as i64 - 1) as usize;
@@ -59,15 +59,15 @@ impl Field {
         self.densities[nearest(x, nx) + nx * (nearest(y, ny) + ny * nearest(z, nz))]
     }
 
-    /// Whether a voxel is in the grid.
-    pub(in crate::reference) fn has(&self, x: i64, y: i64, z: i64) -> bool {
+    /// Returns true if a voxel is in the grid.
+    pub(crate) fn contains(&self, x: i64, y: i64, z: i64) -> bool {
         [x, y, z].iter().zip(self.dims).all(|(c, n)| (0..n as i64).contains(c))
     }
 }
 
-/// Trilinear interpolation between the eight values around `at`; values lie at integers, and
-/// beyond the outermost ones the outermost counts (clamp to edge).
-pub(in crate::reference) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
+/// Interpolates trilinearly between the eight values around `at`; values lie at integers, and are clamped to the edge
+/// outside.
+pub(crate) fn trilinear(dims: [usize; 3], values: &[f64], at: DVec3) -> f64 {
     let cell = |axis: usize| {
         let last = (dims[axis] - 1) as f64;
         let low = at[axis].floor();

@@ -1,43 +1,43 @@
-//! The prefiltered volume and its pyramid: what is sampled where the kernel is stretched (P §4:
-//! "the splatting kernels must be progressively stretched") and what gradients are taken of.
+//! Prefiltered volume and its pyramid, for kernels that perspective stretches (P §4: "the splatting kernels must be
+//! progressively stretched") and for gradients.
 //!
-//! Level 0 is the volume blurred with [a, 1 − 2a, a]³, a = 1/12, on a lattice that begins four
-//! voxels before the grid; a trilinear fetch of it has the variance of the cubic B-spline, ⅓.
-//! Each further level has half the resolution, and a fetch of it four times the variance.
+//! Level 0 is the volume blurred with [a, 1 − 2a, a]³, a = 1/12, on a lattice that begins four voxels before the
+//! grid; a trilinear fetch of it has the variance of the cubic B-spline, ⅓. Each further level has half the
+//! resolution, and a fetch of it four times the variance.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Field, Rounding, trilinear};
+use super::{DensityField, Rounding, trilinear};
 
-/// The coarsest level: kernels are stretched up to eight times.
-pub(in crate::reference) const MAX_LEVEL: usize = 3;
+/// Coarsest level: kernels are stretched up to eight times.
+pub(crate) const MAX_LEVEL: usize = 3;
 
-/// Texels before the grid on every axis.
+/// Texels of padding before the grid on every axis.
 const PAD: usize = 4;
 
-/// The prefiltered volume at full, ½, ¼ and ⅛ resolution.
+/// Prefiltered volume at full, ½, ¼ and ⅛ resolution.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    levels: Vec<Level>,
+    levels: Vec<PyramidLevel>,
 }
 
 #[derive(Debug, Clone)]
-struct Level {
+struct PyramidLevel {
     dims: [usize; 3],
     values: Vec<f64>,
 }
 
 impl Pyramid {
-    /// Blurs a field and halves the result three times. `width` is that of the kernel relative to
-    /// the right one; every level is rounded as it is stored.
-    pub fn of(field: &Field, width: f64, rounding: Option<Rounding>) -> Self {
-        Self::faded(field, width, rounding, None)
+    /// Blurs a field and halves the result three times. `width` is the kernel's width relative to the correct one;
+    /// every level is rounded as it is stored.
+    pub fn new(field: &DensityField, width: f64, rounding: Option<Rounding>) -> Self {
+        Self::with_presence(field, width, rounding, None)
     }
 
-    /// The same, where the blurred field fades with a share of what is there.
-    pub(in crate::reference) fn faded(
-        field: &Field,
+    /// Creates a pyramid as [`Self::new`] does, whose blurred field is multiplied by presence.
+    pub(crate) fn with_presence(
+        field: &DensityField,
         width: f64,
         rounding: Option<Rounding>,
         presence: Option<&Self>,
@@ -59,18 +59,18 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// The same, stored in so many steps from 0 to 1.
-    pub(in crate::reference) fn in_steps(mut self, steps: f64) -> Self {
+    /// Quantises all values to `steps` steps from 0 to 1.
+    pub(crate) fn quantised(mut self, steps: f64) -> Self {
         for value in self.levels.iter_mut().flat_map(|level| &mut level.values) {
             *value = (*value * steps).round() / steps;
         }
         self
     }
 
-    /// How values change from the texel before to the one behind along an axis, level by level.
-    pub(in crate::reference) fn changes(&self, axis: usize) -> Self {
-        let change = |level: &Level| {
-            let Level { dims, values } = level;
+    /// Returns the differences between the next and the previous texel along an axis, level by level.
+    pub(crate) fn central_differences(&self, axis: usize) -> Self {
+        let change = |level: &PyramidLevel| {
+            let PyramidLevel { dims, values } = level;
             let at = |texel: [usize; 3], along: usize| {
                 let [x, y, z] = std::array::from_fn(|i| if i == axis { along } else { texel[i] });
                 values[x + dims[0] * (y + dims[1] * z)]
@@ -79,13 +79,12 @@ impl Pyramid {
                 let behind = (texel[axis] + 1).min(dims[axis] - 1);
                 at(texel, behind) - at(texel, texel[axis].saturating_sub(1))
             });
-            Level { dims: *dims, values }
+            PyramidLevel { dims: *dims, values }
         };
         Self { levels: self.levels.iter().map(change).collect() }
     }
 
-    /// The value at an index-space point: trilinear in the two levels around `level`, linear
-    /// between them.
+    /// Returns the value at an index-space point: trilinear in the two levels around `level`, linear between them.
     pub fn fetch(&self, point: DVec3, level: f64) -> f64 {
         let level = level.clamp(0.0, MAX_LEVEL as f64);
         let finer = level as usize;
@@ -94,16 +93,17 @@ impl Pyramid {
         if share == 0.0 { low } else { low + (self.fetch_level(point, finer + 1) - low) * share }
     }
 
-    /// Texture coordinate u = (p + 4.5) / padded dims on every level, so in texels u · dims − ½.
+    /// Interpolates in one level. Texture coordinate u = (p + 4.5) / padded dims on every level, so in texels u ·
+    /// dims − ½.
     fn fetch_level(&self, point: DVec3, level: usize) -> f64 {
-        let Level { dims, values } = &self.levels[level];
+        let PyramidLevel { dims, values } = &self.levels[level];
         let at = (point + PAD as f64 + 0.5) / (1 << level) as f64 - 0.5;
         trilinear(*dims, values, at)
     }
 }
 
-/// Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
-fn prefiltered(field: &Field, width: f64) -> Level {
+/// Blurs a field: Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
+fn prefiltered(field: &DensityField, width: f64) -> PyramidLevel {
     let a = (width * width / 3.0 - 1.0 / 6.0) / 2.0;
     let weights = [a, 1.0 - 2.0 * a, a];
     let dims = field.dims.map(|n| (n + 2 * PAD).next_multiple_of(1 << MAX_LEVEL));
@@ -119,12 +119,12 @@ fn prefiltered(field: &Field, width: f64) -> Level {
         }
         sum
     });
-    Level { dims, values }
+    PyramidLevel { dims, values }
 }
 
-/// Half the resolution. Eight trilinear fetches at ± 0.625 texel from the middle of a coarse texel
-/// weigh the finer ones by 1/16, 7/16, 7/16, 1/16 per axis, which adds a variance of ½ texel².
-fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
+/// Halves the resolution. Eight trilinear fetches at ± 0.625 texel from the middle of a coarse texel weigh the finer
+/// ones by 1/16, 7/16, 7/16, 1/16 per axis, which adds a variance of ½ texel².
+fn halved(finer: &PyramidLevel, round: impl Fn(f64) -> f64 + Sync) -> PyramidLevel {
     const STEP: f64 = 0.625;
     let dims = finer.dims.map(|n| n / 2);
     let values = texels(dims, |texel| {
@@ -135,10 +135,10 @@ fn halved(finer: &Level, round: impl Fn(f64) -> f64 + Sync) -> Level {
         });
         round(fetches.sum::<f64>() / 8.0)
     });
-    Level { dims, values }
+    PyramidLevel { dims, values }
 }
 
-/// One value per texel, x fastest, slices in parallel.
+/// Computes one value per texel, x fastest, slices in parallel.
 fn texels(dims: [usize; 3], value: impl Fn([usize; 3]) -> f64 + Sync) -> Vec<f64> {
     let [nx, ny, nz] = dims;
     let row = |z: usize| (0..nx * ny).map(move |n| [n % nx, n / nx, z]);
@@ -148,15 +148,15 @@ fn texels(dims: [usize; 3], value: impl Fn([usize; 3]) -> f64 + Sync) -> Vec<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::field::Beyond;
+    use crate::reference::field::BorderMode;
 
     #[test]
     fn every_level_keeps_the_sum_and_the_place_and_widens_the_kernel_as_it_should() {
         let densities = vec![0.0; 24 * 24 * 24];
-        let mut field = Field { dims: [24; 3], densities, beyond: Beyond::Border };
+        let mut field = DensityField { dims: [24; 3], densities, border: BorderMode::Clamp };
         field.densities[11 + 24 * (12 + 24 * 12)] = 1.0;
-        let pyramid = Pyramid::of(&field, 1.0, None);
-        // All phases: sample finely along x through the sums over y and z.
+        let pyramid = Pyramid::new(&field, 1.0, None);
+        // All phases: samples finely along x through the sums over y and z.
         for level in 0..=2usize {
             let step = 0.5;
             let (mut mass, mut mean, mut square) = (0.0, 0.0, 0.0);

@@ -1,11 +1,11 @@
-//! What has an exact answer: partition of unity, boxes that light crosses, slabs along chords, thick material.
+//! Tests against exact results: partition of unity, light through boxes, oblique slabs, thick material.
 
 use super::*;
 
 #[test]
 fn gather_weights_are_a_partition_of_unity() {
     let settings = settings(0.1);
-    let reference = Reference::new(&box_of([24; 3]), &settings, Options::default());
+    let reference = Reference::new(&box_of([24; 3]), &settings, ReferenceOptions::default());
     let mut seed = 1u64;
     let mut random = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -27,7 +27,11 @@ fn footprints_sum_to_one_even_where_they_are_stretched() {
     for (fov_y_deg, stretched) in [(4.0, false), (60.0, true)] {
         let mut settings = settings(0.1);
         settings.camera = Camera { distance: 8.0, fov_y_deg, ..settings.camera };
-        let reference = Reference::new(&box_of([20; 3]), &settings, options(Weights::Footprint, Fault::None));
+        let reference = Reference::new(
+            &box_of([20; 3]),
+            &settings,
+            options(ReferenceWeights::Footprint, ReferenceFault::None),
+        );
         let frame = reference.eye_frame([40, 40]);
         let k = frame.slab_count / 2;
         let stretch = frame.stretch_level(frame.depth_of(f64::from(k)));
@@ -38,14 +42,16 @@ fn footprints_sum_to_one_even_where_they_are_stretched() {
     }
 }
 
-/// Behind the lit face z₀ of a box, back-projected light is
-/// exp(−μ(z₀ − z)) · exp(μ²σ²/2) · sinhc(μΔs/2)^p, with p = 1 for points and 2 for integrated slabs.
+/// Tests that behind the lit face z₀ of a box, back-projected light is exp(−μ(z₀ − z)) · exp(μ²σ²/2) ·
+/// sinhc(μΔs/2)^p, with p = 1 for points and 2 for integrated slabs.
 #[test]
 fn light_in_a_box_follows_beer_and_lambert() {
-    for (weights, dims, power) in [(Weights::Gather, [48; 3], 1), (Weights::Footprint, [14, 14, 26], 2)] {
+    for (weights, dims, power) in
+        [(ReferenceWeights::Gather, [48; 3], 1), (ReferenceWeights::Footprint, [14, 14, 26], 2)]
+    {
         for (mu, tolerance) in [(0.1, 0.005), (0.3, 0.005), (0.7, 0.02)] {
             let settings = settings(mu);
-            let reference = Reference::new(&box_of(dims), &settings, options(weights, Fault::None));
+            let reference = Reference::new(&box_of(dims), &settings, options(weights, ReferenceFault::None));
             let light = reference.attenuation(0);
             let face = dims[2] as f64 - 0.5;
             let sinhc = (mu / 2.0).sinh() / (mu / 2.0);
@@ -61,13 +67,13 @@ fn light_in_a_box_follows_beer_and_lambert() {
     }
 }
 
-/// Towards the corners slabs are longer, and light and sight follow the chord.
+/// Tests that attenuation follows the chord for oblique rays, whose slabs are longer.
 #[test]
 fn oblique_light_follows_its_chord() {
     let n = 24;
     let mut settings = settings(0.05);
-    settings.lights[0].kind = LightKind::Perspective;
-    let reference = Reference::new(&box_of([n; 3]), &settings, Options::default());
+    settings.lights[0].kind = LightGeometry::Perspective;
+    let reference = Reference::new(&box_of([n; 3]), &settings, ReferenceOptions::default());
     let light = reference.attenuation(0);
     let scene = box_of([n; 3]).scene();
     for [x, y, z] in [[12, 12, 6], [4, 5, 6], [19, 4, 8]] {
@@ -80,8 +86,8 @@ fn oblique_light_follows_its_chord() {
     }
 }
 
-/// Looking along the light into something thick shows ½.
-fn headlight(slab: f64, deposit: Deposit, fault: Fault) -> f64 {
+/// Renders thick material seen along the light, which shows ½.
+fn headlight(slab: f64, deposit: DepositMode, fault: ReferenceFault) -> f64 {
     let mut settings = settings(0.7);
     settings.camera = Camera {
         projection: Projection::Orthographic,
@@ -95,17 +101,17 @@ fn headlight(slab: f64, deposit: Deposit, fault: Fault) -> f64 {
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.surface_gradient = 1e9;
-    // Air in front of the face: the light volume ends with the grid.
+    // Air in front of the face, as the light volume ends with the grid.
     let thick = volume([12, 12, 32], |p| if p.z < 28.0 { 1.0 } else { 0.0 });
-    let reference = Reference::new(&thick, &settings, options(Weights::Gather, fault));
+    let reference = Reference::new(&thick, &settings, options(ReferenceWeights::Gather, fault));
     reference.picture([1, 1], &reference.attenuations())[0][0]
 }
 
 #[test]
 fn a_headlight_shows_one_half_between_front_and_after() {
-    let mean = |slab| headlight(slab, Deposit::SlabMean, Fault::None);
-    let front = |slab| headlight(slab, Deposit::Front, Fault::None);
-    let after = |slab| headlight(slab, Deposit::Front, Fault::DepositAfter);
+    let mean = |slab| headlight(slab, DepositMode::SlabMean, ReferenceFault::None);
+    let front = |slab| headlight(slab, DepositMode::Front, ReferenceFault::None);
+    let after = |slab| headlight(slab, DepositMode::Front, ReferenceFault::DepositAfter);
     assert!((mean(1.0) - 0.5).abs() < 0.05, "{}", mean(1.0));
     assert!((mean(0.25) - 0.5).abs() < 0.01, "{}", mean(0.25));
     for slab in [1.0, 0.25] {
@@ -117,9 +123,12 @@ fn a_headlight_shows_one_half_between_front_and_after() {
 #[test]
 fn a_light_inside_lights_everything_around_it() {
     let mut settings = settings(0.2);
-    settings.lights[0] =
-        Light { kind: LightKind::Perspective, position: [0.1, 0.05, 0.0], ..Light::default() };
-    let reference = Reference::new(&box_of([16; 3]), &settings, Options::default());
+    settings.lights[0] = LightSettings {
+        kind: LightGeometry::Perspective,
+        position: [0.1, 0.05, 0.0],
+        ..LightSettings::default()
+    };
+    let reference = Reference::new(&box_of([16; 3]), &settings, ReferenceOptions::default());
     assert_eq!(reference.light_sheets(0).len(), 6);
     let light = reference.attenuation(0);
     let scene = box_of([16; 3]).scene();

@@ -1,19 +1,20 @@
-//! Gather against footprints, and both against faulty versions of themselves.
+//! Tests of gather against footprints, and of both against faulty versions of themselves.
 
 use super::*;
 
-/// The red of a picture.
-fn render(volume: &Volume, settings: &Settings, options: Options) -> Vec<f64> {
+/// Returns the red channel of a picture.
+fn render(volume: &Volume, settings: &Settings, options: ReferenceOptions) -> Vec<f64> {
     let reference = Reference::new(volume, settings, options);
     let picture = reference.picture([20, 20], &reference.attenuations());
     picture.into_iter().map(|rgba| rgba[0]).collect()
 }
 
-/// How far the gathered light and picture are from those by footprints. Both pictures are lit by the
-/// same light.
+/// Returns the differences of light and picture between gathering and footprints. Both pictures are lit by the same
+/// light.
 fn gap(volume: &Volume, settings: &Settings) -> [f64; 2] {
-    let footprint = Reference::new(volume, settings, options(Weights::Footprint, Fault::None));
-    let gather = Reference::new(volume, settings, Options::default());
+    let footprint =
+        Reference::new(volume, settings, options(ReferenceWeights::Footprint, ReferenceFault::None));
+    let gather = Reference::new(volume, settings, ReferenceOptions::default());
     let lights = [footprint.attenuation(0), gather.attenuation(0)];
     let light = difference(&lights[0].values, &lights[1].values);
     let lights = lights.map(Some);
@@ -25,16 +26,16 @@ fn gap(volume: &Volume, settings: &Settings) -> [f64; 2] {
 
 fn with_two_points(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
-    settings.sampling.quadrature = Quadrature::Two;
-    settings.shadows.quadrature = Quadrature::Two;
+    settings.sampling.quadrature = SlabQuadrature::Two;
+    settings.shadows.quadrature = SlabQuadrature::Two;
     settings
 }
 
 #[test]
 fn gather_and_footprints_are_the_same_sums_but_for_the_quadrature() {
     for (kind, position, projection) in [
-        (LightKind::Parallel, [1.0, 0.5, 2.0], Projection::Orthographic),
-        (LightKind::Perspective, [2.0, -3.0, 2.5], Projection::Perspective),
+        (LightGeometry::Parallel, [1.0, 0.5, 2.0], Projection::Orthographic),
+        (LightGeometry::Perspective, [2.0, -3.0, 2.5], Projection::Perspective),
     ] {
         for kernel in KERNELS {
             let mut settings = scene(kind, position, projection);
@@ -56,7 +57,7 @@ fn gather_and_footprints_are_the_same_sums_but_for_the_quadrature() {
 
 #[test]
 fn footprints_are_sheared_where_voxels_are_not_cubes() {
-    let mut settings = scene(LightKind::Parallel, [1.0, 0.5, 2.0], Projection::Perspective);
+    let mut settings = scene(LightGeometry::Parallel, [1.0, 0.5, 2.0], Projection::Perspective);
     settings.camera.fov_y_deg = 20.0;
     let volume = ball([14, 14, 9], DVec3::new(1.0, 1.0, 1.6));
     let [light, picture] = gap(&volume, &settings);
@@ -69,10 +70,10 @@ fn footprints_are_sheared_where_voxels_are_not_cubes() {
 #[test]
 fn stretched_kernels_and_coarse_light_are_nearly_the_same() {
     let volume = ball([14; 3], DVec3::ONE);
-    let mut settings = scene(LightKind::Parallel, [1.0, 0.5, 2.0], Projection::Perspective);
+    let mut settings = scene(LightGeometry::Parallel, [1.0, 0.5, 2.0], Projection::Perspective);
     settings.camera.fov_y_deg = 75.0;
-    settings.shadows.resolution = Resolution::Half;
-    let reference = Reference::new(&volume, &settings, Options::default());
+    settings.shadows.resolution = LightVolumeResolution::Half;
+    let reference = Reference::new(&volume, &settings, ReferenceOptions::default());
     assert!(reference.eye_frame([20, 20]).max_stretch_level() > 1.0);
     // The pyramid's kernel is trilinear, and between levels a blend of two.
     let [light, picture] = gap(&volume, &settings);
@@ -82,20 +83,20 @@ fn stretched_kernels_and_coarse_light_are_nearly_the_same() {
 #[test]
 fn every_fault_shows_in_the_picture() {
     let volume = ball([14; 3], DVec3::ONE);
-    let mut settings = scene(LightKind::Perspective, [1.5, -2.5, 2.5], Projection::Perspective);
+    let mut settings = scene(LightGeometry::Perspective, [1.5, -2.5, 2.5], Projection::Perspective);
     settings.camera.distance = 3.0;
     settings.shadows.slab = 0.5;
-    for weights in [Weights::Gather, Weights::Footprint] {
-        let right = render(&volume, &settings, options(weights, Fault::None));
-        let again = render(&volume, &settings, options(weights, Fault::None));
+    for weights in [ReferenceWeights::Gather, ReferenceWeights::Footprint] {
+        let right = render(&volume, &settings, options(weights, ReferenceFault::None));
+        let again = render(&volume, &settings, options(weights, ReferenceFault::None));
         assert_eq!(right, again, "the same input gives the same bits");
         for fault in [
-            Fault::WiderKernel,
-            Fault::DepositAfter,
-            Fault::NoDivision,
-            Fault::NoObliquity,
-            Fault::FlippedNormal,
-            Fault::ShiftedKernel,
+            ReferenceFault::WiderKernel,
+            ReferenceFault::DepositAfter,
+            ReferenceFault::NoDivision,
+            ReferenceFault::NoObliquity,
+            ReferenceFault::FlippedNormal,
+            ReferenceFault::ShiftedKernel,
         ] {
             let wrong = render(&volume, &settings, options(weights, fault));
             let difference = difference(&wrong, &right);

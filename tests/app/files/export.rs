@@ -1,14 +1,14 @@
-//! Pictures and animations that the window writes.
+//! Tests of pictures and animations that the window exports.
 
 use std::path::PathBuf;
 
 use chiaroscuro::export::{export_png, read_picture};
 use chiaroscuro::gpu::RenderOptions;
-use chiaroscuro::model::{Depth, ImageSpec};
+use chiaroscuro::model::{ImageSpec, PixelFormat};
 use eframe::egui::{self, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{beside, click, render, render_with, wait_until, window};
+use crate::harness::{click, render, render_with, second_renderer, wait_until, window};
 
 #[test]
 fn exports_are_what_the_renderer_makes() {
@@ -19,7 +19,7 @@ fn exports_are_what_the_renderer_makes() {
     let ctx = harness.ctx.clone();
     harness.state_mut().export(&exported, [200, 150], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
-    export_png([200, 150], &render(&harness, [200, 150]).shown, false, None, &expected).unwrap();
+    export_png([200, 150], &render(&harness, [200, 150]).display, false, None, &expected).unwrap();
     let pixels = |path: &PathBuf| image::open(path).expect("a picture").to_rgba8().into_raw();
     assert!(pixels(&exported) == pixels(&expected));
 
@@ -33,7 +33,7 @@ fn exports_are_what_the_renderer_makes() {
     click(&mut harness, "Replace");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let options = RenderOptions { transparent: true, ..RenderOptions::default() };
-    export_png([200, 150], &render_with(&harness, [200, 150], &options).shown, true, None, &expected)
+    export_png([200, 150], &render_with(&harness, [200, 150], &options).display, true, None, &expected)
         .unwrap();
     assert!(pixels(&exported) == pixels(&expected));
     assert!(harness.state().errors().is_empty());
@@ -47,7 +47,9 @@ fn fine_pictures_come_from_the_window() {
     let ctx = harness.ctx.clone();
     harness.state_mut().export(&path, [60, 45], &ctx);
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
-    for (depth, ending, label) in [(Depth::Sixteen, "png", "PNG, 16 bit"), (Depth::Linear, "exr", "EXR")] {
+    for (depth, ending, label) in
+        [(PixelFormat::Sixteen, "png", "PNG, 16 bit"), (PixelFormat::Linear, "exr", "EXR")]
+    {
         click(&mut harness, label);
         click(&mut harness, "4 samples per pixel");
         click(&mut harness, "Export");
@@ -56,11 +58,11 @@ fn fine_pictures_come_from_the_window() {
         }
         wait_until(&mut harness, "never exported", |app| !app.is_exporting());
         let app = harness.state();
-        let (dataset, mut renderer) = beside();
-        let shot = ImageSpec { samples: 2, depth, ..ImageSpec::new([60, 45]) };
-        let expected = renderer.bands(&dataset, app.settings(), &shot).all().unwrap();
+        let (dataset, mut renderer) = second_renderer();
+        let image_spec = ImageSpec { samples: 2, depth, ..ImageSpec::new([60, 45]) };
+        let expected = renderer.bands(&dataset, app.settings(), &image_spec).all().unwrap();
         let found = read_picture(&path.with_extension(ending)).unwrap();
-        assert!(found == ([60, 45], expected.as_written(&shot)), "{label}");
+        assert!(found == ([60, 45], expected.after_round_trip(&image_spec)), "{label}");
     }
     assert!(harness.state().errors().is_empty());
 }
@@ -80,7 +82,7 @@ fn turntables_and_copies_come_from_the_window() {
     let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap()));
     let frames = image::AnimationDecoder::into_frames(decoder.unwrap().apng().unwrap());
     assert_eq!(frames.count(), 72);
-    // The kind of file and its name follow each other.
+    // File format and file name follow each other.
     click(&mut harness, "GIF");
     click(&mut harness, "Export");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
@@ -89,7 +91,7 @@ fn turntables_and_copies_come_from_the_window() {
     ));
     assert_eq!(image::AnimationDecoder::into_frames(gif.unwrap()).count(), 72);
     click(&mut harness, "Image sequence");
-    // So large that nobody waits for all of them.
+    // So large that the test cannot wait for all frames.
     click(&mut harness, "1920 × 1080");
     click(&mut harness, "Export");
     let is_picture =
@@ -99,7 +101,7 @@ fn turntables_and_copies_come_from_the_window() {
         all.filter(|entry| is_picture(&entry.file_name())).count()
     };
     wait_until(&mut harness, "never made one", |_| made() > 0);
-    // The window is closed, and what it does goes on.
+    // The window is closed, and the export continues.
     harness.key_press(egui::Key::Escape);
     harness.run_steps(3);
     assert!(harness.query_by_label("Export picture or turntable").is_none());
@@ -108,7 +110,7 @@ fn turntables_and_copies_come_from_the_window() {
     wait_until(&mut harness, "never cancelled", |app| !app.is_exporting());
     let made = made();
     assert!((1..72).contains(&made), "{made} were made after all");
-    // What is there is not replaced unasked.
+    // An existing file is not replaced without asking.
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
     harness.run_steps(3);
     click(&mut harness, "Export");

@@ -1,28 +1,28 @@
-//! The export window: beside the picture, which is what would be exported, marks included.
+//! Tests of the export window beside the picture, which previews the export, marks included.
 
 use eframe::egui::{Key, Modifiers, Role, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::{bare_window, click, picture, wait_until, wait_until_idle, window};
+use crate::harness::{click, picture, wait_until, wait_until_idle, window, window_without_overlays};
 
-/// Steps of 255 by which marks over the window's picture and over the exported one may differ: they are blended by two
-/// programs that round.
+/// Tolerance in 255ths between marks over the window's picture and over the exported one: two implementations blend
+/// and round them.
 const ROUNDING: u8 = 3;
 
 #[test]
 fn the_picture_is_what_would_be_exported_with_its_marks() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     harness.set_size(Vec2::new(1100.0, 760.0));
     harness.run_steps(4);
     wait_until_idle(&mut harness);
     let usual = harness.state().viewport_rect().expect("a picture").0;
     harness.key_press_modifiers(Modifiers::COMMAND, Key::E);
     harness.run_steps(6);
-    // Beside the picture.
+    // Docked beside the picture.
     let dialog = harness.get_by_label("Transparent background").rect();
     let (beside, _) = harness.state().viewport_rect().expect("a picture");
     assert!(beside.left() >= dialog.right() && beside.left() > usual.left() + 200.0, "{dialog} {beside}");
-    // What is exported is as wide and high as the picture was, whatever room is left for it.
+    // The preview has the picture's aspect ratio, however much space is left for it.
     let shape = |rect: eframe::egui::Rect| rect.width() / rect.height();
     assert!((shape(beside) / shape(usual) - 1.0).abs() < 0.02, "{beside} of {usual}");
 
@@ -42,7 +42,7 @@ fn the_picture_is_what_would_be_exported_with_its_marks() {
     let exported = image::open(&path).expect("a picture").to_rgba8().into_raw();
     let apart = shown.iter().zip(&exported).filter(|(a, b)| a.abs_diff(**b) > ROUNDING).count();
     assert_eq!((shown.len(), apart), (exported.len(), 0));
-    // Escape closes it wherever the pointer is.
+    // Escape closes the window wherever the pointer is.
     harness.run_steps(3);
     harness.key_press(Key::Escape);
     harness.run_steps(6);
@@ -57,7 +57,7 @@ fn letters_cannot_be_ticked_where_there_are_none() {
     harness.run_steps(6);
     assert!(harness.get_by_label("Orientation letters").accesskit_node().is_disabled());
     assert!(!harness.get_by_label("Scale bar").accesskit_node().is_disabled());
-    // In a narrow window it lies over the picture: beside it there would be no picture.
+    // In a narrow window it floats over the picture: docked, it would leave no space for one.
     harness.set_size(Vec2::new(640.0, 400.0));
     harness.run_steps(6);
     assert!(harness.query_by_label("Close window").is_some());

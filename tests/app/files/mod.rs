@@ -1,13 +1,13 @@
-//! Files that the window opens, writes, and keeps from one run to the next.
+//! Tests of files that the window opens, writes, and keeps between runs.
 
-mod choosing;
 mod corrections;
 mod export;
 mod export_marks;
 mod foreign_files;
-mod foreign_paths;
+mod large_volumes;
 mod opening;
 pub(crate) mod raw_import;
-mod roomy;
 mod sessions;
 mod typed_paths;
+mod untrusted_paths;
+mod volume_choice;

@@ -1,16 +1,16 @@
-//! Files that are opened, dropped, asked about and remembered.
+//! Tests of opening files: dropped, missing, next in the folder, and remembered.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use eframe::egui::{self, Event, Modifiers, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{
-    Dropped, PATIENCE, SCENE, bare_window, click, drag, kept_look, wait_until, wait_until_idle, window,
-    window_with,
+    DroppedFile, SCENE, WAIT_TIMEOUT, adjusted_window, autosaved_look, click, drag, wait_until,
+    wait_until_idle, window, window_without_overlays,
 };
 
 #[test]
@@ -19,7 +19,7 @@ fn a_dropped_file_opens() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ramp_8x9x10_uint8.raw");
     std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).unwrap();
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    harness.input_mut().dropped_files.push(Arc::new(DroppedFile(path)));
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("ramp"));
     wait_until_idle(&mut harness);
     assert!(harness.state().errors().is_empty());
@@ -27,7 +27,7 @@ fn a_dropped_file_opens() {
 
 #[test]
 fn a_dropped_picture_brings_its_look_back() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let folder = tempfile::tempdir().unwrap();
     let (first, second) = (folder.path().join("first.png"), folder.path().join("second.png"));
     let ctx = harness.ctx.clone();
@@ -37,19 +37,19 @@ fn a_dropped_picture_brings_its_look_back() {
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
     let before = harness.state().settings().clone();
 
-    // Another look at another volume.
+    // Another look of another volume.
     harness.state_mut().open("builtin:sphere:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere"));
     wait_until_idle(&mut harness);
     assert_ne!(harness.state().settings(), &before);
 
-    // What is opened last counts: no look is laid over another volume.
+    // The last request wins: no look is applied to another volume.
     harness.state_mut().open(&first, &ctx);
     harness.state_mut().open("builtin:box:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("box"));
     assert_ne!(harness.state().settings().lights, before.lights);
 
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(first.clone())));
+    harness.input_mut().dropped_files.push(Arc::new(DroppedFile(first.clone())));
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("chair"));
     wait_until_idle(&mut harness);
     assert_eq!(harness.state().settings(), &before);
@@ -108,12 +108,12 @@ fn the_next_file_can_have_the_look_of_this_one() {
 fn the_first_run_has_hints_and_the_next_remembers() {
     let folder = tempfile::tempdir().unwrap();
     let start = |source: Option<&str>| {
-        let options = Options {
+        let options = WindowOptions {
             source: source.map(Into::into),
             storage: Some(folder.path().to_owned()),
-            ..Options::default()
+            ..WindowOptions::default()
         };
-        window_with(options, Vec2::new(760.0, 900.0))
+        adjusted_window(options, Vec2::new(760.0, 900.0))
     };
     let mut harness = start(Some(SCENE));
     assert!(harness.query_by_label("Close the hints").is_some());
@@ -124,11 +124,11 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     harness.run_steps(20);
     assert!(harness.query_by_label("Close the hints").is_none(), "gone with the first drag");
     wait_until_idle(&mut harness);
-    // No further frame is drawn: the look is kept all the same.
+    // No further frame is drawn: the look is autosaved nevertheless.
     let wanted = harness.state().settings().clone();
     let begin = Instant::now();
-    while kept_look(folder.path()).as_ref() != Some(&wanted) {
-        assert!(begin.elapsed() < PATIENCE, "the look was not kept");
+    while autosaved_look(folder.path()).as_ref() != Some(&wanted) {
+        assert!(begin.elapsed() < WAIT_TIMEOUT, "the look was not kept");
         std::thread::sleep(Duration::from_millis(20));
     }
     drop(harness);
@@ -142,21 +142,24 @@ fn the_first_run_has_hints_and_the_next_remembers() {
     assert_eq!(harness.state().settings(), &wanted);
 }
 
-/// Once opened, a file is offered again and belongs to the look that is kept, also if its name is no text.
+/// Once opened, a file whose name is not valid UTF-8 is offered again and belongs to the autosaved look.
 #[cfg(unix)]
 #[test]
 fn a_file_whose_name_is_no_text_is_opened_again() {
     use std::os::unix::ffi::OsStrExt as _;
     let (folder, storage) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let path = folder.path().join(std::ffi::OsStr::from_bytes(b"t\xfcr_8x9x10_uint8.raw"));
-    // Not every file system has such names.
+    // Not every file system supports such names.
     if std::fs::write(&path, (0..720).map(|i| (i / 3) as u8).collect::<Vec<_>>()).is_err() {
         println!("the temporary folder has no names that are no text: nothing is checked");
         return;
     }
     let start = |source: std::path::PathBuf| {
         let (source, storage) = (Some(source), Some(storage.path().to_owned()));
-        window_with(Options { source, storage, ..Options::default() }, Vec2::new(760.0, 900.0))
+        adjusted_window(
+            WindowOptions { source, storage, ..WindowOptions::default() },
+            Vec2::new(760.0, 900.0),
+        )
     };
     let harness = start(path);
     let name = harness.state().volume_name().unwrap().to_owned();

@@ -1,20 +1,23 @@
-//! Sessions that are saved, and looks that outlive a crash.
+//! Tests of saved sessions, and of crash recovery.
 
 use std::path::Path;
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{Record, Settings, VolumeRecord};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::model::{LookRecord, Settings, VolumeRecord};
 use eframe::egui::{self, Modifiers, Vec2, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, click, kept_look, untouched_window, wait_until, window, window_with};
+use crate::harness::{SCENE, adjusted_window, automatic_window, autosaved_look, click, wait_until, window};
 
-/// A window with a session file, whose look has been changed, and Ctrl+S pressed.
+/// Creates a window with a session file, changes the look, and presses Ctrl+S.
 fn changed_and_saved(session: &Path) -> Harness<'static, App> {
-    let options =
-        Options { source: Some(SCENE.into()), session: Some(session.to_owned()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 900.0));
+    let options = WindowOptions {
+        source: Some(SCENE.into()),
+        session: Some(session.to_owned()),
+        ..WindowOptions::default()
+    };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 900.0));
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
@@ -27,7 +30,7 @@ fn backup(session: &Path) -> std::path::PathBuf {
 }
 
 #[test]
-fn what_is_no_session_of_this_version_stays_as_it_is() {
+fn other_files_are_not_overwritten_as_sessions() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let mut harness = window();
@@ -55,7 +58,7 @@ fn what_is_no_session_of_this_version_stays_as_it_is() {
 }
 
 #[test]
-fn a_session_keeps_what_others_wrote_and_what_it_was() {
+fn unknown_fields_and_a_backup_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let session = folder.path().join("s.json");
     let before = r#"{"schema": 2, "_notes": "mine", "shadows": {"gain": 2.0, "glow": 3}}"#;
@@ -66,7 +69,7 @@ fn a_session_keeps_what_others_wrote_and_what_it_was() {
     assert_eq!((&tree["_notes"], &tree["shadows"]["glow"]), (&"mine".into(), &3.into()));
     assert_eq!(tree["shadows"]["gain"], 2.0);
     assert_eq!(std::fs::read_to_string(backup(&session)).unwrap(), before);
-    // Again: the backup is what was there last.
+    // Saved again: the backup is the previous session.
     harness.key_press(egui::Key::CloseBracket);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
@@ -77,23 +80,23 @@ fn a_session_keeps_what_others_wrote_and_what_it_was() {
 }
 
 #[test]
-fn a_run_that_was_cut_off_is_offered() {
+fn a_killed_run_is_offered_for_recovery() {
     let folder = tempfile::tempdir().unwrap();
     let start = || {
-        let options = Options {
+        let options = WindowOptions {
             source: Some("builtin:sphere:16".into()),
             storage: Some(folder.path().to_owned()),
-            ..Options::default()
+            ..WindowOptions::default()
         };
-        window_with(options, Vec2::new(760.0, 900.0))
+        adjusted_window(options, Vec2::new(760.0, 900.0))
     };
-    // As a process leaves it that is killed.
+    // Leaves the files of a process that was killed.
     let mut look = window().state().settings().clone();
     look.shadows.gain = 1.75;
     let volume = VolumeRecord::new(Path::new(SCENE), 0, None);
     std::fs::create_dir(folder.path().join("runs")).unwrap();
     let file = folder.path().join("runs/0000000000001-1-0.json");
-    std::fs::write(&file, Record::text(&look, Some(&volume), None)).unwrap();
+    std::fs::write(&file, LookRecord::to_json(&look, Some(&volume), None)).unwrap();
     std::fs::write(file.with_extension("lock"), "").unwrap();
 
     let mut harness = start();
@@ -113,7 +116,7 @@ fn a_run_that_was_cut_off_is_offered() {
     assert_eq!(harness.state().settings().shadows.gain, 1.75);
     assert!(file.exists(), "and it stays");
     drop(harness);
-    assert_eq!(kept_look(folder.path()).expect("a look").shadows.gain, 1.75);
+    assert_eq!(autosaved_look(folder.path()).expect("a look").shadows.gain, 1.75);
 }
 
 /// Nothing is opened behind the question about the last session.
@@ -126,10 +129,10 @@ fn the_question_about_the_last_session_comes_first() {
         std::fs::create_dir(folder.path().join("runs")).unwrap();
         let file = folder.path().join("runs/0000000000001-1-0.json");
         let volume = VolumeRecord::new(Path::new("builtin:sphere:16"), 0, None);
-        std::fs::write(&file, Record::text(&look, Some(&volume), None)).unwrap();
+        std::fs::write(&file, LookRecord::to_json(&look, Some(&volume), None)).unwrap();
         std::fs::write(file.with_extension("lock"), "").unwrap();
-        let options = Options { storage: Some(folder.path().to_owned()), ..Options::default() };
-        let mut harness = untouched_window(options);
+        let options = WindowOptions { storage: Some(folder.path().to_owned()), ..WindowOptions::default() };
+        let mut harness = automatic_window(options);
         harness.run_steps(30);
         assert!(harness.query_by_label("Reopen the last session?").is_some());
         assert!(harness.query_by_label_contains("chair").is_none(), "nothing is being opened");
@@ -152,13 +155,13 @@ fn after_three_failed_starts_the_file_is_left_out() {
         std::fs::write(folder.path().join(format!("runs/000000000000{at}-1-0.lock")), "").unwrap();
     }
     let start = || {
-        let options = Options {
+        let options = WindowOptions {
             source: Some("builtin:sphere:16".into()),
             storage: Some(folder.path().to_owned()),
             adjust: Some(Box::new(|settings| settings)),
-            ..Options::default()
+            ..WindowOptions::default()
         };
-        window_with(options, Vec2::new(760.0, 900.0))
+        adjusted_window(options, Vec2::new(760.0, 900.0))
     };
     let harness = start();
     assert_eq!(harness.state().volume_name(), Some("chair"));

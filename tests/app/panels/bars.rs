@@ -1,13 +1,13 @@
-//! The menu bar and the status bar: names that are too long, and what is said of the renderer's work.
+//! Tests of the menu bar and status bar: long names, and the state of the renderer.
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use eframe::egui::{Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::{click, wait_until_idle, window, window_with};
+use crate::harness::{adjusted_window, click, wait_until_idle, window};
 
-/// The words of a label that contains some.
+/// Text of the first label that contains a string.
 fn words(harness: &Harness<'_, App>, part: &str) -> String {
     let labels = harness.get_all_by_role(Role::Label);
     labels
@@ -25,15 +25,15 @@ fn long_names_of_files_leave_room_for_what_is_said_of_them() {
                   space directions: (0.5,0,0) (0,0.5,0) (0,0,1.25)\nspace origin: (0,0,0)\nencoding: raw\n\n";
     let voxels: Vec<u8> = (0..720).map(|at| (at % 200) as u8).collect();
     std::fs::write(&path, [header.as_bytes(), &voxels].concat()).expect("written");
-    let options = Options { source: Some(path), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(640.0, 400.0));
+    let options = WindowOptions { source: Some(path), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, Vec2::new(640.0, 400.0));
     let facts = "8×9×10 · 0.500×0.500×1.250 mm";
     let title = words(&harness, facts);
     assert!(title.starts_with("subject") && title.contains('…') && title.ends_with(facts), "{title}");
     assert!(title.contains("defaced · 8×9×10"), "the end of the name stays: {title}");
     let shown = harness.get_by_label(&title).rect();
     assert!(shown.right() <= 640.0 && shown.left() > 180.0, "{shown}");
-    // With room, nothing is left out.
+    // In a wide window nothing is elided.
     harness.set_size(Vec2::new(1280.0, 800.0));
     harness.run_steps(4);
     assert!(words(&harness, facts).starts_with(name));

@@ -1,14 +1,14 @@
-//! How the window is laid out: the picture alone, tools beside it, what is kept below it, steps and messages as lists.
+//! Tests of the window's layout: picture only, docked tools, the strip of kept views, undo history, and messages.
 
 use chiaroscuro::app::App;
-use chiaroscuro::model::{Kept, Settings};
+use chiaroscuro::model::{SavedEntry, Settings};
 use eframe::egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, drag, press, wait_until, wait_until_idle, window};
+use crate::harness::{click, click_at, drag, wait_until, wait_until_idle, window};
 
-fn picture_of(harness: &Harness<'_, App>) -> Rect {
+fn picture_rect(harness: &Harness<'_, App>) -> Rect {
     harness.state().viewport_rect().expect("a picture").0
 }
 
@@ -16,9 +16,9 @@ fn settings(harness: &Harness<'_, App>) -> Settings {
     harness.state().settings().clone()
 }
 
-/// What a key switches on is set in a section: also when the panel is hidden.
+/// Switching a feature on by a key opens its section, also if the panel is hidden.
 #[test]
-fn the_panel_comes_with_what_a_key_switches_on() {
+fn keys_reveal_the_section_they_switch_on() {
     let mut harness = window();
     harness.key_press(Key::N);
     harness.run_steps(4);
@@ -35,19 +35,19 @@ fn the_panel_comes_with_what_a_key_switches_on() {
 #[test]
 fn the_picture_can_be_alone() {
     let mut harness = window();
-    let usual = picture_of(&harness);
+    let usual = picture_rect(&harness);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Backslash);
     harness.run_steps(3);
-    let alone = picture_of(&harness);
+    let alone = picture_rect(&harness);
     assert_eq!(alone, harness.ctx.content_rect(), "nothing else is there");
     assert!(harness.query_by_label("File").is_none());
     harness.key_press(Key::Escape);
     harness.run_steps(3);
-    assert_eq!(picture_of(&harness), usual);
-    // One of the panels at a time.
+    assert_eq!(picture_rect(&harness), usual);
+    // Each panel can be hidden separately.
     harness.key_press_modifiers(Modifiers::SHIFT, Key::N);
     harness.run_steps(12);
-    let higher = picture_of(&harness);
+    let higher = picture_rect(&harness);
     assert!(higher.height() > usual.height() + 100.0 && higher.width() == usual.width(), "{higher}");
     wait_until_idle(&mut harness);
 }
@@ -55,41 +55,41 @@ fn the_picture_can_be_alone() {
 #[test]
 fn tools_are_docked_beside_the_picture_and_float_again() {
     let mut harness = window();
-    let usual = picture_of(&harness);
+    let usual = picture_rect(&harness);
     harness.key_press(Key::D);
     harness.run_steps(4);
-    assert_eq!(picture_of(&harness), usual, "a window hides, and takes no room");
+    assert_eq!(picture_rect(&harness), usual, "a window hides, and takes no room");
     click(&mut harness, "Dock Slices beside the picture");
     harness.run_steps(4);
-    let beside = picture_of(&harness);
+    let beside = picture_rect(&harness);
     assert!(beside.left() > usual.left() + 200.0 && beside.right() == usual.right(), "{beside}");
     let slice = harness.get_by_label("Slice across z").rect();
     assert!(slice.right() <= beside.left(), "{slice} beside {beside}");
-    // The picture only hides it, too.
+    // Picture-only mode hides the tool as well.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Backslash);
     harness.run_steps(3);
     assert!(harness.query_by_label("Slice across z").is_none());
     harness.key_press(Key::Escape);
     harness.run_steps(4);
-    assert_eq!(picture_of(&harness), beside);
-    // Escape closes what the pointer is over.
-    harness.hover_at(picture_of(&harness).center());
+    assert_eq!(picture_rect(&harness), beside);
+    // Escape closes the tool under the pointer.
+    harness.hover_at(picture_rect(&harness).center());
     harness.step();
     harness.key_press(Key::Escape);
     harness.run_steps(3);
-    assert_eq!(picture_of(&harness), beside, "over the picture it is for the picture");
+    assert_eq!(picture_rect(&harness), beside, "over the picture it is for the picture");
     let slice = harness.get_by_label("Slice across z").rect();
     harness.hover_at(slice.center());
     harness.step();
     harness.key_press(Key::Escape);
     harness.run_steps(4);
-    assert_eq!(picture_of(&harness), usual);
+    assert_eq!(picture_rect(&harness), usual);
     harness.key_press(Key::D);
     harness.run_steps(4);
-    assert_eq!(picture_of(&harness), beside, "where it was");
+    assert_eq!(picture_rect(&harness), beside, "where it was");
     click(&mut harness, "Make Slices a window");
     harness.run_steps(4);
-    assert_eq!(picture_of(&harness), usual);
+    assert_eq!(picture_rect(&harness), usual);
     assert!(harness.query_by_label("Slice across z").is_some(), "and it is still open");
     wait_until_idle(&mut harness);
 }
@@ -112,14 +112,14 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
         settings(harness).kept.iter().map(|kept| kept.name.clone()).collect::<Vec<_>>()
     };
     assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
-    // A look leaves the view, and a view the look.
+    // Applying a look keeps the view, and applying a view keeps the look.
     click(&mut harness, "Go to Look 1");
     let back = settings(&harness);
     assert_eq!((back.floor.on, &back.camera), (first.floor.on, &turned.camera));
     click(&mut harness, "Go to View 4");
     assert_eq!(settings(&harness).camera, first.camera);
     assert_eq!(settings(&harness).kept.len(), 3, "what is kept stays");
-    // Two looks that are marked are compared.
+    // Two marked looks are compared.
     for look in ["Go to Look 1", "Go to Look 2"] {
         harness.get_by_label(look).click_modifiers(Modifiers::COMMAND);
         harness.run_steps(3);
@@ -127,7 +127,7 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.run_steps(4);
     wait_until_idle(&mut harness);
     assert!(harness.query_by_label("Difference").is_some() || harness.query_by_label("Divider").is_some());
-    // A view and a look as well, each with its middle in that of its part: nothing lies over both.
+    // A view and a look are compared as well, each centred in its half: no overlay covers both.
     assert!(!harness.state().light_handle_positions().is_empty());
     harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
     harness.run_steps(4);
@@ -136,7 +136,7 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.get_by_label("Go to View 4").click_modifiers(Modifiers::COMMAND);
     harness.key_press(Key::C);
     wait_until_idle(&mut harness);
-    // The last one is dragged to the front, and that can be undone.
+    // The last one is dragged to the front, which can be undone.
     let from = harness.get_by_label("Go to Look 2").rect().center();
     let to = harness.get_by_label("Go to View 4").rect().left_center();
     drag(&mut harness, from, to - from);
@@ -146,9 +146,9 @@ fn views_and_looks_are_kept_named_moved_and_compared() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
     assert_eq!(names(&harness), ["View 4", "Look 1", "Look 2"]);
-    assert!(settings(&harness).kept.iter().filter_map(Kept::as_look).count() == 2);
+    assert!(settings(&harness).kept.iter().filter_map(SavedEntry::as_look).count() == 2);
     wait_until_idle(&mut harness);
-    // They are there for the next volume, too, and drawn anew.
+    // The kept items remain for the next volume, with new thumbnails.
     let ctx = harness.ctx.clone();
     harness.state_mut().open("builtin:sphere:16", &ctx);
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some("sphere") && app.is_idle());
@@ -174,9 +174,9 @@ fn steps_are_listed_and_gone_to() {
     harness.run_steps(4);
     let start = settings(&harness);
     assert_eq!((start.floor.on, &start.camera), (first.floor.on, &first.camera));
-    // Said in the status bar until something is changed, and never over the picture.
+    // The undone step is shown in the status bar until the next change, and never over the picture.
     let said = harness.get_by_label("Undone: switch on floor").rect();
-    assert!(said.top() > picture_of(&harness).bottom(), "{said:?}");
+    assert!(said.top() > picture_rect(&harness).bottom(), "{said:?}");
     assert!(harness.query_by_label_contains(" message").is_none(), "a step is no message");
     click(&mut harness, "2  Turn camera");
     harness.run_steps(4);
@@ -189,7 +189,7 @@ fn steps_are_listed_and_gone_to() {
 }
 
 #[test]
-fn what_was_said_is_listed_after_it_has_gone() {
+fn messages_are_listed_after_they_disappear() {
     let mut harness = window();
     let ctx = harness.ctx.clone();
     harness.state_mut().open("/no/such/volume.nrrd", &ctx);
@@ -212,24 +212,24 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
     let mut harness = window();
     let first = settings(&harness);
     harness.key_press(Key::I);
-    let middle = picture_of(&harness).center();
+    let middle = picture_rect(&harness).center();
     harness.hover_at(middle);
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("Click for what helps").is_some());
-    press(&mut harness, middle, 1);
+    click_at(&mut harness, middle, 1);
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("Click for what helps").is_none(), "it was clicked");
     assert_eq!(settings(&harness), first, "asking changes nothing");
-    // A second place, a little further: how far they are apart.
+    // A second point, a little further away: their distance is shown.
     let other = middle + vec2(-24.0, -10.0);
-    press(&mut harness, other, 1);
+    click_at(&mut harness, other, 1);
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("from the previous place").is_some());
     harness.key_press(Key::Escape);
     harness.remove_cursor();
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("from the previous place").is_none());
-    // With no light there is a cause and a cure for it.
+    // Without light there is a cause and a remedy.
     harness.key_press(Key::M);
     harness.run_steps(2);
     for light in 0..harness.state().settings().lights.len() {
@@ -239,7 +239,7 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
             harness.run_steps(2);
         }
     }
-    press(&mut harness, middle, 1);
+    click_at(&mut harness, middle, 1);
     harness.run_steps(4);
     assert!(harness.query_by_label("Dark: no light is on").is_some());
     click(&mut harness, "Switch it on");
@@ -265,14 +265,17 @@ fn a_section_says_that_it_is_on_and_is_put_back() {
 fn views_from_the_sides_show_all_of_the_object() {
     let mut harness = window();
     let outline = |harness: &Harness<'_, App>| {
-        let (dataset, _) = crate::harness::beside();
-        chiaroscuro::model::auto::Outline::of(harness.state().settings(), dataset.volume())
+        let (dataset, _) = crate::harness::second_renderer();
+        chiaroscuro::model::first_look::ObjectOutline::from_settings(
+            harness.state().settings(),
+            dataset.volume(),
+        )
     };
     let object = outline(&harness);
     for key in [Key::Num1, Key::Num3, Key::Num7, Key::Num9] {
-        // From as near as somebody may have gone.
+        // From as near as the user may have zoomed.
         harness.state_mut();
-        let middle = picture_of(&harness).center();
+        let middle = picture_rect(&harness).center();
         harness.hover_at(middle);
         harness.step();
         crate::harness::turn_wheel(&harness, 400.0);
@@ -283,8 +286,8 @@ fn views_from_the_sides_show_all_of_the_object() {
         let camera = settings(&harness).camera;
         assert!(camera.distance >= object.least_distance(&camera), "{key:?}: {camera:?}");
     }
-    // An orbit of what is framed keeps it in the frame.
-    let middle = picture_of(&harness).center();
+    // Orbiting a framed object keeps it in the frame.
+    let middle = picture_rect(&harness).center();
     drag(&mut harness, middle, vec2(160.0, 90.0));
     let camera = settings(&harness).camera;
     assert!(camera.distance * 1.001 >= object.least_distance(&camera), "{camera:?}");

@@ -1,4 +1,4 @@
-//! Menus in low windows: they end where the window does, and all of their rows can be reached.
+//! Tests of menus in low windows: they end within the window, and all of their rows can be reached.
 
 use chiaroscuro::app::App;
 use eframe::egui::{Key, Rect, Vec2};
@@ -7,22 +7,23 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{turn_wheel, wait_until_idle, window};
 
-/// The sizes of a small laptop's window, and of the smallest window that is of use.
+/// Sizes of a small laptop's window, and of the smallest useful window.
 const SIZES: [Vec2; 2] = [Vec2::new(1280.0, 680.0), Vec2::new(640.0, 400.0)];
 
-/// Opens a menu: of the bar, which comes first, or of the editor.
-fn open(harness: &mut Harness<'_, App>, menu: &str) {
+/// Opens a menu: of the menu bar, which comes first, or of the editor.
+fn open_menu(harness: &mut Harness<'_, App>, menu: &str) {
     harness.get_all_by_label(menu).next().expect("a menu").click();
     harness.run_steps(6);
 }
 
-/// The row whose name begins so, before its key, and which is shown last, since menus lie over all else.
-fn row_of(harness: &Harness<'_, App>, row: &str) -> Rect {
+/// Rectangle of the menu row whose text contains a string. Menus are drawn over everything else, so it is the last
+/// match.
+fn menu_row_rect(harness: &Harness<'_, App>, row: &str) -> Rect {
     harness.get_all_by_label_contains(row).last().expect("it is in the menu").rect()
 }
 
-fn bottom(harness: &Harness<'_, App>, row: &str) -> f32 {
-    row_of(harness, row).bottom()
+fn menu_row_bottom(harness: &Harness<'_, App>, row: &str) -> f32 {
+    menu_row_rect(harness, row).bottom()
 }
 
 #[test]
@@ -32,16 +33,16 @@ fn all_rows_of_menus_are_reached_in_low_windows() {
         harness.set_size(size);
         harness.run_steps(6);
         for (menu, last) in [("File", "Quit"), ("View", "Theme"), ("Light", "Fill"), ("Presets", "Chair")] {
-            open(&mut harness, menu);
-            if bottom(&harness, last) > size.y {
-                let rows = row_of(&harness, last);
+            open_menu(&mut harness, menu);
+            if menu_row_bottom(&harness, last) > size.y {
+                let rows = menu_row_rect(&harness, last);
                 harness.hover_at(rows.center() - Vec2::new(0.0, rows.center().y - 0.5 * size.y));
                 for _ in 0..4 {
                     turn_wheel(&harness, -400.0);
                     harness.run_steps(12);
                 }
             }
-            let at = bottom(&harness, last);
+            let at = menu_row_bottom(&harness, last);
             assert!(at > 0.0 && at <= size.y, "{menu} at {size}: {last} at {at}");
             harness.key_press(Key::Escape);
             harness.run_steps(4);
@@ -50,13 +51,13 @@ fn all_rows_of_menus_are_reached_in_low_windows() {
     wait_until_idle(&mut harness);
 }
 
-/// The keyboard leads to rows that are out of sight.
+/// Keyboard focus scrolls rows into view.
 #[test]
 fn menus_scroll_to_the_row_that_has_the_focus() {
     let mut harness = window();
     harness.set_size(SIZES[1]);
     harness.run_steps(6);
-    open(&mut harness, "View");
+    open_menu(&mut harness, "View");
     let find =
         |harness: &Harness<'_, App>| harness.get_all_by_label("Theme").last().expect("a row").is_focused();
     for _ in 0..60 {
@@ -68,7 +69,7 @@ fn menus_scroll_to_the_row_that_has_the_focus() {
     }
     assert!(find(&harness), "arrow keys lead to the last row");
     harness.run_steps(12);
-    let at = bottom(&harness, "Theme");
+    let at = menu_row_bottom(&harness, "Theme");
     assert!(at > 0.0 && at <= SIZES[1].y, "{at}");
     wait_until_idle(&mut harness);
 }

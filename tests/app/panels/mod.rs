@@ -1,34 +1,36 @@
-//! Controls in the panels, and what they change in the picture.
+//! Tests of the controls in the panels, and of their effects on the picture.
 
 mod bars;
+mod environment_map;
 mod labels;
 mod layout;
 mod menus;
 mod presets;
-mod side;
+mod reset_buttons;
+mod side_panel;
 mod slices;
-mod surroundings;
-mod values;
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{LightKind, Projection};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::model::{LightGeometry, Projection};
 use eframe::egui::{self, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{SCENE, bare_window, click, picture, render, wait_until, wait_until_idle, window_with};
+use crate::harness::{
+    SCENE, adjusted_window, click, picture, render, wait_until, wait_until_idle, window_without_overlays,
+};
 
 #[test]
 fn panels_change_settings() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     click(&mut harness, "Positional");
-    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Perspective);
+    assert_eq!(harness.state().settings().lights[0].kind, LightGeometry::Perspective);
     click(&mut harness, "Directional");
-    assert_eq!(harness.state().settings().lights[0].kind, LightKind::Parallel);
-    // Room for what follows.
+    assert_eq!(harness.state().settings().lights[0].kind, LightGeometry::Parallel);
+    // Makes space for the following sections.
     click(&mut harness, "Lights");
     click(&mut harness, "Camera");
-    // The section slides open.
+    // The section opens with an animation.
     harness.run_steps(8);
     click(&mut harness, "Orthographic");
     assert_eq!(harness.state().settings().camera.projection, Projection::Orthographic);
@@ -43,12 +45,12 @@ fn panels_change_settings() {
     assert_eq!(harness.state().settings().shadows.strength, 0.5);
     wait_until_idle(&mut harness);
     let (shown, size) = picture(&mut harness);
-    assert!(shown == render(&harness, size).shown);
+    assert!(shown == render(&harness, size).display);
 }
 
 #[test]
 fn a_floor_takes_shadows() {
-    let mut harness = bare_window();
+    let mut harness = window_without_overlays();
     let (bare, _) = picture(&mut harness);
     let fills = harness.state().light_rebuilds();
     harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::G);
@@ -58,7 +60,7 @@ fn a_floor_takes_shadows() {
     assert!(harness.state().settings().floor.on);
     let (floor, size) = picture(&mut harness);
     assert!(floor != bare);
-    assert!(floor == render(&harness, size).shown);
+    assert!(floor == render(&harness, size).display);
     assert_eq!(harness.state().light_rebuilds(), fills, "the floor needs no light volume");
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     wait_until_idle(&mut harness);
@@ -68,16 +70,16 @@ fn a_floor_takes_shadows() {
 
 #[test]
 fn voxels_are_averaged_and_the_look_stays() {
-    // So tall that the whole section can be seen.
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 1600.0));
+    // So tall that the whole section is visible.
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 1600.0));
     harness.key_press(egui::Key::CloseBracket);
     click(&mut harness, "Data");
     let before = harness.state().settings().clone();
     let choose = |harness: &mut Harness<'_, App>, thinning: &str, voxels: &'static str| {
         harness.get_by_role_and_label(Role::ComboBox, "Subsample").click();
         harness.run_steps(4);
-        // The list is over all else, and shown last.
+        // The open list is drawn over everything else, last.
         harness.get_all_by_label(thinning).last().expect("it is in the list").click();
         harness.run_steps(4);
         wait_until(harness, "never read again", App::is_idle);
@@ -89,7 +91,7 @@ fn voxels_are_averaged_and_the_look_stays() {
     let after = harness.state().settings().clone();
     assert_eq!((&after.camera, &after.transfer), (&before.camera, &before.transfer));
     assert_eq!(after.lights, before.lights);
-    // The chair has a unit in millimetres already.
+    // The opacity unit of the chair is in millimetres already.
     assert_eq!(after.opacity_unit, before.opacity_unit);
     harness.get_by_label("Read of");
     choose(&mut harness, "Every second", "16×16×16");
@@ -99,12 +101,12 @@ fn voxels_are_averaged_and_the_look_stays() {
 
 #[test]
 fn volumes_are_treated_as_other_data_in_one_step() {
-    // As tall as the section with a table of labels and the section of cuts above it.
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    let mut harness = window_with(options, Vec2::new(760.0, 2600.0));
+    // As tall as the section with a table of labels and the clipping section above it.
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, Vec2::new(760.0, 2600.0));
     click(&mut harness, "Data");
     harness.get_by_label("Scalar field");
-    // What is cut away, how truly it is drawn, and what is behind it are none of a first look.
+    // Clipping, quality and background are not part of a first look.
     harness.key_press(egui::Key::K);
     harness.run_steps(3);
     let before = harness.state().settings().clone();
@@ -112,7 +114,7 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     let treat = |harness: &mut Harness<'_, App>, kind: &str| {
         harness.get_by_role_and_label(Role::ComboBox, "Treat as").click();
         harness.run_steps(4);
-        // The list is over all else, and shown last.
+        // The open list is drawn over everything else, last.
         harness.get_all_by_label(kind).last().expect("it is in the list").click();
         harness.run_steps(10);
         wait_until_idle(harness);

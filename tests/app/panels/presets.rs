@@ -1,12 +1,12 @@
-//! The menu of presets, and which of them it marks.
+//! Tests of the menu of presets, and of the marks of those in use.
 
-use chiaroscuro::app::{App, Options};
+use chiaroscuro::app::{App, WindowOptions};
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::{SCENE, click, wait_until_idle, window_with};
+use crate::harness::{SCENE, adjusted_window, click, wait_until_idle};
 
 fn is_marked(harness: &Harness<'_, App>, preset: &str) -> bool {
     harness.get_by_label(preset).accesskit_node().toggled() == Some(Toggled::True)
@@ -14,9 +14,9 @@ fn is_marked(harness: &Harness<'_, App>, preset: &str) -> bool {
 
 #[test]
 fn presets_have_one_name_each_and_the_one_in_use_is_marked() {
-    let options = Options { source: Some(SCENE.into()), ..Options::default() };
-    // As high as all of them need.
-    let mut harness = window_with(options, vec2(900.0, 1500.0));
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    // As high as all presets need.
+    let mut harness = adjusted_window(options, vec2(900.0, 1500.0));
     click(&mut harness, "Presets");
     harness.run_steps(4);
     for title in ["CT angiography", "MR angiography", "Spray", "Fuel injection", "Vapour", "Sunlit cloud"] {

@@ -1,7 +1,7 @@
-//! Panels, editor and windows look as they did, in the dark and in the light theme.
+//! Snapshot tests: panels, editor and windows look unchanged, in the dark and in the light theme.
 //!
-//! The pictures lie beside this file. With `UPDATE_SNAPSHOTS=1` in the environment they are written anew: look
-//! at each before it is committed. What was found lies beside it as `NAME.found.png` after a failure.
+//! The pictures are beside this file. With `UPDATE_SNAPSHOTS=1` in the environment they are written anew: look at
+//! each before it is committed. After a failure the picture that was found is beside them as `NAME.found.png`.
 
 mod sizes;
 
@@ -13,40 +13,44 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::{RgbaImage, imageops};
 
-use crate::files::raw_import::{ask_about, scan};
+use crate::accessibility::expanded_window;
+use crate::files::raw_import::{drop_and_analyse, write_scan};
 use crate::harness::{wait_until_idle, window};
-use crate::names::unfolded;
-use crate::thresholds::{PIXELS, STEPS};
+use crate::thresholds::{MAX_CHANNEL_STEPS, MAX_DIFFERENT_PIXELS};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/app/snapshots")
 }
 
-/// Whether a picture shows the same as another, for somebody who looks at it.
-fn looks_like(found: &RgbaImage, wanted: &RgbaImage) -> Result<(), String> {
+/// Compares a picture with its snapshot, up to differences that are not visible; an error says how they differ.
+fn compare_with_snapshot(found: &RgbaImage, wanted: &RgbaImage) -> Result<(), String> {
     if found.dimensions() != wanted.dimensions() {
         return Err(format!("{:?} pixels, not {:?}", found.dimensions(), wanted.dimensions()));
     }
     let differ = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
-        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > STEPS)
+        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > MAX_CHANNEL_STEPS)
     };
     let count = found.pixels().zip(wanted.pixels()).filter(differ).count();
-    if count > PIXELS { Err(format!("{count} pixels differ, {PIXELS} may")) } else { Ok(()) }
+    if count > MAX_DIFFERENT_PIXELS {
+        Err(format!("{count} pixels differ, {MAX_DIFFERENT_PIXELS} may"))
+    } else {
+        Ok(())
+    }
 }
 
-/// A part of a picture of the window, in whole pixels.
-fn part(window: &RgbaImage, area: Rect) -> RgbaImage {
+/// Crops a picture of the window to an area, in whole pixels.
+fn crop(window: &RgbaImage, area: Rect) -> RgbaImage {
     let [left, top] = [area.min.x, area.min.y].map(|at| at.max(0.0).round() as u32);
     let [width, height] = [area.width(), area.height()].map(|length| length.round() as u32);
     imageops::crop_imm(window, left, top, width, height).to_image()
 }
 
-/// Points of the dock beside the picture, with its border.
-const DOCK: f32 = 480.0;
+/// Width of the dock beside the picture with its border, in points.
+const DOCK_WIDTH: f32 = 480.0;
 
-/// Compares a part of the window with its snapshot.
+/// Compares a part of the window with its snapshot, or updates the snapshot.
 fn check(window: &RgbaImage, area: Rect, name: &str, failures: &mut Vec<String>) {
-    let found = part(window, area);
+    let found = crop(window, area);
     let path = folder().join(format!("{name}.png"));
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
         std::fs::create_dir_all(folder()).expect("a folder");
@@ -54,13 +58,13 @@ fn check(window: &RgbaImage, area: Rect, name: &str, failures: &mut Vec<String>)
         return;
     }
     let wanted = image::open(&path).unwrap_or_else(|err| panic!("{}: {err}", path.display())).to_rgba8();
-    if let Err(why) = looks_like(&found, &wanted) {
+    if let Err(why) = compare_with_snapshot(&found, &wanted) {
         found.save(folder().join(format!("{name}.found.png"))).expect("written");
         failures.push(format!("{name}: {why}"));
     }
 }
 
-/// The two themes, by the names that their snapshots have.
+/// Themes, with the suffixes of their snapshots.
 const THEMES: [(Theme, &str); 2] = [(Theme::Dark, "dark"), (Theme::Light, "light")];
 
 fn in_theme(harness: &mut Harness<'_, App>, theme: Theme) -> RgbaImage {
@@ -68,27 +72,27 @@ fn in_theme(harness: &mut Harness<'_, App>, theme: Theme) -> RgbaImage {
         Theme::Dark => ThemePreference::Dark,
         Theme::Light => ThemePreference::Light,
     });
-    // Nothing is hovered, and nothing fades any more.
+    // No widget is hovered, and nothing fades any more.
     harness.remove_cursor();
     harness.run_steps(12);
     harness.render().expect("the window")
 }
 
-/// Words in an area of the window, and where they are.
+/// Texts in an area of the window, and their rectangles.
 fn words_in(harness: &Harness<'_, App>, area: Rect) -> Vec<(String, Rect)> {
     let labels = harness.get_all_by_role(Role::Label);
     let words = labels.filter_map(|node| Some((node.accesskit_node().value()?, node.rect())));
     words.filter(|(_, rect)| area.contains_rect(*rect)).collect()
 }
 
-/// Puts another word of the window in a word's place, one at a time: each must be noticed, in a picture of an area
+/// Replaces each word by another word of the window, one at a time: each must be noticed, in a picture of an area
 /// that is as large as its snapshot.
-fn changed_words_are_noticed(window: &RgbaImage, area: Rect, words: &[(String, Rect)]) {
-    let right = part(window, area);
+fn check_changed_words_detected(window: &RgbaImage, area: Rect, words: &[(String, Rect)]) {
+    let right = crop(window, area);
     let mut changed = 0;
     for (old, new) in words.iter().zip(words.iter().cycle().skip(1)).filter(|(old, new)| old.0 != new.0) {
         let mut wrong = window.clone();
-        let word = part(window, new.1.expand(1.0));
+        let word = crop(window, new.1.expand(1.0));
         let [left, top] = [old.1.min.x, old.1.min.y].map(|at| (at - 1.0).round() as u32);
         let ground = *window.get_pixel(left - 1, top);
         let [width, height] = [old.1.width(), old.1.height()].map(|length| length.ceil() as u32 + 2);
@@ -96,7 +100,7 @@ fn changed_words_are_noticed(window: &RgbaImage, area: Rect, words: &[(String, R
             wrong.put_pixel(left + x, top + y, ground);
         }
         imageops::replace(&mut wrong, &word, left.into(), top.into());
-        let noticed = looks_like(&part(&wrong, area), &right);
+        let noticed = compare_with_snapshot(&crop(&wrong, area), &right);
         assert!(noticed.is_err(), "{:?} in the place of {:?} is not noticed", new.0, old.0);
         changed += 1;
     }
@@ -105,7 +109,7 @@ fn changed_words_are_noticed(window: &RgbaImage, area: Rect, words: &[(String, R
 
 #[test]
 fn panels_and_editor() {
-    let mut harness = unfolded(700.0);
+    let mut harness = expanded_window(700.0);
     wait_until_idle(&mut harness);
     let mut failures = Vec::new();
     for (theme, suffix) in THEMES {
@@ -114,10 +118,10 @@ fn panels_and_editor() {
         let [width, height] = [window.width(), window.height()].map(|n| n as f32);
         let side = Rect::from_min_max(pos2(picture.right(), picture.top()), pos2(width, picture.bottom()));
         check(&window, side, &format!("side-{suffix}"), &mut failures);
-        changed_words_are_noticed(&window, side, &words_in(&harness, side));
+        check_changed_words_detected(&window, side, &words_in(&harness, side));
         let menu = Rect::from_min_max(pos2(0.0, 0.0), pos2(width, picture.top()));
         check(&window, menu, &format!("menu-{suffix}"), &mut failures);
-        // Without the status bar, which says how fast this machine is.
+        // Without the status bar, which shows the speed of this machine.
         let editor = Rect::from_min_max(pos2(0.0, picture.bottom()), pos2(width, height - 26.0));
         check(&window, editor, &format!("editor-{suffix}"), &mut failures);
     }
@@ -139,7 +143,7 @@ fn windows_over_the_picture() {
         harness.key_press_modifiers(modifiers, key);
         harness.run_steps(6);
         if name == "export" {
-            // The folder is where the tests run.
+            // The default folder depends on where the tests run.
             harness.get_by_role_and_label(Role::TextInput, "File").focus();
             harness.run_steps(2);
             harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -148,8 +152,8 @@ fn windows_over_the_picture() {
         }
         for (theme, suffix) in THEMES {
             let window = in_theme(&mut harness, theme);
-            // Exporting is docked.
-            let docked = Rect::from_min_max(pos2(0.0, 28.0), pos2(DOCK, 420.0));
+            // The export window is docked.
+            let docked = Rect::from_min_max(pos2(0.0, 28.0), pos2(DOCK_WIDTH, 420.0));
             let area =
                 if let Some(window) = harness.query_by_role(Role::Window) { window.rect() } else { docked };
             check(&window, area.shrink(2.0), &format!("{name}-{suffix}"), &mut failures);
@@ -168,8 +172,8 @@ fn import_of_raw_voxels() {
     harness.run_steps(4);
     wait_until_idle(&mut harness);
     let folder = tempfile::tempdir().expect("a folder");
-    ask_about(&mut harness, &scan(folder.path()));
-    // Nothing blinks.
+    drop_and_analyse(&mut harness, &write_scan(folder.path()));
+    // No text cursor blinks.
     harness.get_by_label("Cancel").focus();
     // The slices are read meanwhile.
     std::thread::sleep(std::time::Duration::from_millis(500));
@@ -185,16 +189,16 @@ fn import_of_raw_voxels() {
 #[test]
 fn other_pictures_are_noticed() {
     let plain = RgbaImage::from_pixel(50, 40, image::Rgba([30, 32, 38, 255]));
-    assert!(looks_like(&plain, &plain).is_ok());
+    assert!(compare_with_snapshot(&plain, &plain).is_ok());
     let mut rounded = plain.clone();
-    rounded.pixels_mut().for_each(|pixel| pixel.0[0] += STEPS);
-    assert!(looks_like(&rounded, &plain).is_ok());
+    rounded.pixels_mut().for_each(|pixel| pixel.0[0] += MAX_CHANNEL_STEPS);
+    assert!(compare_with_snapshot(&rounded, &plain).is_ok());
     let with_pixels = |count: usize| {
         let mut changed = plain.clone();
-        changed.pixels_mut().take(count).for_each(|pixel| pixel.0[1] += STEPS + 1);
+        changed.pixels_mut().take(count).for_each(|pixel| pixel.0[1] += MAX_CHANNEL_STEPS + 1);
         changed
     };
-    assert!(looks_like(&with_pixels(PIXELS), &plain).is_ok());
-    assert!(looks_like(&with_pixels(PIXELS + 1), &plain).is_err());
-    assert!(looks_like(&RgbaImage::new(50, 41), &plain).is_err());
+    assert!(compare_with_snapshot(&with_pixels(MAX_DIFFERENT_PIXELS), &plain).is_ok());
+    assert!(compare_with_snapshot(&with_pixels(MAX_DIFFERENT_PIXELS + 1), &plain).is_err());
+    assert!(compare_with_snapshot(&RgbaImage::new(50, 41), &plain).is_err());
 }

@@ -1,25 +1,25 @@
-//! The whole window but for its picture: at three sizes, with texts as long as they can be, and with wider letters, as of
-//! translations that are longer.
+//! Snapshots of the whole window without its picture: at three sizes, with the longest texts, and with wider letters,
+//! like translations that are longer.
 
-use chiaroscuro::app::{App, Options};
-use chiaroscuro::model::{Kept, Settings, SkyMode};
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro::model::{SavedEntry, Settings, SkyMode};
 use eframe::egui::{Rect, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::RgbaImage;
 
 use super::{THEMES, check, in_theme};
-use crate::harness::{SCENE, wait_until_idle, window_with};
-use crate::names::unfolded;
+use crate::accessibility::expanded_window;
+use crate::harness::{SCENE, adjusted_window, wait_until_idle};
 
-/// How much longer translations of English are.
-const LONGER: f32 = 1.4;
+/// Factor by which translations are longer than English.
+const TRANSLATION_LENGTH_FACTOR: f32 = 1.4;
 
-/// Points between what a panel holds and the window's edge, at least.
+/// Smallest margin between a panel's contents and the window's edge, in points.
 const MARGIN: f32 = 3.0;
 
-/// Points at the bottom where the window says how fast this machine is.
-const STATUS: f32 = 26.0;
+/// Height of the status bar, in points, which shows the speed of this machine.
+const STATUS_BAR_HEIGHT: f32 = 26.0;
 
 fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
     let adjust = Box::new(move |mut settings: Settings| {
@@ -27,30 +27,33 @@ fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
         change(&mut settings);
         settings
     });
-    window_with(Options { source: Some(SCENE.into()), adjust: Some(adjust), ..Options::default() }, size)
+    adjusted_window(
+        WindowOptions { source: Some(SCENE.into()), adjust: Some(adjust), ..WindowOptions::default() },
+        size,
+    )
 }
 
-/// Names of some two hundred letters, wherever there are names.
+/// Sets names of some two hundred letters, wherever there are names.
 fn with_long_names(settings: &mut Settings) {
     let name = "Überlänge ".repeat(20);
     settings.lights.iter_mut().for_each(|light| light.name.clone_from(&name));
     settings.sky.mode = SkyMode::Picture;
     settings.sky.picture.name = "panorama_".repeat(22);
     let camera = settings.camera.clone();
-    settings.kept = vec![Kept::view(name, &camera)];
+    settings.kept = vec![SavedEntry::view(name, &camera)];
 }
 
 fn enlarge_letters(harness: &mut Harness<'_, App>) {
     harness.ctx.all_styles_mut(|style| {
-        style.text_styles.values_mut().for_each(|font| font.size *= LONGER);
+        style.text_styles.values_mut().for_each(|font| font.size *= TRANSLATION_LENGTH_FACTOR);
     });
     harness.run_steps(6);
     wait_until_idle(harness);
 }
 
-/// Only what lies around the picture.
+/// Blanks out the picture and the status bar.
 fn without_picture(mut window: RgbaImage, picture: Rect) -> RgbaImage {
-    let status = window.height() as f32 - STATUS;
+    let status = window.height() as f32 - STATUS_BAR_HEIGHT;
     for (x, y, pixel) in window.enumerate_pixels_mut() {
         let at = eframe::egui::pos2(x as f32 + 0.5, y as f32 + 0.5);
         if picture.contains(at) || at.y > status {
@@ -86,10 +89,10 @@ fn windows_of_three_sizes() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// Nothing in the side panel is cut off by letters as wide as those of longer languages.
+/// Letters as wide as those of longer languages are not cut off in the side panel.
 #[test]
 fn wide_letters_are_not_cut_off() {
-    let mut harness = unfolded(700.0);
+    let mut harness = expanded_window(700.0);
     enlarge_letters(&mut harness);
     let mut beyond = Vec::new();
     for role in [
@@ -107,7 +110,7 @@ fn wide_letters_are_not_cut_off() {
     assert!(beyond.is_empty(), "{beyond:#?}");
 }
 
-/// And the picture has the width that it has with short ones.
+/// Long names and wide letters leave the picture as wide as short ones do.
 #[test]
 fn windows_with_long_names_and_wide_letters() {
     let size = Vec2::new(1280.0, 800.0);

@@ -1,46 +1,50 @@
-//! What the command line knows better than the file of a volume.
+//! Tests of corrections of a volume's metadata on the command line.
 
 use serde_json::{Value, json};
 
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 use crate::volumes::{header, small_ball};
 
-/// A ball whose voxels are so far apart.
+/// NRRD file of a ball with a given spacing.
 fn ball(spacings: &str) -> Vec<u8> {
     [header(&format!("sizes: 8 8 8\nspacings: {spacings}")).as_bytes(), &small_ball()].concat()
 }
 
-fn pixels(folder: &Folder, name: &str) -> Vec<u8> {
+fn pixels(folder: &ProgramFolder, name: &str) -> Vec<u8> {
     image::open(folder.path(name)).expect("a picture").to_rgba8().into_raw()
 }
 
 #[test]
 fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("said.nrrd", ball("1 1 1"));
     folder.write("meant.nrrd", ball("0.5 0.5 2"));
     folder.write("small.nrrd", ball("0.0005 0.0005 0.002"));
-    folder.succeed("render said.nrrd -o said.png --size 48x36");
-    folder.succeed("render meant.nrrd -o meant.png --size 48x36");
-    folder.succeed("render said.nrrd -o corrected.png --size 48x36 --set volume.spacing=0.5,0.5,2");
+    folder.run_successfully("render said.nrrd -o said.png --size 48x36");
+    folder.run_successfully("render meant.nrrd -o meant.png --size 48x36");
+    folder.run_successfully("render said.nrrd -o corrected.png --size 48x36 --set volume.spacing=0.5,0.5,2");
     assert!(pixels(&folder, "corrected.png") == pixels(&folder, "meant.png"), "another picture");
     assert!(pixels(&folder, "corrected.png") != pixels(&folder, "said.png"), "nothing was corrected");
-    folder.succeed("render small.nrrd -o small.png --size 48x36");
-    folder.succeed(
+    folder.run_successfully("render small.nrrd -o small.png --size 48x36");
+    folder.run_successfully(
         "render said.nrrd -o in_um.png --size 48x36 --set volume.spacing=0.5,0.5,2 --set volume.unit=um",
     );
     assert!(pixels(&folder, "in_um.png") == pixels(&folder, "small.png"), "units are lengths");
 
-    // The picture says how it was made, and of which file; it corrects that file, and no other.
-    assert!(folder.succeed("replay corrected.png --check").contains("identical"));
-    folder.succeed("render said.nrrd -o again.png --size 48x36 --session corrected.png");
+    // The picture records the corrections and the file; they apply to that file only.
+    assert!(folder.run_successfully("replay corrected.png --check").contains("identical"));
+    folder.run_successfully("render said.nrrd -o again.png --size 48x36 --session corrected.png");
     assert!(pixels(&folder, "again.png") == pixels(&folder, "corrected.png"), "a session restores it");
-    folder.succeed("render small.nrrd -o other.png --size 48x36 --session corrected.png --report other.json");
+    folder.run_successfully(
+        "render small.nrrd -o other.png --size 48x36 --session corrected.png --report other.json",
+    );
     assert_eq!(folder.json("other.json")["settings"]["volume"]["spacing"], Value::Null);
-    folder.succeed(
+    folder.run_successfully(
         "render said.nrrd -o undone.png --size 48x36 --session corrected.png --set volume.spacing=null",
     );
-    folder.succeed("render said.nrrd -o a.png --size 48x36 --session corrected.png --report report.json");
+    folder.run_successfully(
+        "render said.nrrd -o a.png --size 48x36 --session corrected.png --report report.json",
+    );
     assert_eq!(folder.json("report.json")["settings"]["volume"]["spacing"], json!([0.5, 0.5, 2.0]));
     assert!(
         pixels(&folder, "undone.png") != pixels(&folder, "corrected.png"),
@@ -50,20 +54,22 @@ fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
 
 #[test]
 fn corrections_that_cannot_be_are_refused() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     for wrong in ["spacing=-1,0,2", "spacing=1e12,1,1", "value_scale.slope=0", "value_scale.slope=nan"] {
-        let said = folder.fail(&format!("info builtin:chair:8 --set volume.{wrong}"), 2);
+        let said = folder.run_failing(&format!("info builtin:chair:8 --set volume.{wrong}"), 2);
         assert!(said.contains("expected"), "{said}");
     }
-    folder.succeed("info builtin:chair:8 --set volume.spacing=1,2,3 --set volume.value_scale.slope=2");
+    folder
+        .run_successfully("info builtin:chair:8 --set volume.spacing=1,2,3 --set volume.value_scale.slope=2");
 }
 
 #[test]
 fn info_says_what_is_corrected() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     folder.write("a_8x8x8_uint8.raw", small_ball());
     let info = |set: &str| -> Value {
-        serde_json::from_str(&folder.succeed(&format!("info a_8x8x8_uint8.raw --json {set}"))).expect("JSON")
+        serde_json::from_str(&folder.run_successfully(&format!("info a_8x8x8_uint8.raw --json {set}")))
+            .expect("JSON")
     };
     let plain = info("");
     assert_eq!((&plain["has_unknown_scale"], &plain["corrections"]["spacing"]), (&json!(true), &Value::Null));
@@ -77,7 +83,8 @@ fn info_says_what_is_corrected() {
     assert_eq!(padded["range"], json!([200.0, 200.0]));
     let lying = info("--set volume.orientation=PSL --set volume.flip.y=true");
     assert_eq!(lying["is_anatomical"], true);
-    let words = folder.succeed("info a_8x8x8_uint8.raw --set volume.flip.y=true --set volume.axis_order=zyx");
+    let words = folder
+        .run_successfully("info a_8x8x8_uint8.raw --set volume.flip.y=true --set volume.axis_order=zyx");
     assert!(words.contains("corrected    flipped along y") && words.contains("order z y x"), "{words}");
 
     for (set, code, said) in [
@@ -90,10 +97,10 @@ fn info_says_what_is_corrected() {
     ] {
         let outcome = folder.run(&format!("info a_8x8x8_uint8.raw --set {set}"));
         assert_eq!(outcome.code, Some(code), "{set}: {outcome:?}");
-        assert!(outcome.message().is_some_and(|message| message.contains(said)), "{set}: {outcome:?}");
+        assert!(outcome.error_message().is_some_and(|message| message.contains(said)), "{set}: {outcome:?}");
     }
     folder.write("b_8x8x8_uint8.raw", vec![5; 512]);
     let outcome = folder.run("info b_8x8x8_uint8.raw --set volume.padding_value=5");
     assert_eq!(outcome.code, Some(3), "{outcome:?}");
-    assert!(outcome.message().is_some_and(|message| message.contains("padding 5")), "{outcome:?}");
+    assert!(outcome.error_message().is_some_and(|message| message.contains("padding 5")), "{outcome:?}");
 }

@@ -1,15 +1,15 @@
-//! What is known about a volume, the looks that are proposed for it, and what is decided where nobody else does.
+//! Tests of the command `info`: facts about a volume, proposed looks, and automatic decisions.
 
 use serde_json::Value;
 
 use crate::checks::{assert_has_keys, keys};
-use crate::program::Folder;
+use crate::program::ProgramFolder;
 
 #[test]
 fn info_says_what_is_in_a_volume() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let facts: Value =
-        serde_json::from_str(&folder.succeed("info builtin:chair:16 --json")).expect("valid JSON");
+        serde_json::from_str(&folder.run_successfully("info builtin:chair:16 --json")).expect("valid JSON");
     assert_has_keys(&facts, &["name", "dims", "type", "spacing_mm", "range", "percentiles"]);
     assert!(keys(&facts).iter().any(|key| key.ends_with("bytes") || key.contains("bytes_")), "memory");
     assert_eq!(facts["dims"], serde_json::json!([16, 16, 16]));
@@ -21,18 +21,19 @@ fn info_says_what_is_in_a_volume() {
         .collect();
     assert!(percentiles.is_sorted(), "{percentiles:?}");
 
-    let text = folder.succeed("info builtin:chair:16");
+    let text = folder.run_successfully("info builtin:chair:16");
     assert!(text.contains("16 × 16 × 16") && text.contains("uint8"), "{text}");
 }
 
 #[test]
 fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nsample units: HU\n\
                   modality:=CT\nPaddingValue:=7\nSegment0_Name:=a \u{1b}b\nSegment0_LabelValue:=3\n\n";
     let file = [header.as_bytes(), &[0, 3, 3, 0, 3, 3, 0, 7]].concat();
     std::fs::write(folder.path("s.nrrd"), file).expect("a file");
-    let facts: Value = serde_json::from_str(&folder.succeed("info s.nrrd --json")).expect("valid JSON");
+    let facts: Value =
+        serde_json::from_str(&folder.run_successfully("info s.nrrd --json")).expect("valid JSON");
     assert_eq!(facts["kind"], serde_json::json!({ "name": "labels", "labels": 1 }), "without padding");
     assert!(facts["kind_why"].as_str().is_some_and(|why| why.contains("the file says")));
     let hints = &facts["hints"];
@@ -46,20 +47,20 @@ fn info_says_what_kind_of_data_it_is_and_what_the_file_says_of_it() {
         { "number": 0, "name": "", "voxels": 3 }, { "number": 3, "name": "a ·b", "voxels": 4 },
     ]);
     assert_eq!(facts["labels"], labels);
-    let text = folder.succeed("info s.nrrd");
+    let text = folder.run_successfully("info s.nrrd");
     for line in
         ["kind         labels: ", "modality     ct", "label        3: a ·b, 4 voxels", "padding      7"]
     {
         assert!(text.contains(line), "{line:?} is not in {text}");
     }
     let ball: Value =
-        serde_json::from_str(&folder.succeed("info builtin:sphere:24 --json")).expect("valid JSON");
+        serde_json::from_str(&folder.run_successfully("info builtin:sphere:24 --json")).expect("valid JSON");
     assert_eq!((&ball["kind"]["name"], &ball["labels"]), (&"scalar".into(), &serde_json::json!([])));
     assert_eq!(ball["hints"]["modality"], Value::Null);
 }
 
-/// A label map of slabs along x, with so many voxels along each edge: labels 0, 3, 9, 200 and so on.
-fn slabs(folder: &Folder, name: &str, labels: &[u8]) {
+/// Writes a label map of 16³ voxels with slabs along x: labels 0, 3, 9, 200 and so on.
+fn write_label_slabs(folder: &ProgramFolder, name: &str, labels: &[u8]) {
     let n = 16;
     let header = format!(
         "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {n} {n} {n}\nencoding: raw\nmodality:=SEG\n\
@@ -72,7 +73,7 @@ fn slabs(folder: &Folder, name: &str, labels: &[u8]) {
 
 #[test]
 fn many_labels_are_cut_short_for_people() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let text_of = |count: u8| {
         let header = format!(
             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {count} 2 2\nencoding: raw\n\
@@ -81,7 +82,7 @@ fn many_labels_are_cut_short_for_people() {
         let voxels = (0..4).flat_map(|_| 0..count);
         std::fs::write(folder.path("m.nrrd"), header.bytes().chain(voxels).collect::<Vec<_>>())
             .expect("a file");
-        folder.succeed("info m.nrrd")
+        folder.run_successfully("info m.nrrd")
     };
     let listed = |text: &str| text.lines().filter(|line| line.starts_with("  label ")).count();
     let text = text_of(20);
@@ -92,10 +93,10 @@ fn many_labels_are_cut_short_for_people() {
 
 #[test]
 fn labels_are_set_by_their_numbers() {
-    let folder = Folder::new();
-    slabs(&folder, "l.nrrd", &[0, 3, 9, 200]);
+    let folder = ProgramFolder::new();
+    write_label_slabs(&folder, "l.nrrd", &[0, 3, 9, 200]);
     let render = |arguments: &str| {
-        folder.succeed(&format!("render l.nrrd --size 64x48 -o p.png --report r.json {arguments}"));
+        folder.run_successfully(&format!("render l.nrrd --size 64x48 -o p.png --report r.json {arguments}"));
         (folder.read("p.png"), folder.json("r.json")["settings"]["labels"].clone())
     };
     let (first, labels) = render("");
@@ -105,7 +106,7 @@ fn labels_are_set_by_their_numbers() {
     let (hidden, labels) = render("--set labels.9.visible=false");
     assert_eq!((&labels["9"]["name"], &labels["9"]["visible"]), (&"Lung".into(), &false.into()));
     assert!(hidden != first);
-    // As another kind of data there is no table.
+    // As another kind of data it has no table of labels.
     assert_eq!(render("--as scalar").1, serde_json::json!({}));
 }
 
@@ -113,9 +114,9 @@ const RENDER: &str = "render builtin:chair:24 --size 64x48 -o p.png --report r.j
 
 #[test]
 fn looks_are_listed_and_taken_by_their_numbers() {
-    let folder = Folder::new();
+    let folder = ProgramFolder::new();
     let facts: serde_json::Value =
-        serde_json::from_str(&folder.succeed("info builtin:chair:24 --json")).expect("JSON");
+        serde_json::from_str(&folder.run_successfully("info builtin:chair:24 --json")).expect("JSON");
     let looks = facts["looks"].as_array().expect("a list");
     assert!([8, 10].contains(&looks.len()), "{looks:?}");
     let number = |name: &str| {
@@ -123,7 +124,7 @@ fn looks_are_listed_and_taken_by_their_numbers() {
         look["number"].as_u64().expect("a number")
     };
     let settings = |arguments: &str| {
-        folder.succeed(&format!("{RENDER} {arguments}"));
+        folder.run_successfully(&format!("{RENDER} {arguments}"));
         folder.json("r.json")["settings"].clone()
     };
     let first = settings("");
@@ -140,20 +141,20 @@ fn looks_are_listed_and_taken_by_their_numbers() {
 }
 
 #[test]
-fn what_is_named_is_not_decided() {
-    let folder = Folder::new();
+fn explicit_settings_are_kept() {
+    let folder = ProgramFolder::new();
     let settings = |arguments: &str| {
-        folder.succeed(&format!("{RENDER} {arguments}"));
+        folder.run_successfully(&format!("{RENDER} {arguments}"));
         folder.json("r.json")["settings"].clone()
     };
     let first = settings("");
     assert!(first["output"]["exposure"].as_f64().expect("a number") > 0.0);
     assert_eq!(settings("--set output.exposure=3")["output"]["exposure"], 3.0);
     assert_eq!(settings("--set floor.on=true")["floor"]["on"], true);
-    // Whatever moves, lights that are named stay, and the rest is as it was.
+    // Lights that are set explicitly stay, and everything else is unchanged.
     let moved = settings("--set lights.0.position=[0,0,3]");
     assert_eq!(moved["lights"][0]["position"], serde_json::json!([0.0, 0.0, 3.0]));
-    // A picture without shadows is of the same look.
+    // A picture without shadows has otherwise the same look.
     let mut flat = settings("--shadows off");
     assert_eq!(flat["shadows"]["algorithm"], "off");
     flat["shadows"]["algorithm"] = first["shadows"]["algorithm"].clone();
@@ -162,8 +163,8 @@ fn what_is_named_is_not_decided() {
 
 #[test]
 fn a_floor_is_as_dark_as_the_exposure_asks() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:box:24 -o p.png --size 48x36 --report r.json");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:box:24 -o p.png --size 48x36 --report r.json");
     let settings = folder.json("r.json")["settings"].clone();
     assert_eq!(settings["floor"]["on"], true, "a box stands");
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
@@ -173,9 +174,9 @@ fn a_floor_is_as_dark_as_the_exposure_asks() {
 
 #[test]
 fn exposed_pictures_are_made_again_from_themselves() {
-    let folder = Folder::new();
-    folder.succeed("render builtin:chair:16 -o p.png --size 48x36 --set output.exposure=1.7");
-    assert!(folder.succeed("replay p.png --check").contains("identical"));
-    folder.succeed("render builtin:chair:16 -o q.png --size 48x36 --session p.png");
+    let folder = ProgramFolder::new();
+    folder.run_successfully("render builtin:chair:16 -o p.png --size 48x36 --set output.exposure=1.7");
+    assert!(folder.run_successfully("replay p.png --check").contains("identical"));
+    folder.run_successfully("render builtin:chair:16 -o q.png --size 48x36 --session p.png");
     assert!(folder.read("p.png") == folder.read("q.png"));
 }

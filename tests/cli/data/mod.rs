@@ -1,4 +1,4 @@
-//! What is in a volume, and what the command line knows better than its file.
+//! Tests of volume data on the command line: facts and corrections.
 
 mod corrections;
 mod info;

@@ -1,4 +1,4 @@
-//! What all tests of the command line share: the program in a folder, and small volumes.
+//! Shared helpers of the command-line tests: running the program in a folder, and small volumes.
 
 pub(crate) mod program;
 pub(crate) mod volumes;

@@ -1,4 +1,4 @@
-//! The program in a folder of its own: what it is given, what it says and what it leaves behind.
+//! Runner of the program in a temporary folder: arguments, outputs and files left behind.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,34 +7,34 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Longest that any command may take here; most take well under a second.
-pub(crate) const PATIENCE: Duration = Duration::from_mins(2);
+/// Longest run of any command here; most take well under a second.
+pub(crate) const COMMAND_TIMEOUT: Duration = Duration::from_mins(2);
 
-/// Longest that a refusal may take, whatever sizes a file claims.
-pub(crate) const PROMPT: Duration = Duration::from_secs(5);
+/// Longest time until a volume is refused, whatever sizes its file claims.
+pub(crate) const REFUSAL_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// A folder of its own for each test.
-pub(crate) struct Folder(tempfile::TempDir);
+/// Temporary folder, one for each test.
+pub(crate) struct ProgramFolder(tempfile::TempDir);
 
-/// What a command did.
+/// Outcome of a command: exit code, outputs and duration.
 #[derive(Debug)]
-pub(crate) struct Outcome {
+pub(crate) struct CommandOutcome {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
     pub(crate) took: Duration,
 }
 
-impl Outcome {
-    /// What the program says went wrong: from the last line that begins with `error: `. Drivers and
-    /// the log may have written before it.
-    pub(crate) fn message(&self) -> Option<&str> {
+impl CommandOutcome {
+    /// Error message of the program: its output from the last line that begins with `error: `. Drivers and the log
+    /// may have written before it.
+    pub(crate) fn error_message(&self) -> Option<&str> {
         let start = self.stderr.rfind("\nerror: ").map(|end_of_line| end_of_line + 1);
         start.or_else(|| self.stderr.starts_with("error: ").then_some(0)).map(|at| &self.stderr[at..])
     }
 }
 
-impl Folder {
+impl ProgramFolder {
     pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().expect("a folder for temporary files"))
     }
@@ -65,12 +65,12 @@ impl Folder {
     }
 
     /// Runs the program in this folder.
-    pub(crate) fn run(&self, args: &str) -> Outcome {
+    pub(crate) fn run(&self, args: &str) -> CommandOutcome {
         self.run_with(args, &[])
     }
 
-    pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> Outcome {
-        // Files instead of pipes: a pipe that nobody empties would block the program.
+    pub(crate) fn run_with(&self, args: &str, environment: &[(&str, &str)]) -> CommandOutcome {
+        // Files instead of pipes: a pipe that is not drained would block the program.
         let file = || tempfile::NamedTempFile::new().expect("a temporary file");
         let (stdout, stderr) = (file(), file());
         let handle = |file: &tempfile::NamedTempFile| file.reopen().expect("a second handle");
@@ -89,29 +89,33 @@ impl Folder {
             if let Some(status) = child.try_wait().expect("the program can be waited for") {
                 break status;
             }
-            if start.elapsed() > PATIENCE {
+            if start.elapsed() > COMMAND_TIMEOUT {
                 child.kill().expect("the program can be ended");
-                panic!("`{args}` takes longer than {PATIENCE:?}");
+                panic!("`{args}` takes longer than {COMMAND_TIMEOUT:?}");
             }
             std::thread::sleep(Duration::from_millis(5));
         };
         let text = |file: &tempfile::NamedTempFile| {
             fs::read_to_string(file.path()).expect("the output can be read and is UTF-8")
         };
-        Outcome { code: status.code(), took: start.elapsed(), stdout: text(&stdout), stderr: text(&stderr) }
+        CommandOutcome {
+            code: status.code(),
+            took: start.elapsed(),
+            stdout: text(&stdout),
+            stderr: text(&stderr),
+        }
     }
 
-    /// Runs a command that must work; gives its standard output.
-    pub(crate) fn succeed(&self, args: &str) -> String {
+    /// Runs a command that must succeed, and returns its standard output.
+    pub(crate) fn run_successfully(&self, args: &str) -> String {
         let outcome = self.run(args);
         assert_eq!(outcome.code, Some(0), "`{args}`: {outcome:?}");
-        assert!(outcome.message().is_none(), "`{args}` is a good run: {outcome:?}");
+        assert!(outcome.error_message().is_none(), "`{args}` is a good run: {outcome:?}");
         outcome.stdout
     }
 
-    /// Runs a command that must fail with this code and leave the folder as it was; gives what it
-    /// says.
-    pub(crate) fn fail(&self, args: &str, code: i32) -> String {
+    /// Runs a command that must fail with this code and leave the folder unchanged; returns its error message.
+    pub(crate) fn run_failing(&self, args: &str, code: i32) -> String {
         self.fail_with(args, code, &[])
     }
 
@@ -122,12 +126,14 @@ impl Folder {
         assert_eq!(self.names(), before, "`{args}` failed and left something behind");
         assert_eq!(outcome.stdout, "", "`{args}` failed: results belong to standard output only");
         assert!(!outcome.stderr.contains("panicked"), "`{args}`: {outcome:?}");
-        outcome.message().unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}")).to_owned()
+        outcome
+            .error_message()
+            .unwrap_or_else(|| panic!("`{args}` should say `error: …`: {outcome:?}"))
+            .to_owned()
     }
 
-    /// A volume that no command accepts: `info` and `render` fail with one of these codes, soon, and
-    /// name the file.
-    pub(crate) fn refuse(&self, file: &str, codes: &[i32]) -> String {
+    /// Checks that a volume is refused: `info` and `render` fail with one of these codes, quickly, and name the file.
+    pub(crate) fn check_refused(&self, file: &str, codes: &[i32]) -> String {
         let before = self.names();
         let mut said = String::new();
         for args in [format!("info {file}"), format!("render {file} -o out.png --size 16x16")] {
@@ -138,7 +144,7 @@ impl Folder {
             let name = file.split_whitespace().next().unwrap_or_default();
             let name = name.rsplit('/').next().unwrap_or(name);
             assert!(outcome.stderr.contains(name), "`{args}` should name the file: {outcome:?}");
-            assert!(outcome.took < PROMPT, "`{args}` took {:?}", outcome.took);
+            assert!(outcome.took < REFUSAL_TIMEOUT, "`{args}` took {:?}", outcome.took);
             assert_eq!(self.names(), before, "`{args}` failed and left something behind");
             said = outcome.stderr;
         }

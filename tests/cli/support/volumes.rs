@@ -1,8 +1,8 @@
-//! Small volumes, as bytes of a file.
+//! Small test volumes, as bytes of a file.
 
 use std::io::Write as _;
 
-/// A NRRD header of 8-bit voxels with these further lines, 1 mm apart unless they say it.
+/// NRRD header of 8-bit voxels with these additional lines; spacing 1 mm unless they state it.
 pub(crate) fn header(lines: &str) -> String {
     let spacings = if lines.contains("spac") { "" } else { "\nspacings: 1 1 1" };
     format!("NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\n{lines}{spacings}\n\n")
@@ -20,7 +20,7 @@ pub(crate) fn gzipped(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().expect("memory can be written to")
 }
 
-/// A ball of 8³ voxels.
+/// Ball in a grid of 8³ voxels.
 pub(crate) fn small_ball() -> Vec<u8> {
     let distance = |at: usize| {
         let p = [at % 8, at / 8 % 8, at / 64].map(|c| c as f64 - 3.5);

@@ -1,31 +1,31 @@
-//! The hostile files of all readers of the command line. A new reader adds a line to [`all`]. Transfer functions of
-//! other programs are opened in the window alone, where mutations and `fuzz/` try their readers.
+//! Hostile files for all readers of the command line. A new reader adds a line to [`all_hostile_files`]. Transfer
+//! functions of other programs are opened in the window only, where mutations and `fuzz/` test their readers.
 
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
 
 use chiaroscuro::export::export_png;
-use chiaroscuro::model::{Record, Settings};
+use chiaroscuro::model::{LookRecord, Settings};
 
-/// A file, and the command that reads it.
-pub(super) struct Hostile {
+/// Hostile file, and the command that reads it.
+pub(super) struct HostileFile {
     pub(super) name: String,
     pub(super) args: Vec<OsString>,
 }
 
-/// Hostile files of every kind, made in a folder; `forbidden` is another one, from which nothing may be opened.
-pub(super) fn all(folder: &Path, forbidden: &Path) -> Vec<Hostile> {
-    let mut made = Maker { folder, files: Vec::new() };
-    let names = names(folder, forbidden);
-    made.headers(&names);
-    made.bare_files();
-    made.looks(&names);
+/// Writes hostile files of every kind into a folder; `forbidden` is another folder, from which nothing may be opened.
+pub(super) fn all_hostile_files(folder: &Path, forbidden: &Path) -> Vec<HostileFile> {
+    let mut made = HostileFileMaker { folder, files: Vec::new() };
+    let names = hostile_names(folder, forbidden);
+    made.add_nrrd_headers(&names);
+    made.add_headerless_files();
+    made.add_looks(&names);
     made.files
 }
 
-/// Names that lead out of a folder, or to what is no file.
-pub(super) fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
+/// File names that lead out of a folder, or to something that is no file.
+pub(super) fn hostile_names(folder: &Path, forbidden: &Path) -> Vec<String> {
     let target = forbidden.join("voxels.raw");
     #[cfg(unix)]
     for (link, to) in [("link.raw", target.as_path()), ("link", forbidden)] {
@@ -71,8 +71,8 @@ pub(super) fn names(folder: &Path, forbidden: &Path) -> Vec<String> {
     .collect()
 }
 
-/// Bytes that are small, and large when they are unpacked.
-fn bomb(mebibytes: usize) -> Vec<u8> {
+/// Decompression bomb: small gzip data that expand to many mebibytes of zeros.
+fn gzip_bomb(mebibytes: usize) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     let zeros = vec![0; 1 << 20];
     for _ in 0..mebibytes {
@@ -81,27 +81,27 @@ fn bomb(mebibytes: usize) -> Vec<u8> {
     encoder.finish().expect("it is in memory")
 }
 
-struct Maker<'a> {
+struct HostileFileMaker<'a> {
     folder: &'a Path,
-    files: Vec<Hostile>,
+    files: Vec<HostileFile>,
 }
 
-impl Maker<'_> {
-    /// Adds a file and the command that reads it, where `@` is its name.
+impl HostileFileMaker<'_> {
+    /// Adds a file and the command that reads it, in which `@` is its name.
     fn add(&mut self, name: &str, contents: &[u8], command: &str) {
         let file = format!("{:03}_{name}", self.files.len());
         std::fs::write(self.folder.join(&file), contents).expect("room");
         let args = command.split(' ').map(|word| if word == "@" { file.clone() } else { word.to_owned() });
-        self.files.push(Hostile { name: file.clone(), args: args.map(OsString::from).collect() });
+        self.files.push(HostileFile { name: file.clone(), args: args.map(OsString::from).collect() });
     }
 
-    fn header(&mut self, fields: &str, data: &[u8]) {
+    fn add_nrrd(&mut self, fields: &str, data: &[u8]) {
         let header = format!("NRRD0004\n{fields}\n\n");
         self.add("volume.nrrd", &[header.as_bytes(), data].concat(), "info @");
     }
 
-    /// NRRD headers.
-    fn headers(&mut self, names: &[String]) {
+    /// Adds NRRD files with hostile headers.
+    fn add_nrrd_headers(&mut self, names: &[String]) {
         for name in names {
             let header = format!(
                 "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\ndata file: {name}\n"
@@ -125,7 +125,7 @@ impl Maker<'_> {
             "1 1 99999999999999999999999999999999999999",
             "2147483647 2147483647 2147483647",
         ] {
-            self.header(&format!("{usual}\nsizes: {sizes}"), &[0; 64]);
+            self.add_nrrd(&format!("{usual}\nsizes: {sizes}"), &[0; 64]);
         }
         for field in [
             "spacings: 0 0 0",
@@ -151,24 +151,24 @@ impl Maker<'_> {
             "content: \u{1b}[2J\u{1b}]0;title\u{7}",
             "kinds: \u{202e} \u{0} x",
         ] {
-            self.header(&format!("{usual}\nsizes: 4 4 4\n{field}"), &[0; 64]);
+            self.add_nrrd(&format!("{usual}\nsizes: 4 4 4\n{field}"), &[0; 64]);
         }
-        self.header(&format!("{usual}\nsizes: 4 4 4\ncontent: {}", "x".repeat(2 << 20)), &[0; 64]);
-        self.header(&format!("{usual}\nsizes: 4 4 4{}", "\nkey:=value".repeat(200_000)), &[0; 64]);
+        self.add_nrrd(&format!("{usual}\nsizes: 4 4 4\ncontent: {}", "x".repeat(2 << 20)), &[0; 64]);
+        self.add_nrrd(&format!("{usual}\nsizes: 4 4 4{}", "\nkey:=value".repeat(200_000)), &[0; 64]);
         let zipped = usual.replace("raw", "gzip");
         for sizes in ["4 4 4", "1024 1024 1024", "100000 100000 100"] {
-            self.header(&format!("{zipped}\nsizes: {sizes}"), &bomb(64));
+            self.add_nrrd(&format!("{zipped}\nsizes: {sizes}"), &gzip_bomb(64));
         }
-        let valid = bomb(1);
-        self.header(&format!("{zipped}\nsizes: 1024 1024 1"), &valid[..valid.len() / 2]);
-        self.header(&format!("{zipped}\nsizes: 1024 1024 1"), b"\x1f\x8b\x08nothing");
+        let valid = gzip_bomb(1);
+        self.add_nrrd(&format!("{zipped}\nsizes: 1024 1024 1"), &valid[..valid.len() / 2]);
+        self.add_nrrd(&format!("{zipped}\nsizes: 1024 1024 1"), b"\x1f\x8b\x08nothing");
         self.add("empty.nrrd", b"", "info @");
         self.add("endless.nrrd", &vec![b'N'; 1 << 20], "info @");
         self.add("binary.nrrd", &[&b"NRRD0004\n"[..], &[0xff; 4096]].concat(), "info @");
     }
 
-    /// Files without a header, whose names or the command line say what they hold.
-    fn bare_files(&mut self) {
+    /// Adds files without a header, whose names or options state their layout.
+    fn add_headerless_files(&mut self) {
         for size in ["99999999x99999999x99999999", "0x0x0", "1x1x18446744073709551616", "-1x8x8", "8x8", "x"]
         {
             self.add(&format!("{size}_uint8.raw"), &[0; 512], "info @");
@@ -178,17 +178,17 @@ impl Maker<'_> {
             self.add("bare.raw", &[0; 512], &format!("info @ --dims 8x8x8 --type uint8 --offset {skip}"));
         }
         for kind in ["uint8", "float64"] {
-            self.add(&format!("8x8x8_{kind}.raw.gz"), &bomb(256), "info @");
+            self.add(&format!("8x8x8_{kind}.raw.gz"), &gzip_bomb(256), "info @");
         }
     }
 
-    /// Sessions, presets and pictures with a look.
-    fn looks(&mut self, names: &[String]) {
+    /// Adds sessions, presets and pictures with a look.
+    fn add_looks(&mut self, names: &[String]) {
         for name in names {
             let source = serde_json::to_string(name).expect("a text");
-            let record = Record::text(&Settings::default(), None, None);
+            let record = LookRecord::to_json(&Settings::default(), None, None);
             let with_source = record.replacen('{', &format!("{{\"volume\": {{\"source\": {source}}},"), 1);
-            self.picture(&with_source);
+            self.add_picture(&with_source);
         }
         let long = "x".repeat(1 << 19);
         let texts = [
@@ -213,9 +213,9 @@ impl Maker<'_> {
             " ".repeat(3 << 20),
         ];
         for text in &texts {
-            self.look("session.json", text);
+            self.add_look("session.json", text);
             if text.len() < 1 << 20 {
-                self.picture(text);
+                self.add_picture(text);
             }
         }
         let png = std::fs::read(self.folder.join(&self.files[self.files.len() - 2].name)).unwrap_or_default();
@@ -225,7 +225,7 @@ impl Maker<'_> {
         }
     }
 
-    fn look(&mut self, name: &str, text: &str) {
+    fn add_look(&mut self, name: &str, text: &str) {
         self.add(
             name,
             text.as_bytes(),
@@ -233,8 +233,8 @@ impl Maker<'_> {
         );
     }
 
-    /// A picture that carries a text as its look.
-    fn picture(&mut self, record: &str) {
+    /// Adds a picture with a text as its look.
+    fn add_picture(&mut self, record: &str) {
         let path = self.folder.join("made.png");
         export_png([2, 2], &[9; 16], true, Some(record), &path).expect("a picture");
         let bytes = std::fs::read(&path).expect("it was just written");

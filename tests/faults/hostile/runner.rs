@@ -1,30 +1,30 @@
-//! Runs the program and looks at what it opens, where the system has a tool for that.
+//! Runner of the program that traces which files it opens, with `strace` where available.
 
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest that the program may take over a small file, on a busy machine and while it is watched.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// Longest run over a small file, on a busy machine and while it is traced.
+const RUN_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Whether it can be seen what is opened.
+/// True if opened files can be traced.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Trace(bool);
+pub(super) struct FileTrace(bool);
 
-impl Trace {
-    /// Whether `strace` is there and may watch.
-    pub(super) fn find() -> Self {
+impl FileTrace {
+    /// Detects a working `strace`.
+    pub(super) fn detect() -> Self {
         let tried = Command::new("strace").args(["-e", "trace=file", "true"]).stderr(Stdio::null()).status();
         Self(tried.is_ok_and(|status| status.success()))
     }
 
-    pub(super) fn is_there(self) -> bool {
+    pub(super) fn is_available(self) -> bool {
         self.0
     }
 }
 
-impl std::fmt::Display for Trace {
+impl std::fmt::Display for FileTrace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(if self.0 {
             "what they opened was watched with strace"
@@ -34,23 +34,23 @@ impl std::fmt::Display for Trace {
     }
 }
 
-/// What the program did.
+/// Outcome of a run: exit code, output and traced calls.
 #[derive(Debug)]
-pub(super) struct Ended {
+pub(super) struct TracedRun {
     pub(super) code: Option<i32>,
-    /// Both outputs.
-    pub(super) said: String,
-    /// The calls that name files or places in a network, one a line.
-    pub(super) opened: Vec<String>,
+    /// Standard output and standard error together.
+    pub(super) output: String,
+    /// System calls that name files or network addresses, one per line.
+    pub(super) opened_paths: Vec<String>,
 }
 
-/// Runs the program in a folder, and fails when it takes too long.
-pub(super) fn watch(folder: &Path, args: &[OsString], trace: Trace) -> Ended {
+/// Runs the program in a folder, and fails if it takes too long.
+pub(super) fn run_traced(folder: &Path, args: &[OsString], trace: FileTrace) -> TracedRun {
     let temporary = || tempfile::NamedTempFile::new().expect("a temporary file");
     let (said, calls) = (temporary(), temporary());
     let handle = || said.reopen().expect("a second handle");
     let program = env!("CARGO_BIN_EXE_chiaroscuro");
-    let mut command = if trace.is_there() {
+    let mut command = if trace.is_available() {
         let mut strace = Command::new("strace");
         strace.args(["-f", "-qq", "-s", "4096", "-e", "trace=file,connect,bind,sendto", "-o"]);
         strace.arg(calls.path()).arg(program);
@@ -71,15 +71,15 @@ pub(super) fn watch(folder: &Path, args: &[OsString], trace: Trace) -> Ended {
         if let Some(status) = child.try_wait().expect("it can be asked") {
             break status.code();
         }
-        if begin.elapsed() > PATIENCE {
+        if begin.elapsed() > RUN_TIMEOUT {
             child.kill().expect("it can be ended");
-            panic!("{args:?} takes longer than {PATIENCE:?}");
+            panic!("{args:?} takes longer than {RUN_TIMEOUT:?}");
         }
         std::thread::sleep(Duration::from_millis(2));
     };
     let text = |path: &Path| String::from_utf8_lossy(&std::fs::read(path).expect("it is ours")).into_owned();
-    // How the program was started is no call of its own.
+    // The call that starts the program is not its own.
     let opened =
         text(calls.path()).lines().filter(|line| !line.contains("execve(")).map(str::to_owned).collect();
-    Ended { code, said: text(said.path()), opened }
+    TracedRun { code, output: text(said.path()), opened_paths: opened }
 }

@@ -1,4 +1,4 @@
-//! Relations between pictures of random scenes.
+//! Metamorphic tests of the renderer: relations between pictures of random scenes.
 
 mod relations;
 mod scenes;

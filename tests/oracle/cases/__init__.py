@@ -1,1 +1,1 @@
-"""The files that are written: small ones of each format, and the phantom."""
+"""Generators of the reference files: small ones of each format, and the phantom."""

@@ -1,4 +1,4 @@
-"""FITS by astropy, packed: even the smallest file is longer than those that are kept."""
+"""Reference files of FITS, written by astropy and gzipped, because even the smallest is larger than the limit."""
 
 import gzip
 import io
@@ -12,7 +12,7 @@ SKY = {"CTYPE1": "RA---SIN", "CTYPE2": "DEC--SIN", "CDELT1": -0.002, "CDELT2": 0
 
 
 def cases(folder):
-    """Types, scales, blanks, axes, coordinates, extensions, packed files. Rows are written from the lowest on."""
+    """Writes types, scales, blanks, axes, coordinates, extensions and gzipped files. Rows are written bottom to top."""
 
     def write(name, units, choice="", expected=None):
         units = units if isinstance(units, list) else [units]

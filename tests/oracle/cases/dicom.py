@@ -1,4 +1,4 @@
-"""DICOM by pydicom: transfer syntaxes, numbers, series, frames of one file."""
+"""Reference files of DICOM, written by pydicom: transfer syntaxes, number types, series, multi-frame files."""
 
 import imagecodecs
 import numpy as np
@@ -10,12 +10,12 @@ from pydicom.sequence import Sequence
 from cases.sources import ORIENTATIONS, ORIGIN, STRAIGHT, small, source
 
 UID = pydicom.uid
-# Numbers of a root that anyone may use, so that files are the same in every run.
+# UID root that is free for all uses, with fixed numbers, so that files are reproducible.
 ROOT = "2.25."
 
 
 def dataset(name, pixels, syntax=UID.ExplicitVRLittleEndian, stored=None, high=None):
-    """A file of one or more pictures, by [frame,] row, column[, colour]."""
+    """Dataset of one or more pictures, indexed by [frame,] row, column[, colour]."""
     meta = FileMetaDataset()
     meta.TransferSyntaxUID = syntax
     meta.MediaStorageSOPClassUID = UID.SecondaryCaptureImageStorage
@@ -46,7 +46,7 @@ def dataset(name, pixels, syntax=UID.ExplicitVRLittleEndian, stored=None, high=N
 
 
 def lying(found, steps, at, origin=ORIGIN):
-    """A picture of a grid, by its steps in right-anterior-superior millimetres."""
+    """Adds the plane of a picture of a grid, from the grid's steps in right-anterior-superior millimetres."""
     lps = np.diag([-1.0, -1.0, 1.0])
     lengths = np.linalg.norm(steps, axis=0)
     along = lps @ steps / lengths
@@ -59,12 +59,12 @@ def lying(found, steps, at, origin=ORIGIN):
 
 
 def save(found, path):
-    """Writes it."""
+    """Writes a dataset to a file."""
     found.save_as(path, enforce_file_format=True)
 
 
 def packed(name, pixels, syntax, frames, **options):
-    """A file of pictures that another library has packed."""
+    """Dataset of pictures that another library has compressed."""
     found = dataset(name, pixels, syntax, **options)
     found.PixelData = encapsulate([bytes(frame) for frame in frames])
     found["PixelData"].VR = "OB"
@@ -72,7 +72,7 @@ def packed(name, pixels, syntax, frames, **options):
 
 
 def cases(folder):
-    """Names, choices and the voxels that were written."""
+    """Yields file names, choices and the voxels that were written."""
     for kind in ("uint8", "uint16", "int16", "uint32", "int32"):
         pixels = source(kind)[0]
         save(lying(dataset(kind, pixels), STRAIGHT, 0), folder / f"dicom_{kind}.dcm")
@@ -88,7 +88,7 @@ def cases(folder):
     save(dataset("twelve", pixels, stored=12), folder / "dicom_12_bits.dcm")
     yield "dicom_12_bits.dcm", "", pixels
     signed = (source("int16") >> 4).astype("int16")
-    # Twelve bits with a sign: what is above them is empty in the file.
+    # Signed numbers of twelve bits: the bits above them are zero in the file.
     found = dataset("signed", signed, stored=12)
     found.PixelData = (signed.view("uint16") & 0x0FFF).tobytes()
     save(found, folder / "dicom_12_bits_signed.dcm")
@@ -110,7 +110,7 @@ def cases(folder):
 
 
 def of_codecs(folder):
-    """Pictures that are packed."""
+    """Writes pictures in compressed transfer syntaxes."""
     for kind in ("uint8", "int16", "uint16"):
         found = dataset("rle" + kind, source(kind))
         found.compress(UID.RLELossless, generate_instance_uid=False)
@@ -132,14 +132,14 @@ def of_codecs(folder):
     yield "dicom_jpeg.dcm", "", smooth
     frames = [imagecodecs.jpeg2k_encode(frame, codecformat="j2k", level=45, reversible=False) for frame in smooth]
     save(packed("j2k", smooth, UID.JPEG2000, frames), folder / "dicom_jpeg2000_lossy.dcm")
-    # Further off than decoders are from each other.
+    # The error exceeds the difference between decoders.
     yield "dicom_jpeg2000_lossy.dcm", "", None
 
 
 def of_places(folder):
-    """Series of slices in a folder of their own, and all in one file."""
+    """Writes series of slices, each in a folder of its own, and multi-frame files."""
     for name, steps in ORIENTATIONS.items():
-        # A series has no left hand: its slices go on along the normal.
+        # A series cannot be mirrored: its slices proceed along the normal.
         if np.linalg.det(steps) < 0:
             steps = steps @ np.diag([1.0, 1.0, -1.0])
         series = folder / f"dicom_{name}.dicom-series"
@@ -147,7 +147,7 @@ def of_places(folder):
         for at, pixels in enumerate(source("int16")):
             found = lying(dataset(f"{name}{at}", pixels), steps, at)
             found.SeriesInstanceUID = ROOT + "77"
-            # Neither names nor numbers are in the order of places.
+            # Neither file names nor instance numbers are in spatial order.
             found.InstanceNumber = (at * 2) % 3
             save(found, series / f"{(at + 1) % 3}.dcm")
         yield series.name, "", source("int16")

@@ -1,4 +1,4 @@
-"""MGH and MGZ by nibabel."""
+"""Reference files of MGH and MGZ, written by nibabel."""
 
 import nibabel
 import numpy as np
@@ -7,7 +7,7 @@ from cases.sources import ORIENTATIONS, STRAIGHT, affine, small, source
 
 
 def cases(folder):
-    """Types, places, time steps, a header that says no place, both packings."""
+    """Writes types, positions, time steps, a header without a position, and both compressions."""
 
     def write(name, image, choice="", expected=None):
         nibabel.save(image, str(folder / name))
@@ -23,6 +23,6 @@ def cases(folder):
     image = nibabel.MGHImage(small("uint8").T, place)
     nibabel.save(image, str(folder / "mgh_unplaced.mgh"))
     path = folder / "mgh_unplaced.mgh"
-    # goodRASFlag.
+    # Clears goodRASFlag.
     path.write_bytes(path.read_bytes()[:28] + b"\0\0" + path.read_bytes()[30:])
     yield path.name, "", small("uint8")

@@ -1,4 +1,4 @@
-"""Images of VTK by vtk, arrays by NumPy; Gaussian cubes, PVM and bare numbers with their descriptions as text and bytes."""
+"""Reference files of VTK images, NumPy arrays, Gaussian cubes, PVM, and RAW files with descriptions."""
 
 import numpy as np
 import vtk
@@ -8,12 +8,12 @@ from cases.sources import FLOATS, INTEGERS, ORIENTATIONS, ORIGIN, STRAIGHT, WIDE
 
 
 def cases(folder):
-    """Names, choices and the voxels that were written."""
+    """Yields file names, choices and the voxels that were written."""
     return [*of_vti(folder), *of_vtk(folder), *of_numpy(folder), *of_cube(folder), *of_bytes(folder)]
 
 
 def image(data, steps=STRAIGHT, of_cells=False, name="values", first=(0, 0, 0), origin=ORIGIN):
-    """An image of vtk."""
+    """Builds an image of vtk from an array."""
     found = vtk.vtkImageData()
     dims = [n + of_cells for n in reversed(data.shape[:3])]
     found.SetExtent(*[number for n, start in zip(dims, first) for number in (start, start + n - 1)])
@@ -41,7 +41,7 @@ def save(found, path, mode="appended", packing="zlib", big=False, base64=True, w
 
 
 def of_vti(folder):
-    """Types, ways to write numbers, packings, orders, directions."""
+    """Writes types, encodings, compressions, byte orders and directions."""
 
     def write(name, found, expected, choice="", mode="appended", packing=None, big=False, base64=True, wide=True):
         save(found, folder / name, mode, packing, big, base64, wide)
@@ -74,7 +74,7 @@ def of_vti(folder):
 
 
 def of_vtk(folder):
-    """Text and bytes of the older form."""
+    """Writes legacy VTK files as text and as bytes."""
     for kind in ("uint8", "int16", "int32", "float32", "float64"):
         for is_text in (True, False):
             writer = vtk.vtkStructuredPointsWriter()
@@ -86,19 +86,19 @@ def of_vtk(folder):
             writer.SetInputData(points)
             (writer.SetFileTypeToASCII if is_text else writer.SetFileTypeToBinary)()
             writer.Write()
-            # Text has as many digits as the writer takes.
+            # The writer decides the number of digits in text.
             yield name, "", None if is_text and kind.startswith("float") else source(kind)
 
 
 def of_numpy(folder):
-    """Types, orders, archives, axes."""
+    """Writes types, byte orders, archives and axis orders."""
     for kind in INTEGERS + WIDE + FLOATS + ["float16", "complex64", "complex128"]:
         np.save(folder / f"numpy_{kind}.npy", source(kind))
         yield f"numpy_{kind}.npy", "", np.abs(source(kind).astype(complex)).astype("f4") if kind.startswith("complex") else source(kind)
     np.save(folder / "numpy_bool.npy", source("uint8") > 127)
     yield "numpy_bool.npy", "", source("uint8") > 127
     for kind in ("uint16", "float64"):
-        # Of an array [x, y, z] in the order of Fortran x is fastest.
+        # In an array [x, y, z] in Fortran order, x is fastest.
         np.save(folder / f"numpy_{kind}_fortran.npy", np.asfortranarray(source(kind).T))
         yield f"numpy_{kind}_fortran.npy", "", source(kind)
         np.save(folder / f"numpy_{kind}_big.npy", source(kind).astype(np.dtype(kind).newbyteorder(">")))
@@ -115,7 +115,7 @@ def of_numpy(folder):
 
 
 def of_cube(folder):
-    """Bohr and Å, steps aslant, orbitals."""
+    """Writes cubes in Bohr and in Å, with oblique steps, and with orbitals."""
 
     def write(name, data, steps, sign=1, orbitals=None):
         lines = ["A density", "z fastest", f"{-2 if orbitals else 2} 1.5 -2.25 3.125"]
@@ -139,7 +139,7 @@ def of_cube(folder):
 
 
 def of_bytes(folder):
-    """PVM of three versions, numbers without a header and with a description."""
+    """Writes PVM files of three versions, and RAW files without a header or with a description."""
     for version, kind in ((1, "u1"), (2, ">u2"), (3, "u1")):
         data = small("uint16" if kind == ">u2" else "uint8")
         mark = "PVM" + (str(version) if version > 1 else "")

@@ -1,4 +1,4 @@
-"""NRRD by pynrrd and SimpleITK, NIfTI and Analyze by nibabel, MetaImage by SimpleITK."""
+"""Reference files of NRRD by pynrrd and SimpleITK, NIfTI and Analyze by nibabel, MetaImage by SimpleITK."""
 
 import re
 
@@ -13,12 +13,12 @@ LPS = np.diag([-1.0, -1.0, 1.0])
 
 
 def cases(folder):
-    """Names, choices and the voxels that were written."""
+    """Yields file names, choices and the voxels that were written."""
     return [*of_nrrd(folder), *of_nifti(folder), *of_metaimage(folder)]
 
 
 def of_nrrd(folder):
-    """Types, orders, packings, spaces, other axes."""
+    """Writes types, byte orders, encodings, spaces and other axes."""
 
     def write(name, data, header=None, choice="", expected=None, **options):
         nrrd.write(str(folder / name), data, header or {}, index_order="C", **options)
@@ -35,7 +35,7 @@ def of_nrrd(folder):
         for kind in ("int16", "float32"):
             data = np.round(source(kind), 2)
             yield write(f"nrrd_{kind}_{encoding}.nrrd", data, {"encoding": encoding, "spacings": [1.0, 1.0, 2.0]})
-        # pynrrd reads text beside a header as if it were attached.
+        # pynrrd reads text beside a detached header as if it were attached.
         if encoding != "ascii":
             header = {"encoding": encoding, "spacings": [0.5, 0.5, 2.0]}
             yield write(f"nrrd_detached_{encoding}.nhdr", source("int16"), header, detached_header=True)
@@ -74,12 +74,12 @@ def of_nrrd(folder):
 
 
 def undated(path):
-    """Takes away the day on which a file was written."""
+    """Removes the creation date from a file."""
     path.write_bytes(re.sub(rb"# on .*\n", b"", path.read_bytes(), count=1))
 
 
 def itk(data, steps, origin=ORIGIN, **options):
-    """An image of SimpleITK; mirrored ones it refuses, and so do we not need them."""
+    """Builds an image of SimpleITK. It refuses mirrored axes, which are therefore not tested."""
     image = SimpleITK.GetImageFromArray(data, **options)
     lengths = np.linalg.norm(steps, axis=0)
     image.SetSpacing([float(length) for length in lengths])
@@ -89,7 +89,7 @@ def itk(data, steps, origin=ORIGIN, **options):
 
 
 def of_nifti(folder):
-    """Types, orders, both versions, pairs, what says where voxels lie, scales, times."""
+    """Writes types, byte orders, both versions, pairs, transforms, scales and time steps."""
 
     def write(name, image, choice="", expected=None):
         nibabel.save(image, str(folder / name))
@@ -114,7 +114,7 @@ def of_nifti(folder):
         for kind in ("sform", "qform", "both"):
             image = nibabel.Nifti1Image(source("int16").T, affine(steps), dtype="int16")
             image.set_sform(affine(steps), code=0 if kind == "qform" else 1)
-            # Where both are there the first counts, whatever the other says.
+            # If both transforms are present, the first one counts.
             image.set_qform(affine(np.eye(3) if kind == "both" else steps), code=0 if kind == "sform" else 1)
             image.header.set_xyzt_units("mm")
             yield write(f"nifti_{kind}_{name}.nii.gz", image)
@@ -151,7 +151,7 @@ def of_nifti(folder):
 
 
 def of_metaimage(folder):
-    """Types, packings, files, orientations, channels, times."""
+    """Writes types, compressions, detached files, orientations, channels and time steps."""
 
     def write(name, image, expected, choice="", packed=False):
         SimpleITK.WriteImage(image, str(folder / name), useCompression=packed)
@@ -174,7 +174,7 @@ def of_metaimage(folder):
     yield write("meta_times.mha", times, source("int16"), "--frame 1")
     for kind in ("uint16", "float64"):
         data = source(kind)
-        # SimpleITK writes the order of the machine that it runs on.
+        # SimpleITK writes the byte order of the machine that it runs on.
         image = itk(data, ORIENTATIONS["permuted"])
         SimpleITK.WriteImage(image, str(folder / "turned.mha"))
         written = (folder / "turned.mha").read_bytes()

@@ -1,4 +1,4 @@
-"""TIFF by tifffile, also as ImageJ and OME have it, folders of pictures by Pillow, MRC by mrcfile."""
+"""Reference files of TIFF, ImageJ and OME by tifffile, folders of pictures by Pillow, MRC by mrcfile."""
 
 import gzip
 
@@ -10,24 +10,24 @@ from PIL import Image
 from cases.sources import FLOATS, INTEGERS, small, source
 
 
-# The same in every run.
+# Fixed, so that files are reproducible.
 MARK = {"UUID": "6e0d8a2c-0000-1000-8000-000000000021"}
 
 
 def cases(folder):
-    """Names, choices and the voxels that were written."""
+    """Yields file names, choices and the voxels that were written."""
     return [*of_tiff(folder), *of_imagej(folder), *of_ome(folder), *of_pictures(folder), *of_mrc(folder)]
 
 
 def write(folder, name, data, choice="", expected=None, **options):
-    """By tifffile, without what it would add of its own."""
+    """Writes a file by tifffile, without its own metadata."""
     options = {"photometric": "minisblack", "metadata": None, "software": False} | options
     tifffile.imwrite(folder / name, data, **options)
     return name, choice, data if expected is None else expected
 
 
 def of_tiff(folder):
-    """Types, orders, packings, tiles, colours."""
+    """Writes types, byte orders, compressions, tiles and colours."""
     for kind in INTEGERS + FLOATS + ["float16"]:
         yield write(folder, f"tiff_{kind}.tif", source(kind))
     for kind in ("uint16", "int32", "float32"):
@@ -55,15 +55,15 @@ def of_tiff(folder):
     bits = source("uint8", (2, 9, 11)) > 127
     yield write(folder, "tiff_1_bit.tif", bits)
     yield from of_jpeg(folder)
-    # A table of colours: the numbers are what was measured, or the labels.
+    # With a palette: the indices are the measured values or labels.
     colors = (np.arange(3 * 256).reshape(3, 256) * 83).astype("uint16")
     yield write(folder, "tiff_palette.tif", source("uint8", (2, 5, 7)), photometric="palette", colormap=colors)
 
 
 def of_jpeg(folder):
-    """Pictures of JPEG in strips and tiles, with tables of their own by tifffile, and with those of all pages by Pillow."""
+    """Writes JPEG in strips and tiles, with tables per strip by tifffile, and with shared tables by Pillow."""
     at = np.arange(2 * 20 * 25).reshape(2, 20, 25)
-    # Smooth, as what is packed with loss.
+    # Smooth, as suits lossy compression.
     grey = (128 + 90 * np.sin(at / 60)).astype("uint8")
     options = {"compression": "jpeg", "compressionargs": {"level": 90}}
     for name, layout in (("strips", {"rowsperstrip": 8}), ("tiles", {"tile": (16, 16)}), ("whole", {})):
@@ -83,7 +83,7 @@ def of_jpeg(folder):
 
 
 def of_imagej(folder):
-    """Stacks, their distances, channels and times."""
+    """Writes stacks of ImageJ, with spacing, channels and time steps."""
     for kind in ("uint8", "uint16", "float32"):
         options = {"imagej": True, "resolution": (2.0, 4.0), "metadata": {"axes": "ZYX", "spacing": 3.0, "unit": "um"}}
         yield write(folder, f"imagej_{kind}.tif", source(kind), **options)
@@ -98,7 +98,7 @@ def of_imagej(folder):
 
 
 def of_ome(folder):
-    """The same as OME has it."""
+    """Writes stacks of OME, with spacing, channels and time steps."""
     sizes = {"PhysicalSizeX": 0.5, "PhysicalSizeY": 0.25, "PhysicalSizeZ": 3.0}
     units = {f"PhysicalSize{axis}Unit": "nm" for axis in "XYZ"}
     for kind in ("uint8", "int16", "uint32", "float32"):
@@ -113,7 +113,7 @@ def of_ome(folder):
 
 
 def of_pictures(folder):
-    """Slices in files of their own."""
+    """Writes slices as separate picture files."""
     for kind, ending in (("uint8", "png"), ("uint16", "png"), ("uint8", "bmp")):
         pile = folder / f"{ending}_{kind}.slices"
         pile.mkdir()
@@ -123,7 +123,7 @@ def of_pictures(folder):
 
 
 def of_mrc(folder):
-    """Modes, orders of axes and bytes, cells, places, stacks."""
+    """Writes modes, axis orders, byte orders, cells, origins and stacks."""
 
     def save(name, data, expected=None, choice="", change=None, size=0.5, stack=False):
         with mrcfile.new(folder / name, data=data, overwrite=True) as file:
@@ -133,7 +133,7 @@ def of_mrc(folder):
                 file.set_image_stack()
             if change:
                 change(file.header)
-            # The day on which it was written is none of the test's.
+            # Removes the creation date, which would change the file in every run.
             file.header.label[:] = b""
             file.header.nlabl = 0
         return name, choice, data if expected is None else expected
@@ -149,7 +149,7 @@ def of_mrc(folder):
         def change(header, order=order):
             header.mapc, header.mapr, header.maps = order
             header.nxstart, header.nystart, header.nzstart = -2, 3, 5
-            # Intervals and lengths are those of the cell, not of what lies along columns.
+            # Intervals and lengths belong to the axes of the cell, not to columns, rows and sections.
             header.mx, header.my, header.mz = 10, 12, 14
             header.cella = (5.0, 12.0, 21.0)
 

@@ -1,7 +1,7 @@
-"""A head with an L on its left, as each format has it that says how its axes run, and in the order of the others.
+"""Phantom: a head with an L on its left, in each format with stored directions, and in axis order in the others.
 
-One head, in two places: along the axes of the body, with voxels of 1 mm, and aslant, with voxels of three lengths. Files
-differ in which axis of the head comes first and in which direction it is counted, and in how they say it.
+One head in two orientations: along the axes of the body, with voxels of 1 mm, and oblique, with voxels of three
+lengths. Files differ in the order and direction of the head's axes, and in how they store these.
 """
 
 import gzip
@@ -24,7 +24,7 @@ from cases.medical import itk, undated
 from cases.sources import affine
 from table import held
 
-# Voxels to the right, to the front and to the head: their number fits into 4 KiB with a header.
+# Voxels to the right, to the front and to the head: they fit into 4 KiB with a header.
 SIZE = (14, 18, 15)
 MARK = 120
 STRAIGHT = np.eye(3)
@@ -38,7 +38,7 @@ ORIGIN = np.array([3.0, -7.0, 11.0])
 
 
 def head():
-    """By [right, front, head]: an egg with a nose in front, a neck below, and an L on its left."""
+    """Voxels by [right, front, head]: an egg with a nose in front, a neck below, and an L on its left."""
     x, y, z = np.meshgrid(*[np.arange(n, dtype=float) for n in SIZE], indexing="ij")
     found = np.zeros(SIZE, dtype=np.uint8)
     found[((x - 7) / 5) ** 2 + ((y - 8) / 6.5) ** 2 + ((z - 8) / 5.5) ** 2 < 1] = 40
@@ -51,7 +51,7 @@ def head():
 
 
 def turned(order, flips, steps):
-    """The head by [first, second, third axis of a file], with the place of its voxels."""
+    """The head by [first, second, third axis of a file], with the affine of its voxels."""
     data, place = head(), affine(steps, ORIGIN)
     for axis in flips:
         data = np.flip(data, axis)
@@ -68,7 +68,7 @@ ORDERS = {"ras": RAS, "lps": LPS, "sagittal": SAGITTAL, "coronal": CORONAL, "bac
 
 
 def write(folder):
-    """Writes all, and checks by independent readers that each says where its L is."""
+    """Writes all files, and checks by independent readers that the L is on the left in each."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     for (name, (order, flips)), (lie, steps) in itertools.product(
@@ -78,20 +78,20 @@ def write(folder):
         of_bodies(folder, f"{lie}_{name}", data, place)
     in_their_order(folder)
     for path in sorted(folder.iterdir()):
-        # Bare numbers are read with their description, and packed cubes by no library.
+        # RAW data are read through their description; no library reads gzipped cubes.
         if not path.name.endswith((".bin", ".cube.gz")):
             check(path, ASLANT if path.name.startswith("aslant") else STRAIGHT)
 
 
 def check(path, steps):
-    """The middle of the L lies where it should."""
+    """Checks the position of the centre of the L."""
     reading = readers.read(path, "")
     z, y, x = np.nonzero(held(reading.voxels) == MARK)
     middle = reading.affine @ np.array([x.mean(), y.mean(), z.mean(), 1.0])
     marked = np.array([axis.mean() for axis in np.nonzero(head() == MARK)])
     whole = np.array([(n - 1) / 2 for n in SIZE])
     size = (np.array(reading.voxels.shape[::-1]) - 1) / 2
-    # From the middle of the grid: not every format says where that is.
+    # Relative to the centre of the grid: not every format stores its position.
     found = middle - reading.affine @ np.append(size, 1.0)
     if path.name.endswith(".mrc.gz"):
         found = found / 1e-7
@@ -99,7 +99,7 @@ def check(path, steps):
 
 
 def of_bodies(folder, name, data, place):
-    """The formats that say how axes run."""
+    """Writes the formats that store anatomical directions."""
     lps = np.diag([-1.0, -1.0, 1.0])
     steps, origin = place[:3, :3], place[:3, 3]
     for space, flip in (("right-anterior-superior", np.eye(3)), ("left-posterior-superior", lps)):
@@ -115,13 +115,13 @@ def of_bodies(folder, name, data, place):
         nibabel.save(image, str(folder / f"{name}_{kind}.nii.gz"))
     SimpleITK.WriteImage(itk(data.T, steps, origin), str(folder / f"{name}.mha"), useCompression=True)
     grids.save(grids.image(data.T, steps, origin=origin), folder / f"{name}.vti")
-    # Slices of a series go on along their normal.
+    # Slices of a series proceed along their normal.
     if np.linalg.det(steps) > 0:
         frames(data.T, steps, origin, folder / f"{name}.dcm")
 
 
 def frames(data, steps, origin, path):
-    """All slices in one file of DICOM."""
+    """Writes all slices as one multi-frame file of DICOM."""
     found = dicom.dataset(path.stem, data, pydicom.uid.DeflatedExplicitVRLittleEndian)
     shared, plane = Dataset(), dicom.lying(Dataset(), steps, 0, origin)
     orientation, measures = Dataset(), Dataset()
@@ -141,7 +141,9 @@ def frames(data, steps, origin, path):
 
 
 def in_their_order(folder):
-    """Formats that say nothing of a body: x is right, y front and z head here, if the file's order is kept."""
+    """Writes the formats without anatomical directions, where x is right, y front and z head in the file's axis
+    order.
+    """
     data = np.ascontiguousarray(head().T)
     np.save(folder / "straight_numpy.npy", data)
     data.tofile(folder / "straight_bare_14x18x15_uint8.raw")

@@ -1,8 +1,8 @@
-"""The numbers that are written: small volumes of every type in which no two axes can be taken for each other."""
+"""Voxel values of the reference files: small volumes of every type in which no two axes can be confused."""
 
 import numpy as np
 
-# Along x, y, z.
+# Number of voxels along x, y, z.
 DIMS = (5, 4, 3)
 
 INTEGERS = ["uint8", "int8", "uint16", "int16", "uint32", "int32"]
@@ -11,12 +11,12 @@ FLOATS = ["float32", "float64"]
 
 
 def source(name, shape=DIMS[::-1]):
-    """Voxels of a type by [z, y, x]: of all of its range, floats also below 1."""
+    """Voxels of a type by [z, y, x], over its whole range; floats also below 1."""
     random = np.random.default_rng(abs(hash_of(name)))
     kind = np.dtype(name)
     if kind.kind in "iu":
         limits = np.iinfo(kind)
-        # What 64 bits hold beyond 53 no volume can.
+        # Integers beyond 53 bits do not fit into any voxel type of the program.
         low, high = max(limits.min, -(2**52)), min(limits.max, 2**52)
         found = random.integers(low, high, shape, dtype=np.int64).astype(kind)
         found.flat[0], found.flat[-1] = low, high
@@ -27,17 +27,17 @@ def source(name, shape=DIMS[::-1]):
 
 
 def hash_of(name):
-    """The same number for the same name in every run."""
+    """Hash of a name that is the same in every run."""
     return sum(ord(letter) * 31**at for at, letter in enumerate(name)) % 2**32
 
 
 def small(name, shape=DIMS[::-1]):
-    """Numbers from 0 to 200, whole, in a type: for what scales them or packs them with loss."""
+    """Whole numbers from 0 to 200 in a type, for scaling and lossy compression."""
     return np.random.default_rng(7).integers(0, 200, shape).astype(name)
 
 
-# Three steps in right-anterior-superior millimetres: along the axes, turned so that they change places and signs, and
-# aslant by 0.3 and 0.2 radians.
+# Three steps in right-anterior-superior millimetres: along the axes, permuted and reversed, and oblique by 0.3 and
+# 0.2 radians.
 STRAIGHT = np.diag([1.5, 2.0, 2.5])
 PERMUTED = np.array([[0, 0, -2.5], [1.5, 0, 0], [0, -2.0, 0]])
 _TURN = np.array([[1, 0, 0], [0, np.cos(0.3), -np.sin(0.3)], [0, np.sin(0.3), np.cos(0.3)]]) @ np.array(
@@ -50,7 +50,7 @@ ORIGIN = np.array([-10.0, 20.5, 7.25])
 
 
 def affine(steps, origin=ORIGIN):
-    """Four rows of four."""
+    """Affine matrix of four rows of four numbers."""
     found = np.eye(4)
     found[:3, :3], found[:3, 3] = steps, origin
     return found

@@ -1,6 +1,6 @@
-"""What other libraries read from a file of each format: `read(path, choice)`.
+"""Readers of each format by other libraries: `read(path, choice)`.
 
-A choice is what the command line takes, as in `--frame 1`; `choice_of` takes it apart.
+A choice has the form of the command line, as in `--frame 1`; `choice_of` parses it.
 """
 
 import gzip
@@ -22,13 +22,13 @@ from table import BODY, VOXELS, WORLD, Reading, columns, from_lps, held, length,
 
 
 def choice_of(text):
-    """`--frame 1 --channel 0` as numbers and names."""
+    """Parses a choice such as `--frame 1 --channel 0` into names and numbers."""
     words = (text or "").split()
     return {name.removeprefix("--"): value for name, value in zip(words[::2], words[1::2])}
 
 
 def components(voxels, choice, is_color):
-    """What is shown of voxels of several numbers."""
+    """Reduces voxels of several components to the displayed values."""
     if "component" in choice:
         return voxels[..., int(choice["component"])]
     if voxels.shape[-1] == 1:
@@ -37,7 +37,7 @@ def components(voxels, choice, is_color):
 
 
 def read_nrrd(path, choice):
-    """By pynrrd."""
+    """Reads NRRD by pynrrd."""
     data, header = nrrd.read(str(path), index_order="C")
     kinds = header.get("kinds", ["domain"] * data.ndim)
     spatial = [axis for axis, kind in enumerate(kinds) if kind in ("domain", "space", "???")]
@@ -46,7 +46,7 @@ def read_nrrd(path, choice):
         spatial = [axis for axis in spatial if np.isfinite(directions[axis]).all()]
     if data.ndim > 3 and len(spatial) > 3:
         spatial = spatial[:3]
-    # pynrrd gives the slowest axis first.
+    # pynrrd returns the slowest axis first.
     for axis in range(data.ndim - 1, max(spatial), -1):
         data = data[int(choice.get("frame", 0))]
     if min(spatial) > 0:
@@ -64,13 +64,13 @@ def read_nrrd(path, choice):
     spacings = [float(header["spacings"][axis]) for axis in spatial] if "spacings" in header else []
     if not spacings or not np.isfinite(spacings).all():
         return Reading(data, *unknown())
-    # The one slice of a picture is as thick as its pixels are wide.
+    # The only slice of a picture is as thick as its pixels are wide.
     spacings += [np.sqrt(np.prod(np.abs(spacings)))] * (3 - len(spacings))
     return Reading(data, *spaced(spacings))
 
 
 def read_nifti(path, choice):
-    """By nibabel."""
+    """Reads NIfTI and Analyze by nibabel."""
     with tempfile.TemporaryDirectory() as folder:
         image = nibabel.load(str(beside_each_other(path, Path(folder))))
         data = np.asanyarray(image.dataobj.get_unscaled())
@@ -102,7 +102,7 @@ def read_nifti(path, choice):
 
 
 def beside_each_other(path, folder):
-    """A header and its voxels as nibabel wants them: both packed, or neither."""
+    """Copies a header and its voxels as nibabel needs them: both compressed, or neither."""
     name = path.name.removesuffix(".gz")
     if not name.endswith((".hdr", ".img")):
         return path
@@ -110,7 +110,7 @@ def beside_each_other(path, folder):
     for ending in (".hdr", ".img"):
         plain, packed = path.with_name(stem + ending), path.with_name(stem + ending + ".gz")
         target = folder / (stem + ending)
-        # Who names a packed one means it.
+        # An explicitly named compressed file is preferred.
         if plain.exists() and not path.name.endswith(".gz"):
             shutil.copy(plain, target)
         elif packed.exists():
@@ -121,12 +121,12 @@ def beside_each_other(path, folder):
 
 
 def read_metaimage(path, choice):
-    """By SimpleITK. Which fields there are is read from the text."""
+    """Reads MetaImage by SimpleITK. The fields that are present are read from the text."""
     image = SimpleITK.ReadImage(str(path))
     data = SimpleITK.GetArrayFromImage(image)
     text = path.read_bytes().split(b"ElementDataFile")[0].decode("latin-1")
     said = {line.split("=")[0].strip() for line in text.splitlines()}
-    # SimpleITK reads no more than CompressedDataSize says, and takes zeros for what is behind.
+    # SimpleITK reads only CompressedDataSize bytes, and fills the rest with zeros.
     whole = inflated(path, text)
     if len(whole) == data.nbytes:
         data = np.frombuffer(whole, dtype=data.dtype).reshape(data.shape)
@@ -147,7 +147,7 @@ def read_metaimage(path, choice):
 
 
 def inflated(path, text):
-    """All that the packed file beside a header unpacks to; nothing where there is none."""
+    """Decompressed contents of the data file beside a header; empty without one."""
     name = path.read_bytes().split(b"ElementDataFile = ")[-1].strip()
     if "CompressedData = True" not in text or not name.endswith(b".zraw"):
         return b""
@@ -155,7 +155,7 @@ def inflated(path, text):
 
 
 def read_tiff(path, choice):
-    """By tifffile."""
+    """Reads TIFF by tifffile."""
     channel, frame = (int(choice.get(name, 0)) for name in ("channel", "frame"))
     with tifffile.TiffFile(path) as file:
         series = file.series[int(choice.get("series", 0))]
@@ -174,7 +174,7 @@ def read_tiff(path, choice):
         elif "component" in choice:
             raise ValueError("there are no components")
         data = data.reshape((-1,) + data.shape[-2:])
-        # Decoders of JPEG may round as they like, and so where colours are spread over several pixels.
+        # Decoders of JPEG may round differently, also in colours that are subsampled.
         tags = file.pages[0].tags
         is_halved = "YCbCrSubSampling" in tags and tags["YCbCrSubSampling"].value != (1, 1)
         is_jpeg = file.pages[0].compression == tifffile.COMPRESSION.JPEG
@@ -183,7 +183,7 @@ def read_tiff(path, choice):
 
 
 def place_of_tiff(file):
-    """What ImageJ and OME say of distances."""
+    """Affine from the spacing that ImageJ and OME store."""
     if file.is_imagej:
         found = file.imagej_metadata
         tags = file.pages[0].tags
@@ -209,7 +209,7 @@ def place_of_tiff(file):
 
 
 def read_mrc(path, choice):
-    """By mrcfile. Lengths are in Å."""
+    """Reads MRC by mrcfile. Lengths are in Å."""
     with mrcfile.open(path, permissive=True) as file:
         data, header = np.array(file.data), file.header
         data = data.reshape((1,) * (3 - data.ndim) + data.shape)
@@ -234,12 +234,12 @@ def read_mrc(path, choice):
 
 
 def read_numpy(path, choice):
-    """By NumPy."""
+    """Reads NumPy arrays by NumPy."""
     data = np.load(path)
     if path.suffix == ".npz":
         names = list(data.keys())
         data = data[choice.get("array", names[0])]
-    # What lies fastest is x, whichever axis the array counts first.
+    # The fastest axis is x, whichever axis the array counts first.
     if data.flags.f_contiguous and not data.flags.c_contiguous:
         data = data.T
     if data.dtype == np.uint8 and data.ndim > 3 and data.shape[-1] in (3, 4):
@@ -250,7 +250,7 @@ def read_numpy(path, choice):
 
 
 def read_pictures(path, choice):
-    """A folder of slices, by Pillow. Names are in order."""
+    """Reads a folder of slices by Pillow, sorted by name."""
     slices = [np.asarray(Image.open(file)) for file in sorted(path.iterdir())]
     return Reading(np.stack([luminance(voxels) if voxels.ndim == 3 else voxels for voxels in slices]), *unknown())
 
@@ -274,10 +274,10 @@ READERS = {
 
 
 def read(path, choice=""):
-    """What a library finds in a file or folder."""
+    """Reads a file or folder by the library for its format."""
     if path.is_file():
         with path.open("rb") as file:
-            # DICOM goes by any name.
+            # DICOM files may have any name.
             if file.read(132)[128:] == b"DICM":
                 return dicoms.read_dicom(path, choice_of(choice))
     for endings, reader in READERS.items():

@@ -1,4 +1,4 @@
-"""DICOM by pydicom, with the decoders of pylibjpeg: slices in the order in which they lie, and their place."""
+"""Reader of DICOM by pydicom, with the decoders of pylibjpeg: slices in spatial order, and their affine."""
 
 import numpy as np
 import pydicom
@@ -7,7 +7,7 @@ from table import BODY, Reading, columns, from_lps, luminance, rescaled, spaced,
 
 
 def value(frame, name):
-    """A field of a picture, wherever functional groups or the whole file have it."""
+    """Field of a picture, from its functional groups or from the file."""
     for found in frame:
         if name in found:
             return found[name].value
@@ -15,7 +15,7 @@ def value(frame, name):
 
 
 def frames_of(dataset):
-    """The data sets that speak of each picture, the nearest first."""
+    """Datasets that describe each picture, the most specific first."""
     count = int(dataset.get("NumberOfFrames", 1))
     shared = [item for group in dataset.get("SharedFunctionalGroupsSequence", []) for item in inner(group)]
     groups = dataset.get("PerFrameFunctionalGroupsSequence", [])
@@ -24,12 +24,12 @@ def frames_of(dataset):
 
 
 def inner(group):
-    """The items of the sequences of a functional group."""
+    """Items of the sequences of a functional group."""
     return [item for element in group if element.VR == "SQ" for item in element.value]
 
 
 def along(frame):
-    """How far along the normal of the slices a picture lies."""
+    """Position of a picture along the normal of the slices."""
     position, orientation = value(frame, "ImagePositionPatient"), value(frame, "ImageOrientationPatient")
     if position is None or orientation is None:
         return None
@@ -38,7 +38,7 @@ def along(frame):
 
 
 def pictures(datasets):
-    """The pictures of files with what is said of each."""
+    """Pictures of files, each with the datasets that describe it."""
     found = []
     for dataset in datasets:
         voxels = dataset.pixel_array
@@ -49,7 +49,7 @@ def pictures(datasets):
 
 
 def read_dicom(path, _choice):
-    """A file, or a folder of slices; one slice opens its series."""
+    """Reads a file, or a folder of slices; one slice opens its series."""
     files = sorted(path.iterdir()) if path.is_dir() else [path]
     datasets = [pydicom.dcmread(file) for file in files]
     if not path.is_dir() and int(datasets[0].get("NumberOfFrames", 1)) == 1:
@@ -57,7 +57,7 @@ def read_dicom(path, _choice):
         others = [pydicom.dcmread(file) for file in path.parent.glob("*.dcm") if file != path]
         datasets += [other for other in others if series and other.get("SeriesInstanceUID") == series]
     for dataset in datasets:
-        # What a file does not say is the default of the standard.
+        # A missing transfer syntax is the default of the standard.
         if "TransferSyntaxUID" not in dataset.file_meta:
             dataset.file_meta.TransferSyntaxUID = pydicom.uid.ImplicitVRLittleEndian
     found = pictures(datasets)
@@ -70,7 +70,7 @@ def read_dicom(path, _choice):
         voxels = luminance(voxels)
     else:
         voxels = scaled(voxels, [frame for frame, _ in found])
-    # Of what is packed with loss no decoder is bound to the last bit.
+    # Decoders of lossy compression may differ in the last bit.
     is_lossy = datasets[0].file_meta.TransferSyntaxUID in LOSSY
     return Reading(voxels, *place([frame for frame, _ in found], is_placed), 1.0 if is_lossy else 0.0)
 
@@ -79,7 +79,7 @@ LOSSY = (pydicom.uid.JPEGBaseline8Bit, pydicom.uid.JPEGExtended12Bit, pydicom.ui
 
 
 def scaled(voxels, frames):
-    """Values by the slope and intercept of each picture."""
+    """Values after the slope and intercept of each picture."""
     scales = [(float(value(f, "RescaleSlope") or 1), float(value(f, "RescaleIntercept") or 0)) for f in frames]
     if len(set(scales)) == 1:
         return rescaled(voxels, *scales[0])
@@ -88,7 +88,7 @@ def scaled(voxels, frames):
 
 
 def place(frames, is_placed):
-    """Where pictures in order lie."""
+    """Affine of pictures in spatial order."""
     first, last = frames[0], frames[-1]
     spacing = value(first, "PixelSpacing")
     between = value(first, "SpacingBetweenSlices")

@@ -1,4 +1,6 @@
-"""Images of VTK and Gaussian cubes by vtk; PVM and descriptions of RAW, which no library reads, from their definitions."""
+"""Readers of VTK images and Gaussian cubes by vtk; of PVM and RAW descriptions, which no library reads, by
+definition.
+"""
 
 import re
 import xml.etree.ElementTree as xml
@@ -14,7 +16,7 @@ BOHR = 5.29177210903e-8
 
 
 def read_vtk(path, choice):
-    """By the readers of vtk for both forms."""
+    """Reads both forms of VTK images by vtk."""
     reader = vtk.vtkXMLImageDataReader() if path.suffix == ".vti" else vtk.vtkStructuredPointsReader()
     reader.SetFileName(str(path))
     if path.suffix == ".vtk":
@@ -26,7 +28,7 @@ def read_vtk(path, choice):
     found = []
     parts = [(image.GetPointData(), False), (image.GetCellData(), True)]
     content = path.read_bytes()
-    # Numbers count arrays in the order of the file.
+    # Choices count arrays in the order of the file.
     if content.find(b"CELL_DATA") < content.find(b"POINT_DATA"):
         parts.reverse()
     for data, of_cells in parts:
@@ -45,14 +47,16 @@ def read_vtk(path, choice):
     matrix = image.GetDirectionMatrix()
     direction = np.array([[matrix.GetElement(row, column) for column in range(3)] for row in range(3)])
     steps = (direction @ np.diag(image.GetSpacing())).T
-    # Cells have their values in their middle.
+    # Cell values are at the centres of cells.
     first = np.array(image.GetExtent()[::2], dtype=float)
     first += [0.5 if of_cells and n > 1 else 0.0 for n in image.GetDimensions()]
     return Reading(voxels, columns(*steps, np.array(image.GetOrigin()) + first @ steps), WORLD)
 
 
 def read_cube(path, choice):
-    """Values by vtk, which knows no steps that are not even; these are six lines of numbers."""
+    """Reads a cube from its text, and checks the values by vtk where that can read the file; vtk supports orthogonal
+    steps only.
+    """
     lines = path.read_text().splitlines()
     table = [[float(word) for word in line.split()[:4]] for line in lines[2:6]]
     count, origin = table[0][0], np.array(table[0][1:])
@@ -63,7 +67,7 @@ def read_cube(path, choice):
     orbitals = int(words[0]) if count < 0 else 1
     numbers = np.array([float(word) for word in words[orbitals + 1 if count < 0 else 0 :]], dtype=np.float32)
     voxels = numbers.reshape(dims + [orbitals])[..., int(choice.get("channel", 0))].T
-    # Nor does it know numbers of voxels below zero, which say Å.
+    # vtk does not read negative voxel counts either, which mean Å.
     if orbitals == 1 and table[1][0] > 0:
         reader = vtk.vtkGaussianCubeReader2()
         reader.SetFileName(str(path))
@@ -74,7 +78,7 @@ def read_cube(path, choice):
 
 
 def unpacked(packed):
-    """What is behind the mark of DDS, by the description of Stefan Röttger's V3 library."""
+    """Decompresses DDS data, following the description of Stefan Röttger's V3 library."""
     block = bytearray()
     window, held, at = 0, 0, 0
 
@@ -106,7 +110,7 @@ def unpacked(packed):
 
 
 def read_pvm(path, _choice):
-    """Lines of text, then one or two bytes for each voxel, the high one first."""
+    """Reads PVM: lines of text, then one or two bytes for each voxel, big-endian."""
     content = path.read_bytes()
     if content.startswith(b"DDS v3d\n"):
         content = unpacked(content[8:])
@@ -130,7 +134,7 @@ TYPES = {
 
 
 def read_described(path, _choice):
-    """Bare numbers, by NumPy; what they are says a name or a few words of text."""
+    """Reads raw voxels by NumPy, with the layout from a file name or a short text."""
     place, offset, order = unknown(), 0, "<"
     if path.suffix == ".raw":
         data = path

@@ -1,4 +1,4 @@
-"""What nibabel reads from MGH files, and astropy from FITS files."""
+"""Readers of MGH files by nibabel, and of FITS files by astropy."""
 
 import nibabel
 import numpy as np
@@ -8,27 +8,27 @@ from table import BODY, VOXELS, WORLD, Reading, columns, rescaled, unknown
 
 
 def read_mgh(path, choice):
-    """By nibabel."""
+    """Reads MGH by nibabel."""
     image = nibabel.load(str(path))
     data = np.asanyarray(image.dataobj)
     if data.ndim > 3:
         data = data[..., int(choice.get("frame", 0))]
     if path.suffix == ".mgz" or path.read_bytes()[28:30] != b"\0\0":
         return Reading(data.T, image.affine[:3], BODY)
-    # Where the header gives no axes, FreeSurfer takes left, inferior, anterior; nibabel has two of them the other way.
+    # If the header has no axes, FreeSurfer assumes left, inferior, anterior; nibabel reverses two of them.
     steps = np.array([[-1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
     return Reading(data.T, columns(*steps.T, -steps @ (np.array(data.shape[:3]) / 2)), VOXELS)
 
 
 def read_fits(path, choice):
-    """By astropy. The first row is the lowest: it comes last here, and lies where it did."""
+    """Reads FITS by astropy. The first row is the lowest: it comes last here, in its original position."""
     with fits.open(path, do_not_scale_image_data=True) as units:
         images = [number for number, unit in enumerate(units) if unit.is_image and unit.data is not None]
         unit = units[int(choice.get("array", images[0]))]
         header, data = unit.header, np.array(unit.data)
     axes = list(range(data.ndim, 0, -1))
     while data.ndim > 3 and 1 in data.shape:
-        # The slowest first, as the program leaves them out.
+        # The slowest axis first, as the program drops them.
         at = data.shape.index(1)
         data, axes = np.squeeze(data, at), axes[:at] + axes[at + 1 :]
     if data.ndim > 3:
@@ -44,7 +44,7 @@ def read_fits(path, choice):
 
 
 def spacing_of(header, axes):
-    """Steps along three axes of one unit; what differs in it counts as much as the shortest."""
+    """Steps along three axes in one unit; an axis in another unit gets the shortest step."""
     matrix = any(f"CD{i}_{j}" in header for i in range(1, 4) for j in range(1, 4))
     steps, units = [], []
     for axis in axes:

@@ -1,36 +1,44 @@
-//! Lights that have a size against the reference: their volumes, rays to them, and the floor below.
+//! Area lights against the reference: light volumes, near-field rays, and the floor below.
 
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Engine, Hood, Light, LightKind, LightShape, LightStorage, NearField, Resolution, Settings,
-    ShadowAlgorithm,
+    LightGeometry, LightSettings, LightShape, LightStorage, LightVolumeResolution, NearFieldRay,
+    RenderEngine, Settings, ShadowAlgorithm, Spotlight,
 };
-use chiaroscuro::reference::{Fault, Options, Reference};
+use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions};
 use glam::DVec3;
 
-use super::mutations::{disagree_in, in_shader};
+use super::mutations::{assert_in_shader, differs_in_look};
 use super::{SIZE, check_volume};
-use crate::common::{Dataset, context, damaged, render};
-use crate::compare::{Limit, compare, flat32, flat64};
+use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::compare::{ErrorLimit, channels_f32, channels_f64, compare};
 use crate::scenes;
 use crate::thresholds::{COMBINED_NORMALS, SAME_WEIGHTS};
 
 const N: usize = 22;
 
-/// A disc far away, a window, and a ball near by.
+/// Look with a distant disc, a rectangle, and a ball close by.
 fn look() -> Settings {
     let mut settings = scenes::look();
     let light = |kind, position| scenes::light(kind, position);
     settings.lights = vec![
-        Light { shape: LightShape::Disc, angle_deg: 30.0, ..light(LightKind::Parallel, [1.3, -0.8, 1.7]) },
-        Light {
+        LightSettings {
+            shape: LightShape::Disc,
+            angle_deg: 30.0,
+            ..light(LightGeometry::Parallel, [1.3, -0.8, 1.7])
+        },
+        LightSettings {
             shape: LightShape::Rectangle,
             size: 1.4,
             aspect: 0.6,
             turn_deg: 25.0,
-            ..light(LightKind::Perspective, [-2.2, 1.8, 2.4])
+            ..light(LightGeometry::Perspective, [-2.2, 1.8, 2.4])
         },
-        Light { shape: LightShape::Ball, size: 0.7, ..light(LightKind::Perspective, [1.1, 1.2, -0.4]) },
+        LightSettings {
+            shape: LightShape::Ball,
+            size: 0.7,
+            ..light(LightGeometry::Perspective, [1.1, 1.2, -0.4])
+        },
     ];
     settings.shadows.area.samples = 5;
     settings
@@ -44,9 +52,9 @@ fn check(what: &str, settings: &Settings) {
 fn three_shapes() {
     let mut settings = look();
     check("half resolution", &settings);
-    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.area.resolution = LightVolumeResolution::Full;
     settings.shadows.area.samples = 1;
-    settings.lights[1].hood = Hood { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
+    settings.lights[1].hood = Spotlight { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
     check("one point each, a hood", &settings);
     settings.shadows.area.samples = 3;
     check("finely", &settings);
@@ -56,7 +64,7 @@ fn three_shapes() {
 fn by_rays() {
     let mut settings = look();
     settings.shadows.area.samples = 3;
-    settings.lights[1].hood = Hood { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
+    settings.lights[1].hood = Spotlight { on: true, half_angle_deg: 22.0, rim_deg: 9.0 };
     settings.shadows.algorithm = ShadowAlgorithm::Raycast;
     check("rays from voxels", &settings);
     settings.shadows.algorithm = ShadowAlgorithm::Direct;
@@ -69,27 +77,27 @@ fn scattered() {
     let mut settings = look();
     settings.shadows.area.samples = 2;
     settings.lights.truncate(2);
-    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.engine = RenderEngine::Scatter;
     check("scattered", &settings);
 }
 
-/// One volume for all lights is as fine as the others are, whatever the resolution of lights that have a size.
+/// Combined light has the same resolution as per-light volumes, whatever the resolution of area lights.
 #[test]
 fn in_one_volume_for_all() {
     let mut settings = look();
     settings.shadows.area.samples = 2;
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
     settings.shading.specular = 0.0;
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut picture = |storage, area| {
         settings.shadows.storage = storage;
         settings.shadows.area.resolution = area;
-        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+        channels_f32(&render(&mut renderer, &loaded, &settings, SIZE).linear)
     };
-    let each = picture(LightStorage::PerLight, Resolution::Full);
-    let all = picture(LightStorage::Combined, Resolution::Half);
-    let limit = Limit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
+    let each = picture(LightStorage::PerLight, LightVolumeResolution::Full);
+    let all = picture(LightStorage::Combined, LightVolumeResolution::Half);
+    let limit = ErrorLimit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
     compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
@@ -97,23 +105,29 @@ fn in_one_volume_for_all() {
 fn mistakes_in_them_are_noticed() {
     let mut settings = look();
     settings.lights.truncate(1);
-    assert!(!disagree_in(&settings, N, "\u{0}", "", Fault::None));
+    assert!(!differs_in_look(&settings, N, "\u{0}", "", ReferenceFault::None));
     let volume = "light/average.wgsl";
     for (from, to) in [
         ("vec4f(sum * average.share)", "vec4f(sum * average.share * 0.97)"),
         ("!IS_FIRST", "false"),
-        ("ADDED > 2u", "ADDED > 4u"),
+        ("BATCH_SIZE > 2u", "BATCH_SIZE > 4u"),
         ("textureLoad(point_0, voxel, 0).r", "textureLoad(point_1, voxel, 0).r"),
     ] {
-        in_shader(volume, from);
-        assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
+        assert_in_shader(volume, from);
+        assert!(
+            differs_in_look(&settings, N, from, to, ReferenceFault::None),
+            "{to:?} for {from:?} is not noticed"
+        );
     }
     settings.lights[0].angle_deg = 80.0;
-    // Rays nearby that go into the matter below which the middle has set.
+    // Near-field rays that enter the material below the terminator of the light's centre.
     let (from, to) = ("half_width * weight;", "half_width * 0.0;");
-    in_shader("eye/gather.wgsl", from);
-    assert!(!disagree_in(&settings, N, "\u{0}", "", Fault::None));
-    assert!(disagree_in(&settings, N, from, to, Fault::None), "{to:?} for {from:?} is not noticed");
+    assert_in_shader("eye/gather.wgsl", from);
+    assert!(!differs_in_look(&settings, N, "\u{0}", "", ReferenceFault::None));
+    assert!(
+        differs_in_look(&settings, N, from, to, ReferenceFault::None),
+        "{to:?} for {from:?} is not noticed"
+    );
     settings.shadows.algorithm = ShadowAlgorithm::Direct;
     settings.shadows.strength = 0.7;
     assert!(!pictures_differ(&settings, "\u{0}", ""));
@@ -123,21 +137,21 @@ fn mistakes_in_them_are_noticed() {
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
-        // What has risen shines as if from the middle; what has not counts, where shadows are weak.
+        // The visible part of the light shines as if from the centre; the rest counts where shadows are weak.
         ("disc.y * half_width, disc.x", "max(facing, 0.0), disc.x"),
         ("disc.y * half_width, disc.x", "disc.y * half_width, 1.0"),
         ("root * (2.0 + u * u) / 3.0", "root * (2.0 + u) / 3.0"),
     ] {
-        in_shader("eye/gather.wgsl", from);
+        assert_in_shader("eye/gather.wgsl", from);
         assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");
     }
 }
 
-/// Whether the picture of a damaged shader is another than the reference's.
+/// Returns true if the picture of a damaged shader differs from the reference's.
 fn pictures_differ(settings: &Settings, from: &str, to: &str) -> bool {
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let mut renderer = damaged(from, to);
-    let expected = Reference::new(loaded.volume(), settings, Options::default()).picture(SIZE, &[]);
+    let mut renderer = damaged_renderer(from, to);
+    let expected = Reference::new(loaded.volume(), settings, ReferenceOptions::default()).picture(SIZE, &[]);
     let found = render(&mut renderer, &loaded, settings, SIZE);
-    compare("picture", &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).is_err()
+    compare("picture", &channels_f32(&found.linear), &channels_f64(&expected), SAME_WEIGHTS).is_err()
 }

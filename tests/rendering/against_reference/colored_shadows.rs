@@ -1,28 +1,28 @@
-//! Coloured shadows against the reference: each colour of light is followed by itself, on both sides.
+//! Coloured shadows against the reference: each colour of light is traced separately, on both sides.
 
-use chiaroscuro::gpu::{Attenuation, RenderOptions, Renderer};
+use chiaroscuro::gpu::{AttenuationData, RenderOptions, Renderer};
 use chiaroscuro::model::{
-    Classification, ControlPoint, Engine, Floor, Light, LightKind, LightShape, LightStorage, NearField,
-    Precision, Settings, ShadowAlgorithm,
+    ClassificationOrder, ControlPoint, FloorSettings, LightGeometry, LightSettings, LightShape, LightStorage,
+    LightVolumePrecision, NearFieldRay, RenderEngine, Settings, ShadowAlgorithm,
 };
-use chiaroscuro::plan::Request;
-use chiaroscuro::reference::{Options, Reference, of_colors};
+use chiaroscuro::plan::RenderRequest;
+use chiaroscuro::reference::{Reference, ReferenceOptions, merge_color_channels};
 use glam::DVec3;
 
-use super::mutations::in_shader;
+use super::mutations::assert_in_shader;
 use super::{SIZE, round_to_f16};
-use crate::common::{Dataset, context, damaged, render};
-use crate::compare::{Limit, compare, flat32, flat64};
+use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::compare::{ErrorLimit, channels_f32, channels_f64, compare};
 use crate::scenes;
 use crate::thresholds::{BYTES, COMBINED_NORMALS, SAME_WEIGHTS};
 
 const N: usize = 22;
 
-/// Soft parts of different hues under two lights.
+/// Look with soft parts of different hues under two lights.
 fn look() -> Settings {
     let mut settings = scenes::look();
     settings.shadows.transmission = 0.9;
-    settings.lights.push(scenes::light(LightKind::Perspective, [-1.9, 1.2, 1.4]));
+    settings.lights.push(scenes::light(LightGeometry::Perspective, [-1.9, 1.2, 1.4]));
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
     settings.transfer.points = vec![
         point(8.0, [0.9, 0.1, 0.1], 0.0),
@@ -34,26 +34,32 @@ fn look() -> Settings {
     settings
 }
 
-/// No mistake.
-const RIGHT: (&str, &str) = ("\u{0}", "");
+/// Replacement that leaves the shaders unchanged.
+const NO_REPLACEMENT: (&str, &str) = ("\u{0}", "");
 
-/// How the volumes of lights, the picture and the floor differ from the reference's, with a text in shaders replaced.
-fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
+/// Differences of light volumes, picture and floor from the reference's, with a text in the shaders replaced.
+fn differences(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     let loaded = Dataset::new(scenes::creature(N, DVec3::new(1.0, 1.0, 1.3)));
-    let mut renderer = damaged(from, to);
+    let mut renderer = damaged_renderer(from, to);
     let references = [0, 1, 2].map(|color| {
-        let options = Options { color: Some(color), rounding: Some(round_to_f16), ..Options::default() };
+        let options = ReferenceOptions {
+            color: Some(color),
+            rounding: Some(round_to_f16),
+            ..ReferenceOptions::default()
+        };
         Reference::new(loaded.volume(), settings, options)
     });
     let found = render(&mut renderer, &loaded, settings, SIZE);
     let attenuations = references.each_ref().map(Reference::attenuations);
-    let picture = of_colors(|color| references[color].picture(SIZE, &attenuations[color]));
+    let picture = merge_color_channels(|color| references[color].picture(SIZE, &attenuations[color]));
     let mut failures = Vec::new();
-    failures.extend(compare("picture", &flat32(&found.light), &flat64(&picture), SAME_WEIGHTS).err());
+    failures.extend(
+        compare("picture", &channels_f32(&found.linear), &channels_f64(&picture), SAME_WEIGHTS).err(),
+    );
     if settings.floor.on {
-        let floor = of_colors(|color| references[color].floor(SIZE));
+        let floor = merge_color_channels(|color| references[color].floor(SIZE));
         let found = renderer.read_floor().expect("a floor");
-        failures.extend(compare("floor", &flat32(&found), &flat64(&floor), SAME_WEIGHTS).err());
+        failures.extend(compare("floor", &channels_f32(&found), &channels_f64(&floor), SAME_WEIGHTS).err());
     }
     for light in 0..settings.lights.len() {
         let Some(volume) = light_volume(&mut renderer, &loaded, settings, light) else { continue };
@@ -67,22 +73,26 @@ fn failures(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     failures
 }
 
-/// All of the volume of a light.
+/// Volume of one light, filled everywhere.
 fn light_volume(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
     light: usize,
-) -> Option<Attenuation> {
-    let everything = RenderOptions { fill_everything: true, ..RenderOptions::default() };
+) -> Option<AttenuationData> {
+    let everything = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
     renderer.draw(loaded, settings, [8, 8], &everything).expect("light volumes are filled");
-    let request =
-        Request { volume: loaded.volume().id(), settings: settings.clone(), size: [8, 8], coarse: None };
+    let request = RenderRequest {
+        volume: loaded.volume().id(),
+        settings: settings.clone(),
+        size: [8, 8],
+        preview_resolution: None,
+    };
     renderer.attenuation(&request, light).expect("it is read back")
 }
 
 fn check(what: &str, settings: &Settings) {
-    let failures = failures(settings, RIGHT);
+    let failures = differences(settings, NO_REPLACEMENT);
     assert!(failures.is_empty(), "{what}: {}", failures.join("\n"));
 }
 
@@ -90,7 +100,7 @@ fn check(what: &str, settings: &Settings) {
 fn by_splatting() {
     let mut settings = look();
     check("near rays", &settings);
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
     settings.shadows.first_touch = true;
     check("first touch, no near rays", &settings);
 }
@@ -112,14 +122,14 @@ fn with_a_lighting_curve_of_its_own_and_cuts() {
 #[test]
 fn scattered() {
     let mut settings = look();
-    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.engine = RenderEngine::Scatter;
     check("scattered", &settings);
 }
 
 #[test]
 fn by_rays_and_on_a_floor() {
     let mut settings = look();
-    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    settings.floor = FloorSettings { on: true, height: -0.8, ..FloorSettings::default() };
     settings.shadows.algorithm = ShadowAlgorithm::Raycast;
     check("rays from voxels", &settings);
     settings.shadows.algorithm = ShadowAlgorithm::Direct;
@@ -129,8 +139,8 @@ fn by_rays_and_on_a_floor() {
 #[test]
 fn of_voxels_that_are_classified_first() {
     let mut settings = look();
-    settings.sampling.classification = Classification::Pre;
-    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    settings.sampling.classification = ClassificationOrder::Pre;
+    settings.floor = FloorSettings { on: true, height: -0.8, ..FloorSettings::default() };
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
         settings.shadows.algorithm = algorithm;
         check(&format!("{algorithm:?}"), &settings);
@@ -140,9 +150,10 @@ fn of_voxels_that_are_classified_first() {
 #[test]
 fn under_a_light_that_has_a_size() {
     let mut settings = look();
-    settings.lights = vec![Light { shape: LightShape::Disc, angle_deg: 30.0, ..settings.lights[0].clone() }];
+    settings.lights =
+        vec![LightSettings { shape: LightShape::Disc, angle_deg: 30.0, ..settings.lights[0].clone() }];
     settings.shadows.area.samples = 5;
-    settings.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    settings.floor = FloorSettings { on: true, height: -0.8, ..FloorSettings::default() };
     check("a disc", &settings);
 }
 
@@ -156,28 +167,28 @@ fn in_bytes() {
         let volume = light_volume(&mut renderer, &loaded, &settings, 0).expect("it has a volume");
         volume.colors.into_iter().flatten().map(f64::from).collect::<Vec<_>>()
     };
-    let (halves, bytes) = (colors(Precision::Half), colors(Precision::Byte));
+    let (halves, bytes) = (colors(LightVolumePrecision::Half), colors(LightVolumePrecision::Byte));
     compare("bytes", &bytes, &halves, BYTES).unwrap_or_else(|err| panic!("{err}"));
 }
 
 #[test]
 fn one_volume_for_all_lights_has_the_colours() {
     let mut settings = look();
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
     settings.shading.specular = 0.0;
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut picture = |storage| {
         settings.shadows.storage = storage;
-        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+        channels_f32(&render(&mut renderer, &loaded, &settings, SIZE).linear)
     };
     let each = picture(LightStorage::PerLight);
     let all = picture(LightStorage::Combined);
-    let limit = Limit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
+    let limit = ErrorLimit { max: f64::INFINITY, rmse: COMBINED_NORMALS };
     compare("one volume for all", &all, &each, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// Under a sky, which all matter attenuates alike, and beside light that bounces.
+/// A sky, which all material attenuates alike, beside light that is scattered.
 #[test]
 fn skies_are_attenuated_alike() {
     let mut settings = look();
@@ -186,7 +197,7 @@ fn skies_are_attenuated_alike() {
     check("a sky", &settings);
 }
 
-/// Matter of one grey has grey shadows, and the same picture as with the setting off.
+/// Grey material has grey shadows, and the same picture as with the setting off.
 #[test]
 fn grey_matter_has_grey_shadows() {
     let mut settings = look();
@@ -197,29 +208,29 @@ fn grey_matter_has_grey_shadows() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut picture = |transmission| {
         settings.shadows.transmission = transmission;
-        flat32(&render(&mut renderer, &loaded, &settings, SIZE).light)
+        channels_f32(&render(&mut renderer, &loaded, &settings, SIZE).linear)
     };
     let (grey, colored) = (picture(0.0), picture(1.0));
     compare("grey", &colored, &grey, SAME_WEIGHTS).unwrap_or_else(|err| panic!("{err}"));
 }
 
 #[test]
-fn mistakes_in_them_are_noticed() {
+fn mistakes_are_detected() {
     let settings = look();
-    assert!(failures(&settings, RIGHT).is_empty());
+    assert!(differences(&settings, NO_REPLACEMENT).is_empty());
     let mut classified = settings.clone();
-    classified.sampling.classification = Classification::Pre;
+    classified.sampling.classification = ClassificationOrder::Pre;
     let mut on_floor = classified.clone();
-    on_floor.floor = Floor { on: true, height: -0.8, ..Floor::default() };
+    on_floor.floor = FloorSettings { on: true, height: -0.8, ..FloorSettings::default() };
     for (settings, shader, from, to) in [
         (&settings, "light/colors.wgsl", "textureLoad(green, voxel, 0)", "textureLoad(blue, voxel, 0)"),
         (&settings, "eye/gather.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
         (&settings, "eye/gather.wgsl", "return texel.rgb;", "return texel.rrr;"),
-        (&classified, "light/march.wgsl", "[GATHERED]", "[GATHERED - 1u]"),
+        (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
         (&classified, "eye/gather.wgsl", "return texel.gba;", "return texel.rrr;"),
         (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
     ] {
-        in_shader(shader, from);
-        assert!(!failures(settings, (from, to)).is_empty(), "{to:?} for {from:?} is not noticed");
+        assert_in_shader(shader, from);
+        assert!(!differences(settings, (from, to)).is_empty(), "{to:?} for {from:?} is not noticed");
     }
 }

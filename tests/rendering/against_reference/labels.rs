@@ -1,38 +1,39 @@
-//! Label maps that are shown by a table of looks.
+//! Label maps with a table of looks, against the reference.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Classification, LabelLook, LabelTable, Settings};
+use chiaroscuro::model::{ClassificationOrder, LabelLook, LabelTable, Settings};
 use glam::DVec3;
 
 use super::{SIZE, check_volume, round_to_f16};
 use crate::common::{Dataset, context, render};
-use crate::compare::{compare, flat32};
+use crate::compare::{channels_f32, compare};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
-/// The values of the creature from which the next label begins.
-const STEPS: [u8; 4] = [20, 80, 150, 200];
+/// Values of the creature at which the labels change.
+const LABEL_THRESHOLDS: [u8; 4] = [20, 80, 150, 200];
 
-/// The creature cut into labels: numbers by the count of steps that a voxel's value has passed.
-fn labelled(numbers: [u8; 5]) -> Volume {
+/// Label map of the creature: the label is chosen by the number of steps below a voxel's value.
+fn label_map(numbers: [u8; 5]) -> Volume {
     let n = 32;
     let creature = scenes::creature(n, DVec3::ONE);
     let voxels = (0..n * n * n).map(|voxel| {
         let value = creature.samples().value(voxel);
-        numbers[STEPS.iter().filter(|&&step| value >= f64::from(step)).count()]
+        numbers[LABEL_THRESHOLDS.iter().filter(|&&step| value >= f64::from(step)).count()]
     });
     Volume::with_spacing("labels", [n; 3], DVec3::ONE, Samples::U8(voxels.collect())).expect("a volume")
 }
 
-/// One of the labels is hidden, and one lets light through.
+/// Look that hides one of the labels, and in which one is transparent.
 fn look(numbers: [u8; 5]) -> Settings {
     let mut labels = LabelTable::default();
     for (at, number) in numbers.into_iter().enumerate() {
         let color = [0.2 + 0.2 * at as f32, 0.9 - 0.15 * at as f32, [0.1, 0.8][at % 2]];
         let opacity = [0.0, 0.3, 0.8, 0.9, 0.7][at];
         let visible = at != 2;
-        *labels.entry(number.into()) = LabelLook { color, opacity, visible, ..LabelLook::of(number.into()) };
+        *labels.entry_mut(number.into()) =
+            LabelLook { color, opacity, visible, ..LabelLook::default_for(number.into()) };
     }
     Settings { labels, ..scenes::look() }
 }
@@ -41,24 +42,24 @@ fn look(numbers: [u8; 5]) -> Settings {
 fn labels_are_classified_by_their_table_before_they_are_spread() {
     let numbers = [0, 3, 9, 40, 250];
     let settings = look(numbers);
-    assert_eq!(settings.sampling.classification, Classification::Post, "whatever it says");
-    check_volume("labels", labelled(numbers), &settings, Some(round_to_f16));
+    assert_eq!(settings.sampling.classification, ClassificationOrder::Post, "whatever it says");
+    check_volume("labels", label_map(numbers), &settings, Some(round_to_f16));
 }
 
-/// To the bit, but for the order of numbers, which the table's look-ups round differently.
+/// Label numbers change no bit unless their order changes, which the table's look-ups round differently.
 #[test]
 fn numbers_of_labels_change_no_pixel() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut picture = |numbers: [u8; 5]| {
-        render(&mut renderer, &Dataset::new(labelled(numbers)), &look(numbers), SIZE).light
+        render(&mut renderer, &Dataset::new(label_map(numbers)), &look(numbers), SIZE).linear
     };
     let before = picture([0, 3, 9, 40, 250]);
     assert!(before == picture([1, 2, 100, 101, 102]));
     let turned = picture([250, 40, 9, 3, 1]);
-    compare("turned around", &flat32(&turned), &flat32(&before), SAME_WEIGHTS)
+    compare("turned around", &channels_f32(&turned), &channels_f32(&before), SAME_WEIGHTS)
         .unwrap_or_else(|err| panic!("{err}"));
     let mut other = look([0, 3, 9, 40, 250]);
-    other.labels.entry(9).visible = true;
-    let shown = render(&mut renderer, &Dataset::new(labelled([0, 3, 9, 40, 250])), &other, SIZE).light;
+    other.labels.entry_mut(9).visible = true;
+    let shown = render(&mut renderer, &Dataset::new(label_map([0, 3, 9, 40, 250])), &other, SIZE).linear;
     assert!(before != shown, "the hidden one is there");
 }

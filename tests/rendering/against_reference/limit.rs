@@ -1,30 +1,30 @@
-//! The truest level of quality beside the limit: rays from every sample in f64, through slabs so thin that thinner
-//! ones change nothing, with the slope of the kernel for normals.
+//! Quality *Exact* against its limit: rays from every sample in f64, through slabs so thin that thinner ones change
+//! nothing, with the gradient of the kernel for normals.
 
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightKind, Quality, Settings, Slabs, auto};
-use chiaroscuro::reference::{Options, Reference};
+use chiaroscuro::model::{LightGeometry, QualityPreset, Settings, SlabMode, first_look};
+use chiaroscuro::reference::{Reference, ReferenceOptions};
 
 use crate::common::{Dataset, context, render};
 use crate::scenes;
 use crate::thresholds::{EXACT_OF_LIMIT, LIMITS_AGREE};
 
-/// Pixels are narrower than voxels, so that no kernel is stretched.
+/// Size of the picture, at which pixels are narrower than voxels, so that no kernel is stretched.
 const SIZE: [u32; 2] = [64, 64];
 
-/// The limit, with slabs of `1 / parts` voxel.
-fn limit(loaded: &Dataset, settings: &Settings, parts: f64) -> Vec<[f64; 4]> {
+/// Limit picture, with slabs of `1 / parts` voxel.
+fn limit_picture(loaded: &Dataset, settings: &Settings, parts: f64) -> Vec<[f64; 4]> {
     let mut settings = settings.clone();
-    Quality::Exact.apply(&mut settings);
-    settings.sampling.slabs = Slabs::Even;
+    QualityPreset::Exact.apply(&mut settings);
+    settings.sampling.slabs = SlabMode::Even;
     settings.sampling.slab = 1.0 / parts;
     settings.shadows.slab = 1.0 / parts;
-    Reference::new(loaded.volume(), &settings, Options::default()).picture(SIZE, &[None])
+    Reference::new(loaded.volume(), &settings, ReferenceOptions::default()).picture(SIZE, &[None])
 }
 
-/// Root mean square over the object of what is seen before black, in steps of 8 bits.
-fn distance(found: &[[f64; 4]], limit: &[[f64; 4]]) -> f64 {
+/// Root mean square of the difference over the object before black, in steps of 8-bit sRGB.
+fn display_rmse(found: &[[f64; 4]], limit: &[[f64; 4]]) -> f64 {
     let steps = |c: f64| {
         let c = c.clamp(0.0, 1.0);
         255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
@@ -43,15 +43,16 @@ fn exact_is_the_limit() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for name in ["chair", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(24)).expect("a built-in volume"));
-        let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
-        settings.lights = vec![scenes::light(LightKind::Parallel, [-2.2, -1.2, 1.6])];
-        let (thin, thinner) = (limit(&loaded, &settings, 8.0), limit(&loaded, &settings, 16.0));
-        let between = distance(&thin, &thinner);
-        let [fast, standard, fine, exact] = Quality::ALL.map(|quality| {
+        let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
+        settings.lights = vec![scenes::light(LightGeometry::Parallel, [-2.2, -1.2, 1.6])];
+        let (thin, thinner) =
+            (limit_picture(&loaded, &settings, 8.0), limit_picture(&loaded, &settings, 16.0));
+        let between = display_rmse(&thin, &thinner);
+        let [fast, standard, fine, exact] = QualityPreset::ALL.map(|quality| {
             quality.apply(&mut settings);
-            let found = render(&mut renderer, &loaded, &settings, SIZE).light;
+            let found = render(&mut renderer, &loaded, &settings, SIZE).linear;
             let found: Vec<_> = found.into_iter().map(|texel| texel.map(f64::from)).collect();
-            distance(&found, &thinner)
+            display_rmse(&found, &thinner)
         });
         println!(
             "{name}: limits {between:.3} apart, {fast:.2} fast, {standard:.2} standard, {fine:.2} fine, {exact:.3} exact"

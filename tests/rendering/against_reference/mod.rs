@@ -1,26 +1,27 @@
-//! The GPU against the independent f64 reference, and proof that the comparison notices mistakes.
+//! Tests of the GPU against the independent f64 reference, and proof that the comparison detects mistakes.
 
 use chiaroscuro::data::Volume;
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{LightShape, Settings, ShadowAlgorithm};
-use chiaroscuro::reference::{Options, Reference, Rounding};
+use chiaroscuro::reference::{Reference, ReferenceOptions, Rounding};
 use glam::DVec3;
 
-use crate::common::{Dataset, attenuation, context, render};
-use crate::compare::{compare, flat32, flat64, wide};
+use crate::common::{Dataset, context, full_attenuation, render};
+use crate::compare::{channels_f32, channels_f64, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
 
 mod area_lights;
-mod bounces;
 mod colored_shadows;
 mod gather;
 mod labels;
 mod limit;
+mod multiple_scattering;
 pub(crate) mod mutations;
 mod preintegrated;
 mod presence;
 mod scatter;
+mod scatter_mutations;
 mod sky;
 
 const SIZE: [u32; 2] = [96, 80];
@@ -29,8 +30,8 @@ fn round_to_f16(value: f32) -> f32 {
     half::f16::from_f32(value).to_f32()
 }
 
-/// Sheets, light volumes and picture of one look at one size, each against the reference, with densities stored as
-/// `rounding` says.
+/// Compares sheets, light volumes and picture of one look at one size with the reference, with densities rounded by
+/// `rounding`.
 pub(crate) fn check_against(
     name: &str,
     n: usize,
@@ -41,12 +42,12 @@ pub(crate) fn check_against(
     check_volume(name, scenes::creature(n, spacing_mm), settings, rounding);
 }
 
-/// The same of any volume.
+/// Compares sheets, light volumes and picture of any volume with the reference.
 pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, rounding: Option<Rounding>) {
     let loaded = Dataset::new(volume);
     let context = context();
-    let options = Options { rounding, ..Options::default() };
-    let drawn = settings.as_drawn(loaded.volume());
+    let options = ReferenceOptions { rounding, ..ReferenceOptions::default() };
+    let drawn = settings.resolved_for(loaded.volume());
     let reference = Reference::new(loaded.volume(), &drawn, options);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     let mut failures = Vec::new();
@@ -54,24 +55,30 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
         if !settings.shadows.algorithm.has_volume() {
             continue;
         }
-        // Sheets are those of points.
+        // Sheets are compared for point lights only.
         let is_point = settings.lights[light].shape == LightShape::Point;
         let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat && is_point;
         let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
         for (view, expected) in sheets.iter().enumerate() {
             let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");
             let what = format!("{name}: sheets of light {light}, view {view}");
-            failures.extend(compare(&what, &wide(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
+            failures.extend(compare(&what, &to_f64(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
         }
-        let found = attenuation(&mut renderer, &loaded, settings, light);
+        let found = full_attenuation(&mut renderer, &loaded, settings, light);
         let expected = reference.attenuation(light);
         let what = format!("{name}: light volume {light}");
-        failures.extend(compare(&what, &wide(&found), &expected.values, SAME_WEIGHTS).err());
+        failures.extend(compare(&what, &to_f64(&found), &expected.values, SAME_WEIGHTS).err());
     }
     let found = render(&mut renderer, &loaded, settings, SIZE);
     let expected = reference.picture(SIZE, &reference.attenuations());
     failures.extend(
-        compare(&format!("{name}: picture"), &flat32(&found.light), &flat64(&expected), SAME_WEIGHTS).err(),
+        compare(
+            &format!("{name}: picture"),
+            &channels_f32(&found.linear),
+            &channels_f64(&expected),
+            SAME_WEIGHTS,
+        )
+        .err(),
     );
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }

@@ -1,21 +1,21 @@
-//! Proof that the comparison with the reference notices mistakes in pre-integrated slabs.
+//! Mutation tests of pre-integrated slabs: the comparison with the reference detects mistakes.
 
-use chiaroscuro::model::{Settings, Slabs};
-use chiaroscuro::reference::Fault;
+use chiaroscuro::model::{Settings, SlabMode};
+use chiaroscuro::reference::ReferenceFault;
 
-use super::mutations::{disagree_in, in_shader};
+use super::mutations::{assert_in_shader, differs_in_look};
 use crate::scenes;
 
-/// Slabs through which opacity is integrated.
+/// Look with pre-integrated slabs for the eye.
 fn look() -> Settings {
     let mut settings = scenes::look();
-    settings.sampling.slabs = Slabs::Preintegrated;
+    settings.sampling.slabs = SlabMode::Preintegrated;
     settings
 }
 
 #[test]
 fn undamaged_preintegrated_slabs_agree() {
-    assert!(!disagree_in(&look(), 40, "\u{0}", "", Fault::None));
+    assert!(!differs_in_look(&look(), 40, "\u{0}", "", ReferenceFault::None));
 }
 
 #[test]
@@ -25,13 +25,16 @@ fn damaged_preintegrated_slabs_are_noticed() {
         ("0.25 * length * (a.there + b.there)", "0.5 * length * (a.there + b.there)"),
         // Half of each step left out.
         ("behind_front * exp(-back)", "behind_front"),
-        // Shaded a voxel behind where its opacity lies.
+        // Shaded a voxel behind the opacity's position.
         ("layer.places / layer.share", "layer.places / layer.share + 2.0"),
         // Shaded after each step.
         ("const LAYER_STEPS = 4", "const LAYER_STEPS = 1"),
     ];
     for (from, to) in damages {
-        in_shader("eye/gather.wgsl", from);
-        assert!(disagree_in(&look(), 40, from, to, Fault::None), "the comparison does not notice {to:?}");
+        assert_in_shader("eye/gather.wgsl", from);
+        assert!(
+            differs_in_look(&look(), 40, from, to, ReferenceFault::None),
+            "the comparison does not notice {to:?}"
+        );
     }
 }

@@ -1,134 +1,140 @@
-//! The scattering engine: against the reference with the same weights, against the gathering engine,
-//! and against the footprint itself.
+//! The scattering engine: against the reference with the same weights, against the gathering engine, and against the
+//! footprint itself.
 
 use super::check_against;
 use crate::common::{Dataset, context, render};
-use crate::compare::{compare, flat32, wide};
-use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
+use crate::compare::{channels_f32, compare, to_f64};
+use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
 use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::gpu::{Renderer, SHADERS};
 use chiaroscuro::model::{
-    Camera, Classification, ControlPoint, Deposit, Engine, Gradients, Interpolation, Kernel, Length, Light,
-    LightKind, LightLock, Quadrature, Resolution, Settings, SheetOrder, Slabs, TransferFunction, auto,
+    Camera, ClassificationOrder, ControlPoint, DepositMode, GradientSource, LightGeometry, LightLock,
+    LightSettings, LightVolumeResolution, OpacityInterpolation, OpacityLength, ReconstructionKernel,
+    RenderEngine, Settings, SheetOrder, SlabMode, SlabQuadrature, TransferFunction, first_look,
 };
 use glam::DVec3;
 
-fn scattered() -> Settings {
+fn scattering_look() -> Settings {
     let mut settings = scenes::look();
-    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.engine = RenderEngine::Scatter;
     settings
 }
 
-/// Densities are listed with 16 normalised bits: eight-bit data exactly.
+/// Compares with the reference. Densities are stored as 16-bit normalised values, which is exact for 8-bit data.
 fn check(name: &str, spacing_mm: DVec3, settings: &Settings) {
     check_against(name, 32, spacing_mm, settings, None);
 }
 
 #[test]
 fn b_spline_parallel() {
-    check("scattered", DVec3::ONE, &scattered());
+    check("scattered", DVec3::ONE, &scattering_look());
 }
 
 #[test]
 fn gaussian_tables_perspective_anisotropic() {
-    let mut settings = scattered();
-    let kernel = Kernel::Gaussian { sigma: 0.55 };
+    let mut settings = scattering_look();
+    let kernel = ReconstructionKernel::Gaussian { sigma: 0.55 };
     settings.sampling.kernel = kernel;
     settings.shadows.kernel = kernel;
-    settings.shadows.deposit = Deposit::Front;
-    settings.lights = vec![scenes::light(LightKind::Perspective, [1.9, -1.4, 2.0])];
+    settings.shadows.deposit = DepositMode::Front;
+    settings.lights = vec![scenes::light(LightGeometry::Perspective, [1.9, -1.4, 2.0])];
     check("scattered Gaussian", DVec3::new(1.0, 1.2, 1.6), &settings);
 }
 
 #[test]
 fn two_points_thin_slabs_half_resolution() {
-    let mut settings = scattered();
-    settings.sampling.quadrature = Quadrature::Two;
-    settings.shadows.quadrature = Quadrature::Two;
+    let mut settings = scattering_look();
+    settings.sampling.quadrature = SlabQuadrature::Two;
+    settings.shadows.quadrature = SlabQuadrature::Two;
     settings.sampling.slab = 0.5;
-    settings.shadows.kernel = Kernel::Prefiltered;
-    settings.shadows.resolution = Resolution::Half;
+    settings.shadows.kernel = ReconstructionKernel::Prefiltered;
+    settings.shadows.resolution = LightVolumeResolution::Half;
     check("scattered, half", DVec3::ONE, &settings);
 }
 
 #[test]
 fn a_light_inside_and_first_touch() {
-    let mut settings = scattered();
-    settings.lights = vec![scenes::light(LightKind::Perspective, [0.3, -0.2, 0.5])];
+    let mut settings = scattering_look();
+    settings.lights = vec![scenes::light(LightGeometry::Perspective, [0.3, -0.2, 0.5])];
     check("scattered, light inside", DVec3::ONE, &settings);
     settings.lights = scenes::look().lights;
     settings.shadows.first_touch = true;
     check("scattered, first touch", DVec3::ONE, &settings);
 }
 
-/// Voxels are classified and then splatted.
+/// Voxels are classified before they are splatted.
 #[test]
 fn pre_classified() {
-    let mut settings = scattered();
-    settings.sampling.classification = Classification::Pre;
+    let mut settings = scattering_look();
+    settings.sampling.classification = ClassificationOrder::Pre;
     settings.lights[0].density_scale = 0.6;
     check("scattered, pre-classified", DVec3::new(1.0, 1.2, 1.6), &settings);
 }
 
-/// The lowest density may show: then what no voxel was splatted to does, too.
+/// The lowest density may be visible: then pixels without splats are visible, too.
 #[test]
-fn nothing_that_shows() {
-    let mut settings = scattered();
+fn visible_lowest_density() {
+    let mut settings = scattering_look();
     settings.transfer.points[0].opacity = 0.02;
     settings.transfer.points[0].value = 0.0;
     check("scattered, nothing shows", DVec3::ONE, &settings);
-    settings.sampling.classification = Classification::Pre;
+    settings.sampling.classification = ClassificationOrder::Pre;
     check("scattered, nothing shows, pre-classified", DVec3::ONE, &settings);
 }
 
-/// No. 16: The engines' pictures are the same sums in another order.
+/// No. 16: Both engines compute the same sums in another order.
 #[test]
 fn both_engines_make_the_same_picture() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = scenes::look();
-    // The scattering engine keeps to the paper.
-    paper(&mut settings);
-    settings.sampling.gradients = Gradients::Sheets;
+    // The scattering engine implements the paper only.
+    use_paper_shadows(&mut settings);
+    settings.sampling.gradients = GradientSource::Sheets;
     // Pixels no wider than voxels: the engines stretch kernels differently.
     settings.camera.distance = 2.6;
     let gathered = render(&mut renderer, &loaded, &settings, [128, 96]);
-    assert_eq!(renderer.splats().expect("nothing to count"), 0);
-    settings.sampling.engine = Engine::Scatter;
+    assert_eq!(renderer.splat_count().expect("nothing to count"), 0);
+    settings.sampling.engine = RenderEngine::Scatter;
     let scattered = render(&mut renderer, &loaded, &settings, [128, 96]);
-    let splats = renderer.splats().expect("they are counted");
+    let splats = renderer.splat_count().expect("they are counted");
     let voxels =
         (0..48).flat_map(|z| loaded.volume().slice_densities(z)).filter(|&density| density > 0.0).count();
     println!("{splats} footprints of {voxels} voxels");
     // The eye's B-spline is four voxels long, so it meets four or more of the slabs; so does the light's.
     assert!(splats as usize > 4 * voxels, "{splats} footprints of {voxels} voxels");
-    compare("engines", &flat32(&scattered.light), &wide(&gathered.light.concat()), ENGINES)
+    compare("engines", &channels_f32(&scattered.linear), &to_f64(&gathered.linear.concat()), ENGINES)
         .unwrap_or_else(|err| panic!("{err}"));
     let again = render(&mut renderer, &loaded, &settings, [128, 96]);
-    assert_eq!(again.light, scattered.light, "integers do not mind the order");
+    assert_eq!(again.linear, scattered.linear, "integers do not mind the order");
 }
 
-/// The same with the settings that everybody has, but for what only one of the engines can do: another way back from
-/// sheets, whose blur rays nearby mostly hide.
+/// Both engines with default settings, except those that only one of them supports: their back-projections differ,
+/// and near-field rays mostly hide the blur of it.
 #[test]
 fn both_engines_make_nearly_the_same_picture_by_default() {
     let loaded = Dataset::new(builtin("cloud", Some(64)).expect("the cloud"));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let mut settings = auto::first_settings(loaded.volume(), loaded.histogram());
+    let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
     settings.camera.distance = 2.6;
-    settings.sampling.slabs = Slabs::Even;
+    settings.sampling.slabs = SlabMode::Even;
     settings.sampling.slab = 0.5;
     let gathered = render(&mut renderer, &loaded, &settings, [128, 96]);
-    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.engine = RenderEngine::Scatter;
     let scattered = render(&mut renderer, &loaded, &settings, [128, 96]);
-    compare("engines by default", &flat32(&scattered.light), &wide(&gathered.light.concat()), ENGINES)
-        .unwrap_or_else(|err| panic!("{err}"));
+    compare(
+        "engines by default",
+        &channels_f32(&scattered.linear),
+        &to_f64(&gathered.linear.concat()),
+        ENGINES,
+    )
+    .unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// One voxel under twenty shifts of the camera by parts of a pixel: the sheets together hold its
-/// footprint, the Gaussian integrated along each ray, as far as the table's radius of two voxels.
+/// One voxel under twenty sub-pixel shifts of the camera: the sheets together contain its footprint, the Gaussian
+/// integrated along each ray, up to the table's radius of two voxels.
 #[test]
 fn single_voxels_reproduce_the_footprint() {
     let n = 16;
@@ -143,27 +149,27 @@ fn single_voxels_reproduce_the_footprint() {
     let mut worst = 0.0f64;
     for phase in 0..20 {
         let size = [40, 40];
-        // 2.5 pixels per voxel, and the whole volume in the picture.
+        // At 2.5 pixels per voxel, with the whole volume in the picture.
         let camera = Camera {
             target: [f64::from(phase) * 0.0137, f64::from(phase) * 0.0071, f64::from(phase) * 0.0113],
             distance: 1.0,
             fov_y_deg: 90.0,
-            ..straight(-57.0, 31.0)
+            ..axis_camera(-57.0, 31.0)
         };
         let mut settings = Settings {
             transfer: linear_extinction(per_voxel),
-            opacity_unit: Length::Voxels(1.0),
+            opacity_unit: OpacityLength::Voxels(1.0),
             camera,
             ..Settings::default()
         };
-        isotropic(&mut settings);
+        make_isotropic(&mut settings);
         settings.lights[0].casts_shadows = false;
-        settings.sampling.kernel = Kernel::Gaussian { sigma };
-        settings.sampling.engine = Engine::Scatter;
+        settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma };
+        settings.sampling.engine = RenderEngine::Scatter;
         let picture = render(&mut renderer, &loaded, &settings, size);
         let voxel = loaded.volume().scene().scene_from_index.transform_point3(DVec3::new(7.0, 8.0, 9.0));
         let edge = loaded.volume().scene().smallest_edge();
-        for (at, texel) in picture.light.iter().enumerate() {
+        for (at, texel) in picture.linear.iter().enumerate() {
             let (i, j) = ((at % 40) as f64 + 0.5, (at / 40) as f64 + 0.5);
             let (origin, direction) = settings.camera.ray_through(i, j, 40.0, 40.0);
             let miss = (voxel - origin).reject_from(direction).length() / edge;
@@ -180,8 +186,9 @@ fn single_voxels_reproduce_the_footprint() {
     assert!(worst <= FOOTPRINT, "{worst}");
 }
 
-/// What scatters has no texture of densities to sample: what it classifies is in the sheets. The eye's pass takes
-/// normals and rays nearby from the prefiltered pyramid; light and footprints only ask it which voxels are there.
+/// The scattering engine samples no density texture: the values that it classifies are in the sheets. The eye pass
+/// takes normals and near-field rays from the prefiltered pyramid; light and footprints read only the presence of
+/// voxels.
 #[test]
 fn scattering_samples_no_density() {
     let shaders =
@@ -194,53 +201,55 @@ fn scattering_samples_no_density() {
         if binds("pyramid_texture") {
             assert!(binds("presence_texture"), "{name} has the pyramid");
             let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("its text is there");
-            for density in ["pyramid(", " density(", "slab_density(", "density_by_kernel(", "spread("] {
+            for density in
+                ["pyramid(", " density(", "slab_density(", "density_by_kernel(", "preclassified_at("]
+            {
                 assert!(!text.contains(density), "{name} reads the pyramid by {density}");
             }
         }
     }
 }
 
-/// Mean brightness of a ball while the camera turns, and with it the light, which stands to its right:
-/// nothing but the grid's orientation changes.
-fn turned(order: SheetOrder) -> Vec<f64> {
+/// Mean brightness of a ball while the camera turns together with the light, which is on its right: only the grid's
+/// orientation changes.
+fn brightness_while_turning(order: SheetOrder) -> Vec<f64> {
     let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
-        // A hard surface: sums of sheets that differ a little show different parts of it.
+        // A hard surface: small differences between sums of sheets show different parts of it.
         transfer: TransferFunction {
             points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
-            interpolation: Interpolation::Opacity,
+            interpolation: OpacityInterpolation::Opacity,
             ..TransferFunction::default()
         },
-        opacity_unit: Length::Voxels(1.0),
-        lights: vec![Light {
+        opacity_unit: OpacityLength::Voxels(1.0),
+        lights: vec![LightSettings {
             lock: LightLock::Camera,
             casts_shadows: false,
-            ..scenes::light(LightKind::Parallel, [2.0, 0.3, 1.0])
+            ..scenes::light(LightGeometry::Parallel, [2.0, 0.3, 1.0])
         }],
         ..Settings::default()
     };
     settings.shading.ambient = 0.0;
-    settings.sampling.engine = Engine::Scatter;
+    settings.sampling.engine = RenderEngine::Scatter;
     settings.sampling.order = order;
-    // Of the paper's time.
-    settings.sampling.gradients = Gradients::Sheets;
+    // As in the paper.
+    settings.sampling.gradients = GradientSource::Sheets;
     (35..=55)
         .map(|degree| {
-            settings.camera = straight(f64::from(degree), 0.0);
+            settings.camera = axis_camera(f64::from(degree), 0.0);
             let picture = render(&mut renderer, &loaded, &settings, [64, 64]);
-            picture.light.iter().map(|texel| f64::from(texel[1])).sum::<f64>()
+            picture.linear.iter().map(|texel| f64::from(texel[1])).sum::<f64>()
         })
         .collect()
 }
 
-/// No. 7: Sheets along the volume pop when the camera passes 45 degrees; image-aligned ones do not.
+/// No. 7: Volume-aligned sheets pop when the camera passes 45 degrees; image-aligned ones do not.
 #[test]
 fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
     let largest_step = |order| {
-        let means = turned(order);
+        let means = brightness_while_turning(order);
         let mean = means.iter().sum::<f64>() / means.len() as f64;
         let steps: Vec<f64> = means.windows(2).map(|pair| (pair[1] - pair[0]).abs() / mean).collect();
         println!("{order:?}: {steps:.5?}");
@@ -250,8 +259,8 @@ fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
     assert!(largest_step(SheetOrder::VolumeAligned) > POPPING * ROTATION_STEP);
 }
 
-/// No. 3 for the historical orders: a block along the view is as opaque as its chord; single footprints
-/// add up to the same optical depth.
+/// No. 3 for the historical orders: a block along the view is as opaque as its chord; single footprints add up to the
+/// same optical depth.
 #[test]
 fn every_order_has_the_opacity_of_the_chord() {
     let n = 24;
@@ -261,17 +270,17 @@ fn every_order_has_the_opacity_of_the_chord() {
         for azimuth_deg in [-90.0, 0.0, 180.0] {
             let mut settings = Settings {
                 transfer: linear_extinction(0.08),
-                opacity_unit: Length::Voxels(1.0),
-                camera: straight(azimuth_deg, 0.0),
+                opacity_unit: OpacityLength::Voxels(1.0),
+                camera: axis_camera(azimuth_deg, 0.0),
                 ..Settings::default()
             };
-            isotropic(&mut settings);
+            make_isotropic(&mut settings);
             settings.camera.distance = 2.0;
             settings.lights[0].casts_shadows = false;
-            settings.sampling.engine = Engine::Scatter;
+            settings.sampling.engine = RenderEngine::Scatter;
             settings.sampling.order = order;
             let picture = render(&mut renderer, &loaded, &settings, [32, 32]);
-            let found = f64::from(picture.light[16 * 32 + 16][3]);
+            let found = f64::from(picture.linear[16 * 32 + 16][3]);
             let expected = 1.0 - (-0.08f64 * 12.0).exp();
             println!("{order:?} from {azimuth_deg}: {found:.5}, chord {expected:.5}");
             assert!((found - expected).abs() <= ORDER_OPACITY, "{order:?}: {found} not {expected}");

@@ -1,27 +1,27 @@
-//! Light from all around against the reference: what is open of the sky, and pictures under it.
+//! Sky light against the reference: moments of sky visibility, and pictures under a sky.
 
 use chiaroscuro::data::{Dataset, Volume};
 use chiaroscuro::gpu::Renderer;
 use chiaroscuro::model::{
-    Classification, CropBox, CutEffect, Engine, LightStorage, Resolution, Settings, ShadowAlgorithm, Sides,
-    Sky, SkyMode,
+    ClassificationOrder, ClipEffect, CropBox, LightStorage, LightVolumeResolution, LitSides, RenderEngine,
+    Settings, ShadowAlgorithm, SkyMode, SkySettings,
 };
-use chiaroscuro::reference::{Fault, Openness, Options, Reference};
+use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions, SkyVisibility};
 use glam::DVec3;
 
 use super::check_volume;
-use super::mutations::in_shader;
+use super::mutations::assert_in_shader;
 use super::presence::{two_lobes, waves};
-use crate::common::{context, damaged};
-use crate::compare::{compare, flat32};
+use crate::common::{context, damaged_renderer};
+use crate::compare::{channels_f32, compare};
 use crate::scenes;
-use crate::thresholds::SAME_OPENNESS;
+use crate::thresholds::SKY_MOMENTS;
 
 const N: usize = 22;
 
-/// A sky with colours that leans to one side.
+/// Look under a coloured sky that is tilted to one side.
 fn under_a_sky(settings: Settings) -> Settings {
-    let sky = Sky {
+    let sky = SkySettings {
         mode: SkyMode::Gradient,
         intensity: 0.9,
         zenith: [0.7, 0.8, 1.0],
@@ -30,7 +30,7 @@ fn under_a_sky(settings: Settings) -> Settings {
         tilt_deg: 35.0,
         turn_deg: 120.0,
         directions: 14,
-        ..Sky::default()
+        ..SkySettings::default()
     };
     Settings { sky, ..settings }
 }
@@ -42,37 +42,42 @@ fn creature() -> Volume {
 fn cut() -> Settings {
     let mut settings = under_a_sky(scenes::look());
     settings.cuts.crop =
-        CropBox { on: true, low: [0.0, 0.2, 0.0], high: [0.6, 1.0, 0.9], effect: CutEffect::Removed };
+        CropBox { on: true, low: [0.0, 0.2, 0.0], high: [0.6, 1.0, 0.9], effect: ClipEffect::Removed };
     settings
 }
 
-/// The moments of a reference as the GPU lays them out.
-fn flat(openness: &Openness) -> Vec<f64> {
-    let [x, y, z] = &openness.first;
-    let of = |at: usize| [x[at], y[at], z[at], openness.mean[at]];
-    (0..openness.mean.len()).flat_map(of).collect()
+/// Sky-visibility moments of a reference in the memory layout of the GPU.
+fn gpu_layout(visibility: &SkyVisibility) -> Vec<f64> {
+    let [x, y, z] = &visibility.first_moment;
+    let of = |at: usize| [x[at], y[at], z[at], visibility.mean_transmittance[at]];
+    (0..visibility.mean_transmittance.len()).flat_map(of).collect()
 }
 
-fn moments(volume: &Volume, settings: &Settings) -> Vec<f64> {
+fn visibility_moments(volume: &Volume, settings: &Settings) -> Vec<f64> {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    flat32(&renderer.openness(&Dataset::new(volume.clone()), settings).expect("moments are read back"))
+    channels_f32(
+        &renderer.sky_visibility(&Dataset::new(volume.clone()), settings).expect("moments are read back"),
+    )
 }
 
 #[test]
-fn what_is_open_of_the_sky_is_what_the_reference_says() {
+fn sky_visibility_agrees_with_the_reference() {
     for (what, volume, settings) in [
         ("creature", creature(), under_a_sky(scenes::look())),
         ("cut", creature(), cut()),
         ("missing voxels", waves(N, DVec3::ONE, true), under_a_sky(two_lobes())),
     ] {
-        for resolution in [Resolution::Full, Resolution::Half, Resolution::Quarter] {
-            for classification in [Classification::Post, Classification::Pre] {
+        for resolution in
+            [LightVolumeResolution::Full, LightVolumeResolution::Half, LightVolumeResolution::Quarter]
+        {
+            for classification in [ClassificationOrder::Post, ClassificationOrder::Pre] {
                 let mut settings = settings.clone();
                 settings.sky.resolution = resolution;
                 settings.sampling.classification = classification;
-                let expected = Reference::new(&volume, &settings, Options::default()).openness();
+                let expected =
+                    Reference::new(&volume, &settings, ReferenceOptions::default()).sky_visibility();
                 let what = format!("{what}, {resolution:?}, {classification:?}");
-                compare(&what, &moments(&volume, &settings), &flat(&expected), SAME_OPENNESS)
+                compare(&what, &visibility_moments(&volume, &settings), &gpu_layout(&expected), SKY_MOMENTS)
                     .expect("the same");
             }
         }
@@ -80,36 +85,36 @@ fn what_is_open_of_the_sky_is_what_the_reference_says() {
 }
 
 #[test]
-fn mistakes_in_it_are_noticed() {
+fn mistakes_are_detected() {
     let (volume, settings) = (creature(), under_a_sky(scenes::look()));
-    let right = moments(&volume, &settings);
-    let of = |settings: &Settings, fault: Fault| {
-        let options = Options { fault, ..Options::default() };
-        flat(&Reference::new(&volume, settings, options).openness())
+    let right = visibility_moments(&volume, &settings);
+    let of = |settings: &Settings, fault: ReferenceFault| {
+        let options = ReferenceOptions { fault, ..ReferenceOptions::default() };
+        gpu_layout(&Reference::new(&volume, settings, options).sky_visibility())
     };
     let differs = |what: &str, wrong: &[f64]| {
-        assert!(compare(what, &right, wrong, SAME_OPENNESS).is_err(), "{what} is not noticed");
+        assert!(compare(what, &right, wrong, SKY_MOMENTS).is_err(), "{what} is not noticed");
     };
-    differs("shifted by half a voxel", &of(&settings, Fault::ShiftedKernel));
+    differs("shifted by half a voxel", &of(&settings, ReferenceFault::ShiftedKernel));
     let mut denser = settings.clone();
     denser.sky.density_scale = 1.05;
-    differs("5 % denser", &of(&denser, Fault::None));
+    differs("5 % denser", &of(&denser, ReferenceFault::None));
     let mut cut = settings.clone();
     cut.cuts.crop = CropBox { on: true, high: [0.8, 1.0, 1.0], ..CropBox::default() };
-    differs("not cut", &of(&cut, Fault::None));
+    differs("not cut", &of(&cut, ReferenceFault::None));
     let mut fewer = settings.clone();
     fewer.sky.directions = 13;
-    differs("a direction less", &of(&fewer, Fault::None));
+    differs("a direction less", &of(&fewer, ReferenceFault::None));
     let mirrored: Vec<f64> =
-        of(&settings, Fault::None).chunks(4).flat_map(|m| [-m[0], -m[1], -m[2], m[3]]).collect();
+        of(&settings, ReferenceFault::None).chunks(4).flat_map(|m| [-m[0], -m[1], -m[2], m[3]]).collect();
     differs("light from the other side", &mirrored);
 }
 
 #[test]
 fn mistakes_in_where_rays_are_followed_are_noticed() {
     let (volume, mut settings) = (creature(), under_a_sky(scenes::look()));
-    settings.sky.resolution = Resolution::Full;
-    let right = moments(&volume, &settings);
+    settings.sky.resolution = LightVolumeResolution::Full;
+    let right = visibility_moments(&volume, &settings);
     let mistakes = [
         ("sky/sweep.wgsl", "end - 1.0", "end - 2.0"),
         ("sky/sweep.wgsl", "v.x), first)", "v.x), first + 1.0)"),
@@ -118,12 +123,12 @@ fn mistakes_in_where_rays_are_followed_are_noticed() {
         ("sky/blocks.wgsl", "id + 1u", "id"),
     ];
     for (shader, from, to) in mistakes {
-        in_shader(shader, from);
-        let mut renderer = damaged(from, to);
+        assert_in_shader(shader, from);
+        let mut renderer = damaged_renderer(from, to);
         let found =
-            renderer.openness(&Dataset::new(volume.clone()), &settings).expect("moments are read back");
-        let found = flat32(&found);
-        assert!(compare(to, &found, &right, SAME_OPENNESS).is_err(), "{shader}: {to:?} is not noticed");
+            renderer.sky_visibility(&Dataset::new(volume.clone()), &settings).expect("moments are read back");
+        let found = channels_f32(&found);
+        assert!(compare(to, &found, &right, SKY_MOMENTS).is_err(), "{shader}: {to:?} is not noticed");
     }
 }
 
@@ -135,7 +140,7 @@ fn pictures_under_a_sky() {
     check("cut", &cut());
     let mut white = lit.clone();
     white.sky.mode = SkyMode::White;
-    white.shading.sides = Sides::Two;
+    white.shading.sides = LitSides::Two;
     white.shadows.strength = 0.7;
     check("white, both sides", &white);
     let mut open = lit.clone();
@@ -145,15 +150,15 @@ fn pictures_under_a_sky() {
     direct.shadows.algorithm = ShadowAlgorithm::Direct;
     check("rays to the light", &direct);
     let mut quarter = lit.clone();
-    (quarter.sky.resolution, quarter.lights[0].on) = (Resolution::Quarter, false);
+    (quarter.sky.resolution, quarter.lights[0].on) = (LightVolumeResolution::Quarter, false);
     check("coarse, and no other light", &quarter);
     let mut scattered = lit.clone();
-    scattered.sampling.engine = Engine::Scatter;
+    scattered.sampling.engine = RenderEngine::Scatter;
     check("scattered", &scattered);
     check_volume("missing voxels", waves(N, DVec3::ONE, true), &under_a_sky(two_lobes()), None);
 }
 
-/// Lights in one volume of colours have the sky beside it.
+/// Combined lights do not contain the sky, which is added beside them.
 #[test]
 fn combined_lights_keep_the_sky() {
     let mut settings = under_a_sky(scenes::look());
@@ -163,7 +168,7 @@ fn combined_lights_keep_the_sky() {
     let dataset = Dataset::new(creature());
     let mut picture = |storage| {
         settings.shadows.storage = storage;
-        flat32(&crate::common::render(&mut renderer, &dataset, &settings, super::SIZE).light)
+        channels_f32(&crate::common::render(&mut renderer, &dataset, &settings, super::SIZE).linear)
     };
     let (own, combined) = (picture(LightStorage::PerLight), picture(LightStorage::Combined));
     compare("combined", &combined, &own, crate::thresholds::SAME_WEIGHTS).expect("the same");

@@ -1,15 +1,15 @@
-//! What is kept and what is refilled; and what must not change a single bit.
+//! Cache tests: products that are kept or refilled after a change, and bit-exact results.
 
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightKind, NearField, Settings};
-use chiaroscuro::plan::Request;
+use chiaroscuro::model::{LightGeometry, NearFieldRay, Settings};
+use chiaroscuro::plan::RenderRequest;
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
 use crate::scenes;
 use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
-mod bits;
+mod bit_exactness;
 mod recomputes;
 mod warm_up;
 
@@ -18,9 +18,9 @@ const SIZE: [u32; 2] = [64, 48];
 fn three_lights() -> Settings {
     let mut settings = scenes::look();
     settings.lights = vec![
-        scenes::light(LightKind::Parallel, [1.3, -0.8, 1.7]),
-        scenes::light(LightKind::Perspective, [-1.8, 1.5, 2.0]),
-        scenes::light(LightKind::Parallel, [-0.2, -1.0, 0.3]),
+        scenes::light(LightGeometry::Parallel, [1.3, -0.8, 1.7]),
+        scenes::light(LightGeometry::Perspective, [-1.8, 1.5, 2.0]),
+        scenes::light(LightGeometry::Parallel, [-0.2, -1.0, 0.3]),
     ];
     settings
 }
@@ -40,7 +40,7 @@ fn orbiting_a_hundred_frames_rebuilds_no_light() {
     orbit(100);
 }
 
-/// A whole turn in so many frames.
+/// Orbits once around in a number of frames, and checks that no light volume is refilled.
 fn orbit(frames: u32) {
     let (loaded, mut settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
@@ -80,12 +80,12 @@ fn dragging_makes_nothing_anew(mut settings: Settings) {
     for at in 0..24 {
         drag(&mut renderer, &mut settings, at);
     }
-    let (made, bytes) = (renderer.made(), renderer.gpu_bytes());
+    let (made, bytes) = (renderer.created_resources(), renderer.gpu_bytes());
     assert!(made > 10, "the count must see what was made: {made}");
     for at in 0..24 {
         drag(&mut renderer, &mut settings, at);
     }
-    assert_eq!(renderer.made(), made, "buffers, bind groups and sheets");
+    assert_eq!(renderer.created_resources(), made, "buffers, bind groups and sheets");
     assert_eq!(renderer.gpu_bytes(), bytes);
 }
 
@@ -110,27 +110,27 @@ fn live_controls_rebuild_no_light_and_change_the_picture() {
         change(&mut changed);
         let after = render(&mut renderer, &loaded, &changed, SIZE);
         assert_eq!(renderer.light_rebuilds(), [1, 1, 1], "{name}");
-        assert_ne!(after.light, before.light, "{name} changes nothing");
+        assert_ne!(after.linear, before.linear, "{name} changes nothing");
     }
-    // Back again: the same bytes, and still nothing rebuilt.
+    // Back to the first settings: the same bytes, and still nothing is refilled.
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), before);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
 }
 
-/// With a bias light is looked up further from material: what lies there is filled when a bias is first
-/// used, for the largest that there is. Filling it always would make every light build a seventh longer.
+/// With a bias, light is looked up further from material: that region is filled when a bias is first used, for the
+/// largest bias. Filling it always would make every light build a seventh longer.
 #[test]
 fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
     let (loaded, mut settings) = (loaded(), three_lights());
-    settings.shadows.near_field = NearField::Off;
+    settings.shadows.near_field = NearFieldRay::Off;
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let before = render(&mut renderer, &loaded, &settings, SIZE);
-    let mut seen = vec![before.light.clone()];
+    let mut seen = vec![before.linear.clone()];
     for bias_voxels in [0.1, 1.5, 2.0, 0.7] {
         settings.shadows.bias_voxels = bias_voxels;
         let picture = render(&mut renderer, &loaded, &settings, SIZE);
-        assert!(!seen.contains(&picture.light), "a bias of {bias_voxels} changes nothing");
-        seen.push(picture.light);
+        assert!(!seen.contains(&picture.linear), "a bias of {bias_voxels} changes nothing");
+        seen.push(picture.linear);
         assert!(renderer.light_rebuilds().iter().all(|&rebuilds| rebuilds <= 2), "{bias_voxels}");
     }
     let rebuilds = renderer.light_rebuilds().to_vec();
@@ -147,7 +147,7 @@ fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
     settings.lights[1].position = [-1.5, 1.7, 2.0];
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
-    // Further out along the same direction a parallel light is the same light.
+    // Further out along the same direction a parallel light is unchanged.
     settings.lights[0].position = [2.6, -1.6, 3.4];
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 2, 1]);
@@ -163,8 +163,8 @@ fn a_lighting_transfer_edit_rebuilds_all() {
     assert_eq!(renderer.light_rebuilds(), [2, 2, 2]);
 }
 
-/// An attenuation volume in use equals a fresh one; spoiling it shows that changes that may keep it
-/// do keep it, and that moving the light refills it.
+/// A reused attenuation volume equals a fresh one; spoiling it shows that changes that may keep it do keep it, and
+/// that moving the light refills it.
 #[test]
 fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     let (loaded, mut settings) = (loaded(), scenes::look());
@@ -174,18 +174,19 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     settings.shadows.gain = 1.3;
     let kept = render(&mut renderer, &loaded, &settings, SIZE);
     let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
-    let worst = kept.light.iter().flatten().zip(fresh.light.iter().flatten()).map(|(a, b)| (a - b).abs());
+    let worst = kept.linear.iter().flatten().zip(fresh.linear.iter().flatten()).map(|(a, b)| (a - b).abs());
     assert!(worst.fold(0.0, f32::max) <= F16_STEP);
 
-    let request = |settings: &Settings| Request {
+    let request = |settings: &Settings| RenderRequest {
         volume: loaded.volume().id(),
         settings: settings.clone(),
         size: SIZE,
-        coarse: None,
+        preview_resolution: None,
     };
     assert!(renderer.corrupt_attenuation(&request(&settings), 0), "there is a volume to spoil");
-    let mean =
-        |picture: &chiaroscuro::gpu::Picture| picture.light.iter().map(|t| f64::from(t[1])).sum::<f64>();
+    let mean = |picture: &chiaroscuro::gpu::RenderedPicture| {
+        picture.linear.iter().map(|t| f64::from(t[1])).sum::<f64>()
+    };
     let spoiled = render(&mut renderer, &loaded, &settings, SIZE);
     assert!(mean(&spoiled) < SPOILED * mean(&fresh), "no light is left");
     settings.lights[0].intensity = 1.01;

@@ -1,9 +1,10 @@
-//! What really runs after a change, counted by the renderer itself: every setting costs what it should.
+//! Cost of changes, counted by the renderer: every setting recomputes only the products that depend on it.
 
 use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{Context, RenderOptions, Renderer, Runs, ShaderLibrary};
+use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, ShaderLibrary, StepCounts};
 use chiaroscuro::model::{
-    ControlPoint, Light, LightKind, Settings, Shadows, SkyMode, TransferFunction, apply_path,
+    ControlPoint, LightGeometry, LightSettings, Settings, ShadowSettings, SkyMode, TransferFunction,
+    apply_path,
 };
 use glam::DVec3;
 
@@ -12,195 +13,199 @@ use crate::scenes;
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// What a change is expected to cost.
+/// Expected cost of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cost {
+enum RecomputeCost {
     Nothing,
     Display,
-    /// The floor, and what is shown.
+    /// The floor, and the display pass.
     Floor,
     /// The picture, but no light volume.
     Eye,
-    /// What is open of the sky, and the picture.
+    /// Sky visibility, and the picture.
     Sky,
-    /// Light that bounces, and the picture.
+    /// Scattered light, and the picture.
     Bounces,
-    /// So many light volumes, and the picture.
+    /// A number of light volumes, and the picture.
     Lights(u32),
-    /// Everything, from the upload on.
+    /// Everything, from the upload of the volume on.
     Volume,
 }
 
-fn cost(runs: Runs) -> Cost {
+fn recompute_cost(runs: StepCounts) -> RecomputeCost {
     match runs {
-        Runs { volume: 1.., tables: 2, light_volumes: 3, eye: 1.., .. } => Cost::Volume,
-        Runs { volume: 1.., .. } => panic!("the volume is there: {runs:?}"),
-        Runs { light_volumes, eye: 1.., .. } if light_volumes > 0 => Cost::Lights(light_volumes),
-        Runs { light_volumes: 0, sky: 1, eye: 1.., .. } => Cost::Sky,
-        Runs { light_volumes: 0, sky: 0, bounces: 1, eye: 1.., .. } => Cost::Bounces,
-        Runs { light_volumes: 0, sky: 0, bounces: 0, eye: 1.., .. } => Cost::Eye,
-        Runs { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => Cost::Floor,
-        Runs { light_volumes: 0, eye: 0, floor: 0, display: 1, tables: 0, .. } => Cost::Display,
-        runs if runs == Runs::default() => Cost::Nothing,
+        StepCounts { volume: 1.., tables: 2, light_volumes: 3, eye: 1.., .. } => RecomputeCost::Volume,
+        StepCounts { volume: 1.., .. } => panic!("the volume is there: {runs:?}"),
+        StepCounts { light_volumes, eye: 1.., .. } if light_volumes > 0 => {
+            RecomputeCost::Lights(light_volumes)
+        }
+        StepCounts { light_volumes: 0, sky: 1, eye: 1.., .. } => RecomputeCost::Sky,
+        StepCounts { light_volumes: 0, sky: 0, bounces: 1, eye: 1.., .. } => RecomputeCost::Bounces,
+        StepCounts { light_volumes: 0, sky: 0, bounces: 0, eye: 1.., .. } => RecomputeCost::Eye,
+        StepCounts { light_volumes: 0, eye: 0, floor: 1.., display: 1, .. } => RecomputeCost::Floor,
+        StepCounts { light_volumes: 0, eye: 0, floor: 0, display: 1, tables: 0, .. } => {
+            RecomputeCost::Display
+        }
+        runs if runs == StepCounts::default() => RecomputeCost::Nothing,
         runs => panic!("work that shows nowhere: {runs:?}"),
     }
 }
 
-/// Three lights that cast shadows, one of them near.
-fn home() -> Settings {
+/// Look with three lights that cast shadows, one of them near.
+fn base_settings() -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     Settings {
         lights: vec![
-            Light::default(),
-            Light { position: [0.0, 3.0, 0.0], ..Light::default() },
-            Light { kind: LightKind::Perspective, ..Light::default() },
+            LightSettings::default(),
+            LightSettings { position: [0.0, 3.0, 0.0], ..LightSettings::default() },
+            LightSettings { kind: LightGeometry::Perspective, ..LightSettings::default() },
         ],
         transfer: TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() },
-        // As coarse as it is asked for, however small the volume.
-        shadows: Shadows { least_blocks: 1, ..Shadows::default() },
+        // At the requested resolution, however small the volume.
+        shadows: ShadowSettings { least_blocks: 1, ..ShadowSettings::default() },
         ..Settings::default()
     }
 }
 
-/// Renders one look after another, and says what the second took.
-struct Bench {
-    context: Context,
+/// Renderer of two looks in sequence, which counts the passes of the second.
+struct RecomputeCounter {
+    context: GpuContext,
     shaders: ShaderLibrary,
     dataset: Dataset,
 }
 
-impl Bench {
+impl RecomputeCounter {
     fn new() -> Self {
         let context = context();
         let shaders = ShaderLibrary::new(&context);
         Self { context, shaders, dataset: Dataset::new(scenes::creature(12, DVec3::ONE)) }
     }
 
-    /// What the second look takes after the first, with options of its own.
-    fn runs(&self, first: &Settings, second: &Settings, options: &RenderOptions) -> Runs {
+    /// Passes that the second look runs after the first, with given options.
+    fn runs(&self, first: &Settings, second: &Settings, options: &RenderOptions) -> StepCounts {
         let mut renderer = Renderer::with_shaders(&self.context, self.shaders.clone()).expect("a renderer");
         let usual = RenderOptions::default();
         renderer.draw(&self.dataset, first, SIZE, &usual).expect("the first picture");
         renderer.draw(&self.dataset, second, SIZE, options).expect("the second picture");
-        renderer.report().runs
+        renderer.report().step_counts
     }
 
-    fn cost_of(&self, path: &str, value: &str) -> Cost {
-        let changed = apply_path(&home(), path, value).expect("a setting");
-        cost(self.runs(&home(), &changed, &RenderOptions::default()))
+    fn cost_of(&self, path: &str, value: &str) -> RecomputeCost {
+        let changed = apply_path(&base_settings(), path, value).expect("a setting");
+        recompute_cost(self.runs(&base_settings(), &changed, &RenderOptions::default()))
     }
 }
 
-/// Rows for what a user changes most; that every setting is classified is checked in `src/plan/keys/tests.rs`.
+/// Rows for the settings that users change most; `src/plan/keys/tests/` checks that every setting is classified.
 #[test]
 fn every_setting_costs_what_it_should() {
     let table = [
-        ("camera.azimuth_deg", "10", Cost::Eye),
-        ("camera.target", "[0.1,0,0]", Cost::Eye),
-        ("camera.fov_y_deg", "40", Cost::Eye),
-        ("camera.fit", "frame", Cost::Eye),
-        ("camera.projection", "orthographic", Cost::Eye),
-        ("lights.1.name", "Fill", Cost::Nothing),
-        ("lights.1.color", "[1,0,0]", Cost::Eye),
-        ("lights.1.intensity", "2", Cost::Eye),
-        ("lights.1.on", "false", Cost::Eye),
-        ("lights.1.casts_shadows", "false", Cost::Eye),
-        ("lights.1.position", "[0,6,0]", Cost::Nothing),
-        ("lights.1.position", "[0,6,1]", Cost::Lights(1)),
-        ("lights.2.position", "[4,-4,5]", Cost::Lights(1)),
-        ("lights.1.kind", "perspective", Cost::Lights(1)),
-        ("lights.1.lock", "camera", Cost::Lights(1)),
-        ("lights.1.hood", r#"{"on": true}"#, Cost::Nothing),
-        ("lights.2.hood", r#"{"on": true}"#, Cost::Lights(1)),
-        ("lights.1.density_scale", "0.5", Cost::Lights(1)),
-        ("range", r#"{"typed": [0, 2]}"#, Cost::Volume),
-        ("transfer.points.0.color", "[1,0,0]", Cost::Eye),
-        ("transfer.points.1.opacity", "0.4", Cost::Lights(3)),
-        ("lighting.scale", "0.5", Cost::Lights(3)),
-        ("lighting.curve.mixing", "seen", Cost::Nothing),
-        ("opacity_unit", r#"{"mm": 3}"#, Cost::Lights(3)),
-        ("shading.diffuse", "0.1", Cost::Eye),
-        ("shadows.algorithm", "off", Cost::Eye),
-        ("shadows.algorithm", "direct", Cost::Eye),
-        ("shadows.algorithm", "raycast", Cost::Lights(3)),
-        ("shadows.strength", "0.5", Cost::Eye),
-        ("shadows.gain", "2", Cost::Eye),
-        // Rays nearby take its place (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
-        ("shadows.bias_voxels", "1", Cost::Nothing),
-        // Light volumes are filled where they are looked up: as far ahead of samples as rays nearby go.
-        ("shadows.near_field", "off", Cost::Lights(3)),
-        // So small a volume is filled to its border, beyond which longer rays find nothing else.
-        ("shadows.near_field", "long", Cost::Eye),
-        ("shadows.reverse_kernel", "forward", Cost::Lights(3)),
-        ("shading.sides", "two", Cost::Eye),
-        ("shadows.balance", "1.5", Cost::Eye),
-        ("shadows.transmission", "0.5", Cost::Lights(3)),
-        ("shadows.keep_balanced", "true", Cost::Nothing),
-        ("shadows.first_touch", "true", Cost::Lights(3)),
-        ("shadows.kernel", "prefiltered", Cost::Lights(3)),
-        ("shadows.resolution", "half", Cost::Lights(3)),
-        // Of combined light nothing lies ahead.
-        ("shadows.storage", "combined", Cost::Lights(3)),
-        ("cuts.crop", r#"{"on": true}"#, Cost::Nothing),
-        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, Cost::Lights(3)),
-        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, Cost::Eye),
-        ("cuts.plane", r#"{"offset": 0.1}"#, Cost::Nothing),
-        ("floor", r#"{"on": true}"#, Cost::Floor),
-        ("floor", r#"{"height": -2}"#, Cost::Nothing),
-        ("sampling.kernel", "prefiltered", Cost::Eye),
-        ("sampling.order", "volume_aligned", Cost::Nothing),
-        ("output.background.top", "[0,0,0]", Cost::Display),
-        ("output.background.bottom", "[0,0,0]", Cost::Display),
-        ("output.tone_map", "clip", Cost::Display),
-        ("output.exposure", "2", Cost::Display),
+        ("camera.azimuth_deg", "10", RecomputeCost::Eye),
+        ("camera.target", "[0.1,0,0]", RecomputeCost::Eye),
+        ("camera.fov_y_deg", "40", RecomputeCost::Eye),
+        ("camera.fit", "frame", RecomputeCost::Eye),
+        ("camera.projection", "orthographic", RecomputeCost::Eye),
+        ("lights.1.name", "Fill", RecomputeCost::Nothing),
+        ("lights.1.color", "[1,0,0]", RecomputeCost::Eye),
+        ("lights.1.intensity", "2", RecomputeCost::Eye),
+        ("lights.1.on", "false", RecomputeCost::Eye),
+        ("lights.1.casts_shadows", "false", RecomputeCost::Eye),
+        ("lights.1.position", "[0,6,0]", RecomputeCost::Nothing),
+        ("lights.1.position", "[0,6,1]", RecomputeCost::Lights(1)),
+        ("lights.2.position", "[4,-4,5]", RecomputeCost::Lights(1)),
+        ("lights.1.kind", "perspective", RecomputeCost::Lights(1)),
+        ("lights.1.lock", "camera", RecomputeCost::Lights(1)),
+        ("lights.1.hood", r#"{"on": true}"#, RecomputeCost::Nothing),
+        ("lights.2.hood", r#"{"on": true}"#, RecomputeCost::Lights(1)),
+        ("lights.1.density_scale", "0.5", RecomputeCost::Lights(1)),
+        ("range", r#"{"typed": [0, 2]}"#, RecomputeCost::Volume),
+        ("transfer.points.0.color", "[1,0,0]", RecomputeCost::Eye),
+        ("transfer.points.1.opacity", "0.4", RecomputeCost::Lights(3)),
+        ("lighting.scale", "0.5", RecomputeCost::Lights(3)),
+        ("lighting.curve.mixing", "seen", RecomputeCost::Nothing),
+        ("opacity_unit", r#"{"mm": 3}"#, RecomputeCost::Lights(3)),
+        ("shading.diffuse", "0.1", RecomputeCost::Eye),
+        ("shadows.algorithm", "off", RecomputeCost::Eye),
+        ("shadows.algorithm", "direct", RecomputeCost::Eye),
+        ("shadows.algorithm", "raycast", RecomputeCost::Lights(3)),
+        ("shadows.strength", "0.5", RecomputeCost::Eye),
+        ("shadows.gain", "2", RecomputeCost::Eye),
+        // Near-field rays replace it (without them: `a_light_bias_fills_more_once_and_is_live_from_then_on`).
+        ("shadows.bias_voxels", "1", RecomputeCost::Nothing),
+        // Light volumes are filled where they are looked up: at the end of near-field rays.
+        ("shadows.near_field", "off", RecomputeCost::Lights(3)),
+        // Such a small volume is filled to its border, beyond which longer rays find nothing else.
+        ("shadows.near_field", "long", RecomputeCost::Eye),
+        ("shadows.reverse_kernel", "forward", RecomputeCost::Lights(3)),
+        ("shading.sides", "two", RecomputeCost::Eye),
+        ("shadows.balance", "1.5", RecomputeCost::Eye),
+        ("shadows.transmission", "0.5", RecomputeCost::Lights(3)),
+        ("shadows.keep_balanced", "true", RecomputeCost::Nothing),
+        ("shadows.first_touch", "true", RecomputeCost::Lights(3)),
+        ("shadows.kernel", "prefiltered", RecomputeCost::Lights(3)),
+        ("shadows.resolution", "half", RecomputeCost::Lights(3)),
+        // Combined light is not looked up ahead of samples.
+        ("shadows.storage", "combined", RecomputeCost::Lights(3)),
+        ("cuts.crop", r#"{"on": true}"#, RecomputeCost::Nothing),
+        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0]}"#, RecomputeCost::Lights(3)),
+        ("cuts.crop", r#"{"on": true, "low": [0.1, 0, 0], "effect": "hidden"}"#, RecomputeCost::Eye),
+        ("cuts.plane", r#"{"offset": 0.1}"#, RecomputeCost::Nothing),
+        ("floor", r#"{"on": true}"#, RecomputeCost::Floor),
+        ("floor", r#"{"height": -2}"#, RecomputeCost::Nothing),
+        ("sampling.kernel", "prefiltered", RecomputeCost::Eye),
+        ("sampling.order", "volume_aligned", RecomputeCost::Nothing),
+        ("output.background.top", "[0,0,0]", RecomputeCost::Display),
+        ("output.background.bottom", "[0,0,0]", RecomputeCost::Display),
+        ("output.tone_map", "clip", RecomputeCost::Display),
+        ("output.exposure", "2", RecomputeCost::Display),
     ];
-    let bench = Bench::new();
+    let bench = RecomputeCounter::new();
     for (path, value, expected) in table {
         assert_eq!(bench.cost_of(path, value), expected, "{path} = {value}");
     }
 }
 
-/// What is open of the sky is found anew where something else is in its way, and never because of what the sky, the
-/// camera or other lights look like.
+/// Sky visibility is recomputed when its occluders change, and never because of the colours of the sky, the camera or
+/// other lights.
 #[test]
 fn a_sky_costs_a_picture_unless_something_else_is_in_its_way() {
-    let bench = Bench::new();
-    let lit = apply_path(&home(), "sky.mode", "gradient").expect("a setting");
+    let bench = RecomputeCounter::new();
+    let lit = apply_path(&base_settings(), "sky.mode", "gradient").expect("a setting");
     let lit = apply_path(&lit, "sky.directions", "6").expect("a setting");
     for (path, value, expected, filled) in [
-        ("camera.azimuth_deg", "10", Cost::Eye, 0),
-        ("camera.up", "plus_y", Cost::Eye, 0),
-        ("sky.mode", "white", Cost::Eye, 0),
-        ("sky.mode", "off", Cost::Eye, 0),
-        ("sky.intensity", "0.1", Cost::Eye, 0),
-        ("sky.zenith", "[1,0,0]", Cost::Eye, 0),
-        ("sky.tilt_deg", "90", Cost::Eye, 0),
-        ("lights.1.color", "[1,0,0]", Cost::Eye, 0),
-        ("lights.1.position", "[0,6,1]", Cost::Lights(1), 0),
-        ("transfer.points.0.color", "[1,0,0]", Cost::Eye, 0),
-        ("shadows.strength", "0.5", Cost::Eye, 0),
-        ("shadows.algorithm", "off", Cost::Eye, 0),
-        ("sky.directions", "14", Cost::Sky, 1),
-        ("sky.resolution", "quarter", Cost::Sky, 1),
-        ("sky.density_scale", "2", Cost::Sky, 1),
-        ("transfer.points.1.opacity", "0.4", Cost::Lights(3), 1),
-        ("cuts.plane", r#"{"on": true, "offset": 0.1}"#, Cost::Lights(3), 1),
+        ("camera.azimuth_deg", "10", RecomputeCost::Eye, 0),
+        ("camera.up", "plus_y", RecomputeCost::Eye, 0),
+        ("sky.mode", "white", RecomputeCost::Eye, 0),
+        ("sky.mode", "off", RecomputeCost::Eye, 0),
+        ("sky.intensity", "0.1", RecomputeCost::Eye, 0),
+        ("sky.zenith", "[1,0,0]", RecomputeCost::Eye, 0),
+        ("sky.tilt_deg", "90", RecomputeCost::Eye, 0),
+        ("lights.1.color", "[1,0,0]", RecomputeCost::Eye, 0),
+        ("lights.1.position", "[0,6,1]", RecomputeCost::Lights(1), 0),
+        ("transfer.points.0.color", "[1,0,0]", RecomputeCost::Eye, 0),
+        ("shadows.strength", "0.5", RecomputeCost::Eye, 0),
+        ("shadows.algorithm", "off", RecomputeCost::Eye, 0),
+        ("sky.directions", "14", RecomputeCost::Sky, 1),
+        ("sky.resolution", "quarter", RecomputeCost::Sky, 1),
+        ("sky.density_scale", "2", RecomputeCost::Sky, 1),
+        ("transfer.points.1.opacity", "0.4", RecomputeCost::Lights(3), 1),
+        ("cuts.plane", r#"{"on": true, "offset": 0.1}"#, RecomputeCost::Lights(3), 1),
     ] {
         let changed = apply_path(&lit, path, value).expect("a setting");
         let runs = bench.runs(&lit, &changed, &RenderOptions::default());
-        assert_eq!((cost(runs), runs.sky), (expected, filled), "{path} = {value}");
+        assert_eq!((recompute_cost(runs), runs.sky), (expected, filled), "{path} = {value}");
     }
 }
 
-/// Light from all around is found where it is looked up: an eye that sees more fills more, and once it has, one volume serves
-/// whatever it sees of that. Previews, whose pixels are wide, make do with what there is.
+/// Light from all directions is computed where it is looked up: an eye that sees more fills more, and one volume then
+/// serves all parts of that. Previews, whose pixels are wide, use the existing volume.
 #[test]
 fn an_eye_that_sees_more_fills_more_once() {
-    let bench = Bench::new();
-    let mut few = home();
+    let bench = RecomputeCounter::new();
+    let mut few = base_settings();
     (few.sky.mode, few.sky.directions) = (SkyMode::White, 6);
     (few.scattering.bounces, few.scattering.directions) = (1, 6);
-    // Light meets the bright core alone.
+    // The lighting curve shows the bright core alone.
     few.lighting.linked = false;
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     few.lighting.curve.points = vec![point(210.0, 0.0), point(250.0, 0.5)];
@@ -212,7 +217,7 @@ fn an_eye_that_sees_more_fills_more_once() {
     let mut filled = |settings: &Settings, preview: bool| {
         let options = RenderOptions { preview, ..RenderOptions::default() };
         renderer.draw(&dataset, settings, SIZE, &options).expect("a picture");
-        let runs = renderer.report().runs;
+        let runs = renderer.report().step_counts;
         (runs.sky, runs.bounces)
     };
     assert_eq!(filled(&few, false), (1, 1));
@@ -224,67 +229,81 @@ fn an_eye_that_sees_more_fills_more_once() {
     assert_eq!(filled(&more, false), (0, 0));
 }
 
-/// Light bounces anew where lights, colours or what is in its way are others, and never because of the view.
+/// Scattered light is recomputed when lights, colours or occluders change, and never because of the view.
 #[test]
 fn light_that_bounces_is_kept_while_the_camera_turns() {
-    let bench = Bench::new();
-    let lit = apply_path(&home(), "scattering.bounces", "2").expect("a setting");
+    let bench = RecomputeCounter::new();
+    let lit = apply_path(&base_settings(), "scattering.bounces", "2").expect("a setting");
     let lit = apply_path(&lit, "scattering.directions", "6").expect("a setting");
     for (path, value, expected, filled) in [
-        ("camera.azimuth_deg", "10", Cost::Eye, 0),
-        ("scattering.strength", "2", Cost::Eye, 0),
-        ("scattering.anisotropy", "0.3", Cost::Eye, 0),
-        ("scattering.bounces", "0", Cost::Eye, 0),
-        ("shadows.strength", "0.5", Cost::Eye, 0),
-        ("shading.diffuse", "0.5", Cost::Eye, 0),
-        ("lights.1.color", "[1,0,0]", Cost::Bounces, 1),
-        ("transfer.points.0.color", "[1,0,0]", Cost::Bounces, 1),
-        ("shading.emission", "0.5", Cost::Bounces, 1),
-        ("scattering.albedo", "0.5", Cost::Bounces, 1),
-        ("lights.1.position", "[0,6,1]", Cost::Lights(1), 1),
-        ("transfer.points.1.opacity", "0.4", Cost::Lights(3), 1),
+        ("camera.azimuth_deg", "10", RecomputeCost::Eye, 0),
+        ("scattering.strength", "2", RecomputeCost::Eye, 0),
+        ("scattering.anisotropy", "0.3", RecomputeCost::Eye, 0),
+        ("scattering.bounces", "0", RecomputeCost::Eye, 0),
+        ("shadows.strength", "0.5", RecomputeCost::Eye, 0),
+        ("shading.diffuse", "0.5", RecomputeCost::Eye, 0),
+        ("lights.1.color", "[1,0,0]", RecomputeCost::Bounces, 1),
+        ("transfer.points.0.color", "[1,0,0]", RecomputeCost::Bounces, 1),
+        ("shading.emission", "0.5", RecomputeCost::Bounces, 1),
+        ("scattering.albedo", "0.5", RecomputeCost::Bounces, 1),
+        ("lights.1.position", "[0,6,1]", RecomputeCost::Lights(1), 1),
+        ("transfer.points.1.opacity", "0.4", RecomputeCost::Lights(3), 1),
     ] {
         let changed = apply_path(&lit, path, value).expect("a setting");
         let runs = bench.runs(&lit, &changed, &RenderOptions::default());
-        assert_eq!((cost(runs), runs.bounces), (expected, filled), "{path} = {value}");
+        assert_eq!((recompute_cost(runs), runs.bounces), (expected, filled), "{path} = {value}");
     }
 }
 
 #[test]
 fn a_saved_view_costs_nothing() {
-    let mut kept = home();
-    assert!(kept.keep_view_under(1, "front"));
-    assert_eq!(cost(Bench::new().runs(&home(), &kept, &RenderOptions::default())), Cost::Nothing);
+    let mut kept = base_settings();
+    assert!(kept.save_view_for_digit(1, "front"));
+    assert_eq!(
+        recompute_cost(RecomputeCounter::new().runs(&base_settings(), &kept, &RenderOptions::default())),
+        RecomputeCost::Nothing
+    );
 }
 
 #[test]
 fn how_a_picture_is_shown_costs_one_display_pass() {
-    let bench = Bench::new();
+    let bench = RecomputeCounter::new();
     let options = [
         RenderOptions { exposure: 1.5, ..RenderOptions::default() },
         RenderOptions { transparent: true, ..RenderOptions::default() },
     ];
     for options in options {
-        assert_eq!(cost(bench.runs(&home(), &home(), &options)), Cost::Display, "{options:?}");
+        assert_eq!(
+            recompute_cost(bench.runs(&base_settings(), &base_settings(), &options)),
+            RecomputeCost::Display,
+            "{options:?}"
+        );
     }
-    assert_eq!(cost(bench.runs(&home(), &home(), &RenderOptions::default())), Cost::Nothing);
+    assert_eq!(
+        recompute_cost(bench.runs(&base_settings(), &base_settings(), &RenderOptions::default())),
+        RecomputeCost::Nothing
+    );
 }
 
 #[test]
 fn a_floor_that_changes_leaves_the_volume_as_it_is() {
-    let bench = Bench::new();
-    let on = apply_path(&home(), "floor.on", "true").expect("a setting");
+    let bench = RecomputeCounter::new();
+    let on = apply_path(&base_settings(), "floor.on", "true").expect("a setting");
     let lower = apply_path(&on, "floor.height", "-1.5").expect("a setting");
-    assert_eq!(cost(bench.runs(&on, &lower, &RenderOptions::default())), Cost::Floor);
-    assert_eq!(cost(bench.runs(&on, &home(), &RenderOptions::default())), Cost::Display, "it goes away");
+    assert_eq!(recompute_cost(bench.runs(&on, &lower, &RenderOptions::default())), RecomputeCost::Floor);
+    assert_eq!(
+        recompute_cost(bench.runs(&on, &base_settings(), &RenderOptions::default())),
+        RecomputeCost::Display,
+        "it goes away"
+    );
 }
 
 #[test]
 fn tables_are_baked_when_their_curves_change() {
-    let bench = Bench::new();
+    let bench = RecomputeCounter::new();
     let baked = |path: &str, value: &str| {
-        let changed = apply_path(&home(), path, value).expect("a setting");
-        bench.runs(&home(), &changed, &RenderOptions::default()).tables
+        let changed = apply_path(&base_settings(), path, value).expect("a setting");
+        bench.runs(&base_settings(), &changed, &RenderOptions::default()).tables
     };
     assert_eq!(baked("camera.azimuth_deg", "10"), 0);
     assert_eq!(baked("transfer.points.0.color", "[1,0,0]"), 1, "the light meets no colours");
@@ -292,48 +311,49 @@ fn tables_are_baked_when_their_curves_change() {
     assert_eq!(baked("transfer.points.1.opacity", "0.4"), 2);
 }
 
-/// What is served without being drawn again is what would have been drawn.
+/// Cached pictures are the bytes that would be drawn.
 #[test]
 fn pictures_that_are_shown_again_are_the_same_bytes() {
-    let bench = Bench::new();
+    let bench = RecomputeCounter::new();
     let mut renderer = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
     let mut draw = |settings: &Settings| {
         let picture = renderer.render(&bench.dataset, settings, SIZE, &RenderOptions::default());
-        (picture.expect("a picture"), renderer.report().runs.eye)
+        (picture.expect("a picture"), renderer.report().step_counts.eye)
     };
-    let light = apply_path(&home(), "output.background.top", "[1,1,1]").expect("a setting");
-    let (first, drawn) = draw(&home());
+    let light = apply_path(&base_settings(), "output.background.top", "[1,1,1]").expect("a setting");
+    let (first, drawn) = draw(&base_settings());
     assert!(drawn > 0);
     let (shown, drawn) = draw(&light);
     assert_eq!(drawn, 0);
-    assert_eq!(shown.light, first.light);
-    assert_ne!(shown.shown, first.shown, "the background is seen");
-    let (again, drawn) = draw(&home());
+    assert_eq!(shown.linear, first.linear);
+    assert_ne!(shown.display, first.display, "the background is seen");
+    let (again, drawn) = draw(&base_settings());
     assert_eq!((again, drawn), (first, 0));
     let mut fresh = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
     let anew = fresh.render(&bench.dataset, &light, SIZE, &RenderOptions::default()).expect("a picture");
     assert_eq!(anew, shown);
 }
 
-/// A picture is the same whatever was drawn before it on the same renderer, as contact sheets do it.
+/// A picture does not depend on the pictures drawn before it on the same renderer, as in contact sheets.
 #[test]
 fn a_picture_does_not_depend_on_the_one_before() {
     use chiaroscuro::data::Histogram;
     use chiaroscuro::data::synthetic::builtin;
-    use chiaroscuro::model::auto::first_settings;
-    use chiaroscuro::model::{Kernel, Resolution, Slabs};
+    use chiaroscuro::model::first_look::first_settings;
+    use chiaroscuro::model::{LightVolumeResolution, ReconstructionKernel, SlabMode};
     let volume = builtin("chair", Some(48)).unwrap();
-    let mut whole = first_settings(&volume, &Histogram::of(&volume));
-    whole.shadows.resolution = Resolution::Half;
-    (whole.shadows.kernel, whole.sampling.kernel) = (Kernel::Prefiltered, Kernel::Prefiltered);
-    whole.sampling.slabs = Slabs::Even;
+    let mut whole = first_settings(&volume, &Histogram::from_volume(&volume));
+    whole.shadows.resolution = LightVolumeResolution::Half;
+    (whole.shadows.kernel, whole.sampling.kernel) =
+        (ReconstructionKernel::Prefiltered, ReconstructionKernel::Prefiltered);
+    whole.sampling.slabs = SlabMode::Even;
     let mut cut = whole.clone();
     cut.cuts.plane.on = true;
     let dataset = Dataset::new(volume);
     let options = RenderOptions::default();
     let mut one_after_the_other = Renderer::new(&context()).unwrap();
     let mut draw = |settings: &Settings| {
-        one_after_the_other.render_shown(&dataset, settings, [88, 66], &options).expect("a picture")
+        one_after_the_other.render_display(&dataset, settings, [88, 66], &options).expect("a picture")
     };
     let before = draw(&whole);
     draw(&cut);
@@ -344,6 +364,6 @@ fn a_picture_does_not_depend_on_the_one_before() {
     draw(&turned);
     let again = draw(&whole);
     let mut fresh = Renderer::new(&context()).unwrap();
-    let alone = fresh.render_shown(&dataset, &whole, [88, 66], &options).expect("a picture");
+    let alone = fresh.render_display(&dataset, &whole, [88, 66], &options).expect("a picture");
     assert!(before == alone && after == alone && again == alone);
 }

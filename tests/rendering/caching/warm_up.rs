@@ -1,26 +1,26 @@
-//! Pipelines that are made ahead of time are those that the first picture needs.
+//! Test of the pipeline warm-up: the pipelines compiled ahead of time are those of the first picture.
 
 use std::sync::atomic::AtomicBool;
 
 use chiaroscuro::data::Dataset;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer, ShaderLibrary};
-use chiaroscuro::model::{Settings, auto};
+use chiaroscuro::model::{Settings, first_look};
 
 use crate::common::context;
 
-/// How many pipelines a picture makes after the warm-up.
-fn made_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
+/// Number of pipelines that a picture compiles after the warm-up.
+fn pipelines_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
     let context = context();
     let shaders = ShaderLibrary::new(&context);
     shaders.warm_up(&AtomicBool::new(false)).expect("the warm-up");
     let before = shaders.pipeline_count();
     assert!(before > 10, "the warm-up makes pipelines: {before}");
     let mut renderer = Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");
-    // With more than a kernel's width of nothing around it, as most objects have: what ends at the faces of its grid takes
-    // pipelines of its own.
+    // With an empty border wider than a kernel, as most objects have: material at the faces of the grid needs other
+    // pipelines.
     let dataset = Dataset::new(builtin("chair", Some(128)).expect("the chair"));
-    let mut settings = auto::first_settings(dataset.volume(), dataset.histogram());
+    let mut settings = first_look::first_settings(dataset.volume(), dataset.histogram());
     change(&mut settings);
     renderer.draw(&dataset, &settings, [400, 300], &RenderOptions::default()).expect("a picture");
     shaders.pipeline_count() - before
@@ -28,10 +28,10 @@ fn made_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
 
 #[test]
 fn the_first_picture_after_the_warm_up_compiles_nothing() {
-    assert_eq!(made_after_warm_up(|_| ()), 0);
+    assert_eq!(pipelines_after_warm_up(|_| ()), 0);
 }
 
 #[test]
-fn what_nobody_warmed_up_is_counted() {
-    assert_eq!(made_after_warm_up(|settings| settings.floor.on = true), 1, "the floor");
+fn pipelines_without_warm_up_are_counted() {
+    assert_eq!(pipelines_after_warm_up(|settings| settings.floor.on = true), 1, "the floor");
 }

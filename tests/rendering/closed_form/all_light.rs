@@ -1,99 +1,109 @@
-//! Pictures with everything on, lights that have a size, a sky and light that bounces, beside those of a path tracer that
-//! knows no light volumes, no sheets, no blocks, no fixed directions and no bounces to be counted.
+//! All light against a path tracer: area lights, a sky and multiple scattering, compared with pictures that are
+//! traced without light volumes, sheets, blocks, fixed directions or counted bounces.
 
-use chiaroscuro::data::load::{Choice, LoadControl, LoadOptions, Portion, Thinning};
+use chiaroscuro::data::load::{Downsampling, LoadControl, LoadOptions, Portion, VolumeChoice};
 use chiaroscuro::data::{Samples, Volume, open};
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{
-    DensityRange, Light, LightKind, LightShape, Projection, Quality, Resolution, Scattering, SceneLight,
-    Settings, Shadows, Sky, SkyMode, SkyRadiance, Slabs, srgb_from_linear,
+    DensityRange, LightGeometry, LightSettings, LightShape, LightVolumeResolution, Projection, QualityPreset,
+    ScatteringSettings, SceneLight, Settings, ShadowSettings, SkyMode, SkyRadiance, SkySettings, SlabMode,
+    srgb_from_linear,
 };
 use chiaroscuro::plan::picture_frame;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::common::{Dataset, context};
-use crate::scenes::{self, isotropic};
+use crate::path_tracing::{RandomNumbers, TracedMaterial};
+use crate::scenes::{self, make_isotropic};
 use crate::thresholds::{ALL_LIGHT, ALL_LIGHT_DEFAULTS};
-use crate::tracing::{Lots, Material};
 
-/// Pictures are so many pixels wide and high, each the light of one ray: pixels are narrower than voxels, so that no kernel is
+/// Width and height of pictures in pixels, each one ray: pixels are narrower than voxels, so that no kernel is
 /// stretched.
-const SIZE: u32 = 64;
+const PICTURE_EDGE: u32 = 64;
 
-/// Pixels along the edges of squares whose means are compared: chance counts for a quarter in them.
-const SQUARE: u32 = 4;
+/// Edge in pixels of the squares whose means are compared: their noise is a quarter of a pixel's.
+const SQUARE_EDGE: u32 = 4;
 
-/// Pixels of a picture's pixel in maps of errors.
-const ENLARGED: u32 = 4;
+/// Edge of an enlarged pixel in maps of errors, in pixels.
+const PIXEL_SCALE: u32 = 4;
 
-/// Voxels along the edges of volumes.
+/// Number of voxels along the edges of volumes.
 const N: usize = 24;
 
-/// Values of a scan of a tooth up to which there is air.
+/// Largest value of air in the scan of a tooth.
 const AIR: f64 = 90.0;
 
-/// Light that is weaker than this share is followed no further.
-const FAINT: f64 = 1e-3;
+/// Path weight below which a path is terminated.
+const MIN_PATH_WEIGHT: f64 = 1e-3;
 
-/// A disc far away, a lamp, and a sky of three colours over matter that scatters and glows, of all densities.
+/// Look with a distant disc, a ball light, and a sky of three colours over material of all densities that scatters
+/// and glows.
 fn look() -> Settings {
     let mut settings = scenes::look();
-    isotropic(&mut settings);
+    make_isotropic(&mut settings);
     settings.range = DensityRange::Full;
-    settings.shadows.least_blocks = Shadows::default().least_blocks;
+    settings.shadows.least_blocks = ShadowSettings::default().least_blocks;
     settings.camera.projection = Projection::Orthographic;
     settings.shading.emission = 0.05;
     let light = |kind, position| scenes::light(kind, position);
     settings.lights = vec![
-        Light { shape: LightShape::Disc, angle_deg: 25.0, ..light(LightKind::Parallel, [1.3, -0.8, 1.7]) },
-        Light { intensity: 0.6, color: [1.0, 0.7, 0.4], ..light(LightKind::Perspective, [-2.2, 1.8, 2.4]) },
+        LightSettings {
+            shape: LightShape::Disc,
+            angle_deg: 25.0,
+            ..light(LightGeometry::Parallel, [1.3, -0.8, 1.7])
+        },
+        LightSettings {
+            intensity: 0.6,
+            color: [1.0, 0.7, 0.4],
+            ..light(LightGeometry::Perspective, [-2.2, 1.8, 2.4])
+        },
     ];
-    settings.sky = Sky { mode: SkyMode::Gradient, intensity: 0.6, ..Sky::default() };
-    settings.scattering = Scattering { bounces: 8, albedo: 0.9, ..Scattering::default() };
+    settings.sky = SkySettings { mode: SkyMode::Gradient, intensity: 0.6, ..SkySettings::default() };
+    settings.scattering = ScatteringSettings { bounces: 8, albedo: 0.9, ..ScatteringSettings::default() };
     for point in &mut settings.transfer.points {
-        // Half of the light ends within two voxels at most.
+        // Half of the light is absorbed within two voxels at most.
         point.opacity *= 0.35;
     }
     settings
 }
 
-/// What the path tracer knows of a scene.
-struct Tracer<'a> {
-    material: Material,
+/// Path tracer of a scene.
+struct ScenePathTracer<'a> {
+    material: TracedMaterial,
     settings: &'a Settings,
     index_from_scene: glam::DAffine3,
-    /// Points of each light, and its linear colour.
+    /// Sample points of each light, and its linear colour.
     lights: Vec<(Vec<SceneLight>, [f64; 3])>,
     sky: SkyRadiance,
-    /// Beyond all matter.
+    /// Distance beyond all material, in scene units.
     far: f64,
 }
 
-impl Tracer<'_> {
-    /// What of the lights arrives at an index-space point.
-    fn direct(&self, lots: &mut Lots, point: DVec3) -> [f64; 3] {
+impl ScenePathTracer<'_> {
+    /// Direct light at an index-space point, from a random point of each light.
+    fn direct(&self, random: &mut RandomNumbers, point: DVec3) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (points, color) in &self.lights {
-            let light = &points[(lots.draw() * points.len() as f64) as usize];
+            let light = &points[(random.next_uniform() * points.len() as f64) as usize];
             let place = self.index_from_scene.inverse().transform_point3(point);
             let (towards, distance) = match light.kind {
-                LightKind::Parallel => (light.direction(), self.far),
-                LightKind::Perspective => {
+                LightGeometry::Parallel => (light.direction(), self.far),
+                LightGeometry::Perspective => {
                     let away = DVec3::from(light.position) - place;
                     (away.normalize(), away.length())
                 }
             };
             let step = self.index_from_scene.transform_vector3(towards);
-            let left = self.material.transmittance(lots, point, step, distance);
+            let left = self.material.transmittance(random, point, step, distance);
             (0..3).for_each(|c| sum[c] += color[c] * left);
         }
         sum
     }
 
-    /// The light that one path brings back to the eye along a ray.
-    fn path(&self, lots: &mut Lots, origin: DVec3, along: DVec3, length: f64) -> [f64; 3] {
-        let Some(mut point) = self.material.first_meeting(lots, origin, along, length) else {
+    /// Radiance of one path that reaches the eye along a ray.
+    fn path(&self, lots: &mut RandomNumbers, origin: DVec3, along: DVec3, length: f64) -> [f64; 3] {
+        let Some(mut point) = self.material.first_interaction(lots, origin, along, length) else {
             return [0.0; 3];
         };
         let Settings { shading, scattering, .. } = self.settings;
@@ -101,12 +111,13 @@ impl Tracer<'_> {
         let mut sum = [0.0; 3];
         let direct = self.direct(lots, point);
         (0..3).for_each(|c| sum[c] += weight[c] * (direct[c] + shading.emission));
-        // The eye sees all of what it meets of lights and sky; what has been scattered before is a share of that.
+        // The eye sees all direct light of lights and sky at its first interaction; scattered light is a share of
+        // that.
         let mut is_seen = true;
         loop {
-            let towards = lots.direction();
+            let towards = lots.next_direction();
             let step = self.index_from_scene.transform_vector3(towards);
-            let Some(next) = self.material.first_meeting(lots, point, step, self.far) else {
+            let Some(next) = self.material.first_interaction(lots, point, step, self.far) else {
                 for c in 0..3 {
                     sum[c] += weight[c] * (self.sky.mean[c] + self.sky.slope[c].dot(towards)).max(0.0);
                 }
@@ -119,11 +130,12 @@ impl Tracer<'_> {
             let direct = self.direct(lots, next);
             for c in 0..3 {
                 weight[c] *= color[c] * albedo;
-                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to what has
-                // no side; the eye shows all of it, as if that faced each light. What glows is not scattered before it is.
+                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to
+                // material without a side; the eye shows all of it, as if the material faced each light. Emission is
+                // not scattered before.
                 sum[c] += weight[c] * (direct[c] / 4.0 + shading.emission / scattering.albedo);
             }
-            if weight.iter().all(|&weight| weight < FAINT) {
+            if weight.iter().all(|&weight| weight < MIN_PATH_WEIGHT) {
                 return sum;
             }
             point = next;
@@ -131,28 +143,29 @@ impl Tracer<'_> {
     }
 }
 
-/// Two estimates of each pixel, right in the mean, of half of the paths each.
-fn traced(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
+/// Two unbiased estimates of each pixel, each with half of the paths.
+fn trace_picture(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
     let scene = loaded.volume().scene();
-    let linear = |light: &Light| {
+    let linear = |light: &LightSettings| {
         light.color.map(|c| chiaroscuro::model::linear_from_srgb(f64::from(c)) * light.intensity)
     };
-    let points = |light: &Light| light.in_scene(&settings.camera).points(settings.shadows.area.samples);
-    let tracer = Tracer {
-        material: Material::of(loaded, settings),
+    let points =
+        |light: &LightSettings| light.resolve(&settings.camera).sample_lights(settings.shadows.area.samples);
+    let tracer = ScenePathTracer {
+        material: TracedMaterial::new(loaded, settings),
         settings,
         index_from_scene: scene.index_from_scene,
         lights: settings.lights.iter().map(|light| (points(light), linear(light))).collect(),
         sky: settings.sky.radiance(settings.camera.up).expect("a sky"),
         far: 2.0 * scene.support_radius(),
     };
-    let frame = picture_frame(settings, &scene, [SIZE; 2]);
+    let frame = picture_frame(settings, &scene, [PICTURE_EDGE; 2]);
     let length = frame.slab * f64::from(frame.slab_count);
-    (0..SIZE * SIZE)
+    (0..PICTURE_EDGE * PICTURE_EDGE)
         .into_par_iter()
         .map(|pixel| {
-            let [i, j] = [f64::from(pixel % SIZE), f64::from(pixel / SIZE)];
-            let mut lots = Lots(u64::from(pixel) << 32);
+            let [i, j] = [f64::from(pixel % PICTURE_EDGE), f64::from(pixel / PICTURE_EDGE)];
+            let mut lots = RandomNumbers(u64::from(pixel) << 32);
             let (origin, along) = (frame.point(i, j, frame.first_depth), frame.direction.at(i, j));
             [(); 2].map(|()| {
                 let mut sum = [0.0; 3];
@@ -166,48 +179,59 @@ fn traced(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2
         .collect()
 }
 
-/// The means of the squares of a picture.
-fn squares(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let edge = SIZE / SQUARE;
+/// Means of the squares of a picture.
+fn square_means(light: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let edge = PICTURE_EDGE / SQUARE_EDGE;
     let mean = |square: u32| {
         let mut sum = [0.0; 3];
-        for pixel in 0..SQUARE * SQUARE {
-            let x = square % edge * SQUARE + pixel % SQUARE;
-            let y = square / edge * SQUARE + pixel / SQUARE;
-            let texel = light[(x + SIZE * y) as usize];
-            (0..3).for_each(|c| sum[c] += texel[c] / f64::from(SQUARE * SQUARE));
+        for pixel in 0..SQUARE_EDGE * SQUARE_EDGE {
+            let x = square % edge * SQUARE_EDGE + pixel % SQUARE_EDGE;
+            let y = square / edge * SQUARE_EDGE + pixel / SQUARE_EDGE;
+            let texel = light[(x + PICTURE_EDGE * y) as usize];
+            (0..3).for_each(|c| sum[c] += texel[c] / f64::from(SQUARE_EDGE * SQUARE_EDGE));
         }
         sum
     };
     (0..edge * edge).map(mean).collect()
 }
 
-/// A picture's light.
-fn rendered(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Vec<[f64; 3]> {
-    let picture = renderer.render(loaded, settings, [SIZE; 2], &RenderOptions::default()).expect("a picture");
-    picture.light.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
+/// Linear light of a rendered picture.
+fn render_light(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Vec<[f64; 3]> {
+    let picture =
+        renderer.render(loaded, settings, [PICTURE_EDGE; 2], &RenderOptions::default()).expect("a picture");
+    picture.linear.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
 }
 
-/// Beside each other at the finest, at the defaults, as the path tracer has it, and by how much the first two are off it,
-/// four times as strong and around grey: a row of small pictures.
-fn row(fine: &[[f64; 3]], usual: &[[f64; 3]], truth: &[[f64; 3]]) -> image::RgbImage {
+/// Row of small pictures for inspection: the finest, the default and the traced one, and the errors of the first two,
+/// four times amplified and around grey.
+fn comparison_row(fine: &[[f64; 3]], usual: &[[f64; 3]], truth: &[[f64; 3]]) -> image::RgbImage {
     let differ = |found: &[[f64; 3]]| -> Vec<[f64; 3]> {
         let apart = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|c| 0.2 + 4.0 * (a[c] - b[c]));
         found.iter().zip(truth).map(apart).collect()
     };
     let tiles = [fine.to_vec(), usual.to_vec(), truth.to_vec(), differ(fine), differ(usual)];
-    image::RgbImage::from_fn(tiles.len() as u32 * SIZE * ENLARGED, SIZE * ENLARGED, |x, y| {
-        let [column, row] = [x / ENLARGED, y / ENLARGED];
-        let light = tiles[(column / SIZE) as usize][(column % SIZE + SIZE * row) as usize];
-        image::Rgb(light.map(|c| (255.0 * srgb_from_linear(c.clamp(0.0, 1.0)) + 0.5) as u8))
-    })
+    image::RgbImage::from_fn(
+        tiles.len() as u32 * PICTURE_EDGE * PIXEL_SCALE,
+        PICTURE_EDGE * PIXEL_SCALE,
+        |x, y| {
+            let [column, row] = [x / PIXEL_SCALE, y / PIXEL_SCALE];
+            let light = tiles[(column / PICTURE_EDGE) as usize]
+                [(column % PICTURE_EDGE + PICTURE_EDGE * row) as usize];
+            image::Rgb(light.map(|c| (255.0 * srgb_from_linear(c.clamp(0.0, 1.0)) + 0.5) as u8))
+        },
+    )
 }
 
-/// The root mean square of how a picture differs from the truth, over its mean: estimates by lot differ from it by chance,
-/// which two of them do independently, so that the product of both differences has none of it in the mean.
-fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &[Vec<[f64; 3]>; 2]) -> f64 {
+/// Root mean square difference of a picture from the truth, over its mean. The two estimates have independent noise,
+/// so that the product of both differences is free of it in the mean.
+fn relative_error(
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    [a, b]: &[Vec<[f64; 3]>; 2],
+) -> f64 {
     let (mut products, mut mean) = (0.0, 0.0);
-    let found = squares(&rendered(renderer, loaded, settings));
+    let found = square_means(&render_light(renderer, loaded, settings));
     for ((found, a), b) in found.iter().zip(a).zip(b) {
         for c in 0..3 {
             products += (found[c] - a[c]) * (found[c] - b[c]);
@@ -218,21 +242,21 @@ fn off(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings, [a, b]: &
     (products / count).max(0.0).sqrt() / (mean / count)
 }
 
-/// Everything as finely as it goes.
-fn finest(settings: &Settings) -> Settings {
+/// Settings with everything at the finest.
+fn finest_settings(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
-    // Rays from every sample to every point of a light are more turns of loops than software drivers take.
-    Quality::Fine.apply(&mut settings);
-    // Within slabs of a voxel the colour of thin matter changes.
-    (settings.sampling.slabs, settings.sampling.slab) = (Slabs::Even, 0.25);
-    settings.sky.resolution = Resolution::Full;
-    settings.scattering.resolution = Resolution::Full;
+    // Rays from every sample to every point of a light exceed the loop limits of software drivers.
+    QualityPreset::Fine.apply(&mut settings);
+    // Within slabs of a voxel the colour of thin material changes.
+    (settings.sampling.slabs, settings.sampling.slab) = (SlabMode::Even, 0.25);
+    settings.sky.resolution = LightVolumeResolution::Full;
+    settings.scattering.resolution = LightVolumeResolution::Full;
     settings.scattering.bounces = 12;
-    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.area.resolution = LightVolumeResolution::Full;
     settings
 }
 
-/// Blobs of all densities that thin out before the faces of the grid, at which renderers end what they show.
+/// Blobs of all densities that thin out before the faces of the grid, where renderers clip them.
 fn clouds(seed: u64) -> Volume {
     let noise = scenes::noise(N, seed);
     let values = (0..N * N * N).map(|at| {
@@ -249,22 +273,22 @@ fn check(name: &str, loaded: &Dataset, paths: u32) {
     assert!(usual <= ALL_LIGHT_DEFAULTS, "{name}: {usual}");
 }
 
-/// Checks the picture that is as fine as it goes; how far off the usual one is.
+/// Checks the picture at the finest settings; returns the error of the default settings.
 fn check_finest(name: &str, loaded: &Dataset, paths: u32, settings: &Settings) -> f64 {
-    let truth = traced(loaded, settings, paths);
+    let truth = trace_picture(loaded, settings, paths);
     let mean: Vec<_> = truth.iter().map(|[a, b]| std::array::from_fn(|c| 0.5 * (a[c] + b[c]))).collect();
-    let truth = [0, 1].map(|half| squares(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
+    let truth = [0, 1].map(|half| square_means(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let [ours, usual] =
-        [finest(settings), settings.clone()].map(|look| rendered(&mut renderer, loaded, &look));
+        [finest_settings(settings), settings.clone()].map(|look| render_light(&mut renderer, loaded, &look));
     let map = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("all-light-{name}.png"));
-    row(&ours, &usual, &mean).save(&map).expect("written");
-    let mut off = |settings: &Settings| off(&mut renderer, loaded, settings, &truth);
-    let (fine, usual) = (off(&finest(settings)), off(settings));
-    let mut without = finest(settings);
+    comparison_row(&ours, &usual, &mean).save(&map).expect("written");
+    let mut off = |settings: &Settings| relative_error(&mut renderer, loaded, settings, &truth);
+    let (fine, usual) = (off(&finest_settings(settings)), off(settings));
+    let mut without = finest_settings(settings);
     without.scattering.bounces = 0;
     let without = off(&without);
-    let mut brighter = finest(settings);
+    let mut brighter = finest_settings(settings);
     brighter.sky.intensity *= 1.1;
     let brighter = off(&brighter);
     println!(
@@ -293,7 +317,7 @@ fn all_light_is_that_of_a_path_tracer_in_other_volumes() {
     check("clouds 8", &Dataset::new(clouds(8)), 3072);
 }
 
-/// A scan of a tooth with a quarter of its voxels along each axis, if there is one.
+/// Scan of a tooth with a quarter of its voxels along each axis, if available.
 #[test]
 #[ignore = "takes minutes"]
 fn all_light_is_that_of_a_path_tracer_in_a_scan() {
@@ -303,12 +327,12 @@ fn all_light_is_that_of_a_path_tracer_in_a_scan() {
         println!("NOT RUN: there is no {}", path.display());
         return;
     }
-    let quarter = Portion { thinning: Thinning::Average(4), ..Portion::default() };
-    let choice = Choice { portion: Some(quarter), ..Choice::default() };
+    let quarter = Portion { thinning: Downsampling::Average(4), ..Portion::default() };
+    let choice = VolumeChoice { portion: Some(quarter), ..VolumeChoice::default() };
     let options = LoadOptions { choice, ..LoadOptions::default() };
     let volume = open(&path, &options, &LoadControl::new()).expect("a volume");
-    // Nothing of the air around it, which ends with the grid: there renderers end by the share of the kernel, and the path
-    // tracer by densities.
+    // Without the surrounding air, which ends with the grid: there renderers clip by the share of the kernel, and the
+    // path tracer by densities.
     let mut settings = look();
     for point in &mut settings.transfer.points {
         point.value = AIR + point.value.max(0.0) * (255.0 - AIR) / 255.0;

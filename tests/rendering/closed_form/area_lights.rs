@@ -1,63 +1,65 @@
-//! Lights that have a size, where their penumbrae are known in closed form.
+//! Area lights whose penumbrae are known in closed form.
 
 use std::f64::consts::PI;
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Engine, Light, LightKind, LightShape, NearField, Resolution, Settings, ShadowAlgorithm, Sides,
+    LightGeometry, LightSettings, LightShape, LightVolumeResolution, LitSides, NearFieldRay, RenderEngine,
+    Settings, ShadowAlgorithm,
 };
 use glam::{DVec2, DVec3};
 
 use super::{base, renderer};
-use crate::common::{Dataset, attenuation, render};
+use crate::common::{Dataset, full_attenuation, render};
 use crate::scenes;
 use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_WIDTH, TERMINATOR};
 
-/// Voxels along x and y, and along z.
-const DIMS: [usize; 3] = [124, 124, 84];
+/// Number of voxels along x, y and z.
+const GRID_DIMS: [usize; 3] = [124, 124, 84];
 
-/// The layer of the plate, which light from above meets.
-const PLATE: usize = 76;
+/// Layer of the plate, which is lit from above.
+const PLATE_LAYER: usize = 76;
 
-/// An opaque plate, two voxels thick, where `covers` says so: x and y from the middle.
+/// Opaque plate, two voxels thick, where `covers` says so: x and y from the centre.
 fn plate(covers: impl Fn(DVec2) -> f64) -> Dataset {
-    let [nx, ny, nz] = DIMS;
+    let [nx, ny, nz] = GRID_DIMS;
     let value = |at: usize| {
         let [x, y, z] = [at % nx, at / nx % ny, at / (nx * ny)];
         let place = DVec2::new(x as f64, y as f64) - DVec2::new(nx as f64 - 1.0, ny as f64 - 1.0) / 2.0;
-        if z == PLATE || z == PLATE + 1 { (255.0 * covers(place)).round() as u8 } else { 0 }
+        if z == PLATE_LAYER || z == PLATE_LAYER + 1 { (255.0 * covers(place)).round() as u8 } else { 0 }
     };
     let values = (0..nx * ny * nz).map(value).collect();
-    Dataset::new(Volume::with_spacing("plate", DIMS, DVec3::ONE, Samples::U8(values)).expect("a volume"))
+    Dataset::new(Volume::with_spacing("plate", GRID_DIMS, DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
-/// A disc above, as wide as its tangent says.
-fn look(tangent: f64) -> Settings {
-    let mut settings = base(Engine::Gather, 8.0);
-    settings.lights = vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 2.0])];
+/// Look with a disc above, with a given tangent of its angular radius.
+fn disc_look(tangent: f64) -> Settings {
+    let mut settings = base(RenderEngine::Gather, 8.0);
+    settings.lights = vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 2.0])];
     settings.lights[0].shape = LightShape::Disc;
     settings.lights[0].angle_deg = 2.0 * tangent.atan().to_degrees();
-    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.area.resolution = LightVolumeResolution::Full;
     settings
 }
 
-/// What a half-plane leaves of a disc that is seen a share `u` of its radius beside the edge.
-fn beside_an_edge(u: f64) -> f64 {
+/// Visible share of a disc behind a half-plane, whose edge is at `u` of the disc's radius from its centre.
+fn visible_disc_share(u: f64) -> f64 {
     let u = u.clamp(-1.0, 1.0);
     0.5 + (u * (1.0 - u * u).sqrt() + u.asin()) / PI
 }
 
-/// What arrives in the layer `depth` voxels below the plate, along `across`, within `reach` of the edge: places and values.
+/// Light in the layer `depth` voxels below the plate, along `across`, within `reach` of the edge: positions and
+/// values.
 fn profile(volume: &[f32], depth: usize, across: DVec2, reach: f64) -> Vec<(f64, f64)> {
-    let [nx, ny, _] = DIMS;
-    // The middle of two layers.
-    let z = PLATE - depth;
+    let [nx, ny, _] = GRID_DIMS;
+    // The plate's middle is half a voxel above layer `PLATE_LAYER`.
+    let z = PLATE_LAYER - depth;
     let voxels = (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y)));
     voxels
         .filter_map(|(x, y)| {
             let place = DVec2::new(x as f64, y as f64) - DVec2::new(nx as f64 - 1.0, ny as f64 - 1.0) / 2.0;
             let along = place.dot(across);
-            // Away from the borders of the volume, where light comes in beside the plate.
+            // Away from the borders of the volume, where light enters beside the plate.
             let inside = place.perp_dot(across).abs() < 6.0 && along.abs() < reach;
             let value = || f64::from(volume[x + nx * (y + ny * z)]);
             inside.then(|| (along, value()))
@@ -65,8 +67,8 @@ fn profile(volume: &[f32], depth: usize, across: DVec2, reach: f64) -> Vec<(f64,
         .collect()
 }
 
-/// A row of means over what lies within half a voxel of each place, `reach` voxels to both sides of the edge.
-fn row(volume: &[f32], depth: usize, across: DVec2, reach: usize) -> Vec<f64> {
+/// Row of means over values within half a voxel of each position, `reach` voxels to both sides of the edge.
+fn mean_row(volume: &[f32], depth: usize, across: DVec2, reach: usize) -> Vec<f64> {
     let found = profile(volume, depth, across, reach as f64 + 1.5);
     let mean_at = |at: f64| {
         let weighted = found.iter().map(|(along, value)| ((1.0 - (along - at).abs()).max(0.0), value));
@@ -77,8 +79,8 @@ fn row(volume: &[f32], depth: usize, across: DVec2, reach: usize) -> Vec<f64> {
     (0..=2 * reach).map(|at| mean_at(at as f64 - reach as f64)).collect()
 }
 
-/// A half-plane under a disc: ½ + (u√(1 − u²) + asin u)/π, u = x/(d tan θ), whatever the distance, in many directions. The
-/// edge is as soft as the shadow that a point has of it, which adds to the penumbra as one blur does to another.
+/// Penumbra of a half-plane under a disc: ½ + (u√(1 − u²) + asin u)/π, u = x/(d tan θ), at every distance, in many
+/// directions. The edge is as soft as a point light's shadow of it, which convolves the penumbra.
 #[test]
 fn penumbrae_widen_with_the_distance() {
     let tangent = 0.4;
@@ -86,22 +88,22 @@ fn penumbrae_widen_with_the_distance() {
     for turn_deg in [0.0_f64, 22.5, 45.0] {
         let across = DVec2::from_angle(turn_deg.to_radians());
         let loaded = plate(|place| (0.5 - place.dot(across)).clamp(0.0, 1.0));
-        let mut settings = look(tangent);
-        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        let mut settings = disc_look(tangent);
+        let volume = full_attenuation(&mut renderer(), &loaded, &settings, 0);
         settings.lights[0].shape = LightShape::Point;
-        let sharp = attenuation(&mut renderer(), &loaded, &settings, 0);
+        let sharp = full_attenuation(&mut renderer(), &loaded, &settings, 0);
         let mut worst = [0.0_f64; 4];
         for (worst, depth) in worst.iter_mut().zip([8, 16, 32, 64]) {
             let half = (depth as f64 + 0.5) * tangent;
-            // As far as the light comes past the edge alone.
+            // As far as light from this edge alone arrives.
             let reach = half as usize + 3;
-            let edge = row(&sharp, depth, across, 8);
-            let found = row(&volume, depth, across, reach);
+            let edge = mean_row(&sharp, depth, across, 8);
+            let found = mean_row(&volume, depth, across, reach);
             for (at, found) in found.into_iter().enumerate() {
                 let place = at as f64 - reach as f64;
                 let blurred = edge.windows(2).enumerate().map(|(at, pair)| {
                     let step = at as f64 + 0.5 - 8.0;
-                    (pair[1] - pair[0]) * beside_an_edge((place - step) / half)
+                    (pair[1] - pair[0]) * visible_disc_share((place - step) / half)
                 });
                 *worst = worst.max((found - blurred.sum::<f64>()).abs());
             }
@@ -112,15 +114,15 @@ fn penumbrae_widen_with_the_distance() {
     assert!(worst_of_all <= PENUMBRA, "{worst_of_all}");
 }
 
-/// Where light rises is twice as wide at twice the distance: no walk at random, whose width rises by √2 alone.
+/// A penumbra is twice as wide at twice the distance, unlike a random walk, whose width grows by √2 only.
 #[test]
 fn twice_as_far_is_twice_as_wide() {
     let loaded = plate(|place| (0.5 - place.x).clamp(0.0, 1.0));
-    let volume = attenuation(&mut renderer(), &loaded, &look(0.4), 0);
-    // The standard deviation of the slope, which steps hardly touch.
+    let volume = full_attenuation(&mut renderer(), &loaded, &disc_look(0.4), 0);
+    // Standard deviation of the slope, which discrete steps hardly affect.
     let width = |depth: usize| {
         let reach = (0.5 * depth as f64) as usize + 6;
-        let slopes = row(&volume, depth, DVec2::X, reach);
+        let slopes = mean_row(&volume, depth, DVec2::X, reach);
         let slopes: Vec<_> =
             slopes.windows(2).enumerate().map(|(at, pair)| (at as f64, pair[1] - pair[0])).collect();
         let total: f64 = slopes.iter().map(|(_, slope)| slope).sum();
@@ -132,17 +134,17 @@ fn twice_as_far_is_twice_as_wide() {
     assert!((far / near - 1.0).abs() <= PENUMBRA_WIDTH, "{near}, {far}");
 }
 
-/// What is behind something small loses as much of a large light as of a point; it is only spread.
+/// A small occluder takes as much of an area light as of a point light; it is only spread.
 #[test]
 fn a_penumbra_takes_no_light_away() {
     let loaded = plate(|place| f64::from(u8::from(place.length() < 6.0)));
     let mean = |settings: &Settings| {
-        let volume = attenuation(&mut renderer(), &loaded, settings, 0);
-        let [nx, ny, _] = DIMS;
-        let layer = &volume[nx * ny * (PLATE - 40)..][..nx * ny];
+        let volume = full_attenuation(&mut renderer(), &loaded, settings, 0);
+        let [nx, ny, _] = GRID_DIMS;
+        let layer = &volume[nx * ny * (PLATE_LAYER - 40)..][..nx * ny];
         layer.iter().map(|&value| f64::from(value)).sum::<f64>() / (nx * ny) as f64
     };
-    let large = look(0.4);
+    let large = disc_look(0.4);
     let mut point = large.clone();
     point.lights[0].shape = LightShape::Point;
     let (found, right) = (mean(&large), mean(&point));
@@ -150,13 +152,13 @@ fn a_penumbra_takes_no_light_away() {
     assert!(right < 0.995 && (found - right).abs() <= PENUMBRA_ENERGY, "{found}, not {right}");
 }
 
-/// A light without a size is a point, byte for byte; and one with hardly any nearly so.
+/// An area light of size 0 is a point light, byte for byte; a very small one nearly so.
 #[test]
 fn no_size_is_a_point() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
-    let volume = |settings: &Settings| attenuation(&mut renderer(), &loaded, settings, 0);
-    for kind in [LightKind::Parallel, LightKind::Perspective] {
-        let mut settings = look(0.4);
+    let volume = |settings: &Settings| full_attenuation(&mut renderer(), &loaded, settings, 0);
+    for kind in [LightGeometry::Parallel, LightGeometry::Perspective] {
+        let mut settings = disc_look(0.4);
         settings.lights[0] = scenes::light(kind, [1.2, -1.7, 2.0]);
         let point = volume(&settings);
         let light = &mut settings.lights[0];
@@ -172,21 +174,22 @@ fn no_size_is_a_point() {
     }
 }
 
-/// A ball beside which the light stands, so wide that a part of it sets long before the last.
-fn beside_a_ball(light: Light) -> Settings {
+/// Look with a light beside a ball, so large that parts of it set long before others.
+fn look_beside_a_ball(light: LightSettings) -> Settings {
     let mut settings = scenes::look();
     settings.transfer = scenes::linear_extinction(4.0);
-    settings.shading.sides = Sides::One;
+    settings.shading.sides = LitSides::One;
     (settings.shading.ambient, settings.shading.specular) = (0.0, 0.0);
-    settings.shadows.near_field = NearField::Long;
-    settings.shadows.area.resolution = Resolution::Full;
+    settings.shadows.near_field = NearFieldRay::Long;
+    settings.shadows.area.resolution = LightVolumeResolution::Full;
     settings.shadows.area.samples = 32;
-    settings.camera = scenes::straight(-60.0, 35.0);
+    settings.camera = scenes::axis_camera(-60.0, 35.0);
     settings.lights = vec![light];
     settings
 }
 
-/// Where light ends on a surface is the mean over the points of a light: each shines only at what faces it.
+/// Light at the terminator of a surface is the mean over the points of a light: each shines only on surfaces that
+/// face it.
 #[test]
 fn light_ends_where_the_last_point_sets() {
     let n = 40;
@@ -194,19 +197,23 @@ fn light_ends_where_the_last_point_sets() {
     let mut renderer = renderer();
     let mut picture = |settings: &Settings| -> Vec<f64> {
         let picture = render(&mut renderer, &loaded, settings, [96, 72]);
-        picture.light.iter().map(|&[r, ..]| f64::from(r)).collect()
+        picture.linear.iter().map(|&[r, ..]| f64::from(r)).collect()
     };
     for (kind, position, algorithm) in [
-        (LightKind::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Splat),
-        (LightKind::Perspective, [1.9, 0.5, -0.2], ShadowAlgorithm::Splat),
-        (LightKind::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Off),
+        (LightGeometry::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Splat),
+        (LightGeometry::Perspective, [1.9, 0.5, -0.2], ShadowAlgorithm::Splat),
+        (LightGeometry::Parallel, [2.0, 0.6, 0.3], ShadowAlgorithm::Off),
     ] {
-        let disc =
-            Light { shape: LightShape::Disc, angle_deg: 50.0, size: 1.6, ..scenes::light(kind, position) };
-        let mut settings = beside_a_ball(disc);
+        let disc = LightSettings {
+            shape: LightShape::Disc,
+            angle_deg: 50.0,
+            size: 1.6,
+            ..scenes::light(kind, position)
+        };
+        let mut settings = look_beside_a_ball(disc);
         settings.shadows.algorithm = algorithm;
         let found = picture(&settings);
-        let points = settings.lights[0].in_scene(&settings.camera).points(32);
+        let points = settings.lights[0].resolve(&settings.camera).sample_lights(32);
         let mut mean = vec![0.0; found.len()];
         for point in &points {
             let mut alone = settings.clone();
@@ -214,10 +221,10 @@ fn light_ends_where_the_last_point_sets() {
             let share = 1.0 / points.len() as f64;
             mean.iter_mut().zip(picture(&alone)).for_each(|(sum, light)| *sum += light * share);
         }
-        // As if all of it shone from its middle.
+        // As if all of the light came from its centre.
         settings.shadows.area.samples = 1;
         let middle = picture(&settings);
-        // Where half of the light or more has set, which is where it is weak.
+        // Where at least half of the light has set, which is where it is weak.
         let brightest = mean.iter().copied().fold(0.0, f64::max);
         let is_low = |light: f64| light > 1e-3 * brightest && light < 0.2 * brightest;
         let off = |picture: &[f64]| {

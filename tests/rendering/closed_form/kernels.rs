@@ -1,13 +1,13 @@
-//! Kernels: a constant stays constant, slabs converge, and extremes stay numbers.
+//! Kernels in closed form: partition of unity, convergence of slabs, and finite results for extreme volumes.
 
-use chiaroscuro::model::{Deposit, Engine, Quadrature};
+use chiaroscuro::model::{DepositMode, RenderEngine, SlabQuadrature};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Dataset, attenuation, render};
-use crate::compare::{difference, wide};
+use crate::common::{Dataset, full_attenuation, render};
+use crate::compare::{difference, to_f64};
 use crate::scenes;
-use crate::thresholds::{EIGHT_BITS, FAINT, ORDER_FRONT, ORDER_MEAN, UNITY};
+use crate::thresholds::{EIGHT_BITS, MIN_COMPARED_LIGHT, ORDER_FRONT, ORDER_MEAN, UNITY};
 
 with_both_engines! {
     kernels_are_a_partition_of_unity
@@ -15,20 +15,20 @@ with_both_engines! {
     extremes_stay_finite
 }
 
-/// No. 1: A constant stays constant under the kernel, wherever it is sampled: the ratio of successive
-/// sheets of a light gives the density back.
-fn kernels_are_a_partition_of_unity(engine: Engine) {
+/// No. 1: A constant remains constant under the kernel, wherever it is sampled: the ratio of successive sheets of a
+/// light gives the density back.
+fn kernels_are_a_partition_of_unity(engine: RenderEngine) {
     let per_slab = 1.0;
     let n = 32;
     let loaded = Dataset::new(scenes::block(n, |v| v != [0, 0, 0]));
     for light in [[0.31, -0.62, 0.77], [-0.9, 0.2, 0.13]] {
         let mut settings = base(engine, per_slab);
         settings.lights[0].position = light;
-        // Sheets that deposit what arrives: successive ratios are e^−τ of one slab.
-        settings.shadows.deposit = Deposit::Front;
+        // Sheets that deposit the arriving light: successive ratios are e^−τ of one slab.
+        settings.shadows.deposit = DepositMode::Front;
         let sheets = renderer().light_sheets(&loaded, &settings, 0, 0).expect("sheets");
         let view = &chiaroscuro::plan::light_views(
-            &settings.lights[0].in_scene(&settings.camera),
+            &settings.lights[0].resolve(&settings.camera),
             &settings.shadows,
             &loaded.volume().scene(),
         )[0];
@@ -40,7 +40,7 @@ fn kernels_are_a_partition_of_unity(engine: Engine) {
                 // Three voxels away from the faces, and from the one empty voxel.
                 let inside = p.min_element() > 3.0 && p.max_element() < n as f64 - 4.0;
                 let at = |k: u32| f64::from(sheets[(i + w * (j + h * k)) as usize]);
-                if inside && at(k) > FAINT {
+                if inside && at(k) > MIN_COMPARED_LIGHT {
                     let density = -(at(k + 1) / at(k)).ln() / per_slab;
                     assert!((density - 1.0).abs() <= UNITY, "{density} at {p}");
                     checked += 1;
@@ -52,17 +52,17 @@ fn kernels_are_a_partition_of_unity(engine: Engine) {
 }
 
 /// No. 8: Thinner light slabs converge: first order with the literal deposit, second with the mean.
-fn thinner_slabs_converge(engine: Engine) {
+fn thinner_slabs_converge(engine: RenderEngine) {
     let loaded = Dataset::new(scenes::ball(40, DVec3::splat(19.5), 13.0));
-    for (deposit, order) in [(Deposit::Front, ORDER_FRONT), (Deposit::SlabMean, ORDER_MEAN)] {
+    for (deposit, order) in [(DepositMode::Front, ORDER_FRONT), (DepositMode::SlabMean, ORDER_MEAN)] {
         let volume = |slab: f64| {
             let mut settings = base(engine, 0.3);
-            // Along the grid: what is left is the slabs' error alone.
+            // Along the grid: the remaining error is that of the slabs alone.
             settings.lights[0].position = [0.0, 0.0, 1.0];
             settings.shadows.deposit = deposit;
             settings.shadows.slab = slab;
-            settings.shadows.quadrature = Quadrature::Two;
-            wide(&attenuation(&mut renderer(), &loaded, &settings, 0))
+            settings.shadows.quadrature = SlabQuadrature::Two;
+            to_f64(&full_attenuation(&mut renderer(), &loaded, &settings, 0))
         };
         let coarse = difference(&volume(2.0), &volume(0.5)).rmse;
         let fine = difference(&volume(1.0), &volume(0.25)).rmse;
@@ -71,8 +71,8 @@ fn thinner_slabs_converge(engine: Engine) {
     }
 }
 
-/// No. 17: Noise, emptiness and solidity give numbers, and nothing is exactly the background.
-fn extremes_stay_finite(engine: Engine) {
+/// No. 17: Noise, empty and solid volumes give finite numbers, and empty ones exactly the background.
+fn extremes_stay_finite(engine: RenderEngine) {
     let noise: Vec<u8> = (0..32usize.pow(3)).map(|i| (i.wrapping_mul(2654435761) >> 13) as u8).collect();
     let noise = chiaroscuro::data::Volume::with_spacing(
         "noise",
@@ -90,13 +90,13 @@ fn extremes_stay_finite(engine: Engine) {
             point.opacity = opacity;
         }
         let picture = render(&mut renderer, &loaded, &settings, [64, 64]);
-        assert!(picture.light.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "opacity {opacity}");
-        assert!(picture.light.iter().all(|texel| texel[3] <= 1.0), "opacity {opacity}");
-        let empty = picture.light.iter().all(|texel| texel[3] == 0.0);
+        assert!(picture.linear.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "opacity {opacity}");
+        assert!(picture.linear.iter().all(|texel| texel[3] <= 1.0), "opacity {opacity}");
+        let empty = picture.linear.iter().all(|texel| texel[3] == 0.0);
         assert_eq!(empty, opacity == 0.0);
         if empty {
             let [top, bottom] = [settings.output.background.top, settings.output.background.bottom];
-            for (at, texel) in picture.shown.chunks_exact(4).enumerate() {
+            for (at, texel) in picture.display.chunks_exact(4).enumerate() {
                 let down = ((at / 64) as f32 + 0.5) / 64.0;
                 for c in 0..3 {
                     let expected = top[c] + (bottom[c] - top[c]) * down;

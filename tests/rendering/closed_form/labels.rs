@@ -1,8 +1,10 @@
-//! Numbers of labels are never mixed: between labels 3 and 9 is no shell of those from 4 to 8.
+//! Label interpolation: label numbers are never mixed, so that there is no shell of labels 4 to 8 between labels 3
+//! and 9.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Classification, ControlPoint, Engine, Kernel, NearField, Settings, ShadowAlgorithm, TransferFunction,
+    ClassificationOrder, ControlPoint, NearFieldRay, ReconstructionKernel, RenderEngine, Settings,
+    ShadowAlgorithm, TransferFunction,
 };
 use glam::DVec3;
 
@@ -13,10 +15,10 @@ with_both_engines! {
     labels_between_are_not_seen
 }
 
-/// Voxels along an edge.
+/// Number of voxels along an edge.
 const N: usize = 32;
 
-/// A ball of label 9 within one of label 3, amid nothing.
+/// Ball of label 9 within one of label 3, in empty space.
 fn nested_balls() -> Dataset {
     let label = |at: usize| {
         let p = DVec3::new((at % N) as f64, (at / N % N) as f64, (at / N / N) as f64);
@@ -30,8 +32,8 @@ fn nested_balls() -> Dataset {
     Dataset::new(Volume::with_spacing("balls", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
 }
 
-/// Label 3 is blue and faint, label 9 red; all others are green.
-fn look(engine: Engine) -> Settings {
+/// Look in which label 3 is blue and faint, label 9 red, and all others green.
+fn look(engine: RenderEngine) -> Settings {
     let steps = [
         (0.5, [0.0, 1.0, 0.0], 0.0),
         (2.5, [0.0, 1.0, 0.0], 0.9),
@@ -47,20 +49,20 @@ fn look(engine: Engine) -> Settings {
     }
     let transfer = TransferFunction { points, ..TransferFunction::default() };
     let mut settings = Settings { transfer, ..base(engine, 0.1) };
-    settings.sampling.classification = Classification::Pre;
+    settings.sampling.classification = ClassificationOrder::Pre;
     settings.shading.specular = 0.0;
     settings
 }
 
-fn labels_between_are_not_seen(engine: Engine) {
+fn labels_between_are_not_seen(engine: RenderEngine) {
     let loaded = nested_balls();
     let mut renderer = renderer();
     let mut brightest = |settings: &Settings| {
         let picture = render(&mut renderer, &loaded, settings, [72, 72]);
-        let most = |channel: usize| picture.light.iter().map(|texel| texel[channel]).fold(0.0, f32::max);
+        let most = |channel: usize| picture.linear.iter().map(|texel| texel[channel]).fold(0.0, f32::max);
         [0, 1, 2].map(most)
     };
-    for kernel in [Kernel::BSpline, Kernel::Prefiltered] {
+    for kernel in [ReconstructionKernel::BSpline, ReconstructionKernel::Prefiltered] {
         for distance in [3.0, 16.0] {
             let mut settings = look(engine);
             settings.sampling.kernel = kernel;
@@ -68,13 +70,13 @@ fn labels_between_are_not_seen(engine: Engine) {
             let [red, green, blue] = brightest(&settings);
             assert!(red > 0.1 && blue > 0.02, "{kernel:?} from {distance}: {red} {blue}");
             assert!(green == 0.0, "{kernel:?} from {distance}: {green}");
-            // If what is spread is classified, the shells are there.
-            settings.sampling.classification = Classification::Post;
+            // Classified after interpolation, the shells appear.
+            settings.sampling.classification = ClassificationOrder::Post;
             let [_, green, _] = brightest(&settings);
             assert!(green > 0.02, "{kernel:?} from {distance}: {green}");
         }
     }
-    // Light, too, meets none of them: with its own table green is the only thing that attenuates it.
+    // Light meets none of them either: in its own table only green attenuates it.
     let mut settings = look(engine);
     settings.lighting.linked = false;
     settings.lighting.curve = TransferFunction {
@@ -89,7 +91,7 @@ fn labels_between_are_not_seen(engine: Engine) {
             .collect(),
         ..TransferFunction::default()
     };
-    for near_field in [NearField::Off, NearField::Long] {
+    for near_field in [NearFieldRay::Off, NearFieldRay::Long] {
         settings.shadows.near_field = near_field;
         settings.shadows.algorithm = ShadowAlgorithm::Splat;
         let shadowed = brightest(&settings);

@@ -1,50 +1,52 @@
-//! Lights and their shadows: at the eye, behind a ball, far away, and under a hood.
+//! Lights and shadows in closed form: a headlight, the shadow of a ball, a distant light, and a spotlight.
 
-use chiaroscuro::gpu::Picture;
-use chiaroscuro::model::{Deposit, Engine, Hood, LightKind, ReverseKernel, ShadowAlgorithm};
+use chiaroscuro::gpu::RenderedPicture;
+use chiaroscuro::model::{
+    DepositMode, LightGeometry, RenderEngine, ReverseKernel, ShadowAlgorithm, Spotlight,
+};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Dataset, attenuation, render};
-use crate::compare::{Limit, compare, wide};
+use crate::common::{Dataset, full_attenuation, render};
+use crate::compare::{ErrorLimit, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::{
-    BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE, HEADLIGHT_ORDER, HOOD_EDGE_DEG,
-    LIGHT_ALONG_A_FACE,
+    BALL_SHADOW, FAR_LIGHT, HEADLIGHT_COARSE, HEADLIGHT_FINE, HEADLIGHT_ORDER, LIGHT_ALONG_A_FACE,
+    SPOTLIGHT_RIM_DEG,
 };
 
 with_both_engines! {
     headlight_gives_one_half
     shadow_of_a_ball
     a_far_point_light_is_parallel
-    a_hood_is_a_cone_with_a_soft_rim
+    a_spotlight_is_a_cone_with_a_soft_rim
 }
 
-fn middle_red(picture: &Picture) -> f64 {
+fn center_red(picture: &RenderedPicture) -> f64 {
     let [w, h] = picture.size.map(|n| n as usize);
-    f64::from(picture.light[h / 2 * w + w / 2][0])
+    f64::from(picture.linear[h / 2 * w + w / 2][0])
 }
 
-fn headlight(engine: Engine, deposit: Deposit, slab: f64) -> f64 {
+fn headlight_brightness(engine: RenderEngine, deposit: DepositMode, slab: f64) -> f64 {
     let n = 40;
     let loaded = Dataset::new(scenes::block(n, |[x, y, z]| {
         (6..26).contains(&y) && x > 2 && z > 2 && x < 37 && z < 37
     }));
-    // From −y, as the eye of `straight(-90, 0)`.
+    // From −y, like the eye of `straight(-90, 0)`.
     let mut settings = base(engine, 0.7);
     settings.lights[0].position = [0.0, -1.0, 0.0];
     settings.shadows.deposit = deposit;
     settings.shadows.slab = slab;
     settings.sampling.slab = slab;
-    middle_red(&render(&mut renderer(), &loaded, &settings, [48, 48]))
+    center_red(&render(&mut renderer(), &loaded, &settings, [48, 48]))
 }
 
-/// No. 4: Light from the eye's direction, material that scatters evenly, optically thick:
-/// C = ∫ T·T dτ = ½, whatever the density.
-fn headlight_gives_one_half(engine: Engine) {
-    let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight(engine, deposit, slab) - 0.5);
-    let mean = errors(Deposit::SlabMean);
-    let front = errors(Deposit::Front);
+/// No. 4: Light from the eye's direction, isotropic material, optically thick: C = ∫ T·T dτ = ½, whatever the
+/// density.
+fn headlight_gives_one_half(engine: RenderEngine) {
+    let errors = |deposit| [1.0, 0.5, 0.25].map(|slab| headlight_brightness(engine, deposit, slab) - 0.5);
+    let mean = errors(DepositMode::SlabMean);
+    let front = errors(DepositMode::Front);
     println!("headlight: slab mean {mean:.4?}, front {front:.4?}");
     assert!(mean[2].abs() <= 0.5 * HEADLIGHT_FINE, "slab mean: {mean:?}");
     assert!(mean[0].abs() <= 0.5 * HEADLIGHT_COARSE, "slab mean: {mean:?}");
@@ -61,14 +63,14 @@ fn headlight_gives_one_half(engine: Engine) {
 }
 
 /// No. 5: Behind a ball of radius r the light is e^(−2μ√(r² − b²)) at distance b from its axis.
-fn shadow_of_a_ball(engine: Engine) {
+fn shadow_of_a_ball(engine: RenderEngine) {
     let n = 60;
     let radius = 10.0;
     let centre = DVec3::new(29.5, 29.5, 40.0);
     let loaded = Dataset::new(scenes::ball(n, centre, radius));
     let per_voxel = 0.1;
     let settings = base(engine, per_voxel);
-    let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+    let volume = full_attenuation(&mut renderer(), &loaded, &settings, 0);
     let plane = 15;
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     for (x, y) in (4..n - 4).flat_map(|x| (4..n - 4).map(move |y| (x, y))) {
@@ -78,7 +80,7 @@ fn shadow_of_a_ball(engine: Engine) {
             expected.push((-2.0 * per_voxel * (radius * radius - b * b).max(0.0).sqrt()).exp());
         }
     }
-    let limit = Limit { max: f64::INFINITY, rmse: BALL_SHADOW };
+    let limit = ErrorLimit { max: f64::INFINITY, rmse: BALL_SHADOW };
     compare("shadow of a ball", &found, &expected, limit).unwrap_or_else(|err| panic!("{err}"));
     let middle = f64::from(volume[29 + n * (29 + n * plane)]);
     let b2 = 0.5;
@@ -86,32 +88,32 @@ fn shadow_of_a_ball(engine: Engine) {
     assert!((middle - exact).abs() <= BALL_SHADOW, "{middle} not {exact}");
 }
 
-/// No. 15: A point light a hundred volumes away is a parallel light.
-fn a_far_point_light_is_parallel(engine: Engine) {
+/// No. 15: A point light at a distance of a hundred volumes is a parallel light.
+fn a_far_point_light_is_parallel(engine: RenderEngine) {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
     settings.sampling.engine = engine;
     let direction = DVec3::new(0.5, -0.6, 0.8).normalize_or_zero();
     let mut volume = |kind| {
         settings.lights = vec![scenes::light(kind, (direction * 200.0).into())];
-        wide(&attenuation(&mut renderer(), &loaded, &settings, 0))
+        to_f64(&full_attenuation(&mut renderer(), &loaded, &settings, 0))
     };
-    let (near, far) = (volume(LightKind::Parallel), volume(LightKind::Perspective));
-    let limit = Limit { max: f64::INFINITY, rmse: FAR_LIGHT };
+    let (near, far) = (volume(LightGeometry::Parallel), volume(LightGeometry::Perspective));
+    let limit = ErrorLimit { max: f64::INFINITY, rmse: FAR_LIGHT };
     compare("far light", &far, &near, limit).unwrap_or_else(|err| panic!("{err}"));
 }
 
-/// No. 15: A hood lets nothing out beyond its rim, everything within, and fades smoothly between.
-fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
+/// No. 15: A spotlight is dark outside its cone, full inside, and falls off smoothly at the rim.
+fn a_spotlight_is_a_cone_with_a_soft_rim(engine: RenderEngine) {
     let n = 40;
-    // One voxel, that the volume is not empty; the light passes the rest unhindered.
+    // One voxel, so that the volume is not empty; the light passes the rest unattenuated.
     let loaded = Dataset::new(scenes::block(n, |voxel| voxel == [0; 3]));
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast] {
         let mut settings = base(engine, 1.0);
         settings.shadows.algorithm = algorithm;
-        settings.lights = vec![scenes::light(LightKind::Perspective, [0.0, 0.0, 4.0])];
-        settings.lights[0].hood = Hood { on: true, half_angle_deg: 11.0, rim_deg: 4.0 };
-        let volume = attenuation(&mut renderer(), &loaded, &settings, 0);
+        settings.lights = vec![scenes::light(LightGeometry::Perspective, [0.0, 0.0, 4.0])];
+        settings.lights[0].hood = Spotlight { on: true, half_angle_deg: 11.0, rim_deg: 4.0 };
+        let volume = full_attenuation(&mut renderer(), &loaded, &settings, 0);
         // The middle plane, from the axis outwards: 4 scene units from the light, a voxel is 2/n wide.
         let middle = n / 2;
         let row: Vec<(f64, f32)> = (middle..n)
@@ -123,10 +125,10 @@ fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
             .collect();
         for (angle_deg, arriving) in &row {
             match angle_deg {
-                angle if *angle > 11.0 + HOOD_EDGE_DEG => {
+                angle if *angle > 11.0 + SPOTLIGHT_RIM_DEG => {
                     assert_eq!(*arriving, 0.0, "{algorithm:?}, {angle}°");
                 }
-                angle if *angle < 7.0 - HOOD_EDGE_DEG => {
+                angle if *angle < 7.0 - SPOTLIGHT_RIM_DEG => {
                     assert_eq!(*arriving, 1.0, "{algorithm:?}, {angle}°");
                 }
                 _ => {}
@@ -139,20 +141,20 @@ fn a_hood_is_a_cone_with_a_soft_rim(engine: Engine) {
     }
 }
 
-/// Light along the rows of voxels beside a flat face: dark rows lie beside lit ones, and none takes light from the next.
-/// A row attenuates light as its own reconstructed density says, whether a voxel or a face of two lies in the middle.
+/// Light along rows of voxels beside a flat face: dark rows lie beside lit ones, without bleeding. A row attenuates
+/// light by its own reconstructed density, whether a voxel or a face of two lies in the middle.
 #[test]
 fn light_along_a_face_stays_in_its_rows() {
     for n in [40, 41] {
         let face = 12;
         let loaded = Dataset::new(scenes::block(n, |[_, _, z]| z >= face && z < n - face));
-        let mut settings = base(Engine::Gather, 0.3);
+        let mut settings = base(RenderEngine::Gather, 0.3);
         settings.shadows.reverse_kernel = ReverseKernel::Tent;
         settings.lights[0].position = [1.0, 0.0, 0.0];
         let mut rays = settings.clone();
         rays.shadows.algorithm = ShadowAlgorithm::Raycast;
         let [found, expected] =
-            [settings, rays].map(|settings| attenuation(&mut renderer(), &loaded, &settings, 0));
+            [settings, rays].map(|settings| full_attenuation(&mut renderer(), &loaded, &settings, 0));
         let (mut worst, mut darkest) = (0.0_f32, 1.0_f32);
         for z in 0..n {
             for x in 4..n - 4 {

@@ -1,20 +1,20 @@
-//! Scenes whose answer is known in closed form, on the GPU path.
+//! Tests of the GPU in scenes with a closed-form solution.
 
 use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Engine, Length, LightKind, Settings};
+use chiaroscuro::model::{LightGeometry, OpacityLength, RenderEngine, Settings};
 
 use crate::common::context;
-use crate::scenes::{self, isotropic, linear_extinction, paper, straight};
+use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
 
 mod absorption;
 mod all_light;
 mod area_lights;
-mod bounces;
 mod brightness;
 mod colored_shadows;
 mod kernels;
 mod labels;
 mod lights;
+mod multiple_scattering;
 mod path_tracer;
 mod presence;
 mod sky;
@@ -23,33 +23,33 @@ pub(crate) fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")
 }
 
-pub(crate) fn base(engine: Engine, per_voxel: f64) -> Settings {
+pub(crate) fn base(engine: RenderEngine, per_voxel: f64) -> Settings {
     let mut settings = Settings {
         transfer: linear_extinction(per_voxel),
-        opacity_unit: Length::Voxels(1.0),
-        lights: vec![scenes::light(LightKind::Parallel, [0.0, 0.0, 1.0])],
-        camera: straight(-90.0, 0.0),
+        opacity_unit: OpacityLength::Voxels(1.0),
+        lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
+        camera: axis_camera(-90.0, 0.0),
         ..Settings::default()
     };
-    isotropic(&mut settings);
-    paper(&mut settings);
+    make_isotropic(&mut settings);
+    use_paper_shadows(&mut settings);
     settings.sampling.engine = engine;
     settings
 }
 
-/// Makes a test of each check, for each of the engines.
+/// Generates a test of each check for each of the two engines.
 macro_rules! with_both_engines {
     ($($check:ident)+) => {
         mod gathered {
             $(#[test]
             fn $check() {
-                super::$check(chiaroscuro::model::Engine::Gather);
+                super::$check(chiaroscuro::model::RenderEngine::Gather);
             })+
         }
         mod scattered {
             $(#[test]
             fn $check() {
-                super::$check(chiaroscuro::model::Engine::Scatter);
+                super::$check(chiaroscuro::model::RenderEngine::Scatter);
             })+
         }
     };

@@ -1,15 +1,17 @@
-//! Where data end, and where voxels are missing, material ends, whatever the transfer function.
+//! Presence in closed form: material ends with the grid, and where voxels are missing, whatever the transfer
+//! function.
 
 use chiaroscuro::data::{Samples, Volume};
 use chiaroscuro::model::{
-    Classification, ControlPoint, Engine, Interpolation, Kernel, Settings, TransferFunction,
+    ClassificationOrder, ControlPoint, OpacityInterpolation, ReconstructionKernel, RenderEngine, Settings,
+    TransferFunction,
 };
 use chiaroscuro::reference::{cubic_b_spline, tent};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, render};
-use crate::compare::{compare, wide};
+use crate::compare::{compare, to_f64};
 use crate::thresholds::{CHORD_OPACITY, EDGE_PROFILE, LOBES};
 
 with_both_engines! {
@@ -18,63 +20,68 @@ with_both_engines! {
     lobes_of_either_sign_look_alike
 }
 
-/// Voxels along an edge.
-const N: usize = 24;
+/// Number of voxels along an edge.
+const EDGE_VOXELS: usize = 24;
 
-/// Extinction `per_voxel` at every value.
-fn all_opaque(per_voxel: f64) -> TransferFunction {
+/// Transfer function with extinction `per_voxel` at every value.
+fn constant_extinction(per_voxel: f64) -> TransferFunction {
     let point = |value| ControlPoint::new(value, [1.0; 3], 1.0 - (-per_voxel).exp());
     TransferFunction {
         points: vec![point(0.0), point(255.0)],
-        interpolation: Interpolation::Extinction,
+        interpolation: OpacityInterpolation::Extinction,
         ..TransferFunction::default()
     }
 }
 
-/// Extinction falls from `per_voxel` at the lowest value to nothing at the highest.
-fn falling(per_voxel: f64) -> TransferFunction {
+/// Transfer function whose extinction falls from `per_voxel` at the lowest value to 0 at the highest.
+fn falling_extinction(per_voxel: f64) -> TransferFunction {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     TransferFunction {
         points: vec![point(0.0, 1.0 - (-per_voxel).exp()), point(255.0, 0.0)],
-        interpolation: Interpolation::Extinction,
+        interpolation: OpacityInterpolation::Extinction,
         ..TransferFunction::default()
     }
 }
 
-/// A volume of the lowest or the highest value; a voxel in a corner has the other, so that the values span a range.
-fn constant(value: u8) -> Dataset {
-    let mut values = vec![value; N * N * N];
+/// Volume of the lowest or the highest value; a voxel in a corner has the other, so that the values span a range.
+fn constant_volume(value: u8) -> Dataset {
+    let mut values = vec![value; EDGE_VOXELS * EDGE_VOXELS * EDGE_VOXELS];
     values[0] = 255 - value;
-    Dataset::new(Volume::with_spacing("constant", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
+    Dataset::new(
+        Volume::with_spacing("constant", [EDGE_VOXELS; 3], DVec3::ONE, Samples::U8(values))
+            .expect("a volume"),
+    )
 }
 
-/// The share of a kernel's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
-fn edge_profile(kernel: Kernel, depth: f64) -> f64 {
+/// Share of a kernel's weights on voxels 0, 1, 2 …, `depth` voxels behind the edge before voxel 0.
+fn edge_profile(kernel: ReconstructionKernel, depth: f64) -> f64 {
     let weight = |away: f64| match kernel {
         // [1, 10, 1] / 12, and the tent of a linear fetch.
-        Kernel::Prefiltered => (10.0 * tent(away) + tent(away - 1.0) + tent(away + 1.0)) / 12.0,
+        ReconstructionKernel::Prefiltered => (10.0 * tent(away) + tent(away - 1.0) + tent(away + 1.0)) / 12.0,
         _ => cubic_b_spline(away),
     };
     (0..4).map(|voxel| weight(depth - 0.5 - f64::from(voxel))).sum()
 }
 
-/// Along an axis, a ray sees 1 − e^(−μ·n) of a volume of one value, times the kernel's edge profile beside it.
-fn a_constant_volume_ends_at_its_faces(engine: Engine) {
+/// Along an axis, the opacity of a constant volume is 1 − e^(−μ·n), times the kernel's edge profile beside it.
+fn a_constant_volume_ends_at_its_faces(engine: RenderEngine) {
     let per_voxel = 0.04;
-    for classification in [Classification::Post, Classification::Pre] {
-        // At the lowest value, extinction is what the function has there.
-        for (value, transfer) in
-            [(0, all_opaque(per_voxel)), (0, falling(per_voxel)), (255, all_opaque(per_voxel))]
-        {
+    for classification in [ClassificationOrder::Post, ClassificationOrder::Pre] {
+        // At the lowest value, extinction is that of the transfer function.
+        for (value, transfer) in [
+            (0, constant_extinction(per_voxel)),
+            (0, falling_extinction(per_voxel)),
+            (255, constant_extinction(per_voxel)),
+        ] {
             let mut settings = Settings { transfer, ..base(engine, per_voxel) };
             settings.sampling.classification = classification;
             settings.sampling.slab = 0.5;
             let size = [96, 96];
-            let loaded = constant(value);
+            let loaded = constant_volume(value);
             let picture = render(&mut renderer(), &loaded, &settings, size);
             let scene = loaded.volume().scene();
-            let middle = f64::from(picture.light[48 * 96 + 48][3]);
-            let chord = 1.0 - (-per_voxel * N as f64).exp();
+            let middle = f64::from(picture.linear[48 * 96 + 48][3]);
+            let chord = 1.0 - (-per_voxel * EDGE_VOXELS as f64).exp();
             assert!(
                 (middle - chord).abs() <= CHORD_OPACITY,
                 "{value} {classification:?}: {middle} not {chord}"
@@ -85,12 +92,16 @@ fn a_constant_volume_ends_at_its_faces(engine: Engine) {
                 let (origin, _) = settings.camera.ray_through(f64::from(column) + 0.5, 48.5, 96.0, 96.0);
                 let index = scene.index_from_scene.transform_point3(origin);
                 // The camera looks along y: x is across.
-                let depth = (index.x + 0.5).min(N as f64 - 0.5 - index.x);
+                let depth = (index.x + 0.5).min(EDGE_VOXELS as f64 - 0.5 - index.x);
                 // Gathered voxels that are classified first are spread by the prefiltered kernel.
-                let kernel = if engine == Engine::Gather { settings.eye_kernel() } else { Kernel::BSpline };
+                let kernel = if engine == RenderEngine::Gather {
+                    settings.eye_kernel()
+                } else {
+                    ReconstructionKernel::BSpline
+                };
                 let share = if depth > 1.5 { 1.0 } else { edge_profile(kernel, depth.max(-1.5)) };
-                let expected = 1.0 - (-per_voxel * N as f64 * share).exp();
-                let found = f64::from(picture.light[48 * 96 + column as usize][3]);
+                let expected = 1.0 - (-per_voxel * EDGE_VOXELS as f64 * share).exp();
+                let found = f64::from(picture.linear[48 * 96 + column as usize][3]);
                 assert!(
                     (found - expected).abs() <= EDGE_PROFILE,
                     "{value} {classification:?}, {depth} voxels inside: {found} not {expected}"
@@ -102,43 +113,52 @@ fn a_constant_volume_ends_at_its_faces(engine: Engine) {
     }
 }
 
-/// A slab of missing voxels in a volume of one value is a slab of nothing.
-fn holes_are_empty(engine: Engine) {
+/// A slab of missing voxels in a constant volume is empty.
+fn holes_are_empty(engine: RenderEngine) {
     let per_voxel = 0.04;
-    let values = (0..N * N * N).map(|at| match at / N % N {
-        _ if at == 0 => 255.0,
-        8..=15 => f32::NAN,
-        _ => 0.0,
-    });
+    let values =
+        (0..EDGE_VOXELS * EDGE_VOXELS * EDGE_VOXELS).map(|at| match at / EDGE_VOXELS % EDGE_VOXELS {
+            _ if at == 0 => 255.0,
+            8..=15 => f32::NAN,
+            _ => 0.0,
+        });
     let samples = Samples::F32(values.collect());
-    let loaded = Dataset::new(Volume::with_spacing("holes", [N; 3], DVec3::ONE, samples).expect("a volume"));
-    for kernel in [Kernel::BSpline, Kernel::Prefiltered] {
-        let mut settings = Settings { transfer: falling(per_voxel), ..base(engine, per_voxel) };
+    let loaded =
+        Dataset::new(Volume::with_spacing("holes", [EDGE_VOXELS; 3], DVec3::ONE, samples).expect("a volume"));
+    for kernel in [ReconstructionKernel::BSpline, ReconstructionKernel::Prefiltered] {
+        let mut settings = Settings { transfer: falling_extinction(per_voxel), ..base(engine, per_voxel) };
         settings.sampling.kernel = kernel;
         settings.sampling.slab = 0.5;
         let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
         // The camera looks along y.
-        let expected = 1.0 - (-per_voxel * (N - 8) as f64).exp();
-        let found = f64::from(picture.light[32 * 64 + 32][3]);
+        let expected = 1.0 - (-per_voxel * (EDGE_VOXELS - 8) as f64).exp();
+        let found = f64::from(picture.linear[32 * 64 + 32][3]);
         assert!((found - expected).abs() <= CHORD_OPACITY, "{kernel:?}: {found} not {expected}");
     }
 }
 
-/// A signed wave: its picture is that of the negative wave with the colours of the lobes exchanged.
-fn lobes_of_either_sign_look_alike(engine: Engine) {
+/// The picture of a signed wave is that of the negative wave with the colours of the lobes exchanged.
+fn lobes_of_either_sign_look_alike(engine: RenderEngine) {
     let wave = |sign: f64| {
         let value = |at: usize| {
-            let p = DVec3::new((at % N) as f64, (at / N % N) as f64, (at / N / N) as f64) / N as f64;
+            let p = DVec3::new(
+                (at % EDGE_VOXELS) as f64,
+                (at / EDGE_VOXELS % EDGE_VOXELS) as f64,
+                (at / EDGE_VOXELS / EDGE_VOXELS) as f64,
+            ) / EDGE_VOXELS as f64;
             127.5
                 + sign * 127.5 * (11.0 * p.x + 2.0 * p.z).sin() * (9.0 * p.y).cos() * (8.0 * p.z + 1.0).sin()
         };
         // The same steps to either side of the middle.
-        let values = (0..N * N * N).map(|at| (value(at) * 2.0).round() / 2.0).map(|value| value as f32);
+        let values = (0..EDGE_VOXELS * EDGE_VOXELS * EDGE_VOXELS)
+            .map(|at| (value(at) * 2.0).round() / 2.0)
+            .map(|value| value as f32);
         let mut values: Vec<f32> = values.collect();
         // Both ends of the range.
         (values[0], values[1]) = (127.5 - sign as f32 * 127.5, 127.5 + sign as f32 * 127.5);
         Dataset::new(
-            Volume::with_spacing("wave", [N; 3], DVec3::ONE, Samples::F32(values)).expect("a volume"),
+            Volume::with_spacing("wave", [EDGE_VOXELS; 3], DVec3::ONE, Samples::F32(values))
+                .expect("a volume"),
         )
     };
     let lobes = |low: [f32; 3], high: [f32; 3]| {
@@ -152,7 +172,11 @@ fn lobes_of_either_sign_look_alike(engine: Engine) {
             point(180.0, high, 0.3),
             point(255.0, high, 0.5),
         ];
-        TransferFunction { points, interpolation: Interpolation::Opacity, ..TransferFunction::default() }
+        TransferFunction {
+            points,
+            interpolation: OpacityInterpolation::Opacity,
+            ..TransferFunction::default()
+        }
     };
     let (red, blue) = ([0.9, 0.2, 0.1], [0.1, 0.3, 0.9]);
     let mut settings = base(engine, 0.1);
@@ -160,10 +184,11 @@ fn lobes_of_either_sign_look_alike(engine: Engine) {
     settings.camera.elevation_deg = 30.0;
     let picture = |sign: f64, low, high| {
         let settings = Settings { transfer: lobes(low, high), ..settings.clone() };
-        render(&mut renderer(), &wave(sign), &settings, [96, 96]).light.concat()
+        render(&mut renderer(), &wave(sign), &settings, [96, 96]).linear.concat()
     };
     let (one, other) = (picture(1.0, blue, red), picture(-1.0, red, blue));
     let exchanged = picture(1.0, red, blue);
-    compare("lobes", &wide(&one), &wide(&other), LOBES).unwrap_or_else(|err| panic!("{err}"));
-    compare("lobes that differ", &wide(&exchanged), &wide(&other), LOBES).expect_err("colours are exchanged");
+    compare("lobes", &to_f64(&one), &to_f64(&other), LOBES).unwrap_or_else(|err| panic!("{err}"));
+    compare("lobes that differ", &to_f64(&exchanged), &to_f64(&other), LOBES)
+        .expect_err("colours are exchanged");
 }

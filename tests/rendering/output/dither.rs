@@ -1,4 +1,4 @@
-//! Backgrounds of two colours in 8 bits: dithered, so that they have no bands.
+//! Dithering of two-colour backgrounds in 8 bits, so that they have no bands.
 
 use chiaroscuro::gpu::{RenderOptions, Renderer};
 use chiaroscuro::model::{Background, Settings};
@@ -10,7 +10,7 @@ use crate::thresholds::DITHERED;
 
 const SIZE: [u32; 2] = [64, 96];
 
-/// The red of every pixel of a picture in which nothing is seen, row by row.
+/// Red channel of every pixel of an empty picture, row by row.
 fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     let mut settings: Settings = scenes::look();
     settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
@@ -19,10 +19,10 @@ fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     let options = RenderOptions { transparent, ..RenderOptions::default() };
     let loaded = Dataset::new(scenes::creature(8, DVec3::ONE));
     let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
-    picture.shown.chunks_exact(4).map(|texel| texel[0]).collect()
+    picture.display.chunks_exact(4).map(|texel| texel[0]).collect()
 }
 
-/// Mean over columns and eight rows against the gradient there, in steps of 8 bits: the largest difference.
+/// Largest difference between the mean over columns and eight rows and the gradient there, in steps of 8 bits.
 fn banding(found: &[u8], top: f32, bottom: f32) -> f64 {
     let [width, height] = SIZE.map(|n| n as usize);
     let rows = (0..height - 8).map(|first| {
@@ -42,7 +42,7 @@ fn gradients_have_no_bands() {
     let apart = banding(&found, top, bottom);
     println!("dithered: {apart:.3} steps");
     assert!(apart < DITHERED, "{apart}");
-    // Rounded, they have: the comparison sees them.
+    // Guards the comparison: a rounded gradient has bands.
     let [width, height] = SIZE.map(|n| n as usize);
     let rounded: Vec<u8> = (0..width * height)
         .map(|at| {
@@ -55,7 +55,7 @@ fn gradients_have_no_bands() {
         found.iter().zip(&rounded).all(|(a, b)| a.abs_diff(*b) <= 1),
         "no value is further than a step away"
     );
-    // The same every time.
+    // The pattern is reproducible.
     assert_eq!(background(top, bottom, false), found);
 }
 

@@ -1,10 +1,10 @@
-//! From linear light to what is written and shown: parts, samples, previews, fewer voxels, the
-//! window, other programs.
+//! Output stages, from linear light to files and screens: tiles, samples, previews, downsampled volumes, the window,
+//! other programs.
 
-mod bands;
 mod dither;
+mod downsampled;
 mod painter;
 mod preview;
-mod reduced;
+mod tiles;
 mod tone_map;
 mod window;

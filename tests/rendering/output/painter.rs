@@ -1,21 +1,21 @@
-//! Pictures in render passes of another program: every byte of what is shown, whatever the format of its target.
+//! Painting into render passes of another program: every byte of the picture, whatever the format of its target.
 
-use chiaroscuro::gpu::{Context, PicturePainter, RenderOptions, Renderer};
-use chiaroscuro::model::Depth;
+use chiaroscuro::gpu::{GpuContext, PicturePainter, RenderOptions, Renderer};
+use chiaroscuro::model::PixelFormat;
 use wgpu::TextureFormat;
 
 use super::window::{SIZE, drawn};
 use crate::common::{Dataset, context};
 use crate::scenes::{creature, look};
 
-/// What a target has after a picture was painted into it, and what the renderer reads back of the picture.
-fn painted_and_read(context: &Context, format: TextureFormat, options: &RenderOptions) -> [Vec<u8>; 2] {
+/// Bytes of a target into which a picture was painted, and those that the renderer reads back.
+fn painted_and_read(context: &GpuContext, format: TextureFormat, options: &RenderOptions) -> [Vec<u8>; 2] {
     let loaded = Dataset::new(creature(16, glam::DVec3::ONE));
     let mut renderer = Renderer::new(context).expect("a renderer");
     let painter = PicturePainter::new(context, format).expect("a painter");
     renderer.draw(&loaded, &look(), SIZE, options).expect("a picture");
     let painted = drawn(context, format, |pass| painter.paint(&renderer, pass).expect("there is a picture"));
-    [painted, renderer.read_shown().expect("it is read back")]
+    [painted, renderer.read_display().expect("it is read back")]
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn pictures_reach_textures_of_others_byte_for_byte() {
             painted.chunks_mut(4).for_each(|texel| texel.swap(0, 2));
             assert!(painted == read, "{format:?}, transparent: {transparent}");
         }
-        for depth in [Depth::Sixteen, Depth::Linear] {
+        for depth in [PixelFormat::Sixteen, PixelFormat::Linear] {
             let deep = RenderOptions { depth, ..eight.clone() };
             let [painted, read] = painted_and_read(&context, TextureFormat::Rgba32Float, &deep);
             assert!(painted == read, "{depth:?}, transparent: {transparent}");
@@ -62,7 +62,7 @@ fn a_device_opened_without_the_features_says_so() {
     let adapter = adapters.first().expect("an adapter");
     let descriptor = wgpu::DeviceDescriptor::default();
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
-    let outcome = Context::new(adapter, device, queue).map(|_| ());
+    let outcome = GpuContext::new(adapter, device, queue).map(|_| ());
     let message = outcome.expect_err("16-bit volumes cannot be stored").to_string();
     assert!(message.contains("device_descriptor"), "{message}");
 }

@@ -1,114 +1,114 @@
-//! What the window shows while something moves, beside what it shows at rest.
+//! Previews of the window compared with the final picture.
 
 use chiaroscuro::data::Histogram;
 use chiaroscuro::data::synthetic::builtin;
 use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
 use chiaroscuro::model::{
-    Kernel, LightPlace, LightShape, NearField, Resolution, Settings, SkyMode, Slabs, auto, key_and_fill,
+    LightDirection, LightShape, LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, SkyMode,
+    SlabMode, first_look, key_and_fill,
 };
-use chiaroscuro::plan::{Request, preview_slab};
+use chiaroscuro::plan::{RenderRequest, preview_slab};
 
 use glam::{DVec2, DVec3};
 
 use crate::common::{Dataset, context, render};
-use crate::compare::{compare, flat32};
-use crate::scenes::seen_as_earlier;
+use crate::compare::{channels_f32, compare};
+use crate::scenes::use_earlier_first_look;
 use crate::thresholds::{
-    LEG_STRIPES, LEG_STRIPES_LEFT, PREVIEW_BRIGHTNESS, PREVIEW_BRIGHTNESS_ASIDE, PREVIEW_STRIPES,
+    LEG_STRIPES, LEG_STRIPES_RATIO, PREVIEW_BRIGHTNESS, PREVIEW_BRIGHTNESS_SIDE_LIT, PREVIEW_STRIPES,
     PREVIEW_UNEXPOSED,
 };
 
 const SIZE: [u32; 2] = [192, 144];
 
-/// The picture's mean luminance, at full quality or as a preview.
+/// Mean luminance of a picture at full quality or as a preview.
 fn brightness(
     renderer: &mut Renderer,
     loaded: &Dataset,
     settings: &Settings,
     size: [u32; 2],
-    coarse: Option<Resolution>,
+    coarse: Option<LightVolumeResolution>,
 ) -> f64 {
     let (mut settings, options) =
         (settings.clone(), RenderOptions { preview: coarse.is_some(), ..RenderOptions::default() });
     if coarse.is_some() {
-        settings.sampling.kernel = Kernel::Prefiltered;
+        settings.sampling.kernel = ReconstructionKernel::Prefiltered;
         let slab = settings.sampling.slab;
         settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, slab);
-        settings.shadows.kernel = Kernel::Prefiltered;
+        settings.shadows.kernel = ReconstructionKernel::Prefiltered;
     }
-    let request = Request { volume: loaded.volume().id(), settings, size, coarse };
+    let request = RenderRequest { volume: loaded.volume().id(), settings, size, preview_resolution: coarse };
     let mut job = renderer.begin(loaded, request, &options).expect("a job");
     while job.step().expect("a step") {}
     mean_luminance(&renderer.read_light().expect("light"))
 }
 
-/// How bright a preview is over the picture, with the key light turned by an angle about the vertical.
+/// Brightness ratio of a preview to the picture, with the key light rotated by an angle about the vertical.
 fn preview_over_picture(
     renderer: &mut Renderer,
     loaded: &Dataset,
-    home: &Settings,
+    base_settings: &Settings,
     angle_deg: f64,
-    (size, resolution): ([u32; 2], Resolution),
+    (size, resolution): ([u32; 2], LightVolumeResolution),
 ) -> f64 {
-    let mut settings = home.clone();
+    let mut settings = base_settings.clone();
     let turn = glam::DQuat::from_rotation_z(angle_deg.to_radians());
-    settings.lights[0].position = (turn * glam::DVec3::from(home.lights[0].position)).into();
+    settings.lights[0].position = (turn * glam::DVec3::from(base_settings.lights[0].position)).into();
     let whole = brightness(renderer, loaded, &settings, SIZE, None);
-    // Moved by a hair, so that a coarse light volume is filled for it.
+    // Moved minimally, so that a coarse light volume is filled for it.
     settings.lights[0].position[0] += 1e-6;
     brightness(renderer, loaded, &settings, size, Some(resolution)) / whole
 }
 
-/// The first preview of a drag is exposed to be as bright as the picture before it; until the light has
-/// moved a third of a right angle the exposure must stay right.
+/// The first preview of a drag is exposed to be as bright as the picture before it; until the light has moved by 30°
+/// the exposure must stay right.
 #[test]
 fn previews_stay_as_bright_as_pictures() {
     let context = context();
-    // As earlier versions showed them, and as today's do: lit from the side.
+    // As in earlier versions, and as today: lit from the side.
     let looks = [
-        ("chair", NearField::Off, false),
-        ("chair", NearField::Short, false),
-        ("cloud", NearField::Short, false),
-        ("sphere", NearField::Off, false),
-        ("chair", NearField::Short, true),
-        ("cloud", NearField::Short, true),
-        ("marschner-lobb", NearField::Short, true),
+        ("chair", NearFieldRay::Off, false),
+        ("chair", NearFieldRay::Short, false),
+        ("cloud", NearFieldRay::Short, false),
+        ("sphere", NearFieldRay::Off, false),
+        ("chair", NearFieldRay::Short, true),
+        ("cloud", NearFieldRay::Short, true),
+        ("marschner-lobb", NearFieldRay::Short, true),
     ];
     for (name, near_field, is_lit_aside) in looks {
         let volume = builtin(name, Some(64)).expect("a volume");
-        let mut home = auto::first_settings(&volume, &Histogram::of(&volume));
+        let mut home = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
         home.shadows.near_field = near_field;
-        // As bright where no key shines as when the limits were measured: first looks have had less since.
+        // Ambient light as when the limits were measured: first looks have had less since.
         home.shading.ambient = 0.15;
-        if near_field == NearField::Off {
-            // Light that is everywhere would hide how much brighter coarse shadows are.
+        if near_field == NearFieldRay::Off {
+            // More ambient light would hide how much brighter coarse shadows are.
             home.shading.ambient = 0.05;
         }
         let most = if is_lit_aside {
             if name == "marschner-lobb" {
-                // From where that was measured.
+                // From the view of that measurement.
                 (home.camera.azimuth_deg, home.camera.elevation_deg) = (165.0, 40.0);
-                home.lights = key_and_fill(&home.camera, LightPlace::USUAL).to_vec();
+                home.lights = key_and_fill(&home.camera, LightDirection::DEFAULT_KEY).to_vec();
             }
-            PREVIEW_BRIGHTNESS_ASIDE
+            PREVIEW_BRIGHTNESS_SIDE_LIT
         } else {
-            seen_as_earlier(&mut home);
+            use_earlier_first_look(&mut home);
             PREVIEW_BRIGHTNESS
         };
         home.lights[1].intensity = 0.18;
         let loaded = Dataset::new(volume);
         let mut renderer = Renderer::new(&context).expect("a renderer");
-        for (scale, resolution) in [1, 2, 4]
-            .into_iter()
-            .flat_map(|scale| [Resolution::Half, Resolution::Quarter].map(|r| (scale, r)))
-        {
+        for (scale, resolution) in [1, 2, 4].into_iter().flat_map(|scale| {
+            [LightVolumeResolution::Half, LightVolumeResolution::Quarter].map(|r| (scale, r))
+        }) {
             let mut off = |angle_deg: f64| {
                 let size = SIZE.map(|n| n / scale);
                 preview_over_picture(&mut renderer, &loaded, &home, angle_deg, (size, resolution))
             };
             let at_first = off(0.0);
-            let is_soft = name == "chair" && near_field == NearField::Off;
-            if (scale, resolution) == (1, Resolution::Quarter) && is_soft {
+            let is_soft = name == "chair" && near_field == NearFieldRay::Off;
+            if (scale, resolution) == (1, LightVolumeResolution::Quarter) && is_soft {
                 assert!(
                     at_first > PREVIEW_UNEXPOSED,
                     "without compensation shadows are too bright: {at_first}"
@@ -122,17 +122,17 @@ fn previews_stay_as_bright_as_pictures() {
     }
 }
 
-/// Faces that are seen at a steep angle are as even as with thin slabs, at any distance; with slabs as thick as two
-/// voxels they are not.
+/// Faces seen at a steep angle are as even as with thin slabs, at any distance; with slabs as thick as two voxels
+/// they are not.
 #[test]
 fn previews_of_flat_faces_show_no_stripes() {
     let context = context();
     let volume = builtin("chair", Some(64)).expect("a volume");
-    let mut settings = auto::first_settings(&volume, &Histogram::of(&volume));
+    let mut settings = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
     let loaded = Dataset::new(volume);
     let mut renderer = Renderer::new(&context).expect("a renderer");
-    settings.sampling.kernel = Kernel::Prefiltered;
-    settings.sampling.slabs = Slabs::Even;
+    settings.sampling.kernel = ReconstructionKernel::Prefiltered;
+    settings.sampling.slabs = SlabMode::Even;
     (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (30.0, 50.0);
     let size = SIZE.map(|n| n / 2);
     for distance in [1.0, 1.7] {
@@ -141,7 +141,7 @@ fn previews_of_flat_faces_show_no_stripes() {
         let mut picture = |slab: f64| {
             let mut settings = settings.clone();
             settings.sampling.slab = slab;
-            flat32(&render(&mut renderer, &loaded, &settings, size).light)
+            channels_f32(&render(&mut renderer, &loaded, &settings, size).linear)
         };
         let thin = picture(0.25);
         let slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, 0.5);
@@ -151,8 +151,8 @@ fn previews_of_flat_faces_show_no_stripes() {
     }
 }
 
-/// Axes of the built-in chair's front legs and back posts, where nothing hides them: in its own coordinates, in which its
-/// volume is a cube from −1 to 1.
+/// Axes of the built-in chair's front legs and back posts where nothing hides them, in its own coordinates, in which
+/// its volume is a cube from −1 to 1.
 const LEGS: [[DVec3; 2]; 4] = [
     [DVec3::new(-0.298, -0.274, -0.2), DVec3::new(-0.322, -0.306, -0.65)],
     [DVec3::new(0.298, -0.274, -0.2), DVec3::new(0.322, -0.306, -0.65)],
@@ -160,17 +160,17 @@ const LEGS: [[DVec3; 2]; 4] = [
     [DVec3::new(0.3, 0.293, -0.02), DVec3::new(0.3, 0.392, 0.42)],
 ];
 
-/// A quarter of the picture's width and height in a window of 1280 × 800 points.
+/// Size of a preview, a quarter of the picture's width and height in a window of 1280 × 800 points.
 const PREVIEW_SIZE: [u32; 2] = [235, 180];
 
-/// Root mean square of the stripes along a line in pixels, in shares of the mean luminance there: what a picture's
-/// luminance differs by from another's, less its blur by a Gaussian of 2.5 pixels.
-fn stripes(picture: &[[f32; 4]], thin: &[[f32; 4]], [from, to]: [DVec2; 2]) -> f64 {
+/// Root mean square of the stripes along a line in pixels, as a share of the mean luminance there: the difference
+/// between two pictures' luminance, less its blur by a Gaussian of 2.5 pixels.
+fn stripe_rms(picture: &[[f32; 4]], thin: &[[f32; 4]], [from, to]: [DVec2; 2]) -> f64 {
     let luminance = |texels: &[[f32; 4]], x: usize, y: usize| {
         let [r, g, b, _] = texels[x + y * PREVIEW_SIZE[0] as usize].map(f64::from);
         0.2126 * r + 0.7152 * g + 0.0722 * b
     };
-    // Linear between the middles of pixels.
+    // Linear between pixel centres.
     let at = |texels: &[[f32; 4]], place: DVec2| {
         let corner = (place - 0.5).floor();
         let t = place - 0.5 - corner;
@@ -191,16 +191,16 @@ fn stripes(picture: &[[f32; 4]], thin: &[[f32; 4]], [from, to]: [DVec2; 2]) -> f
     (squares / off.len() as f64).sqrt() / mean
 }
 
-/// Thin parts look like twisted rope where each slab is sampled and shaded in its middle; pre-integrated slabs leave
-/// little of that, against slabs of a sixteenth of a voxel.
+/// Thin parts look like twisted rope where each slab is sampled and shaded at its middle; pre-integrated slabs leave
+/// little of that, compared with slabs of a sixteenth of a voxel.
 #[test]
 fn previews_of_thin_parts_show_no_stripes() {
     let context = context();
     let mut wrong = Vec::new();
     for n in [64, 128] {
         let volume = builtin("chair", Some(n)).expect("a volume");
-        let mut settings = auto::first_settings(&volume, &Histogram::of(&volume));
-        settings.sampling.kernel = Kernel::Prefiltered;
+        let mut settings = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
+        settings.sampling.kernel = ReconstructionKernel::Prefiltered;
         (settings.camera.azimuth_deg, settings.camera.elevation_deg) = (300.0, 28.0);
         let loaded = Dataset::new(volume);
         let scene = loaded.volume().scene();
@@ -213,34 +213,35 @@ fn previews_of_thin_parts_show_no_stripes() {
             DVec2::new(x, y)
         };
         let lines = LEGS.map(|ends| ends.map(seen));
-        let mut picture = |slabs: Slabs, slab: f64| {
+        let mut picture = |slabs: SlabMode, slab: f64| {
             let mut settings = settings.clone();
             (settings.sampling.slabs, settings.sampling.slab) = (slabs, slab);
-            render(&mut renderer, &loaded, &settings, PREVIEW_SIZE).light
+            render(&mut renderer, &loaded, &settings, PREVIEW_SIZE).linear
         };
-        let thin = picture(Slabs::Even, 1.0 / 16.0);
+        let thin = picture(SlabMode::Even, 1.0 / 16.0);
         let slab = preview_slab(&settings.camera, &scene, PREVIEW_SIZE, 0.5);
-        let [even, found] = [Slabs::Even, Slabs::Preintegrated].map(|slabs| {
+        let [even, found] = [SlabMode::Even, SlabMode::Preintegrated].map(|slabs| {
             let picture = picture(slabs, slab);
-            let squares = lines.map(|line| stripes(&picture, &thin, line).powi(2));
+            let squares = lines.map(|line| stripe_rms(&picture, &thin, line).powi(2));
             (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
         });
         println!("chair of {n}³, slabs of {slab:.2}: {even:.4} even, {found:.4} pre-integrated");
-        if even <= LEG_STRIPES || found > LEG_STRIPES || found > LEG_STRIPES_LEFT * even {
+        if even <= LEG_STRIPES || found > LEG_STRIPES || found > LEG_STRIPES_RATIO * even {
             wrong.push((n, even, found));
         }
     }
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// The same under lights that have a size, a sky and light that bounces, all of which previews follow more coarsely.
+/// Brightness of previews under area lights, a sky and multiple scattering, all of which previews compute more
+/// coarsely.
 #[test]
 fn previews_of_soft_light_stay_as_bright_as_pictures() {
     let context = context();
     let mut drifts = Vec::new();
     for name in ["chair", "cloud"] {
         let volume = builtin(name, Some(64)).expect("a volume");
-        let home = auto::first_settings(&volume, &Histogram::of(&volume));
+        let home = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
         let loaded = Dataset::new(volume);
         let mut renderer = Renderer::new(&context).expect("a renderer");
         let mut disc = home.clone();
@@ -257,7 +258,7 @@ fn previews_of_soft_light_stay_as_bright_as_pictures() {
             [("disc", disc), ("sky", sky), ("bounces", bounces), ("coloured", colored), ("all", all)]
         {
             let mut off = |angle_deg: f64| {
-                let preview = (SIZE.map(|n| n / 2), Resolution::Half);
+                let preview = (SIZE.map(|n| n / 2), LightVolumeResolution::Half);
                 preview_over_picture(&mut renderer, &loaded, &home, angle_deg, preview)
             };
             let at_first = off(0.0);

@@ -1,19 +1,19 @@
-//! Tone maps against their formulas, in double precision: from the linear light of pictures to what is shown of it.
+//! Tone maps against their formulas in double precision: from the linear light of pictures to the displayed values.
 
 use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Depth, ImageSpec, Settings, ToneMap};
+use chiaroscuro::model::{ImageSpec, PixelFormat, Settings, ToneMap};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, damaged, render};
-use crate::compare::{Difference, Limit, compare};
+use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::compare::{ErrorLimit, ErrorMeasure, compare};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, TONE_MAP};
 
 const SIZE: [u32; 2] = [96, 80];
 
-/// The Khronos PBR neutral tone mapper's compression of what is brighter than 0.8, as it is published:
-/// <https://github.com/KhronosGroup/ToneMapping>. Two parts are left out on purpose: the offset for light that surfaces
-/// reflect whatever their colour, which volumes do not have, and the way to white, which would take away hue.
+/// The Khronos PBR neutral tone mapper's compression of values above 0.8, as it is published:
+/// <https://github.com/KhronosGroup/ToneMapping>. Two parts are left out on purpose: the offset for the Fresnel
+/// reflection of surfaces, which volumes do not have, and the desaturation towards white, which would take away hue.
 fn neutral(color: DVec3) -> DVec3 {
     let start_compression = 0.8;
     let peak = color.max_element();
@@ -25,13 +25,13 @@ fn neutral(color: DVec3) -> DVec3 {
     color * (new_peak / peak)
 }
 
-/// IEC 61966-2-1.
+/// sRGB transfer function of IEC 61966-2-1, from linear light.
 fn srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What is shown of premultiplied light before nothing, with straight alpha.
-fn shown(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
+/// Displayed values of premultiplied light without background, with straight alpha.
+fn displayed(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
     let [r, g, b, alpha] = light.map(f64::from);
     if alpha <= 0.0 {
         return [0.0; 4];
@@ -44,7 +44,7 @@ fn shown(light: [f32; 4], tone_map: ToneMap, exposure: f64) -> [f64; 4] {
     [srgb(mapped.x), srgb(mapped.y), srgb(mapped.z), alpha]
 }
 
-/// How bright the lights of the pictures are: from hardly anything to far beyond white.
+/// Intensities of the lights in the pictures: from almost 0 to far beyond white.
 const INTENSITIES: [f64; 4] = [0.2, 1.0, 4.0, 200.0];
 
 fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
@@ -56,24 +56,33 @@ fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
     settings
 }
 
-/// Light of all the pictures, and what the renderer shows of it with 16 bits.
-fn sweep(mut renderer: Renderer, tone_map: ToneMap, exposure: f64) -> (Vec<[f32; 4]>, Vec<f64>) {
+/// Linear light of all the pictures, and the displayed values with 16 bits.
+fn render_all_intensities(
+    mut renderer: Renderer,
+    tone_map: ToneMap,
+    exposure: f64,
+) -> (Vec<[f32; 4]>, Vec<f64>) {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let (mut light, mut found) = (Vec::new(), Vec::new());
     for intensity in INTENSITIES {
         let settings = look(intensity, tone_map, exposure);
-        light.extend(render(&mut renderer, &loaded, &settings, SIZE).light);
-        let shot = ImageSpec { depth: Depth::Sixteen, transparent: true, ..ImageSpec::new(SIZE) };
-        let rows = renderer.bands_of(&loaded, &settings, &shot, 4096, 1 << 20).all();
+        light.extend(render(&mut renderer, &loaded, &settings, SIZE).linear);
+        let image_spec = ImageSpec { depth: PixelFormat::Sixteen, transparent: true, ..ImageSpec::new(SIZE) };
+        let rows = renderer.bands_with_limits(&loaded, &settings, &image_spec, 4096, 1 << 20).all();
         found.extend(rows.expect("the picture is rendered").values().into_iter().map(f64::from));
     }
     (light, found)
 }
 
-fn check(renderer: Renderer, tone_map: ToneMap, exposure: f64) -> Result<Difference, String> {
-    let (light, found) = sweep(renderer, tone_map, exposure);
-    let expected: Vec<f64> = light.iter().flat_map(|&texel| shown(texel, tone_map, exposure)).collect();
-    compare(&format!("{tone_map:?} {exposure}"), &found, &expected, Limit { max: TONE_MAP, rmse: TONE_MAP })
+fn check(renderer: Renderer, tone_map: ToneMap, exposure: f64) -> Result<ErrorMeasure, String> {
+    let (light, found) = render_all_intensities(renderer, tone_map, exposure);
+    let expected: Vec<f64> = light.iter().flat_map(|&texel| displayed(texel, tone_map, exposure)).collect();
+    compare(
+        &format!("{tone_map:?} {exposure}"),
+        &found,
+        &expected,
+        ErrorLimit { max: TONE_MAP, rmse: TONE_MAP },
+    )
 }
 
 #[test]
@@ -86,10 +95,11 @@ fn tone_maps_are_their_formulas() {
     }
 }
 
-/// The comparison is worth what it compares: values before, at and far behind the shoulder.
+/// Guards the comparison: it covers values before, at and far behind the shoulder.
 #[test]
 fn all_of_the_curve_is_compared() {
-    let (light, _) = sweep(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral, 1.0);
+    let (light, _) =
+        render_all_intensities(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral, 1.0);
     let peaks: Vec<f32> = light
         .iter()
         .filter(|texel| texel[3] > 0.1)
@@ -117,20 +127,24 @@ fn other_tone_maps_are_noticed() {
         let source =
             ShaderLibrary::source("output/display_deep.wgsl", r16, r16).expect("the shader is there");
         assert!(source.contains(from), "the shader no longer contains {from:?}");
-        let renderer = damaged(from, to);
+        let renderer = damaged_renderer(from, to);
         assert!(check(renderer, ToneMap::Neutral, 1.2).is_err(), "{to} is not noticed");
     }
 }
 
-/// Linear pictures are exposed as what is shown is, so that volume and background relate as they do on the screen; the
-/// light that is read back, by which balances are measured, is not.
+/// Linear pictures are exposed like displayed ones, so that volume and background relate as on the screen; the light
+/// that is read back, by which balances are measured, is not.
 #[test]
 fn linear_pictures_have_the_exposure_and_light_has_not() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let linear = |renderer: &mut Renderer, settings: &Settings| -> Vec<f32> {
-        let shot = ImageSpec { depth: Depth::Linear, transparent: true, ..ImageSpec::new(SIZE) };
-        renderer.bands_of(&loaded, settings, &shot, 4096, 1 << 20).all().expect("a picture").values()
+        let image_spec = ImageSpec { depth: PixelFormat::Linear, transparent: true, ..ImageSpec::new(SIZE) };
+        renderer
+            .bands_with_limits(&loaded, settings, &image_spec, 4096, 1 << 20)
+            .all()
+            .expect("a picture")
+            .values()
     };
     let plain = look(1.0, ToneMap::Neutral, 1.0);
     let exposed = look(1.0, ToneMap::Neutral, 3.0);
@@ -140,10 +154,10 @@ fn linear_pictures_have_the_exposure_and_light_has_not() {
         .flat_map(|texel| [3.0 * texel[0], 3.0 * texel[1], 3.0 * texel[2], texel[3]].map(f64::from))
         .collect();
     let found: Vec<f64> = after.into_iter().map(f64::from).collect();
-    compare("exposed", &found, &wanted, Limit { max: TONE_MAP, rmse: TONE_MAP })
+    compare("exposed", &found, &wanted, ErrorLimit { max: TONE_MAP, rmse: TONE_MAP })
         .expect("three times the light");
     let light =
-        |renderer: &mut Renderer, settings: &Settings| render(renderer, &loaded, settings, SIZE).light;
+        |renderer: &mut Renderer, settings: &Settings| render(renderer, &loaded, settings, SIZE).linear;
     assert!(light(&mut renderer, &plain) == light(&mut renderer, &exposed));
 }
 
@@ -161,14 +175,14 @@ fn the_background_is_not_exposed_and_the_floor_is() {
     let texel = |bytes: &[u8], at: usize| [0, 1, 2].map(|channel| bytes[4 * at + channel]);
     let (mut bare, mut covered) = (0, 0);
     for (at, below) in floor.iter().enumerate() {
-        if before.light[at][3] > 0.0 {
+        if before.linear[at][3] > 0.0 {
             continue;
         }
         if below[3] == 0.0 {
-            assert_eq!(texel(&before.shown, at), texel(&after.shown, at));
+            assert_eq!(texel(&before.display, at), texel(&after.display, at));
             bare += 1;
         } else if below[3] == 1.0 {
-            for (byte, light) in std::iter::zip(texel(&after.shown, at), below) {
+            for (byte, light) in std::iter::zip(texel(&after.display, at), below) {
                 let wanted = srgb((0.5 * f64::from(*light)).min(1.0));
                 let found = f64::from(byte) / 255.0;
                 assert!((found - wanted).abs() < EIGHT_BITS, "{found} instead of {wanted}");

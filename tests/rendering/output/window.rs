@@ -1,11 +1,11 @@
-//! What the window shows of a picture: every byte of it, whatever the window's format.
+//! Pictures in the window: every byte is displayed unchanged, whatever the window's format.
 
-use chiaroscuro::gpu::{Context, WindowPainter};
+use chiaroscuro::gpu::{GpuContext, WindowPainter};
 
 use crate::common::context;
 use crate::thresholds::EIGHT_BITS;
 
-/// Pixels of target and picture; a row of 256 bytes can be read back as it is.
+/// Size of target and picture in pixels; a row of 256 bytes can be read back without padding.
 pub(super) const SIZE: [u32; 2] = [64, 8];
 
 /// Bytes in which every value occurs in every channel.
@@ -13,9 +13,9 @@ fn picture() -> Vec<u8> {
     (0..SIZE[0] * SIZE[1]).flat_map(|i| [i as u8, (i * 5 + 3) as u8, (i * 11 + 7) as u8, 255]).collect()
 }
 
-/// The bytes of a target after something was drawn over black.
+/// Bytes of a target after a drawing over black.
 pub(super) fn drawn(
-    context: &Context,
+    context: &GpuContext,
     format: wgpu::TextureFormat,
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) -> Vec<u8> {
@@ -72,22 +72,22 @@ fn pictures_reach_the_window_byte_for_byte() {
     let context = context();
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
         let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
-        let shown = painter.place(None, SIZE, &picture(), true);
+        let shown = painter.upload(None, SIZE, &picture(), true);
         assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == picture(), "{format:?}");
-        // Another one in its place, and it alone.
+        // A second picture replaces the first.
         let black = vec![[0, 0, 0, 255]; (SIZE[0] * SIZE[1]) as usize].concat();
-        let shown = painter.place(Some(shown), SIZE, &black, true);
+        let shown = painter.upload(Some(shown), SIZE, &black, true);
         assert!(drawn(&context, format, |pass| shown.draw(pass, 255, 0)) == black, "{format:?}");
     }
 }
 
-/// To either side; beyond its edge is the edge's colour.
+/// Moved pictures are shifted to either side; beyond the edge the edge's colour is repeated.
 #[test]
 fn moved_pictures_are_moved_by_whole_pixels() {
     let context = context();
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let painter = WindowPainter::new(&context.device, &context.queue, format).expect("a painter");
-    let shown = painter.place(None, SIZE, &picture(), true);
+    let shown = painter.upload(None, SIZE, &picture(), true);
     let [width, height] = SIZE.map(|n| n as usize);
     for moved in [-3_i16, 5] {
         let found = drawn(&context, format, |pass| shown.draw(pass, 255, moved));
@@ -108,7 +108,7 @@ fn a_fading_picture_lets_the_ground_through() {
     let floor = [40_u8, 80, 120];
     let filled = drawn(&context, format, |pass| painter.fill(pass, floor));
     assert!(filled.chunks(4).all(|pixel| pixel == [40, 80, 120, 255]), "{:?}", &filled[..4]);
-    let shown = painter.place(None, SIZE, &picture(), true);
+    let shown = painter.upload(None, SIZE, &picture(), true);
     for opacity in [0_u8, 85, 255] {
         let both = drawn(&context, format, |pass| {
             painter.fill(pass, floor);
@@ -118,7 +118,7 @@ fn a_fading_picture_lets_the_ground_through() {
         for (got, on_top) in both.chunks(4).zip(picture().chunks(4)) {
             for channel in 0..3 {
                 let wanted = f64::from(on_top[channel]) * share + f64::from(floor[channel]) * (1.0 - share);
-                // Rounded where it is blended, to either side.
+                // Blended values may be rounded to either side.
                 let apart = (f64::from(got[channel]) - wanted).abs() / 255.0;
                 assert!(apart <= EIGHT_BITS, "{opacity}: {got:?}, {on_top:?}");
             }

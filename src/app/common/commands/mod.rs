@@ -1,165 +1,171 @@
-//! What menus, keys and buttons ask for. Collected during a frame, carried out at its end.
+//! Commands of menus, keys and buttons: collected during a frame, and executed at its end.
 
 mod names;
 
 use std::path::PathBuf;
 
-use super::places::PLACES;
-use super::reveal::Place;
+use super::reveal::SettingPlace;
+use super::searchable_settings::SEARCHABLE_SETTINGS;
 use crate::data::KindName;
-use crate::data::load::{Aspect, Choice, Thinning};
+use crate::data::load::{ChoiceAspect, Downsampling, VolumeChoice};
 use crate::model::{
-    COLOR_MAPS, DIGITS, Light, ObjectTurn, PRESETS, Preset, Rig, SceneAxis, Settings, StandardView,
+    COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, SceneAxis, Settings,
+    StandardView,
 };
 
-/// How many voxels are offered to be kept.
-pub(crate) const THINNINGS: [Thinning; 5] =
-    [Thinning::None, Thinning::Every(2), Thinning::Average(2), Thinning::Every(4), Thinning::Average(4)];
+/// Subsamplings that commands and the data section offer.
+pub(crate) const SUBSAMPLINGS: [Downsampling; 5] = [
+    Downsampling::None,
+    Downsampling::Every(2),
+    Downsampling::Average(2),
+    Downsampling::Every(4),
+    Downsampling::Average(4),
+];
 
-/// Something the user asked for.
+/// Command that the user issues by a menu, key or button.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Command {
+pub(crate) enum AppCommand {
     /// Ask for a volume and open it.
     OpenDialog,
     /// Ask for a folder of slices and open it.
     OpenFolder,
     /// Show the window for typing a path.
     OpenPath,
-    /// Open what was dropped on the window.
+    /// Open files that were dropped on the window.
     OpenDropped(Vec<PathBuf>),
-    /// Open the file after the open one in its folder.
+    /// Open the next file in the folder of the open file.
     NextFile,
-    /// Open the file before it.
+    /// Open the previous file in the folder of the open file.
     PreviousFile,
     /// Open a file or a built-in volume.
     Open(PathBuf),
-    /// Open a file that was open before, and of its volumes the one that was.
-    OpenAgain(PathBuf, Choice),
-    /// Show the volumes of the open file.
-    Choose(Aspect),
-    /// Open the volume of the open file after the one that is shown, or the one before.
-    StepChoice(Aspect, bool),
-    /// Open another volume of the open file, with the look as it is or with one of its own.
-    TakeChoice(Box<Choice>, bool),
-    /// Read the open volume again, with more or fewer of its voxels.
-    Thin(Thinning),
-    /// Stop opening.
+    /// Open a recent file, and the volume of it that was open then.
+    OpenAgain(PathBuf, VolumeChoice),
+    /// Show the chooser of the open file's volumes in an aspect.
+    ShowChooser(ChoiceAspect),
+    /// Open the next (`true`) or the previous (`false`) volume of the open file.
+    StepChoice(ChoiceAspect, bool),
+    /// Open another volume of the open file; `true` keeps the look.
+    OpenChoice(Box<VolumeChoice>, bool),
+    /// Read the open volume again with another subsampling.
+    Subsample(Downsampling),
+    /// Cancel opening and reading files.
     CancelOpening,
-    /// The volume and the look with which the run before ended.
-    GoOn,
-    /// Save the settings where they belong, or ask where.
+    /// Reopen the volume with the look of the previous run.
+    ReopenLast,
+    /// Save the session to its file, or ask for a file.
     SaveSettings,
     /// Ask for settings and apply them.
     LoadSettings,
-    /// Put the picture on the clipboard.
+    /// Copy the picture to the clipboard.
     CopyPicture,
-    /// Show the next volume as this one, or not.
-    KeepLook,
-    /// Show the export window.
+    /// Toggle keeping the look for the next volume.
+    ToggleKeepLook,
+    /// Show the export dialog for pictures and turntables.
     Export,
-    /// Stop what is being exported.
+    /// Cancel the export in progress.
     CancelExport,
-    /// Close the window.
+    /// Close the window, which ends the program.
     Quit,
-    /// One step back.
+    /// Undo the last step of the history.
     Undo,
-    /// One step forward again.
+    /// Redo the step that was undone last.
     Redo,
-    /// Show the list of steps, or not.
+    /// Show or hide the list of undo steps.
     ToggleHistory,
-    /// So many steps forward, or back if they are negative.
+    /// Go this many steps forward, or back if it is negative.
     GoSteps(i32),
-    /// Show all that was said, or not.
+    /// Show or hide the list of all messages.
     ToggleMessages,
-    /// The camera as it was when the volume was opened.
+    /// Reset the camera to that of the first look.
     ResetView,
-    /// All of the volume, from where the eye is.
+    /// Frame the whole object from the current direction.
     FrameAll,
-    /// From a side.
+    /// Look at the object from a standard view.
     LookFrom(StandardView),
-    /// Stand the object up, or lay it down.
-    TurnObject(ObjectTurn),
-    /// From the next side: the object turns by a quarter about the vertical.
-    TurnRound,
-    /// Perspective or orthographic.
+    /// Turn the object over, or upright.
+    TurnObject(ObjectRotation),
+    /// Orbit the camera by 90° about the vertical, as if the object turned.
+    RotateObject,
+    /// Switch between perspective and orthographic projection.
     ToggleProjection,
-    /// Keep the view.
-    KeepView,
-    /// Keep the look.
-    KeepInStrip,
-    /// Keep the view under a digit.
+    /// Save the view in the strip.
+    SaveView,
+    /// Save the look in the strip.
+    SaveLookInStrip,
+    /// Save the view under a digit.
     StoreView(u8),
-    /// Go to what is kept under a digit.
+    /// Go to the view or look saved under a digit.
     RecallView(u8),
-    /// Go to something that is kept, by its place; to a look also with its view.
-    GoToKept(usize, bool),
-    /// Keep what is shown in the place of something that is kept.
-    ReplaceKept(usize),
-    /// Compare two looks that are kept, or the picture with one.
-    CompareKept(Option<usize>, usize),
-    /// Write all that is kept into one picture.
-    ExportKept,
-    /// Show or hide the strip of what is kept.
-    ToggleKept,
-    /// The window fills the screen, or not.
+    /// Go to a saved view or look by its index; `true` takes the view of a look, too.
+    GoToSaved(usize, bool),
+    /// Replace a saved view or look by what is shown.
+    ReplaceSaved(usize),
+    /// Compare two saved looks, or the picture (`None`) with one.
+    CompareSaved(Option<usize>, usize),
+    /// Export a contact sheet of all saved views and looks.
+    ExportContactSheet,
+    /// Show or hide the strip of saved views and looks.
+    ToggleStrip,
+    /// Switch full screen on or off.
     ToggleFullScreen,
-    /// Show or hide the chips of the lights, box, scale bar and cube.
+    /// Show or hide the light chips, bounding box, scale bar and orientation cube.
     ToggleOverlay,
-    /// Say what is under the pointer, and what light gets there.
+    /// Switch the probe on or off, which explains the light under the pointer.
     ToggleProbe,
-    /// Find a command by its name.
+    /// Show the palette that finds commands by name.
     ShowPalette,
-    /// Add a light.
+    /// Add a light beside the camera.
     AddLight,
-    /// Other lights instead of those that are there.
-    UseRig(Rig),
-    /// These lights.
-    UseLights(Vec<Light>),
-    /// This look, whole.
+    /// Replace the lights by a rig.
+    UseRig(LightingRig),
+    /// Replace the lights by the given lights.
+    UseLights(Vec<LightSettings>),
+    /// Replace the look by the given look.
     UseLook(Box<Settings>),
     /// Show the contact sheet of looks.
     TryLooks,
     /// Show the contact sheet of lights.
     TryLights,
-    /// Show the best places for the selected light.
+    /// Show the best positions for the selected light.
     SuggestLight,
-    /// Ask for a picture of surroundings, and light the scene by it.
-    UseSurroundings,
+    /// Ask for an environment map, and light the scene by it.
+    UseEnvironmentMap,
     /// Show the contact sheet of presets.
     TryPresets,
-    /// Select the light after the selected one.
+    /// Select the next light of the list.
     NextLight,
-    /// Select the light before the selected one.
+    /// Select the previous light of the list.
     PreviousLight,
-    /// Only the selected light shines, or all.
+    /// Switch off all lights but the selected one, or all on again.
     Solo,
-    /// The selected light shines or not.
+    /// Switch the selected light on or off.
     Mute,
     /// Make the selected light brighter.
     Brighter,
     /// Make the selected light dimmer.
     Dimmer,
-    /// The automatic transfer function.
+    /// Apply the automatic transfer function.
     AutomaticTransfer,
-    /// A first look at data of this kind, or of the volume's own.
+    /// Make a first look for this kind of data, or for the volume's own (`None`).
     TreatAs(Option<KindName>),
-    /// One of the library.
+    /// Apply a preset of the library.
     UsePreset(Preset),
-    /// Other colours for the visible values: the index of a colour map, and whether it is reversed.
+    /// Colour the visible values by a colour map, given by its index; `true` reverses it.
     UseColors(usize, bool),
     /// Ask for a transfer function of another program.
     ImportTransfer,
-    /// Ask where to write the transfer function for other programs.
+    /// Ask for a file, and write the transfer function for other programs.
     ExportTransfer,
-    /// Opacities the other way round.
+    /// Invert the opacities of the transfer function.
     InvertTransfer,
-    /// Crop to the box, or show all.
+    /// Switch the crop box on or off.
     ToggleCrop,
-    /// Cut at the plane, or show all.
+    /// Switch the clip plane on or off.
     TogglePlane,
-    /// The plane across the line of sight, through what the eye turns about.
+    /// Turn the clip plane across the line of sight, through the point about which the camera orbits.
     FacePlane,
-    /// Show the floor under the volume, or not.
+    /// Show or hide the floor under the volume.
     ToggleFloor,
     /// Measure the brightness and set the balance.
     Balance,
@@ -169,105 +175,109 @@ pub(crate) enum Command {
     ToggleTransfer,
     /// Show the picture alone, or the panels again.
     TogglePictureOnly,
-    /// Make all of the window larger (1), smaller (−1), or as large as it was (0).
+    /// Enlarge (1) or shrink (−1) the interface, or reset its size (0).
     Scale(i8),
-    /// Show or hide the handles of the lights.
+    /// Show or hide the handles in the picture.
     ToggleHandles,
-    /// Show two looks in one picture, or one again.
+    /// Switch the comparison of two looks on or off.
     ToggleCompare,
-    /// Show cuts through the data, or not.
+    /// Show or hide the window of orthogonal slices.
     ShowSlices,
-    /// Show a slice of a light volume.
+    /// Show the window with slices of a light volume.
     ShowLightVolume,
     /// Ask for settings to compare with.
     CompareWithFile,
-    /// Show where something is set.
-    Reveal(Place),
-    /// Show keys and mouse.
+    /// Reveal a setting in its section.
+    Reveal(SettingPlace),
+    /// Show or hide the help on keys and mouse.
     ShowHelp,
-    /// Show what this is and what it runs on.
+    /// Show the program's version and its graphics device.
     ShowAbout,
 }
 
-/// Every command that can be asked for by its name.
-pub(crate) fn listed() -> Vec<Command> {
+/// Lists every command that can be found by its name.
+pub(crate) fn searchable_commands() -> Vec<AppCommand> {
     let mut all = vec![
-        Command::OpenDialog,
-        Command::OpenFolder,
-        Command::OpenPath,
-        Command::NextFile,
-        Command::PreviousFile,
-        Command::GoOn,
-        Command::SaveSettings,
-        Command::LoadSettings,
-        Command::Export,
-        Command::CopyPicture,
-        Command::KeepLook,
-        Command::Undo,
-        Command::Redo,
-        Command::ToggleHistory,
-        Command::ToggleMessages,
-        Command::ResetView,
-        Command::FrameAll,
-        Command::TurnObject(ObjectTurn::Over),
-        Command::TurnRound,
-        Command::ToggleProjection,
-        Command::ToggleFullScreen,
-        Command::ToggleOverlay,
-        Command::ToggleProbe,
-        Command::ToggleCrop,
-        Command::TogglePlane,
-        Command::FacePlane,
-        Command::ToggleFloor,
-        Command::AddLight,
-        Command::TryLooks,
-        Command::TryLights,
-        Command::SuggestLight,
-        Command::UseSurroundings,
-        Command::TryPresets,
-        Command::NextLight,
-        Command::PreviousLight,
-        Command::Solo,
-        Command::Mute,
-        Command::Brighter,
-        Command::Dimmer,
-        Command::Balance,
-        Command::AutomaticTransfer,
-        Command::InvertTransfer,
-        Command::ImportTransfer,
-        Command::ExportTransfer,
-        Command::ToggleSide,
-        Command::ToggleTransfer,
-        Command::TogglePictureOnly,
-        Command::ToggleKept,
-        Command::Scale(1),
-        Command::Scale(-1),
-        Command::Scale(0),
-        Command::KeepView,
-        Command::KeepInStrip,
-        Command::ExportKept,
-        Command::ToggleHandles,
-        Command::ToggleCompare,
-        Command::CompareWithFile,
-        Command::ShowSlices,
-        Command::ShowLightVolume,
-        Command::ShowHelp,
-        Command::ShowAbout,
-        Command::Quit,
+        AppCommand::OpenDialog,
+        AppCommand::OpenFolder,
+        AppCommand::OpenPath,
+        AppCommand::NextFile,
+        AppCommand::PreviousFile,
+        AppCommand::ReopenLast,
+        AppCommand::SaveSettings,
+        AppCommand::LoadSettings,
+        AppCommand::Export,
+        AppCommand::CopyPicture,
+        AppCommand::ToggleKeepLook,
+        AppCommand::Undo,
+        AppCommand::Redo,
+        AppCommand::ToggleHistory,
+        AppCommand::ToggleMessages,
+        AppCommand::ResetView,
+        AppCommand::FrameAll,
+        AppCommand::TurnObject(ObjectRotation::TipBack),
+        AppCommand::RotateObject,
+        AppCommand::ToggleProjection,
+        AppCommand::ToggleFullScreen,
+        AppCommand::ToggleOverlay,
+        AppCommand::ToggleProbe,
+        AppCommand::ToggleCrop,
+        AppCommand::TogglePlane,
+        AppCommand::FacePlane,
+        AppCommand::ToggleFloor,
+        AppCommand::AddLight,
+        AppCommand::TryLooks,
+        AppCommand::TryLights,
+        AppCommand::SuggestLight,
+        AppCommand::UseEnvironmentMap,
+        AppCommand::TryPresets,
+        AppCommand::NextLight,
+        AppCommand::PreviousLight,
+        AppCommand::Solo,
+        AppCommand::Mute,
+        AppCommand::Brighter,
+        AppCommand::Dimmer,
+        AppCommand::Balance,
+        AppCommand::AutomaticTransfer,
+        AppCommand::InvertTransfer,
+        AppCommand::ImportTransfer,
+        AppCommand::ExportTransfer,
+        AppCommand::ToggleSide,
+        AppCommand::ToggleTransfer,
+        AppCommand::TogglePictureOnly,
+        AppCommand::ToggleStrip,
+        AppCommand::Scale(1),
+        AppCommand::Scale(-1),
+        AppCommand::Scale(0),
+        AppCommand::SaveView,
+        AppCommand::SaveLookInStrip,
+        AppCommand::ExportContactSheet,
+        AppCommand::ToggleHandles,
+        AppCommand::ToggleCompare,
+        AppCommand::CompareWithFile,
+        AppCommand::ShowSlices,
+        AppCommand::ShowLightVolume,
+        AppCommand::ShowHelp,
+        AppCommand::ShowAbout,
+        AppCommand::Quit,
     ];
-    all.extend(THINNINGS.map(Command::Thin));
-    all.extend(Aspect::ALL.map(Command::Choose));
+    all.extend(SUBSAMPLINGS.map(AppCommand::Subsample));
+    all.extend(ChoiceAspect::ALL.map(AppCommand::ShowChooser));
     all.extend(
-        Aspect::ALL.into_iter().flat_map(|aspect| [true, false].map(|on| Command::StepChoice(aspect, on))),
+        ChoiceAspect::ALL
+            .into_iter()
+            .flat_map(|aspect| [true, false].map(|on| AppCommand::StepChoice(aspect, on))),
     );
-    all.extend(KindName::choices().map(Command::TreatAs));
-    all.extend(StandardView::ALL.map(Command::LookFrom));
-    all.extend(SceneAxis::ALL.map(|axis| Command::TurnObject(ObjectTurn::Upright(axis))));
-    all.extend(Rig::ALL.map(Command::UseRig));
-    all.extend(PRESETS.map(Command::UsePreset));
-    all.extend(PLACES.iter().map(|(place, _)| Command::Reveal(*place)));
-    all.extend((0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| Command::UseColors(at, back))));
-    all.extend(DIGITS.map(Command::StoreView));
-    all.extend(DIGITS.map(Command::RecallView));
+    all.extend(KindName::choices().map(AppCommand::TreatAs));
+    all.extend(StandardView::ALL.map(AppCommand::LookFrom));
+    all.extend(SceneAxis::ALL.map(|axis| AppCommand::TurnObject(ObjectRotation::MakeUpright(axis))));
+    all.extend(LightingRig::ALL.map(AppCommand::UseRig));
+    all.extend(PRESETS.map(AppCommand::UsePreset));
+    all.extend(SEARCHABLE_SETTINGS.iter().map(|(place, _)| AppCommand::Reveal(*place)));
+    all.extend(
+        (0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| AppCommand::UseColors(at, back))),
+    );
+    all.extend(DIGIT_KEYS.map(AppCommand::StoreView));
+    all.extend(DIGIT_KEYS.map(AppCommand::RecallView));
     all
 }

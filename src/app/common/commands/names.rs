@@ -1,14 +1,14 @@
-//! What commands are called, and by what else they are found.
+//! Names of commands, and further words by which they are found.
 
 use std::borrow::Cow;
 
-use super::Command;
-use crate::app::common::places::words;
+use super::AppCommand;
+use crate::app::common::searchable_settings::synonyms_of;
 use crate::app::text;
-use crate::model::{COLOR_MAPS, ObjectTurn, SceneAxis};
+use crate::model::{COLOR_MAPS, ObjectRotation, SceneAxis};
 
-impl Command {
-    /// What it is called while an axis of the scene points up: that axis is in the names of some.
+impl AppCommand {
+    /// Returns the name while this axis of the scene points up; the names of standard views depend on it.
     pub(crate) fn label_with(&self, up: SceneAxis) -> Cow<'static, str> {
         match self {
             Self::LookFrom(view) => text::commands::look_from(view.name(up)).into(),
@@ -16,27 +16,27 @@ impl Command {
         }
     }
 
-    /// Words by which it is found besides those of its name, and of the synonyms that the palette knows.
+    /// Returns search words in addition to the name and to the synonyms of the palette.
     pub(crate) fn search_words(&self) -> &'static str {
         match self {
-            Self::Reveal(place) => words(*place),
+            Self::Reveal(place) => synonyms_of(*place),
             // The domain, and the name on the command line.
             Self::UsePreset(preset) => preset.name,
             _ => "",
         }
     }
 
-    /// What help calls it.
+    /// Returns the name of the command for menus and help.
     pub(crate) fn label(&self) -> Cow<'static, str> {
         let label = match self {
             Self::LookFrom(view) => {
                 return text::commands::look_from(view.name(SceneAxis::default())).into();
             }
-            Self::TurnObject(ObjectTurn::Upright(axis)) => {
+            Self::TurnObject(ObjectRotation::MakeUpright(axis)) => {
                 return text::commands::upright(text::camera::axis(*axis).name).into();
             }
-            Self::TurnObject(ObjectTurn::Over) => text::commands::TURN_OBJECT,
-            Self::TurnRound => text::commands::TURN_ROUND,
+            Self::TurnObject(ObjectRotation::TipBack) => text::commands::TILT,
+            Self::RotateObject => text::commands::ROTATE,
             Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
             Self::UsePreset(preset) => {
                 return text::commands::use_preset(preset.title).into();
@@ -46,21 +46,21 @@ impl Command {
                 return text::commands::use_colors(name, *back).into();
             }
             Self::TreatAs(kind) => return text::commands::treat_as(*kind).into(),
-            Self::Choose(aspect) => return text::chooser::command(*aspect).into(),
+            Self::ShowChooser(aspect) => return text::chooser::command(*aspect).into(),
             Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
-            Self::TakeChoice(..) => text::commands::TAKE_CHOICE,
+            Self::OpenChoice(..) => text::commands::SHOW_CHOICE,
             Self::OpenAgain(..) => text::menu::OPEN_RECENT,
-            Self::Thin(thinning) => return text::commands::thin(*thinning).into(),
+            Self::Subsample(thinning) => return text::commands::subsample(*thinning).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
             Self::InvertTransfer => text::commands::INVERT_TRANSFER,
-            Self::KeepView => text::commands::KEEP_VIEW,
-            Self::KeepInStrip => text::commands::KEEP_IN_STRIP,
-            Self::GoToKept(..) => text::commands::GO_TO_KEPT,
-            Self::ReplaceKept(_) => text::kept::REPLACE.name,
-            Self::CompareKept(..) => text::kept::COMPARE.name,
-            Self::ExportKept => text::commands::EXPORT_KEPT,
-            Self::ToggleKept => text::commands::TOGGLE_KEPT,
+            Self::SaveView => text::commands::SAVE_VIEW,
+            Self::SaveLookInStrip => text::commands::SAVE_LOOK,
+            Self::GoToSaved(..) => text::commands::GO_TO_SAVED,
+            Self::ReplaceSaved(_) => text::saved_views::REPLACE.name,
+            Self::CompareSaved(..) => text::saved_views::COMPARE.name,
+            Self::ExportContactSheet => text::commands::EXPORT_CONTACT_SHEET,
+            Self::ToggleStrip => text::commands::TOGGLE_STRIP,
             Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
             Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
             Self::FrameAll => text::commands::FRAME_ALL,
@@ -79,7 +79,7 @@ impl Command {
             Self::SuggestLight => text::commands::SUGGEST_LIGHT,
             Self::Reveal(place) => return text::commands::reveal(place.section, place.row).into(),
             Self::CancelExport => text::commands::CANCEL_EXPORT,
-            Self::UseSurroundings => text::commands::USE_SURROUNDINGS,
+            Self::UseEnvironmentMap => text::commands::USE_ENVIRONMENT_MAP,
             Self::TryLights => text::commands::TRY_LIGHTS,
             Self::TryPresets => text::commands::TRY_PRESETS,
             Self::NextLight => text::commands::NEXT_LIGHT,
@@ -96,12 +96,12 @@ impl Command {
             Self::OpenPath => text::commands::OPEN_PATH,
             Self::Open(_) => text::commands::OPEN_BUILT_IN,
             Self::CancelOpening => text::commands::CANCEL_OPENING,
-            Self::GoOn => text::commands::GO_ON,
+            Self::ReopenLast => text::commands::REOPEN_LAST,
             Self::SaveSettings => text::commands::SAVE_SETTINGS,
             Self::LoadSettings => text::commands::LOAD_SETTINGS,
             Self::Export => text::commands::EXPORT,
             Self::CopyPicture => text::commands::COPY_PICTURE,
-            Self::KeepLook => text::commands::KEEP_LOOK,
+            Self::ToggleKeepLook => text::commands::KEEP_LOOK_FOR_NEXT,
             Self::Quit => text::commands::QUIT,
             Self::Undo => text::commands::UNDO,
             Self::Redo => text::commands::REDO,
@@ -115,7 +115,7 @@ impl Command {
             Self::ToggleSide => text::commands::TOGGLE_SIDE,
             Self::Scale(1) => text::commands::LARGER,
             Self::Scale(-1) => text::commands::SMALLER,
-            Self::Scale(_) => text::commands::USUAL_SIZE,
+            Self::Scale(_) => text::commands::DEFAULT_SIZE,
             Self::ToggleTransfer => text::commands::TOGGLE_TRANSFER,
             Self::TogglePictureOnly => text::commands::PICTURE_ONLY,
             Self::ToggleHandles => text::commands::TOGGLE_HANDLES,

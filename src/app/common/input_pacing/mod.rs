@@ -1,12 +1,12 @@
-//! Pacing of input: what the hands do one after another is handed to the window one thing per frame.
+//! Pacing of input: actions that follow each other are handed to the window in separate frames.
 //!
-//! The toolkit takes all events of a frame together. It looks for the widget under the pointer where the pointer is after
-//! the last of them, and gives all characters to the field that has the focus then. While a slow frame is drawn much can
-//! happen: a handle is pressed and dragged away, which would drag what lies at the end of the movement; a number is typed
-//! and left by Tab, and would go to the next field, with all that is typed there. So events are handed on in their order,
-//! until one that decides where the next go: a press, a release, a key that moves the focus or stands for a command. Those
-//! behind it wait for the next frame, which is asked for at once. Nothing is dropped, and where frames are quick nothing
-//! waits. Positions are in points, times in seconds.
+//! The toolkit takes all events of a frame together. It finds the widget under the pointer by the last pointer
+//! position of the frame, and gives all characters to the field that has the focus then. While a slow frame is drawn,
+//! much can happen: a handle is pressed and dragged away, which would drag whatever lies at the end of the movement;
+//! a number is typed and left by Tab, and would go to the next field, with everything typed there. So events are
+//! handed on in their order, up to one that determines the target of the next: a press, a release, a key that moves
+//! the focus or stands for a command. Later events wait for the next frame, which is requested at once. Nothing is
+//! dropped, and where frames are fast nothing waits. Positions are in points, times in seconds.
 
 #[cfg(test)]
 mod tests;
@@ -17,25 +17,25 @@ use eframe::egui::{self, Event, InputOptions, Key, Modifiers, PointerButton, Pos
 
 use super::shortcuts::{are_letters_reserved, is_function_key};
 
-/// A frame that takes longer than this is slow: about half of what the toolkit lets pass between two clicks of a double
+/// Duration from which a frame is slow, in seconds: about half of the toolkit's limit between the clicks of a double
 /// click (0.3 s).
 const SLOW_FRAME_S: f32 = 0.15;
 
-/// The longest frame that clicks are stretched for: further apart they are no double click for anybody.
-const LONGEST_FRAME_S: f32 = 2.0;
+/// Longest frame for which clicks are stretched, in seconds: clicks further apart are never meant as a double click.
+const MAX_STRETCHED_FRAME_S: f32 = 2.0;
 
-/// Share of the longest frame so far that counts for the frame after it: a slow one is forgotten after a dozen quick ones.
+/// Factor by which the longest frame time decays per frame: a slow frame is forgotten after a dozen fast ones.
 const FRAME_DECAY: f32 = 0.8;
 
-/// Events that wait for a frame of their own.
+/// Queue of events that wait for a frame of their own.
 #[derive(Debug)]
 pub(crate) struct InputPacing {
     waiting: VecDeque<Event>,
-    /// The focus may move in this frame by what the frame before was given: characters wait until it has.
+    /// True if events of the previous frame may move the focus in this one: characters wait until it has moved.
     focus_settles: bool,
-    /// Points that a click may move between press and release.
+    /// Distance that the pointer may move during a click, in points.
     click_distance: f32,
-    /// How long frames take at present.
+    /// Decaying maximum of recent frame times, in seconds.
     frame_s: f32,
 }
 
@@ -50,17 +50,17 @@ impl Default for InputPacing {
     }
 }
 
-/// Role of an event in the order of things.
+/// Role of an event in the ordering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
-    /// It may come with any other.
+enum EventRole {
+    /// Event that may share a frame with any other.
     Free,
     Move,
     Press,
     Release,
-    /// Goes into the field that has the focus.
+    /// Input for the field that has the focus.
     Character,
-    /// A key, or a wish of a screen reader, that does something at once. `types`: it is a character as well.
+    /// Key, or request of a screen reader, with an immediate effect. `types`: it is a character as well.
     /// `moves_focus`: another field may have the focus afterwards.
     Command {
         types: bool,
@@ -68,8 +68,8 @@ enum Role {
     },
 }
 
-impl Role {
-    /// `next` is the event behind it; `is_typing` means that letters are for a text.
+impl EventRole {
+    /// Classifies an event. `next` is the event behind it; `is_typing`: letters are for a text.
     fn new(event: &Event, next: Option<&Event>, is_typing: bool) -> Self {
         match event {
             Event::PointerMoved(_) => Self::Move,
@@ -80,7 +80,7 @@ impl Role {
             }
             Event::Key { key, pressed: true, modifiers, .. } => {
                 let leaves = leaves_field(*key, *modifiers);
-                if is_typing && !leaves && !steps(*key) {
+                if is_typing && !leaves && !steps_value(*key) {
                     Self::Character
                 } else {
                     // Space presses the button that has the focus.
@@ -94,7 +94,7 @@ impl Role {
     }
 }
 
-/// Whether a key does more than edit the text of a field: it leaves the field, or stands for a command everywhere.
+/// Returns true if a key does more than edit the text of a field: it leaves the field, or is a command everywhere.
 fn leaves_field(key: Key, modifiers: Modifiers) -> bool {
     matches!(key, Key::Tab | Key::Enter | Key::Escape)
         || is_function_key(key)
@@ -102,55 +102,55 @@ fn leaves_field(key: Key, modifiers: Modifiers) -> bool {
         || modifiers.ctrl
 }
 
-/// Whether a key steps through values or rows, also while a text is edited.
-fn steps(key: Key) -> bool {
+/// Returns true if a key steps through values or rows, even while text is edited.
+fn steps_value(key: Key) -> bool {
     matches!(key, Key::ArrowUp | Key::ArrowDown | Key::PageUp | Key::PageDown)
 }
 
 impl InputPacing {
-    /// The events of the next frame, from those that waited and those that `arrived` since. `is_typing`: letters are for a
-    /// text.
+    /// Returns the events of the next frame, from those that have waited and those that `arrived` since. `is_typing`:
+    /// letters are for a text.
     fn next_frame(&mut self, arrived: Vec<Event>, is_typing: bool) -> Vec<Event> {
         self.waiting.extend(arrived);
         let may_type = !std::mem::take(&mut self.focus_settles);
         let mut frame = Vec::new();
         let (mut has_moved, mut has_typed) = (false, false);
         while let Some(event) = self.waiting.pop_front() {
-            let role = Role::new(&event, self.waiting.front(), is_typing);
+            let role = EventRole::new(&event, self.waiting.front(), is_typing);
             let waits = match role {
-                Role::Free | Role::Move => false,
-                Role::Press => has_typed,
-                // What is dragged goes to the end of the movement before it is let go.
-                Role::Release => has_typed || has_moved,
-                Role::Character => !may_type,
-                Role::Command { types, .. } => has_typed || types && !may_type,
+                EventRole::Free | EventRole::Move => false,
+                EventRole::Press => has_typed,
+                // A dragged object reaches the end of the movement before it is released.
+                EventRole::Release => has_typed || has_moved,
+                EventRole::Character => !may_type,
+                EventRole::Command { types, .. } => has_typed || types && !may_type,
             };
             if waits {
                 self.waiting.push_front(event);
                 break;
             }
             match role {
-                Role::Free => frame.push(event),
-                Role::Move => {
+                EventRole::Free => frame.push(event),
+                EventRole::Move => {
                     has_moved = true;
                     frame.push(event);
                 }
-                Role::Character => {
+                EventRole::Character => {
                     has_typed = true;
                     frame.push(event);
                 }
-                Role::Press => {
-                    self.press(&mut frame, event);
+                EventRole::Press => {
+                    self.hand_on_press(&mut frame, event);
                     self.focus_settles = true;
                     break;
                 }
-                Role::Release => {
+                EventRole::Release => {
                     frame.push(event);
                     self.focus_settles = true;
                     break;
                 }
-                Role::Command { moves_focus, .. } => {
-                    self.command(&mut frame, event);
+                EventRole::Command { moves_focus, .. } => {
+                    self.hand_on_command(&mut frame, event);
                     self.focus_settles = moves_focus;
                     break;
                 }
@@ -159,18 +159,18 @@ impl InputPacing {
         frame
     }
 
-    /// Hands on a press. A click that has arrived whole stays whole, where it was pressed: in frames of their own press and
-    /// release may lie further apart than a click lasts.
-    fn press(&mut self, frame: &mut Vec<Event>, press: Event) {
+    /// Hands on a press. A click that has arrived as a whole stays together, at the position of its press: in
+    /// separate frames, press and release might be further apart than a click may last.
+    fn hand_on_press(&mut self, frame: &mut Vec<Event>, press: Event) {
         let Event::PointerButton { pos: origin, button, .. } = press else { return };
         frame.push(press);
         let is_near = |at: &Pos2| at.distance(origin) <= self.click_distance;
         let goes_by = |event: &Event| match event {
             Event::PointerMoved(to) => is_near(to),
-            event => Role::new(event, None, false) == Role::Free,
+            event => EventRole::new(event, None, false) == EventRole::Free,
         };
         let Some(end) = self.waiting.iter().position(|event| !goes_by(event)) else { return };
-        let Some(released) = released_at(&self.waiting[end], button).filter(is_near) else { return };
+        let Some(released) = release_position(&self.waiting[end], button).filter(is_near) else { return };
         for event in self.waiting.drain(..=end) {
             match event {
                 Event::PointerMoved(_) => {}
@@ -185,9 +185,8 @@ impl InputPacing {
         }
     }
 
-    /// Hands on a key with the text that it stands for, and with its repetitions while it is held: who holds a key for a
-    /// second does not want to wait for thirty frames.
-    fn command(&mut self, frame: &mut Vec<Event>, command: Event) {
+    /// Hands on a key with its text and its repetitions: a key held for a second must not take thirty frames.
+    fn hand_on_command(&mut self, frame: &mut Vec<Event>, command: Event) {
         let held = match &command {
             Event::Key { key, modifiers, .. } => Some((*key, *modifiers)),
             _ => None,
@@ -207,11 +206,11 @@ impl InputPacing {
         }
     }
 
-    /// Gives clicks as many more seconds as slow frames take from them.
+    /// Extends the time limits of clicks by the time that slow frames take from them.
     fn stretch_clicks(&mut self, ctx: &egui::Context) {
-        let last_s = ctx.input(|input| input.stable_dt).min(LONGEST_FRAME_S);
+        let last_s = ctx.input(|input| input.stable_dt).min(MAX_STRETCHED_FRAME_S);
         self.frame_s = last_s.max(FRAME_DECAY * self.frame_s);
-        // The press may be in the frame after the one in which it came, and the release in the one after that.
+        // The press may be handled one frame after its arrival, and the release another frame later.
         let more_s = if self.frame_s > SLOW_FRAME_S { 2.0 * f64::from(self.frame_s) } else { 0.0 };
         let usual = InputOptions::default();
         ctx.options_mut(|options| {
@@ -222,8 +221,8 @@ impl InputPacing {
     }
 }
 
-/// Where a button was let go, if that is what an event says.
-fn released_at(event: &Event, of: PointerButton) -> Option<Pos2> {
+/// Returns the position at which a button was released, if the event is its release.
+fn release_position(event: &Event, of: PointerButton) -> Option<Pos2> {
     match event {
         Event::PointerButton { pos, button, pressed: false, .. } if *button == of => Some(*pos),
         _ => None,
@@ -236,12 +235,12 @@ impl egui::Plugin for InputPacing {
     }
 
     fn input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        // A frame that is laid out a second time has had its events.
+        // A second pass of a frame has had its events.
         if ctx.current_pass_index() > 0 {
             return;
         }
         self.stretch_clicks(ctx);
-        // Letters that are nobody's need no frame each.
+        // Letters without a text field need no frames of their own.
         let is_typing = ctx.text_edit_focused() || are_letters_reserved(ctx);
         input.events = self.next_frame(std::mem::take(&mut input.events), is_typing);
     }

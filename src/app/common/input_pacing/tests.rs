@@ -1,4 +1,4 @@
-//! Tests of pacing: what comes in one frame, and a context in which widgets are pressed and fields are typed in.
+//! Tests of input pacing: the split of events into frames, and a context with widgets and text fields.
 
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Rect, Sense, pos2, vec2};
 
@@ -12,22 +12,22 @@ fn key_with(key: Key, modifiers: Modifiers, pressed: bool) -> Event {
     Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
 }
 
-/// A key that is struck: down and up.
-fn stroke(key: Key) -> Vec<Event> {
+/// Events of a key stroke: press and release.
+fn key_stroke(key: Key) -> Vec<Event> {
     vec![key_with(key, Modifiers::NONE, true), key_with(key, Modifiers::NONE, false)]
 }
 
-/// A word as a keyboard types it.
-fn typed(word: &str) -> Vec<Event> {
+/// Events of a word typed on a keyboard.
+fn type_word(word: &str) -> Vec<Event> {
     let letter = |sign: char| {
         let key = Key::from_name(&sign.to_uppercase().to_string()).unwrap();
-        let [down, up] = stroke(key).try_into().unwrap();
+        let [down, up] = key_stroke(key).try_into().unwrap();
         [down, Event::Text(sign.to_string()), up]
     };
     word.chars().flat_map(letter).collect()
 }
 
-/// The frames into which events are cut that came in one.
+/// Splits events that have arrived in one frame into paced frames.
 fn frames(events: Vec<Event>, is_typing: bool) -> Vec<Vec<Event>> {
     let mut pacing = InputPacing::default();
     let mut frames = vec![pacing.next_frame(events, is_typing)];
@@ -44,8 +44,8 @@ fn is_press(event: &Event) -> bool {
 const HANDLE: Pos2 = pos2(20.0, 20.0);
 const FAR: Pos2 = pos2(150.0, 120.0);
 
-/// A handle that is grabbed and thrown within one frame.
-fn flick() -> Vec<Event> {
+/// Events of a handle that is grabbed and thrown within one frame.
+fn drag_in_one_frame() -> Vec<Event> {
     let mut events = vec![Event::PointerMoved(HANDLE), button(HANDLE, true)];
     events.extend([pos2(40.0, 35.0), pos2(90.0, 80.0), FAR].map(Event::PointerMoved));
     events.push(button(FAR, false));
@@ -54,10 +54,10 @@ fn flick() -> Vec<Event> {
 
 #[test]
 fn a_press_ends_its_frame_and_a_release_has_one_of_its_own() {
-    let frames = frames(flick(), false);
+    let frames = frames(drag_in_one_frame(), false);
     assert_eq!(frames.iter().map(Vec::len).collect::<Vec<_>>(), [2, 3, 1]);
     assert!(is_press(&frames[0][1]));
-    assert_eq!(frames.concat(), flick(), "nothing is lost, and the order is kept");
+    assert_eq!(frames.concat(), drag_in_one_frame(), "nothing is lost, and the order is kept");
 }
 
 #[test]
@@ -72,8 +72,8 @@ fn a_click_that_comes_whole_stays_whole_and_where_it_was_pressed() {
 
 #[test]
 fn text_waits_for_the_field_that_tab_leads_to() {
-    let word = typed("ab");
-    let events = [word.clone(), stroke(Key::Tab), word.clone(), stroke(Key::Enter)].concat();
+    let word = type_word("ab");
+    let events = [word.clone(), key_stroke(Key::Tab), word.clone(), key_stroke(Key::Enter)].concat();
     let frames = frames(events.clone(), true);
     let tab = key_with(Key::Tab, Modifiers::NONE, true);
     assert_eq!(frames[0], word, "the field has it before it is left");
@@ -87,11 +87,11 @@ fn text_waits_for_the_field_that_tab_leads_to() {
 #[test]
 fn text_after_a_command_waits_for_the_window_that_it_opens() {
     let open = vec![key_with(Key::L, Modifiers::COMMAND, true), key_with(Key::L, Modifiers::COMMAND, false)];
-    let frames = frames([open.clone(), typed("a")].concat(), false);
+    let frames = frames([open.clone(), type_word("a")].concat(), false);
     assert_eq!(frames[..2], [open[..1].to_vec(), open[1..].to_vec()]);
-    // What is typed where no field has the focus are commands: a letter comes with its text, or another field would get
-    // that.
-    assert_eq!(frames[2], typed("a")[..2]);
+    // Without a focused field, typed letters are commands: each comes with its text, or another field would get the
+    // text.
+    assert_eq!(frames[2], type_word("a")[..2]);
 }
 
 #[test]
@@ -103,14 +103,15 @@ fn keys_that_are_struck_are_counted_and_a_key_that_is_held_is_not_waited_for() {
     };
     let struck = frames(thrice, false);
     assert_eq!(struck.iter().map(presses).filter(|count| *count > 0).collect::<Vec<_>>(), [1, 1, 1]);
-    let held = [vec![key_with(Key::ArrowLeft, Modifiers::NONE, true); 30], stroke(Key::ArrowLeft)].concat();
+    let held =
+        [vec![key_with(Key::ArrowLeft, Modifiers::NONE, true); 30], key_stroke(Key::ArrowLeft)].concat();
     assert!(frames(held, false).len() <= 2);
 }
 
 #[test]
 fn what_comes_slowly_does_not_wait() {
     let mut pacing = InputPacing::default();
-    for event in [flick(), typed("ab"), stroke(Key::Tab), stroke(Key::G)].concat() {
+    for event in [drag_in_one_frame(), type_word("ab"), key_stroke(Key::Tab), key_stroke(Key::G)].concat() {
         let is_text = matches!(event, Event::Text(_));
         let frame = pacing.next_frame(vec![event.clone()], true);
         if !is_text {
@@ -121,20 +122,20 @@ fn what_comes_slowly_does_not_wait() {
     }
 }
 
-/// A context with pacing, and the frames that it asks for.
-struct Window {
+/// Window context with input pacing, in virtual time.
+struct PacingTestWindow {
     ctx: egui::Context,
     time_s: f64,
 }
 
-impl Window {
+impl PacingTestWindow {
     fn new() -> Self {
         let ctx = egui::Context::default();
         ctx.add_plugin(InputPacing::default());
         Self { ctx, time_s: 0.0 }
     }
 
-    /// Runs frames of 0.3 s: the first with these events, then as many as they need.
+    /// Runs 20 frames of 0.3 s, the first with these events.
     fn run(&mut self, events: Vec<Event>, mut add: impl FnMut(&mut egui::Ui)) {
         let mut events = Some(events);
         for _ in 0..20 {
@@ -153,7 +154,7 @@ impl Window {
 
 #[test]
 fn what_is_pressed_is_dragged_however_far_the_pointer_is_when_a_frame_begins() {
-    let mut window = Window::new();
+    let mut window = PacingTestWindow::new();
     let (mut handle, mut picture) = (egui::Vec2::ZERO, egui::Vec2::ZERO);
     let mut add = |ui: &mut egui::Ui| {
         let all = ui.interact(ui.max_rect(), egui::Id::unique("picture"), Sense::click_and_drag());
@@ -163,13 +164,13 @@ fn what_is_pressed_is_dragged_however_far_the_pointer_is_when_a_frame_begins() {
         handle += grip.drag_delta();
     };
     window.run(Vec::new(), &mut add);
-    window.run(flick(), &mut add);
+    window.run(drag_in_one_frame(), &mut add);
     assert_eq!((handle, picture), (FAR - HANDLE, egui::Vec2::ZERO));
 }
 
 #[test]
 fn numbers_that_are_typed_with_tab_in_one_frame_go_where_they_belong() {
-    let mut window = Window::new();
+    let mut window = PacingTestWindow::new();
     let mut lengths = [1.0, 1.0, 1.0];
     let mut letters = 0;
     let mut add = |ui: &mut egui::Ui| {
@@ -185,15 +186,16 @@ fn numbers_that_are_typed_with_tab_in_one_frame_go_where_they_belong() {
     let number = |text: &str| -> Vec<Event> {
         let sign = |sign: char| {
             let key = if sign == '.' { Key::Period } else { Key::from_name(&sign.to_string()).unwrap() };
-            let [down, up] = stroke(key).try_into().unwrap();
+            let [down, up] = key_stroke(key).try_into().unwrap();
             [down, Event::Text(sign.to_string()), up]
         };
         text.chars().flat_map(sign).collect()
     };
     let first = pos2(35.0, 20.0);
     let click = vec![Event::PointerMoved(first), button(first, true), button(first, false)];
-    let tab = || stroke(Key::Tab);
-    let events = [click, number("0.957"), tab(), number("0.957"), tab(), number("1.5"), stroke(Key::Enter)];
+    let tab = || key_stroke(Key::Tab);
+    let events =
+        [click, number("0.957"), tab(), number("0.957"), tab(), number("1.5"), key_stroke(Key::Enter)];
     window.run(events.concat(), &mut add);
     assert_eq!(lengths, [0.957, 0.957, 1.5]);
     assert_eq!(letters, 0, "digits were taken for commands");
@@ -201,7 +203,7 @@ fn numbers_that_are_typed_with_tab_in_one_frame_go_where_they_belong() {
 
 #[test]
 fn two_clicks_are_a_double_click_where_frames_are_slow() {
-    let mut window = Window::new();
+    let mut window = PacingTestWindow::new();
     let (mut clicks, mut doubles) = (0, 0);
     let mut add = |ui: &mut egui::Ui| {
         let all = ui.interact(ui.max_rect(), egui::Id::unique("picture"), Sense::click());

@@ -1,100 +1,103 @@
-//! The part of the section "Data" that corrects what the file says.
+//! Corrections of a volume's metadata, a part of the section "Data".
 
 use eframe::egui::{self, DragValue, Ui};
 
-use super::super::controls::{reset, row, short, spacing as spacing_in_words, unlabelled};
+use super::super::controls::{
+    format_number, format_spacing as spacing_in_words, reset_button_cell, row, unlabelled_row,
+};
 use crate::app::common::reveal;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::text::{self, Named};
+use crate::app::text::{self, ControlText};
 use crate::data::{
-    AxisOrder, Corrections, Headings, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
+    AnatomicalAxes, AxisOrder, Corrections, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
 };
 use crate::model::Settings;
 
-/// Share of a number by which a point of a drag moves it: 200 points for as much again.
-const SPEED: f64 = 1.0 / 200.0;
+/// Share of a number by which a drag of one point changes it: 200 points double it.
+const DRAG_SPEED: f64 = 1.0 / 200.0;
 
-/// Width of a distance, three of which stand in a row.
-const DISTANCE_WIDTH: f32 = 48.0;
+/// Width of a spacing field, in points; three of them fit in a row.
+const SPACING_FIELD_WIDTH: f32 = 48.0;
 
-/// Width of a list.
+/// Width of a drop-down list, in points.
 const LIST_WIDTH: f32 = 120.0;
 
-/// Shows the part. What is edited counts when the pointer lets go, and a number when it is typed: each is one step, and the
-/// volume is made anew once.
+/// Shows the corrections. An edit is applied when the pointer is released or a number has been typed: it is one undo
+/// step, and the volume is recomputed once.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     let header = egui::CollapsingHeader::new(text::corrections::TITLE).id_salt("corrections");
-    let opens = reveal::opens(ui.ctx(), text::sections::DATA, true);
+    let opens = reveal::should_open(ui.ctx(), text::sections::DATA, true);
     header.open(opens.then_some(true)).show_unindented(ui, |ui| {
-        let held = ui.scope_id().with("held");
+        let pending_id = ui.scope_id().with("held");
         let known = settings.volume;
-        let mut edited = ui.data(|data| data.get_temp(held)).unwrap_or(known);
-        rows(ui, &mut edited, &volume.of);
+        let mut edited = ui.data(|data| data.get_temp(pending_id)).unwrap_or(known);
+        rows(ui, &mut edited, &volume.volume);
         edited.sanitise();
         let is_held = ui.ctx().dragged_id().is_some();
         if is_held && edited != known {
-            ui.data_mut(|data| data.insert_temp(held, edited));
+            ui.data_mut(|data| data.insert_temp(pending_id, edited));
         } else {
-            ui.data_mut(|data| data.remove::<Corrections>(held));
+            ui.data_mut(|data| data.remove::<Corrections>(pending_id));
             if edited != known {
-                settings.correct(edited, &volume.of);
+                settings.apply_corrections(edited, &volume.volume);
             }
         }
     });
 }
 
 fn rows(ui: &mut Ui, by: &mut Corrections, volume: &Volume) {
-    let opened = volume.as_opened();
-    spacing(ui, by, opened);
-    unit(ui, by, opened);
+    let uncorrected = volume.as_opened();
+    spacing(ui, by, uncorrected);
+    unit(ui, by, uncorrected);
     flip(ui, by);
     axis_order(ui, by);
-    orientation(ui, by, opened);
-    padding(ui, by, opened);
+    orientation(ui, by, uncorrected);
+    padding(ui, by, uncorrected);
     value_scale(ui, &mut by.value_scale);
-    unlabelled(ui, |ui| {
+    unlabelled_row(ui, |ui| {
         let button = egui::Button::new(text::corrections::RESET.name);
         let response = ui.add_enabled(!by.is_none(), button);
-        if response.on_hover_text(text::corrections::RESET.tip).clicked() {
+        if response.on_hover_text(text::corrections::RESET.tooltip).clicked() {
             *by = Corrections::default();
         }
     });
 }
 
-/// A row that says what the file does, and puts back what it says.
-fn file_row(
+/// Shows a row whose tooltip states the value in the file; returns true if the reset button was clicked.
+fn corrected_row(
     ui: &mut Ui,
-    named: Named,
+    named: ControlText,
     in_file: &str,
     differs: bool,
     add: impl FnOnce(&mut Ui, &str),
 ) -> bool {
-    let tip = text::corrections::tip(named, in_file);
+    let tip = text::corrections::tooltip_with_metadata(named, in_file);
     row(ui, named, |ui| {
         add(ui, &tip);
-        reset(ui, named.name, differs.then_some(in_file))
+        reset_button_cell(ui, named.name, differs.then_some(in_file))
     })
 }
 
 fn spacing(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let in_file: [f64; 3] = opened.file_spacing_mm().into();
-    let said = spacing_in_words(in_file, opened.has_unknown_scale());
+    let file_text = spacing_in_words(in_file, opened.has_unknown_scale());
     let mut lengths = by.spacing.unwrap_or(in_file);
-    let is_reset = file_row(ui, text::corrections::SPACING, &said, by.spacing.is_some(), |ui, tip| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        for (axis, length) in text::corrections::AXES.into_iter().zip(&mut lengths) {
-            let speed = *length * SPEED;
-            let field = DragValue::new(length)
-                .speed(speed)
-                .range(1e-9..=1e9)
-                .max_decimals(6)
-                .update_while_editing(false)
-                .clamp_existing_to_range(false);
-            let size = [DISTANCE_WIDTH, ui.spacing().interact_size.y];
-            let name = text::corrections::spacing_along(axis);
-            ui.name_inputs(&name, |ui| ui.add_sized(size, field)).on_hover_text(tip);
-        }
-    });
+    let is_reset =
+        corrected_row(ui, text::corrections::SPACING, &file_text, by.spacing.is_some(), |ui, tip| {
+            ui.spacing_mut().item_spacing.x = 3.0;
+            for (axis, length) in text::corrections::AXES.into_iter().zip(&mut lengths) {
+                let speed = *length * DRAG_SPEED;
+                let field = DragValue::new(length)
+                    .speed(speed)
+                    .range(1e-9..=1e9)
+                    .max_decimals(6)
+                    .update_while_editing(false)
+                    .clamp_existing_to_range(false);
+                let size = [SPACING_FIELD_WIDTH, ui.spacing().interact_size.y];
+                let name = text::corrections::spacing_along(axis);
+                ui.name_inputs(&name, |ui| ui.add_sized(size, field)).on_hover_text(tip);
+            }
+        });
     if is_reset {
         by.spacing = None;
     } else if lengths != by.spacing.unwrap_or(in_file) {
@@ -102,8 +105,14 @@ fn spacing(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     }
 }
 
-/// A list of choices, the first of which leaves what the file says.
-fn list<T: PartialEq + Copy>(ui: &mut Ui, named: Named, tip: &str, chosen: &mut T, options: &[(T, String)]) {
+/// Shows a drop-down list of choices, the first of which keeps the value in the file.
+fn choice_list<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    named: ControlText,
+    tip: &str,
+    chosen: &mut T,
+    options: &[(T, String)],
+) {
     let shown = options.iter().find(|(option, _)| option == chosen).map_or("", |(_, name)| name);
     let combo = egui::ComboBox::from_id_salt(named.name).selected_text(shown).width(LIST_WIDTH);
     let response = ui.name_inputs(named.name, |ui| {
@@ -123,8 +132,8 @@ fn unit(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let options: Vec<_> =
         std::iter::once((None, text::corrections::IN_FILE.to_owned())).chain(units).collect();
     let differs = by.unit.is_some();
-    if file_row(ui, text::corrections::UNIT, said, differs, |ui, tip| {
-        list(ui, text::corrections::UNIT, tip, &mut by.unit, &options);
+    if corrected_row(ui, text::corrections::UNIT, said, differs, |ui, tip| {
+        choice_list(ui, text::corrections::UNIT, tip, &mut by.unit, &options);
     }) {
         by.unit = None;
     }
@@ -135,7 +144,7 @@ fn flip(ui: &mut Ui, by: &mut Corrections) {
     row(ui, named, |ui| {
         let axes = [&mut by.flip.x, &mut by.flip.y, &mut by.flip.z];
         for (axis, is_flipped) in text::corrections::AXES.into_iter().zip(axes) {
-            let response = ui.checkbox(is_flipped, axis).on_hover_text(named.tip);
+            let response = ui.checkbox(is_flipped, axis).on_hover_text(named.tooltip);
             let name = text::corrections::flip(axis);
             let is_flipped = *is_flipped;
             response
@@ -148,8 +157,8 @@ fn axis_order(ui: &mut Ui, by: &mut Corrections) {
     let options = AxisOrder::ALL.map(|order| (order, text::corrections::order(order).to_owned()));
     let (named, file) = (text::corrections::AXIS_ORDER, AxisOrder::default());
     let differs = by.axis_order != file;
-    if file_row(ui, named, text::corrections::order(file), differs, |ui, tip| {
-        list(ui, named, tip, &mut by.axis_order, &options);
+    if corrected_row(ui, named, text::corrections::order(file), differs, |ui, tip| {
+        choice_list(ui, named, tip, &mut by.axis_order, &options);
     }) {
         by.axis_order = file;
     }
@@ -158,19 +167,19 @@ fn axis_order(ui: &mut Ui, by: &mut Corrections) {
 fn orientation(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let axes = opened.world_from_index().matrix3;
     let said = if opened.is_anatomical() {
-        Headings::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).to_string()
+        AnatomicalAxes::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).to_string()
     } else {
-        text::corrections::NOTHING_SAID.to_owned()
+        text::corrections::NO_METADATA.to_owned()
     };
     let mut options = vec![
         (None, text::corrections::IN_FILE.to_owned()),
         (Some(Orientation::Unknown), text::corrections::UNKNOWN.to_owned()),
     ];
-    options.extend(Orientation::all_towards().map(|towards| (Some(towards), towards.to_string())));
+    options.extend(Orientation::all_anatomical().map(|towards| (Some(towards), towards.to_string())));
     let differs = by.orientation.is_some();
     let named = text::corrections::ORIENTATION;
-    if file_row(ui, named, &said, differs, |ui, tip| {
-        list(ui, named, tip, &mut by.orientation, &options);
+    if corrected_row(ui, named, &said, differs, |ui, tip| {
+        choice_list(ui, named, tip, &mut by.orientation, &options);
     }) {
         by.orientation = None;
     }
@@ -178,36 +187,39 @@ fn orientation(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
 
 fn padding(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
     let in_file = opened.padding_value();
-    let said = in_file.map_or_else(|| text::corrections::NO_PADDING.to_owned(), short);
-    // Where a value is typed first: what the file declares, or the lowest, which is what usually is around things.
+    let said = in_file.map_or_else(|| text::corrections::NO_PADDING.to_owned(), format_number);
+    // Initial value of the typed padding: the one the file declares, or the lowest value, which usually surrounds
+    // objects.
     let first = in_file.unwrap_or_else(|| opened.value_range().low);
     let typed = match by.padding_value {
         PaddingValue::Value(value) => value,
-        PaddingValue::InFile | PaddingValue::Nothing => by.value_scale.value(first),
+        PaddingValue::InFile | PaddingValue::Nothing => by.value_scale.value_from_number(first),
     };
     let options = [
         (PaddingValue::InFile, text::corrections::IN_FILE.to_owned()),
         (PaddingValue::Nothing, text::corrections::NO_PADDING.to_owned()),
-        (PaddingValue::Value(typed), text::corrections::TYPED.to_owned()),
+        (PaddingValue::Value(typed), text::corrections::PADDING_TYPED.to_owned()),
     ];
     let differs = by.padding_value != PaddingValue::InFile;
     let named = text::corrections::PADDING;
-    if file_row(ui, named, &said, differs, |ui, tip| list(ui, named, tip, &mut by.padding_value, &options)) {
+    if corrected_row(ui, named, &said, differs, |ui, tip| {
+        choice_list(ui, named, tip, &mut by.padding_value, &options);
+    }) {
         by.padding_value = PaddingValue::InFile;
     }
     if let PaddingValue::Value(value) = &mut by.padding_value {
-        unlabelled(ui, |ui| {
+        unlabelled_row(ui, |ui| {
             let named = text::corrections::PADDING_VALUE;
-            let speed = opened.value_range().span().max(1.0) * SPEED;
+            let speed = opened.value_range().span().max(1.0) * DRAG_SPEED;
             let field = DragValue::new(value).speed(speed).max_decimals(6).update_while_editing(false);
-            ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip);
+            ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tooltip);
         });
     }
 }
 
 fn value_scale(ui: &mut Ui, scale: &mut ValueScale) {
-    let (said, differs) = (text::corrections::AS_THEY_ARE, !scale.is_none());
-    if file_row(ui, text::corrections::VALUE_SCALE, said, differs, |ui, tip| {
+    let (said, differs) = (text::corrections::NO_SCALE, !scale.is_none());
+    if corrected_row(ui, text::corrections::VALUE_SCALE, said, differs, |ui, tip| {
         let numbers = [
             (text::corrections::TIMES, text::corrections::SLOPE, &mut scale.slope, 0.01),
             (text::corrections::PLUS, text::corrections::INTERCEPT, &mut scale.intercept, 1.0),

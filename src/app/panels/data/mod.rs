@@ -1,35 +1,36 @@
-//! Section "Data": what the volume is, and the length to which opacities refer.
+//! Section "Data" of the side panel: facts about the volume, its corrections, and the length to which opacities
+//! refer.
 
+mod alternatives;
 mod corrections;
 mod range;
-mod several;
 
 use eframe::egui::{self, Ui};
 
-use super::Panels;
-use super::controls::{reset, row, short, spacing};
-use crate::app::common::commands::{Command, THINNINGS};
+use super::PanelContext;
+use super::controls::{format_number, format_spacing, reset_button_cell, row};
+use crate::app::common::commands::{AppCommand, SUBSAMPLINGS};
 use crate::app::common::elide::elide_middle;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::text::{self, Named};
-use crate::data::{KindName, ValueRange, plain};
-use crate::model::{Length, Settings};
+use crate::app::text::{self, ControlText};
+use crate::data::{KindName, ValueRange, sanitised};
+use crate::model::{OpacityLength, Settings};
 
-/// Characters of a path that are laid out, which is then cut to the width that there is.
-const LONGEST_PATH: usize = 4096;
+/// Longest part of a path that is laid out, in characters; it is then cut to the available width.
+const MAX_PATH_CHARS: usize = 4096;
 
-/// Shows the section.
-pub(super) fn show(ui: &mut Ui, panels: &mut Panels<'_>) {
+/// Shows the section "Data" of the side panel.
+pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     let Some(volume) = panels.volume else {
         ui.label(text::data::NOTHING_OPEN);
         return;
     };
     facts(ui, volume);
-    several::show(ui, volume, panels.commands);
-    treatment(ui, panels.treated_as, panels.commands);
+    alternatives::show(ui, volume, panels.commands);
+    data_kind_row(ui, panels.treated_as, panels.commands);
     range::show(ui, panels.settings, volume);
-    thinning(ui, volume, panels.commands);
-    opacity_unit(ui, panels.settings, panels.defaults, volume);
+    subsampling_row(ui, volume, panels.commands);
+    opacity_unit(ui, panels.settings, panels.first_look, volume);
     corrections::show(ui, panels.settings, volume);
 }
 
@@ -37,25 +38,28 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     let ValueRange { low, high } = volume.ranges.all;
     let mut rows = vec![
         (text::data::NAME, volume.name.clone()),
-        (text::data::SOURCE, plain(&volume.source.to_string_lossy(), LONGEST_PATH)),
+        (text::data::SOURCE, sanitised(&volume.source.to_string_lossy(), MAX_PATH_CHARS)),
         (text::data::DIMENSIONS, text::data::dimensions(volume.dims)),
         (text::data::VOXEL_TYPE, volume.voxel_type.to_owned()),
         (text::data::KIND, text::data::kind(volume.kind)),
-        (text::data::SPACING, spacing(volume.spacing_mm, volume.has_unknown_scale)),
-        (text::data::VALUES, text::data::values(&short(low), &short(high))),
-        (text::data::MEMORY, text::data::memory(volume.bytes as f64 / f64::from(1 << 20))),
+        (text::data::SPACING, format_spacing(volume.spacing_mm, volume.has_unknown_scale)),
+        (text::data::VALUES, text::data::values(&format_number(low), &format_number(high))),
+        (text::data::MEMORY, text::data::memory_size(volume.bytes as f64 / f64::from(1 << 20))),
     ];
     if volume.file_dims != volume.dims {
-        rows.insert(3, (text::data::SHOWN_OF, text::data::shown_of(&volume.held.portion, volume.file_dims)));
+        rows.insert(
+            3,
+            (text::data::READ_OF, text::data::file_dimensions(&volume.held.portion, volume.file_dims)),
+        );
     }
     if let (Some(region), Some(grid)) = (volume.held.portion.region, volume.held.grid) {
         rows.insert(3, (text::data::REGION, text::data::region(&region, grid)));
     }
     if volume.non_finite_voxels > 0 {
-        rows.push((text::data::NOT_FINITE, text::data::not_finite(volume.non_finite_voxels)));
+        rows.push((text::data::NOT_FINITE, text::data::non_finite_voxels(volume.non_finite_voxels)));
     }
     for (name, fact) in rows {
-        row(ui, Named { name, tip: "" }, |ui| {
+        row(ui, ControlText { name, tooltip: "" }, |ui| {
             let shown = elide_middle(ui, &fact, &egui::TextStyle::Body, ui.available_width());
             let is_cut = shown != fact;
             let label = ui.add(egui::Label::new(shown).truncate());
@@ -66,19 +70,19 @@ fn facts(ui: &mut Ui, volume: &VolumeFacts) {
     }
 }
 
-/// The first look, for another kind of data.
-fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Command>) {
+/// Row that chooses the kind of data for which the first look is made.
+fn data_kind_row(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<AppCommand>) {
     let named = text::data::TREAT_AS;
     row(ui, named, |ui| {
-        let shown = text::data::treatment(treated_as).name;
+        let shown = text::data::kind_choice(treated_as).name;
         let combo = egui::ComboBox::from_id_salt("treat as").selected_text(shown).width(120.0);
         ui.name_inputs(named.name, |ui| {
             combo.show_ui(ui, |ui| {
                 for kind in KindName::choices() {
-                    let option = text::data::treatment(kind);
+                    let option = text::data::kind_choice(kind);
                     let label = ui.selectable_label(kind == treated_as, option.name);
-                    if label.on_hover_text(option.tip).clicked() {
-                        commands.push(Command::TreatAs(kind));
+                    if label.on_hover_text(option.tooltip).clicked() {
+                        commands.push(AppCommand::TreatAs(kind));
                     }
                 }
             })
@@ -86,23 +90,24 @@ fn treatment(ui: &mut Ui, treated_as: Option<KindName>, commands: &mut Vec<Comma
     });
 }
 
-/// Fewer voxels, for quicker pictures and less memory: the volume is read again.
-fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
+/// Row that subsamples the volume, for faster pictures and less memory: the file is read again.
+fn subsampling_row(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<AppCommand>) {
     let current = volume.held.portion.thinning;
-    let mut options: Vec<_> = THINNINGS.map(|thinning| (thinning, text::data::thinning(thinning))).into();
-    if !THINNINGS.contains(&current) {
-        options.push((current, text::data::thinning(current)));
+    let mut options: Vec<_> =
+        SUBSAMPLINGS.map(|thinning| (thinning, text::data::subsampling(thinning))).into();
+    if !SUBSAMPLINGS.contains(&current) {
+        options.push((current, text::data::subsampling(current)));
     }
-    let named = text::data::THINNING;
+    let named = text::data::SUBSAMPLE;
     row(ui, named, |ui| {
-        let shown = text::data::thinning(current).name;
+        let shown = text::data::subsampling(current).name;
         let combo = egui::ComboBox::from_id_salt("fewer voxels").selected_text(shown).width(120.0);
         ui.name_inputs(named.name, |ui| {
             combo.show_ui(ui, |ui| {
                 for &(thinning, option) in &options {
                     let label = ui.selectable_label(thinning == current, option.name);
-                    if label.on_hover_text(option.tip).clicked() && thinning != current {
-                        commands.push(Command::Thin(thinning));
+                    if label.on_hover_text(option.tooltip).clicked() && thinning != current {
+                        commands.push(AppCommand::Subsample(thinning));
                     }
                 }
             })
@@ -110,34 +115,34 @@ fn thinning(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<Command>) {
     });
 }
 
-/// A length in the unit that it is shown in: millimetres only where the size of voxels is known.
-fn shown_length(length: Length, volume: &VolumeFacts) -> Length {
+/// Converts a length into the unit in which it is shown: in voxels instead of millimetres if their size is unknown.
+fn displayed_length(length: OpacityLength, volume: &VolumeFacts) -> OpacityLength {
     match length {
-        Length::Mm(_) if volume.has_unknown_scale => {
-            Length::Voxels(length.in_scene(&volume.scene) / volume.scene.mean_edge())
+        OpacityLength::Mm(_) if volume.has_unknown_scale => {
+            OpacityLength::Voxels(length.scene_units(&volume.scene) / volume.scene.mean_edge())
         }
         other => other,
     }
 }
 
-/// What the unit of a length is called.
-fn unit_of(length: Length) -> Named {
+/// Name and tooltip of the unit of a length.
+fn length_unit_text(length: OpacityLength) -> ControlText {
     match length {
-        Length::Mm(_) => text::data::MILLIMETRES,
-        Length::Voxels(_) => text::data::VOXELS,
-        Length::Extent(_) => text::data::EXTENT,
+        OpacityLength::Mm(_) => text::data::MILLIMETRES,
+        OpacityLength::Voxels(_) => text::data::VOXELS,
+        OpacityLength::Extent(_) => text::data::EXTENT,
     }
 }
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {
     let scene = volume.scene;
-    let in_scene = settings.opacity_unit.in_scene(&scene);
+    let in_scene = settings.opacity_unit.scene_units(&scene);
     let conversions = [
-        Length::Mm(in_scene * scene.mm_per_unit),
-        Length::Voxels(in_scene / scene.mean_edge()),
-        Length::Extent(in_scene / 2.0),
+        OpacityLength::Mm(in_scene * scene.mm_per_unit),
+        OpacityLength::Voxels(in_scene / scene.mean_edge()),
+        OpacityLength::Extent(in_scene / 2.0),
     ];
-    let shown = shown_length(settings.opacity_unit, volume);
+    let shown = displayed_length(settings.opacity_unit, volume);
     let first = defaults.opacity_unit;
     let mut chosen = settings.opacity_unit;
     let named = text::data::OPACITY_UNIT;
@@ -145,30 +150,30 @@ fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volum
         let mut number = shown.number();
         let speed = number * 0.01;
         let field = egui::DragValue::new(&mut number).speed(speed).range(1e-6..=1e6).max_decimals(5);
-        if ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip).changed() {
+        if ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tooltip).changed() {
             chosen = match shown {
-                Length::Mm(_) => Length::Mm(number),
-                Length::Voxels(_) => Length::Voxels(number),
-                Length::Extent(_) => Length::Extent(number),
+                OpacityLength::Mm(_) => OpacityLength::Mm(number),
+                OpacityLength::Voxels(_) => OpacityLength::Voxels(number),
+                OpacityLength::Extent(_) => OpacityLength::Extent(number),
             };
         }
-        let unit = unit_of(shown);
+        let unit = length_unit_text(shown);
         let combo = egui::ComboBox::from_id_salt("opacity unit").selected_text(unit.name).width(60.0);
         ui.name_inputs(text::data::UNITS, |ui| {
             combo.show_ui(ui, |ui| {
-                let is_known = |length: &Length| shown_length(*length, volume) == *length;
+                let is_known = |length: &OpacityLength| displayed_length(*length, volume) == *length;
                 for length in conversions.into_iter().filter(is_known) {
-                    let option = unit_of(length);
+                    let option = length_unit_text(length);
                     let label = ui.selectable_label(option == unit, option.name);
-                    if label.on_hover_text(option.tip).clicked() {
+                    if label.on_hover_text(option.tooltip).clicked() {
                         chosen = length;
                     }
                 }
             })
         });
-        let back = shown_length(first, volume);
-        let back = text::data::length(&short(back.number()), unit_of(back));
-        if reset(ui, named.name, (chosen != first).then_some(back.as_str())) {
+        let back = displayed_length(first, volume);
+        let back = text::data::length(&format_number(back.number()), length_unit_text(back));
+        if reset_button_cell(ui, named.name, (chosen != first).then_some(back.as_str())) {
             chosen = first;
         }
     });

@@ -1,71 +1,75 @@
-//! Rows of the section "Data" that say which values the picture shows, and choose them.
+//! Value range rows of the section "Data": the values that densities 0 and 1 stand for.
 
 use eframe::egui::{self, Ui};
 
-use super::super::controls::{choice, row, short, unlabelled};
+use super::super::controls::{choice_row, format_number, row, unlabelled_row};
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::text::{self, Named};
+use crate::app::text::{self, ControlText};
 use crate::data::{ValueRange, ValueRanges};
 use crate::model::{DensityRange, Settings};
 
-/// Shares of the span by which a point of a drag moves an end: 500 points, which every window has, cover all of it.
-const SPEED: f64 = 1.0 / 500.0;
+/// Share of the span by which a drag of one point moves an end: 500 points, which fit in every window, cover the
+/// span.
+const DRAG_SPEED: f64 = 1.0 / 500.0;
 
-/// Shares of the values that matter by which the ends of a range stay apart: one of the densities that 16 bits tell from
-/// each other.
-const LEAST: f64 = 1.0 / 65_536.0;
+/// Smallest distance between the ends of a typed range, as a share of the robust range: one of 65 536 densities, the
+/// steps of 16 bits.
+const MIN_SPAN_SHARE: f64 = 1.0 / 65_536.0;
 
-/// Shows them.
+/// Shows the rows of the value range: choice, typed ends, and result.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     let typed = match settings.range {
         DensityRange::Typed(range) => range,
-        DensityRange::Robust | DensityRange::Full => settings.range.of(&volume.ranges),
+        DensityRange::Robust | DensityRange::Full => settings.range.resolve(&volume.ranges),
     };
     let options = [
         (DensityRange::Robust, text::data::ROBUST),
         (DensityRange::Full, text::data::FULL),
-        (DensityRange::Typed(typed), text::data::TYPED),
+        (DensityRange::Typed(typed), text::data::TYPED_RANGE),
     ];
-    choice(ui, text::data::RANGE, &mut settings.range, &options);
+    choice_row(ui, text::data::RANGE, &mut settings.range, &options);
     if let DensityRange::Typed(range) = &mut settings.range {
-        unlabelled(ui, |ui| ends(ui, range, volume));
+        unlabelled_row(ui, |ui| range_end_fields(ui, range, volume));
     }
     let ValueRange { low, high } = settings.shown_range(&volume.ranges);
     let all = volume.ranges.all;
-    let shown = text::data::shown(&[low, high].map(short), &[all.low, all.high].map(short));
-    row(ui, Named { name: text::data::SHOWN, tip: "" }, |ui| ui.add(egui::Label::new(shown).truncate()));
+    let shown =
+        text::data::range_shown(&[low, high].map(format_number), &[all.low, all.high].map(format_number));
+    row(ui, ControlText { name: text::data::SHOWN, tooltip: "" }, |ui| {
+        ui.add(egui::Label::new(shown).truncate())
+    });
 }
 
-/// The two ends of a typed range, which stay in order and apart: an end that is moved stops before the other.
-fn ends(ui: &mut Ui, range: &mut ValueRange, volume: &VolumeFacts) {
-    let speed = volume.ranges.robust.span().max(range.span()).max(f64::MIN_POSITIVE) * SPEED;
-    let Ends { most_low, least_high } = Ends::of(*range, volume.ranges);
+/// Shows the two ends of a typed range; each is limited by the other, so that they stay in order and apart.
+fn range_end_fields(ui: &mut Ui, range: &mut ValueRange, volume: &VolumeFacts) {
+    let speed = volume.ranges.robust.span().max(range.span()).max(f64::MIN_POSITIVE) * DRAG_SPEED;
+    let RangeLimits { max_low: most_low, min_high: least_high } = RangeLimits::new(*range, volume.ranges);
     for (end, limits, named) in [
         (&mut range.low, f64::MIN..=most_low, text::data::LOW),
         (&mut range.high, least_high..=f64::MAX, text::data::HIGH),
     ] {
-        // What a file brought stays until somebody changes it.
+        // A value from a file stays until the user changes it.
         let field = egui::DragValue::new(end).speed(speed).max_decimals(6);
         let field = field.range(limits).clamp_existing_to_range(false);
-        ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tip);
+        ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tooltip);
     }
 }
 
-/// How near the ends of a range may come to each other.
+/// Limits of the ends of a typed range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Ends {
-    most_low: f64,
-    least_high: f64,
+struct RangeLimits {
+    max_low: f64,
+    min_high: f64,
 }
 
-impl Ends {
-    /// Of a range, for a volume with these values.
-    fn of(range: ValueRange, ranges: ValueRanges) -> Self {
-        let least = ranges.robust.span().max(f64::MIN_POSITIVE) * LEAST;
-        // Next to large numbers that may be nothing.
+impl RangeLimits {
+    /// Computes the limits of a range's ends, for a volume with these values.
+    fn new(range: ValueRange, ranges: ValueRanges) -> Self {
+        let least = ranges.robust.span().max(f64::MIN_POSITIVE) * MIN_SPAN_SHARE;
+        // Next to large numbers the difference may round to 0.
         let most_low = (range.high - least).min(range.high.next_down());
         let least_high = (range.low + least).max(range.low.next_up());
-        Self { most_low, least_high }
+        Self { max_low: most_low, min_high: least_high }
     }
 }
 
@@ -78,12 +82,15 @@ mod tests {
         for (low, high) in [(0.0, 10.0), (-1000.0, 3000.0), (0.0, 0.0), (1e17, 1e17 + 32.0), (-1e300, 1e300)]
         {
             let range = ValueRange::new(low, high);
-            for ranges in [ValueRanges::UNIT, ValueRanges::same(range)] {
-                let Ends { most_low, least_high } = Ends::of(range, ranges);
+            for ranges in [ValueRanges::UNIT, ValueRanges::without_outliers(range)] {
+                let RangeLimits { max_low: most_low, min_high: least_high } = RangeLimits::new(range, ranges);
                 assert!(most_low < high && low < least_high, "{low} {high}: {most_low} {least_high}");
             }
         }
-        let ends = Ends::of(ValueRange::new(0.0, 10.0), ValueRanges::same(ValueRange::new(0.0, 65_536.0)));
-        assert_eq!(ends, Ends { most_low: 9.0, least_high: 1.0 });
+        let ends = RangeLimits::new(
+            ValueRange::new(0.0, 10.0),
+            ValueRanges::without_outliers(ValueRange::new(0.0, 65_536.0)),
+        );
+        assert_eq!(ends, RangeLimits { max_low: 9.0, min_high: 1.0 });
     }
 }

@@ -1,13 +1,13 @@
-//! What of the side panel's sections is on, and what their reset buttons put back.
+//! State of the side panel's sections: which are active, and how their reset buttons restore the first look.
 
 mod icons;
 pub(super) mod tabs;
 
 use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
-use crate::model::{Settings, Shadows};
+use crate::model::{Settings, ShadowSettings};
 
-/// Whether something is on in a section that usually is off, so that its header shows it.
-pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> bool {
+/// Returns true if something is on in a section that is off by default, so that its header shows a dot.
+pub(super) fn is_section_active(title: &str, settings: &Settings, compares: bool) -> bool {
     match title {
         SOFT_LIGHT => settings.sky.is_on() || settings.has_bounces(),
         CUTS => settings.cuts.crop.on || settings.cuts.plane.on,
@@ -18,16 +18,15 @@ pub(super) fn is_active(title: &str, settings: &Settings, compares: bool) -> boo
     }
 }
 
-/// Puts the settings of a section back to what they were at first; sections that belong to the file, or that show two
-/// looks, have nothing to put back.
-pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
+/// Resets a section to the first look; sections that belong to the file, or that compare two looks, are not reset.
+pub(super) fn reset_section(title: &str, settings: &mut Settings, first: &Settings) {
     match title {
-        // Lights stand around the object as it stood.
+        // The first lights are placed around the object as it stood then.
         LIGHTS if settings.camera.up == first.camera.up => settings.lights.clone_from(&first.lights),
         SHADOWS => {
-            // The balance is measured, and not set.
-            let Shadows { balance, keep_balanced, .. } = settings.shadows;
-            settings.shadows = Shadows { balance, keep_balanced, ..first.shadows.clone() };
+            // The balance is measured rather than set.
+            let ShadowSettings { balance, keep_balanced, .. } = settings.shadows;
+            settings.shadows = ShadowSettings { balance, keep_balanced, ..first.shadows.clone() };
             (settings.lighting, settings.opacity_unit) = (first.lighting.clone(), first.opacity_unit);
         }
         SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky.clone(), first.scattering.clone()),
@@ -45,7 +44,7 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
             settings.camera.projection = first.camera.projection;
             settings.camera.fov_y_deg = first.camera.fov_y_deg;
             settings.camera.roll_deg = first.camera.roll_deg;
-            // As the object stands now.
+            // Only if the object still stands the same way up.
             if first.camera.up == settings.camera.up {
                 settings.camera.clone_from(&first.camera);
             }
@@ -54,13 +53,13 @@ pub(super) fn put_back(title: &str, settings: &mut Settings, first: &Settings) {
     }
 }
 
-/// Whether a section has anything to put back.
-pub(super) fn differs(title: &str, settings: &Settings, first: &Settings) -> bool {
+/// Returns true if resetting a section would change a setting.
+pub(super) fn can_reset(title: &str, settings: &Settings, first: &Settings) -> bool {
     match title {
         DATA | COMPARE => false,
         _ => {
             let mut back = settings.clone();
-            put_back(title, &mut back, first);
+            reset_section(title, &mut back, first);
             back != *settings
         }
     }
@@ -70,13 +69,13 @@ pub(super) fn differs(title: &str, settings: &Settings, first: &Settings) -> boo
 mod tests {
     use super::*;
     use crate::app::text;
-    use crate::model::Light;
+    use crate::model::LightSettings;
 
     #[test]
-    fn a_section_is_put_back_and_no_other_changes() {
+    fn resetting_a_section_changes_no_other() {
         let first = Settings::default();
         let mut settings = first.clone();
-        settings.lights.push(Light::default());
+        settings.lights.push(LightSettings::default());
         settings.floor.on = true;
         settings.shadows.gain = 2.0;
         settings.shadows.balance = 1.5;
@@ -86,12 +85,12 @@ mod tests {
         settings.sky.mode = crate::model::SkyMode::White;
         let changed = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
         for title in text::sections::ALL {
-            assert_eq!(differs(title, &settings, &first), changed.contains(&title), "{title}");
+            assert_eq!(can_reset(title, &settings, &first), changed.contains(&title), "{title}");
         }
         for (at, title) in changed.into_iter().enumerate() {
-            put_back(title, &mut settings, &first);
+            reset_section(title, &mut settings, &first);
             for later in &changed[at + 1..] {
-                assert!(differs(later, &settings, &first), "{title} puts {later} back");
+                assert!(can_reset(later, &settings, &first), "{title} puts {later} back");
             }
         }
         assert_eq!(settings.shadows.balance, 1.5, "what is measured stays");
@@ -101,11 +100,13 @@ mod tests {
     #[test]
     fn headers_show_what_is_on() {
         let mut settings = Settings::default();
-        assert!(text::sections::ALL.iter().all(|title| !is_active(title, &settings, false)));
+        assert!(text::sections::ALL.iter().all(|title| !is_section_active(title, &settings, false)));
         settings.floor.on = true;
         settings.cuts.crop.on = true;
-        let on: Vec<_> =
-            text::sections::ALL.into_iter().filter(|title| is_active(title, &settings, true)).collect();
+        let on: Vec<_> = text::sections::ALL
+            .into_iter()
+            .filter(|title| is_section_active(title, &settings, true))
+            .collect();
         assert_eq!(on, [CUTS, FLOOR, COMPARE]);
     }
 }

@@ -1,4 +1,4 @@
-//! A row of drawings above the sections of the side panel: each leads to one, however far down that is.
+//! Icon bar above the sections of the side panel: each icon opens its section and scrolls to it.
 
 use eframe::egui::{Role, Sense, Ui, Vec2, WidgetInfo};
 
@@ -8,18 +8,18 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::text::sections::ALL;
 
-/// Height of a drawing's button in points.
+/// Height of an icon's button, in points.
 const HEIGHT: f32 = 24.0;
 
-/// Shows one drawing for each section, with a dot where `is_active`.
-pub(in crate::app::panels) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
+/// Shows one icon for each section, with a dot where `is_active`.
+pub(crate) fn show(ui: &mut Ui, is_active: impl Fn(&str) -> bool) {
     let size = Vec2::new(ui.available_width() / ALL.len() as f32, HEIGHT);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         for title in ALL {
             let (area, response) = ui.allocate_exact_size(size, Sense::click());
-            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::go_to(title)));
-            reveal::report(ui.ctx(), area, || text::sections::go_to(title));
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text::sections::tab_name(title)));
+            reveal::report_area(ui.ctx(), area, || text::sections::tab_name(title));
             let visuals = *ui.style().interact(&response);
             if response.hovered() || response.has_focus() {
                 ui.painter().rect(

@@ -1,9 +1,9 @@
-//! Files of others that are read on a thread: looks, sessions, transfer functions, pictures of surroundings.
+//! Background reading of files other than volumes: looks, sessions, transfer functions and environment maps.
 //!
-//! The window goes on meanwhile. What is done with the content happens on the window's thread once it is there, or once the
-//! user has cancelled the task; a task that is cancelled runs to its end, and its result is dropped.
+//! The window stays responsive meanwhile. The content is used on the window's thread when the task has ended, or when
+//! the user has cancelled it; a cancelled task runs to its end, and its result is dropped.
 
-mod surroundings;
+mod environment_map;
 mod transfer;
 
 use std::io;
@@ -11,130 +11,130 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use crate::app::common::frame;
-use crate::app::worker::task::Work;
+use crate::app::common::overlay_windows;
+use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
 
-/// Purposes for which a file is read; for each one file at a time.
+/// Purpose for which a file is read; at most one file per purpose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::app) enum Reason {
-    /// To open it: a look, or a volume.
+pub(crate) enum ReadPurpose {
+    /// Opens the file, which is a look or a volume.
     Open,
-    /// To lay the session over a volume that is loaded.
+    /// Applies the session to a volume that has been loaded.
     Session,
-    /// To lay its look over the open volume.
+    /// Applies the look to the open volume.
     Look,
-    /// To compare its look with that of the window.
+    /// Compares the look with that of the window.
     Comparison,
-    /// To import its transfer function.
+    /// Imports the transfer function of the file.
     Transfer,
-    /// To light the scene by it.
+    /// Lights the scene by the environment map.
     Surroundings,
 }
 
-/// The reason why a file has no content.
+/// Reason why the content of a file is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::app) enum NotRead {
-    /// The user has cancelled the task.
+pub(crate) enum FileReadFailure {
+    /// Cancellation of the task by the user.
     Cancelled,
-    /// It failed, with details for a message.
+    /// Failure of the task, with details for a message.
     Failed(String),
 }
 
-/// Work for the window's thread when a task has ended.
-type Finish = Box<dyn FnOnce(&mut App, &egui::Context)>;
+/// Continuation on the window's thread after a task has ended.
+type TaskContinuation = Box<dyn FnOnce(&mut App, &egui::Context)>;
 
-/// Use that is made of a file's content.
-type Then<T> = Box<dyn FnOnce(&mut App, Result<T, NotRead>, &egui::Context)>;
+/// Continuation that uses the content of a file.
+type ContentHandler<T> = Box<dyn FnOnce(&mut App, Result<T, FileReadFailure>, &egui::Context)>;
 
-/// File that is being read on a thread.
+/// File that is being read on a thread, with its continuation.
 struct FileTask<T> {
-    work: Work<Result<T, String>>,
-    then: Then<T>,
+    work: BackgroundTask<Result<T, String>>,
+    handler: ContentHandler<T>,
 }
 
-/// Task whose content may be of any type.
-trait Task {
-    /// Whether it has ended; then with the work that is left.
-    fn end(self: Box<Self>) -> Result<Finish, Box<dyn Task>>;
+/// File task with the type of its content erased.
+trait ErasedFileTask {
+    /// Returns the continuation if the task has ended, and the task itself otherwise.
+    fn end(self: Box<Self>) -> Result<TaskContinuation, Box<dyn ErasedFileTask>>;
 
-    /// Gives it up.
-    fn cancel(self: Box<Self>) -> Finish;
+    /// Cancels the task and returns its continuation.
+    fn cancel(self: Box<Self>) -> TaskContinuation;
 }
 
-impl<T: Send + 'static> Task for FileTask<T> {
-    fn end(self: Box<Self>) -> Result<Finish, Box<dyn Task>> {
-        let Some(result) = self.work.take() else { return Err(self) };
-        let (content, then) = (result.and_then(|read| read).map_err(NotRead::Failed), self.then);
+impl<T: Send + 'static> ErasedFileTask for FileTask<T> {
+    fn end(self: Box<Self>) -> Result<TaskContinuation, Box<dyn ErasedFileTask>> {
+        let Some(result) = self.work.take_result() else { return Err(self) };
+        let (content, then) = (result.and_then(|read| read).map_err(FileReadFailure::Failed), self.handler);
         Ok(Box::new(move |app, ctx| then(app, content, ctx)))
     }
 
-    fn cancel(self: Box<Self>) -> Finish {
-        Box::new(move |app, ctx| (self.then)(app, Err(NotRead::Cancelled), ctx))
+    fn cancel(self: Box<Self>) -> TaskContinuation {
+        Box::new(move |app, ctx| (self.handler)(app, Err(FileReadFailure::Cancelled), ctx))
     }
 }
 
-/// Task with the file that it reads.
-struct Running {
-    reason: Reason,
+/// Running task with its file and purpose.
+struct RunningFileTask {
+    reason: ReadPurpose,
     path: PathBuf,
-    task: Box<dyn Task>,
+    task: Box<dyn ErasedFileTask>,
 }
 
-/// Files that are being read.
+/// Set of the files that are being read.
 #[derive(Default)]
-pub(in crate::app) struct FileTasks {
-    running: Vec<Running>,
+pub(crate) struct FileTasks {
+    running: Vec<RunningFileTask>,
 }
 
 impl FileTasks {
-    /// The file that was asked for last, of those that are being read.
-    pub(in crate::app) fn path(&self) -> Option<&Path> {
+    /// Path of the file that was requested last, among those being read.
+    pub(crate) fn path(&self) -> Option<&Path> {
         self.running.last().map(|running| running.path.as_path())
     }
 
-    /// Whether a file is read for a reason.
-    pub(in crate::app) fn is_reading(&self, reason: Reason) -> bool {
+    /// Returns true while a file is read for this purpose.
+    pub(crate) fn is_reading(&self, reason: ReadPurpose) -> bool {
         self.running.iter().any(|running| running.reason == reason)
     }
 
-    /// Forgets what is read for a reason: something else has taken its place.
-    pub(in crate::app) fn forget(&mut self, reason: Reason) {
+    /// Drops the task of a purpose, because something else has superseded it.
+    pub(crate) fn drop_purpose(&mut self, reason: ReadPurpose) {
         self.running.retain(|running| running.reason != reason);
     }
 
     fn start<T: Send + 'static>(
         &mut self,
-        reason: Reason,
+        reason: ReadPurpose,
         path: &Path,
         ctx: &egui::Context,
         read: impl FnOnce(&Path) -> Result<T, String> + Send + 'static,
-        then: Then<T>,
-    ) -> Result<(), (io::Error, Then<T>)> {
-        self.forget(reason);
+        then: ContentHandler<T>,
+    ) -> Result<(), (io::Error, ContentHandler<T>)> {
+        self.drop_purpose(reason);
         let file = path.to_owned();
         let task = move || {
             #[cfg(feature = "testing")]
-            drop(hold::wait());
+            drop(test_lock::wait());
             read(&file)
         };
-        match Work::start("file", ctx, task) {
+        match BackgroundTask::start("file", ctx, task) {
             Ok(work) => {
-                let task = Box::new(FileTask { work, then });
-                self.running.push(Running { reason, path: path.to_owned(), task });
+                let task = Box::new(FileTask { work, handler: then });
+                self.running.push(RunningFileTask { reason, path: path.to_owned(), task });
                 Ok(())
             }
             Err(err) => Err((err, then)),
         }
     }
 
-    /// What is left to do of tasks that have ended.
-    fn take(&mut self) -> Vec<(Reason, Finish)> {
+    /// Removes the tasks that have ended, and returns their continuations.
+    fn take_finished(&mut self) -> Vec<(ReadPurpose, TaskContinuation)> {
         let mut ended = Vec::new();
-        for Running { reason, path, task } in std::mem::take(&mut self.running) {
+        for RunningFileTask { reason, path, task } in std::mem::take(&mut self.running) {
             match task.end() {
                 Ok(finish) => ended.push((reason, finish)),
-                Err(task) => self.running.push(Running { reason, path, task }),
+                Err(task) => self.running.push(RunningFileTask { reason, path, task }),
             }
         }
         ended
@@ -142,62 +142,62 @@ impl FileTasks {
 }
 
 impl App {
-    /// Reads a file on a thread, and does something with its content when it is there or was given up.
-    pub(in crate::app) fn read_file<T: Send + 'static>(
+    /// Reads a file on a thread; `then` gets the content, or the reason why it is missing.
+    pub(crate) fn read_file<T: Send + 'static>(
         &mut self,
-        reason: Reason,
+        reason: ReadPurpose,
         path: &Path,
         ctx: &egui::Context,
         read: impl FnOnce(&Path) -> Result<T, String> + Send + 'static,
-        then: impl FnOnce(&mut Self, Result<T, NotRead>, &egui::Context) + 'static,
+        then: impl FnOnce(&mut Self, Result<T, FileReadFailure>, &egui::Context) + 'static,
     ) {
         if let Err((err, then)) = self.file_tasks.start(reason, path, ctx, read, Box::new(then)) {
-            then(self, Err(NotRead::Failed(text::files::no_thread(err))), ctx);
+            then(self, Err(FileReadFailure::Failed(text::files::no_thread(err))), ctx);
         }
     }
 
-    /// Says that nothing came of a file.
-    pub(in crate::app) fn say_not_read(&mut self, short: &str, why: NotRead) {
+    /// Reports that a file was not read.
+    pub(crate) fn report_read_failure(&mut self, short: &str, why: FileReadFailure) {
         match why {
-            NotRead::Cancelled => self.messages.note(text::files::READING_CANCELLED),
-            NotRead::Failed(details) => self.messages.error(short, details),
+            FileReadFailure::Cancelled => self.messages.note(text::files::READING_CANCELLED),
+            FileReadFailure::Failed(details) => self.messages.error(short, details),
         }
     }
 
-    /// Takes in what was read.
-    pub(in crate::app) fn take_files(&mut self, ctx: &egui::Context) {
-        for (reason, finish) in self.file_tasks.take() {
+    /// Runs the continuations of the tasks that have ended.
+    pub(crate) fn finish_file_tasks(&mut self, ctx: &egui::Context) {
+        for (reason, finish) in self.file_tasks.take_finished() {
             finish(self, ctx);
-            self.open_something(reason, ctx);
+            self.open_default_if_empty(reason, ctx);
         }
     }
 
-    /// Cancels what is being read and opened.
-    pub(in crate::app) fn cancel_files(&mut self, ctx: &egui::Context) {
+    /// Cancels opening a volume and reading other files.
+    pub(crate) fn cancel_files(&mut self, ctx: &egui::Context) {
         self.loader.cancel();
-        for Running { reason, path: _, task } in std::mem::take(&mut self.file_tasks.running) {
+        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.file_tasks.running) {
             task.cancel()(self, ctx);
-            self.open_something(reason, ctx);
+            self.open_default_if_empty(reason, ctx);
         }
     }
 
-    /// Cancels them when Escape was pressed, and nothing over the picture has taken that.
-    pub(in crate::app) fn cancel_files_by_key(&mut self, ctx: &egui::Context) {
+    /// Cancels opening and reading when Escape was pressed and no window or widget takes the key.
+    pub(crate) fn cancel_files_by_key(&mut self, ctx: &egui::Context) {
         let is_reading = self.file_tasks.path().is_some() || self.loader.progress().is_some();
-        if is_reading && frame::is_for_picture(ctx) {
+        if is_reading && overlay_windows::escape_for_picture(ctx) {
             self.cancel_files(ctx);
         }
     }
 }
 
-/// A way to keep files from being read, for tests that look at the window meanwhile.
+/// Lock that blocks the reading of files, for tests that inspect the window meanwhile.
 #[cfg(feature = "testing")]
-mod hold {
+mod test_lock {
     use std::sync::{Mutex, MutexGuard, PoisonError};
 
     static HELD: Mutex<()> = Mutex::new(());
 
-    /// Waits until nobody holds files back.
+    /// Waits until no test holds the lock.
     pub(super) fn wait() -> MutexGuard<'static, ()> {
         HELD.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -205,12 +205,12 @@ mod hold {
 
 #[cfg(feature = "testing")]
 impl App {
-    /// Keeps files from being read while the result is there.
-    pub fn hold_files() -> impl Sized {
-        hold::wait()
+    /// Blocks the reading of files while the returned guard lives.
+    pub fn block_file_tasks() -> impl Sized {
+        test_lock::wait()
     }
 
-    /// The file that is being read.
+    /// Path of the file that is being read.
     pub fn file_being_read(&self) -> Option<&Path> {
         self.file_tasks.path()
     }

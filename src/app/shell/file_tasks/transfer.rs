@@ -1,25 +1,25 @@
-//! Transfer functions of other programs.
+//! Import of transfer functions of other programs.
 
 use std::path::Path;
 
 use eframe::egui;
 
-use super::Reason;
-use crate::app::windows::files;
+use super::ReadPurpose;
+use crate::app::windows::file_dialogs;
 use crate::app::{App, text};
 use crate::model::LabelTable;
 
 impl App {
-    /// Reads a transfer function of another program on a thread and shows the volume with it.
+    /// Reads a transfer function of another program on a thread and applies it to the look.
     pub fn import_transfer(&mut self, path: &Path, ctx: &egui::Context) {
-        let range = files::exchanged_range(&self.settings, &self.value_ranges());
-        let read = move |path: &Path| files::import_transfer(path, range);
-        self.read_file(Reason::Transfer, path, ctx, read, |app, read, _ctx| match read {
+        let range = file_dialogs::transfer_exchange_range(&self.settings, &self.value_ranges());
+        let read = move |path: &Path| file_dialogs::import_transfer_file(path, range);
+        self.read_file(ReadPurpose::Transfer, path, ctx, read, |app, read, _ctx| match read {
             Ok(function) => {
                 app.settings.transfer = function;
                 app.settings.labels = LabelTable::default();
             }
-            Err(why) => app.say_not_read(text::messages::TRANSFER_NOT_IMPORTED, why),
+            Err(why) => app.report_read_failure(text::messages::TRANSFER_NOT_IMPORTED, why),
         });
     }
 }

@@ -1,45 +1,45 @@
-//! The list of steps: what each has changed, and one click to go there.
+//! History window: the list of undo steps with their changes; a click goes to a step.
 
 use eframe::egui;
 
-use super::{History, Step};
-use crate::app::common::commands::Command;
-use crate::app::common::frame;
+use super::{History, HistoryStep};
+use crate::app::common::commands::AppCommand;
+use crate::app::common::overlay_windows;
 use crate::app::{App, text};
 
-/// What steps have changed, the first one first, and which of them was taken last: 0 for none.
+/// Descriptions of all steps, the oldest first, and the number of steps that are done, 0 at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Steps {
+pub(super) struct HistorySteps {
     pub names: Vec<String>,
-    pub taken: usize,
+    pub current: usize,
 }
 
-/// The list, and what it was made for.
+/// Cached list, and the step for which it was made.
 #[derive(Debug, Default)]
-pub(crate) struct Listed {
-    /// Whether it is shown.
+pub(crate) struct HistoryWindow {
+    /// True while the window is open.
     pub open: bool,
-    of: Option<Step>,
-    steps: Steps,
+    listed_for: Option<HistoryStep>,
+    steps: HistorySteps,
 }
 
 impl History {
-    /// All steps back and forward.
-    pub(super) fn steps(&self, now: &Step) -> Steps {
+    /// Lists all undo and redo steps around `now`.
+    pub(super) fn list_steps(&self, now: &HistoryStep) -> HistorySteps {
         let names = |is_back: bool| {
-            // Steps are looked at by taking them.
-            let mut history = Self { undoer: self.undoer.clone(), went: None };
+            // A step is known only by taking it, here on a copy.
+            let mut history = Self { undoer: self.undoer.clone(), last_step: None };
             let (mut at, mut names) = (now.clone(), Vec::new());
             while if is_back { history.can_undo(&at) } else { history.can_redo(&at) } {
                 let before = at.clone();
                 let changed = if is_back {
                     history.undo(&mut at);
-                    text::changes::of(&at.settings, &before.settings)
+                    text::change_descriptions::describe_change(&at.settings, &before.settings)
                 } else {
                     history.redo(&mut at);
-                    text::changes::of(&before.settings, &at.settings)
+                    text::change_descriptions::describe_change(&before.settings, &at.settings)
                 };
-                names.push(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()));
+                names.push(changed.unwrap_or_else(|| text::change_descriptions::KIND_OF_DATA.to_owned()));
             }
             names
         };
@@ -47,28 +47,31 @@ impl History {
         all.reverse();
         let taken = all.len();
         all.extend(names(false));
-        Steps { names: all, taken }
+        HistorySteps { names: all, current: taken }
     }
 }
 
 impl App {
-    /// Shows the list of steps, if it is wanted.
-    pub(in crate::app) fn history_list(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
-        if !self.listed.open {
-            self.listed.of = None;
+    /// Shows the history window, if it is open.
+    pub(crate) fn show_history(&mut self, ctx: &egui::Context, commands: &mut Vec<AppCommand>) {
+        if !self.history_list.open {
+            self.history_list.listed_for = None;
             return;
         }
-        let now = self.step();
-        // Names are found by taking every step: not while something is dragged, which is no step yet.
-        let is_new = self.listed.of.is_none() || ctx.dragged_id().is_none();
-        if is_new && self.listed.of.as_ref() != Some(&now) {
-            self.listed.steps = self.history.steps(&now);
-            self.listed.of = Some(now);
+        let now = self.history_step();
+        // Listing takes every step: not during a drag, which is no step yet.
+        let is_new = self.history_list.listed_for.is_none() || ctx.dragged_id().is_none();
+        if is_new && self.history_list.listed_for.as_ref() != Some(&now) {
+            self.history_list.steps = self.history.list_steps(&now);
+            self.history_list.listed_for = Some(now);
         }
-        let Steps { names, taken } = &self.listed.steps;
-        let window = egui::Window::new(text::history::TITLE).open(&mut self.listed.open).collapsible(false);
+        let HistorySteps { names, current: taken } = &self.history_list.steps;
         let window =
-            window.default_size([260.0, 320.0]).default_pos([40.0, 80.0]).constrain_to(frame::room(ctx));
+            egui::Window::new(text::history::TITLE).open(&mut self.history_list.open).collapsible(false);
+        let window = window
+            .default_size([260.0, 320.0])
+            .default_pos([40.0, 80.0])
+            .constrain_to(overlay_windows::window_area(ctx));
         let mut chosen = None;
         let shown = window.show(ctx, |ui| {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -88,19 +91,20 @@ impl App {
             });
         });
         if let Some(at) = chosen {
-            commands.push(Command::GoSteps(at as i32 - *taken as i32));
+            commands.push(AppCommand::GoSteps(at as i32 - *taken as i32));
         }
-        self.listed.open &= !frame::is_left(ctx, shown.as_ref().map(|shown| &shown.response));
+        self.history_list.open &=
+            !overlay_windows::escape_closes(ctx, shown.as_ref().map(|shown| &shown.response));
     }
 
-    /// Goes so many steps forward, or back if they are negative.
-    pub(in crate::app) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
-        // One word is enough for all of them.
+    /// Goes the given number of steps forward, or back if it is negative.
+    pub(crate) fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
+        // Only the last step shows a message.
         for _ in 1..steps.unsigned_abs() {
             self.take_step(steps < 0, ctx);
         }
         if steps != 0 {
-            self.go(steps < 0, ctx);
+            self.undo_or_redo(steps < 0, ctx);
         }
     }
 }

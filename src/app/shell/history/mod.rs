@@ -5,85 +5,85 @@ mod list;
 use eframe::egui;
 use eframe::egui::util::undoer::{self, Undoer};
 
-pub(crate) use self::list::Listed;
+pub(crate) use self::list::HistoryWindow;
 use crate::app::{App, text};
 use crate::data::KindName;
 use crate::model::Settings;
 
-/// Seconds without a change after which a step can be undone.
-const STABLE_S: f32 = 0.4;
+/// Time without a change after which a step can be undone, in seconds.
+const SETTLE_S: f32 = 0.4;
 
-/// What a step back or forward leads to.
+/// State to which an undo or redo leads.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Step {
-    /// The look.
+pub(crate) struct HistoryStep {
+    /// Settings of the look at this step.
     pub settings: Settings,
-    /// The kind of data for which its first look was made, if not the volume's own.
+    /// Kind of data for which the first look was made, if not the volume's own.
     pub treated_as: Option<KindName>,
 }
 
-/// Looks as they were.
+/// Undo history of the look.
 #[derive(Debug)]
 pub(crate) struct History {
-    undoer: Undoer<Step>,
-    /// What the last step back or forward was, and where it has led.
-    went: Option<(String, Settings)>,
+    undoer: Undoer<HistoryStep>,
+    /// Description of the last undo or redo, with the settings to which it has led.
+    last_step: Option<(String, Settings)>,
 }
 
 impl Default for History {
     fn default() -> Self {
-        let settings = undoer::Settings { stable_time: STABLE_S, ..undoer::Settings::default() };
-        Self { undoer: Undoer::with_settings(settings), went: None }
+        let settings = undoer::Settings { stable_time: SETTLE_S, ..undoer::Settings::default() };
+        Self { undoer: Undoer::with_settings(settings), last_step: None }
     }
 }
 
 impl History {
-    /// A history in which something has come before what is shown.
-    pub(crate) fn after(before: &Step) -> Self {
+    /// Creates a history with one step before the look that is shown.
+    pub(crate) fn with_previous(before: &HistoryStep) -> Self {
         let mut history = Self::default();
         history.undoer.add_undo(before);
         history
     }
 
-    /// What the next step back or forward changes; `None` where there is none.
-    pub(crate) fn name(&self, now: &Step, is_back: bool) -> Option<String> {
+    /// Describes the next undo or redo; `None` where there is none.
+    pub(crate) fn describe_next(&self, now: &HistoryStep, is_back: bool) -> Option<String> {
         if !(if is_back { self.can_undo(now) } else { self.can_redo(now) }) {
             return None;
         }
-        // Steps are looked at by taking them.
-        let mut history = Self { undoer: self.undoer.clone(), went: None };
+        // A step is known only by taking it, here on a copy.
+        let mut history = Self { undoer: self.undoer.clone(), last_step: None };
         let mut other = now.clone();
         let changed = if is_back {
             history.undo(&mut other);
-            text::changes::of(&other.settings, &now.settings)
+            text::change_descriptions::describe_change(&other.settings, &now.settings)
         } else {
             history.redo(&mut other);
-            text::changes::of(&now.settings, &other.settings)
+            text::change_descriptions::describe_change(&now.settings, &other.settings)
         };
-        Some(changed.unwrap_or_else(|| text::changes::KIND_OF_DATA.to_owned()))
+        Some(changed.unwrap_or_else(|| text::change_descriptions::KIND_OF_DATA.to_owned()))
     }
 
-    /// What the step was that has led here, while nothing is changed since.
-    pub(crate) fn went(&self, settings: &Settings) -> Option<&str> {
-        self.went.as_ref().filter(|(_, led_to)| led_to == settings).map(|(words, _)| words.as_str())
+    /// Returns the description of the undo or redo that has led to these settings, until they change.
+    pub(crate) fn last_step(&self, settings: &Settings) -> Option<&str> {
+        self.last_step.as_ref().filter(|(_, led_to)| led_to == settings).map(|(words, _)| words.as_str())
     }
 
-    /// Takes note of the look, except while something is dragged: a drag is one step.
-    pub(crate) fn observe(&mut self, ctx: &egui::Context, step: &Step) {
+    /// Records the look, except during a drag: a drag is one step.
+    pub(crate) fn observe(&mut self, ctx: &egui::Context, step: &HistoryStep) {
         if ctx.dragged_id().is_none() {
             self.undoer.feed_state(ctx.input(|input| input.time), step);
         }
         if self.undoer.is_in_flux() {
-            ctx.request_repaint_after(std::time::Duration::from_secs_f32(STABLE_S));
+            ctx.request_repaint_after(std::time::Duration::from_secs_f32(SETTLE_S));
         }
     }
 
-    /// A change has been followed by another that the window makes by itself: both are one step.
-    pub(crate) fn follow(&mut self, now_s: f64, before: &Step, after: &Step) {
-        // The change is at rest, whether or not it has been for long enough to be a step.
+    /// Merges an automatic change into the step of the change that it follows.
+    pub(crate) fn merge_into_last(&mut self, now_s: f64, before: &HistoryStep, after: &HistoryStep) {
+        // The change is complete, though it may not have rested long enough to be a step.
         self.undoer.add_undo(before);
         if self.undoer.has_undo(before) {
-            // Its step goes, and so does the way forward to it.
+            // Removes its step, and the redo that leads to it.
             self.undoer.undo(before);
             self.undoer.feed_state(now_s, after);
         } else {
@@ -92,10 +92,14 @@ impl History {
         self.undoer.add_undo(after);
     }
 
-    /// The window has finished a look by itself, of which there may be several steps: all of them are as if it had been
-    /// finished before, and there is no step more. `shown` is what the window has shown until now, and `finished` makes
-    /// of a step what it is from now on.
-    pub(crate) fn finish(&mut self, now_s: f64, shown: &Step, finished: impl Fn(&Step) -> Step) {
+    /// Merges an automatic change of a look into all steps of that look, as if it had been made before them; adds no
+    /// step. `shown` is the step shown until now, and `finished` maps a step to its changed version.
+    pub(crate) fn merge_into_all(
+        &mut self,
+        now_s: f64,
+        shown: &HistoryStep,
+        finished: impl Fn(&HistoryStep) -> HistoryStep,
+    ) {
         self.undoer.feed_state(now_s, shown);
         let mut at = shown.clone();
         let mut forward = 0;
@@ -103,7 +107,7 @@ impl History {
             (at, forward) = (next, forward + 1);
         }
         let mut steps = Vec::new();
-        // What still changes is no step.
+        // A change that is still in flux is no step.
         if !self.undoer.is_in_flux() {
             steps.push(at.clone());
         }
@@ -122,25 +126,25 @@ impl History {
         self.undoer.feed_state(now_s, &finished(shown));
     }
 
-    /// Whether there is a step back.
-    pub(crate) fn can_undo(&self, step: &Step) -> bool {
+    /// Returns true if a step can be undone.
+    pub(crate) fn can_undo(&self, step: &HistoryStep) -> bool {
         self.undoer.has_undo(step)
     }
 
-    /// Whether there is a step forward.
-    pub(crate) fn can_redo(&self, step: &Step) -> bool {
+    /// Returns true if a step can be redone.
+    pub(crate) fn can_redo(&self, step: &HistoryStep) -> bool {
         self.undoer.has_redo(step)
     }
 
-    /// One step back.
-    pub(crate) fn undo(&mut self, step: &mut Step) {
+    /// Replaces `step` by the one before it, if there is one.
+    pub(crate) fn undo(&mut self, step: &mut HistoryStep) {
         if let Some(before) = self.undoer.undo(step) {
             step.clone_from(before);
         }
     }
 
-    /// One step forward again.
-    pub(crate) fn redo(&mut self, step: &mut Step) {
+    /// Replaces `step` by the one undone last, if there is one.
+    pub(crate) fn redo(&mut self, step: &mut HistoryStep) {
         if let Some(after) = self.undoer.redo(step) {
             step.clone_from(after);
         }
@@ -148,30 +152,30 @@ impl History {
 }
 
 impl App {
-    /// The look as the history keeps it.
-    pub(in crate::app) fn step(&self) -> Step {
-        Step { settings: self.settings.clone(), treated_as: self.treated.kind() }
+    /// Returns the look as the history keeps it.
+    pub(crate) fn history_step(&self) -> HistoryStep {
+        HistoryStep { settings: self.settings.clone(), treated_as: self.kind_override.kind() }
     }
 
-    /// One step back, or one forward again, which the status bar says; what reset buttons put back goes along.
-    pub(super) fn go(&mut self, is_back: bool, ctx: &egui::Context) {
-        let what = self.history.name(&self.step(), is_back);
+    /// Takes one step back or forward and shows it in the status bar; the values of the reset buttons follow.
+    pub(super) fn undo_or_redo(&mut self, is_back: bool, ctx: &egui::Context) {
+        let what = self.history.describe_next(&self.history_step(), is_back);
         self.take_step(is_back, ctx);
         if let Some(what) = what {
-            let words = text::messages::went(is_back, &what);
+            let words = text::messages::undone(is_back, &what);
             if self.layout.picture_only {
-                // There is no status bar.
+                // Without panels there is no status bar.
                 self.messages.note(words.clone());
             } else {
-                self.messages.step(&words);
+                self.messages.note_step(&words);
             }
-            self.history.went = Some((words, self.settings.clone()));
+            self.history.last_step = Some((words, self.settings.clone()));
         }
     }
 
-    /// As [`Self::go`], without a word.
+    /// Takes a step as [`Self::undo_or_redo`] does, without a message.
     fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
-        let mut step = self.step();
+        let mut step = self.history_step();
         if is_back {
             self.history.undo(&mut step);
         } else {
@@ -179,12 +183,12 @@ impl App {
         }
         let up = self.settings.camera.up;
         self.settings = step.settings;
-        self.treated.change(step.treated_as, &mut self.defaults);
-        // With the balance that it had.
+        self.kind_override.change(step.treated_as, &mut self.defaults);
+        // The balance of the step is part of it.
         self.keep_balanced.accept(&self.settings);
-        // Only a step that has turned the object says how it is to stand.
+        // Only a step that has turned the object changes the remembered up axis.
         if self.settings.camera.up != up {
-            self.first_look_stands(None, ctx);
+            self.ensure_first_look_up(None, ctx);
             self.remember_up();
         }
     }
@@ -193,9 +197,9 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Kept;
+    use crate::model::SavedEntry;
 
-    /// A few numbers that look random and are always the same.
+    /// Sequence of reproducible pseudo-random numbers (linear congruential generator).
     fn numbers(seed: u64) -> impl Iterator<Item = u64> {
         std::iter::successors(Some(seed), |x| {
             Some(x.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407))
@@ -204,7 +208,7 @@ mod tests {
         .map(|x| x >> 33)
     }
 
-    /// Edits one thing or another.
+    /// Applies one of eleven kinds of edits.
     fn edit(settings: &mut Settings, choice: u64, amount: u64) {
         let share = (amount % 1000) as f64 / 1000.0;
         match choice % 11 {
@@ -218,8 +222,8 @@ mod tests {
                 [share as f32; 3],
                 share,
             )),
-            6 => _ = settings.keep_view_under((amount % 9) as u8 + 1, "view"),
-            7 => _ = settings.keep(Kept::look("look", &settings.clone())),
+            6 => _ = settings.save_view_for_digit((amount % 9) as u8 + 1, "view"),
+            7 => _ = settings.save_entry(SavedEntry::look("look", &settings.clone())),
             8 if !settings.kept.is_empty() => {
                 let at = amount as usize % settings.kept.len();
                 settings.kept.rotate_left(at);
@@ -229,12 +233,12 @@ mod tests {
         }
     }
 
-    fn step(settings: &Settings) -> Step {
-        Step { settings: settings.clone(), treated_as: None }
+    fn step(settings: &Settings) -> HistoryStep {
+        HistoryStep { settings: settings.clone(), treated_as: None }
     }
 
-    /// Settings after a step.
-    fn gone(history: &mut History, settings: &mut Settings, is_back: bool) {
+    /// Undoes or redoes a step of the settings.
+    fn undo_or_redo(history: &mut History, settings: &mut Settings, is_back: bool) {
         let mut at = step(settings);
         if is_back {
             history.undo(&mut at);
@@ -247,23 +251,23 @@ mod tests {
     #[test]
     fn what_finishes_a_look_is_no_step_and_in_all_steps_of_it() {
         let finish = |history: &mut History, now_s: f64, shown: &Settings| {
-            let finished = |step: &Step| {
+            let finished = |step: &HistoryStep| {
                 let mut step = step.clone();
                 if step.settings.shading == Settings::default().shading {
                     step.settings.lights[0].intensity = 3.0;
                 }
                 step
             };
-            history.finish(now_s, &step(shown), finished);
+            history.merge_into_all(now_s, &step(shown), finished);
             finished(&step(shown)).settings
         };
         let start = Settings::default();
-        // Nobody has done anything.
+        // Without any edit by the user.
         let mut history = History::default();
         history.undoer.feed_state(0.0, &step(&start));
         let settings = finish(&mut history, 1.0, &start);
         assert!(!history.can_undo(&step(&settings)) && !history.can_redo(&step(&settings)));
-        // Turned, a moment ago and long ago; of another look before that; and gone back.
+        // Turned a moment ago or long ago, after another look; and with one undo.
         for (rest_s, back) in [(0.1, 0), (3.0, 0), (3.0, 1)] {
             let mut history = History::default();
             let mut other = start.clone();
@@ -276,20 +280,20 @@ mod tests {
             history.undoer.feed_state(4.0 + rest_s, &step(&turned));
             let mut settings = turned.clone();
             for _ in 0..back {
-                gone(&mut history, &mut settings, true);
+                undo_or_redo(&mut history, &mut settings, true);
             }
             for frame in 0..3 {
                 settings = finish(&mut history, 8.0 + 0.01 * f64::from(frame), &settings);
             }
             assert_eq!(history.can_redo(&step(&settings)), back > 0);
             for _ in 0..back {
-                gone(&mut history, &mut settings, false);
+                undo_or_redo(&mut history, &mut settings, false);
             }
             assert_eq!((settings.lights[0].intensity, settings.camera.azimuth_deg), (3.0, 77.0));
-            gone(&mut history, &mut settings, true);
+            undo_or_redo(&mut history, &mut settings, true);
             assert_eq!(settings.camera, start.camera, "the view goes back, after {rest_s} s");
             assert_eq!(settings.lights[0].intensity, 3.0, "and the light stays");
-            gone(&mut history, &mut settings, true);
+            undo_or_redo(&mut history, &mut settings, true);
             assert_eq!(settings, other, "what was before is not touched");
             assert!(!history.can_undo(&step(&settings)));
         }
@@ -300,12 +304,12 @@ mod tests {
         let (mut history, start) = (History::default(), Settings::default());
         let mut settings = start.clone();
         history.undoer.feed_state(0.0, &step(&settings));
-        // Nothing was changed: there is nothing to undo.
+        // Without a change there is nothing to undo.
         settings.shadows.balance = 1.1;
-        history.follow(0.5, &step(&start), &step(&settings));
+        history.merge_into_last(0.5, &step(&start), &step(&settings));
         assert!(!history.can_undo(&step(&settings)));
         let start = settings.clone();
-        // At once, and after the change became a step.
+        // At once, and after the change has become a step.
         for rest_s in [0.1, 3.0] {
             settings.lights[0].intensity = 2.0;
             history.undoer.feed_state(1.0, &step(&settings));
@@ -313,16 +317,16 @@ mod tests {
             for balance in [1.2, 1.3, 1.4] {
                 let before = settings.clone();
                 settings.shadows.balance = balance;
-                history.follow(5.0, &step(&before), &step(&settings));
+                history.merge_into_last(5.0, &step(&before), &step(&settings));
                 history.undoer.feed_state(5.0, &step(&settings));
             }
             let end = settings.clone();
-            gone(&mut history, &mut settings, true);
+            undo_or_redo(&mut history, &mut settings, true);
             assert_eq!(settings, start);
             assert!(!history.can_undo(&step(&settings)));
-            gone(&mut history, &mut settings, false);
+            undo_or_redo(&mut history, &mut settings, false);
             assert_eq!(settings, end);
-            gone(&mut history, &mut settings, true);
+            undo_or_redo(&mut history, &mut settings, true);
             assert_eq!(settings, start);
         }
     }
@@ -342,14 +346,14 @@ mod tests {
         rest(&mut history, &settings);
         settings.camera.azimuth_deg = 77.0;
         rest(&mut history, &settings);
-        let all = history.steps(&step(&settings));
+        let all = history.list_steps(&step(&settings));
         assert_eq!(
-            (all.names.as_slice(), all.taken),
+            (all.names.as_slice(), all.current),
             (["switch on floor".to_owned(), "turn camera".to_owned()].as_slice(), 2)
         );
-        gone(&mut history, &mut settings, true);
-        let before = history.steps(&step(&settings));
-        assert_eq!((before.names, before.taken), (all.names, 1));
+        undo_or_redo(&mut history, &mut settings, true);
+        let before = history.list_steps(&step(&settings));
+        assert_eq!((before.names, before.current), (all.names, 1));
     }
 
     #[test]
@@ -376,14 +380,14 @@ mod tests {
             let end = settings.clone();
             let mut back = vec![settings.clone()];
             while history.can_undo(&step(&settings)) {
-                gone(&mut history, &mut settings, true);
+                undo_or_redo(&mut history, &mut settings, true);
                 back.push(settings.clone());
             }
             assert_eq!(settings, start, "seed {seed}");
             back.reverse();
             assert_eq!(back, steps, "every step, in order; seed {seed}");
             while history.can_redo(&step(&settings)) {
-                gone(&mut history, &mut settings, false);
+                undo_or_redo(&mut history, &mut settings, false);
             }
             assert_eq!(settings, end, "seed {seed}");
         }

@@ -1,7 +1,8 @@
-//! What is done with the volume itself, which goes through all voxels on a thread of its own: standing it up, treating it
-//! as another kind of data, correcting what its file says.
+//! Operations on the volume itself: turning it upright, changing its kind of data, correcting metadata.
+//!
+//! Each is a pass over all voxels on a thread; so is the search for the outline of the object.
 
-pub(in crate::app) mod corrected;
-pub(in crate::app) mod framed;
-pub(in crate::app) mod treat_as;
-pub(in crate::app) mod upright;
+pub(crate) mod corrections;
+pub(crate) mod data_kind;
+pub(crate) mod orientation;
+pub(crate) mod outline;

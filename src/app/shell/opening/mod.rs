@@ -1,8 +1,8 @@
-//! Opens volumes and looks: what takes the place of what, and which settings a volume is shown with.
+//! Opening of volumes and looks: precedence between requests, and the settings with which a volume is shown.
 
-mod choosing;
-mod folders;
-mod looks;
+mod alternatives;
+mod dropped_and_neighbours;
+mod look_files;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,49 +10,49 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::shell::file_tasks::{NotRead, Reason};
-use crate::app::shell::first_lights::FirstLights;
-use crate::app::shell::history::{History, Step};
-use crate::app::shell::keep_balanced::KeepBalanced;
-use crate::app::shell::object::corrected::Corrected;
-use crate::app::shell::object::treat_as::Treated;
-use crate::app::shell::object::upright::Upright;
-use crate::app::windows::files;
-use crate::app::windows::raw_dialog::Described;
-use crate::app::worker::loader::{Known, Opened, Reading};
+use crate::app::shell::auto_balance::AutoBalance;
+use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
+use crate::app::shell::history::{History, HistoryStep};
+use crate::app::shell::light_placement::LightPlacement;
+use crate::app::shell::object::corrections::CorrectionState;
+use crate::app::shell::object::data_kind::KindOverride;
+use crate::app::shell::object::orientation::OrientationTasks;
+use crate::app::windows::file_dialogs;
+use crate::app::windows::raw_dialog::RawDialogResult;
+use crate::app::worker::loader::{OpenedVolume, ReadChoices, RememberedFileSettings};
 use crate::app::{App, text};
-use crate::data::load::{Choice, Portion, Thinning};
+use crate::data::load::{Downsampling, Portion, VolumeChoice};
 use crate::data::{Corrections, Volume};
-use crate::model::{Length, ObjectTurn, Record, Settings, VolumePlace, made_by};
+use crate::model::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation, provenance_mark};
 
-use self::folders::Likeness;
-pub(in crate::app) use self::folders::Neighbour;
+pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
+use self::dropped_and_neighbours::VolumeSimilarity;
 
-/// What is opened when nothing is named.
+/// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
-/// A look that waits for the volume that is being opened.
+/// Look that waits for the volume that is being opened.
 #[derive(Debug)]
-pub(in crate::app) enum PendingLook {
-    /// A file's: laid over the volume's first look.
-    Record(Box<Record>),
-    /// Every setting, whatever the first look is.
+pub(crate) enum PendingLook {
+    /// Look of a file, applied to the first look of the volume.
+    Record(Box<LookRecord>),
+    /// All settings, replacing the first look.
     Settings(Box<Settings>),
-    /// The look as it is when the volume is there.
+    /// Current look at the time when the volume is ready.
     Current,
-    /// That look, as far as the volume is like the one before.
-    IfAlike,
+    /// Current look, if the volume is similar enough to the one before.
+    CurrentIfSimilar,
 }
 
 impl App {
-    /// Opens a file or a built-in volume, or the volume of a session or of an exported picture with the look
-    /// that is kept there. What is open stays until it is there.
+    /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
+    /// The open volume stays until the new one is ready.
     pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
         let source = source.as_ref();
-        // It was said of another file.
+        // The message was about another file.
         self.messages.dismiss();
-        if files::is_record(source) {
-            self.open_either(source, ctx);
+        if file_dialogs::may_be_look_file(source) {
+            self.open_volume_or_look(source, ctx);
         } else {
             self.open_volume(source, ctx);
         }
@@ -60,20 +60,20 @@ impl App {
 
     /// Opens a volume with its own first look.
     pub(super) fn open_volume(&mut self, source: &Path, ctx: &egui::Context) {
-        if self.start_loading(source, Reading::default(), ctx) {
-            self.pending = None;
+        if self.start_loading(source, ReadChoices::default(), ctx) {
+            self.pending_look = None;
         }
     }
 
-    /// Opens one of several volumes of a file; what the command line says of which counts more than what was remembered.
-    pub(crate) fn open_chosen(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
-        if self.start_loading(source, self.reading_of(choice), ctx) {
-            self.pending = None;
+    /// Opens one of several volumes of a file; a choice on the command line has precedence over a remembered one.
+    pub(crate) fn open_chosen(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
+        if self.start_loading(source, self.reading_options(choice), ctx) {
+            self.pending_look = None;
         }
     }
 
-    /// Opens a file that was open before, as it was then.
-    pub(crate) fn open_again(&mut self, source: &Path, choice: &Choice, ctx: &egui::Context) {
+    /// Opens a file that was open before, with the volume chosen then.
+    pub(crate) fn open_again(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
         if choice.is_empty() {
             self.open(source, ctx);
         } else {
@@ -81,262 +81,282 @@ impl App {
         }
     }
 
-    /// How a volume is read that was chosen before.
-    fn reading_of(&self, choice: &Choice) -> Reading {
+    /// Returns the options for reading a volume that was chosen before.
+    fn reading_options(&self, choice: &VolumeChoice) -> ReadChoices {
         let said = self.loader.options().choice.clone();
-        Reading { choice: Some(said.or(choice)), ..Reading::default() }
+        ReadChoices { choice: Some(said.with_fallback(choice)), ..ReadChoices::default() }
     }
 
-    /// Opens what was named at the start. A look that cannot be used leaves the default volume.
+    /// Opens the file, look or session named at the start. If a look cannot be used, the default volume is opened.
     pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>, ctx: &egui::Context) {
         match (source, volume) {
             (Some(look), Some(volume)) => self.open_look_with(look, volume, ctx),
             (Some(source), None) | (None, Some(source)) => self.open(source, ctx),
             (None, None) => self.open_volume_of_session(ctx),
         }
-        self.open_something(Reason::Open, ctx);
+        self.open_default_if_empty(ReadPurpose::Open, ctx);
     }
 
-    /// Opens the default volume where nothing is open, and what was read for that reason has led to nothing.
-    pub(in crate::app) fn open_something(&mut self, reason: Reason, ctx: &egui::Context) {
+    /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
+    pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
         let is_empty = self.volume.is_none() && self.viewport.dataset().is_none();
-        let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(Reason::Open);
-        if reason == Reason::Open && is_empty && !is_busy {
-            self.start_loading(Path::new(DEFAULT_SOURCE), Reading::default(), ctx);
+        let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(ReadPurpose::Open);
+        if reason == ReadPurpose::Open && is_empty && !is_busy {
+            self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default(), ctx);
         }
     }
 
-    /// Opens what has waited for the answer whether to reopen the last session, unless something is open or being opened.
-    pub(crate) fn open_what_waits(&mut self, ctx: &egui::Context) {
-        let is_free = self.volume.is_none() && self.loader.progress().is_none() && !self.foreign_path.asks();
-        if std::mem::take(&mut self.first_waits) && is_free {
+    /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
+    /// or being opened.
+    pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
+        let is_free = self.volume.is_none()
+            && self.loader.progress().is_none()
+            && !self.untrusted_path_dialog.is_open();
+        if std::mem::take(&mut self.default_open_waits) && is_free {
             self.open_first(None, None, ctx);
         }
     }
 
-    /// Opens the volume that the session is of, where it says so. Its look is laid over whatever volume is the first.
+    /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
         let session = self.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
         let path = session.clone();
-        self.read_file(Reason::Open, &path, ctx, files::load_record, move |app, read, ctx| {
-            // That the session cannot be read is said when it is due.
+        self.read_file(ReadPurpose::Open, &path, ctx, file_dialogs::load_record, move |app, read, ctx| {
+            // An unreadable session is reported when it is applied.
             let Ok(record) = read else { return };
             let Some(volume) = record.volume.clone() else { return };
-            match app.place_of(&volume, &session) {
-                VolumePlace::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
-                VolumePlace::Beside(path) => app.open_chosen(&path, &volume.choice, ctx),
-                VolumePlace::Elsewhere(path) => app.foreign_path.ask(path, record),
-                VolumePlace::Never(why) => app.foreign_path.refuse(&volume.source, why, record),
+            match app.locate_volume(&volume, &session) {
+                VolumeLocation::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
+                VolumeLocation::InRecordFolder(path) => app.open_chosen(&path, &volume.choice, ctx),
+                VolumeLocation::OtherFolder(path) => app.untrusted_path_dialog.open(path, record),
+                VolumeLocation::Refused(why) => {
+                    app.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                }
             }
         });
     }
 
-    /// Opens a file of bare voxels of which the user has said how it is stored.
-    pub(crate) fn open_described(&mut self, described: &Described, ctx: &egui::Context) {
-        // A look that waits for this volume goes on waiting.
-        let Described { path, layout, header, is_gzip } = described;
+    /// Opens a raw volume with the layout that the user has entered.
+    pub(crate) fn open_raw(&mut self, described: &RawDialogResult, ctx: &egui::Context) {
+        // A look that is pending for this volume stays pending.
+        let RawDialogResult { path, layout, header, is_gzip } = described;
         if let Some(header) = header {
             let data_file = path.file_name().unwrap_or_default().to_string_lossy();
-            // Comments of a header follow its first line.
-            let content = layout.header(&data_file, *is_gzip);
-            let content = content.replacen('\n', &format!("\n# {}\n", made_by()), 1);
+            // Comments of a NRRD header follow its first line.
+            let content = layout.nrrd_header(&data_file, *is_gzip);
+            let content = content.replacen('\n', &format!("\n# {}\n", provenance_mark()), 1);
             match crate::export::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
-                    self.start_loading(header, Reading::default(), ctx);
+                    self.start_loading(header, ReadChoices::default(), ctx);
                     return;
                 }
-                // It is shown all the same.
+                // The volume is shown nevertheless.
                 Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
             }
         }
-        let reading = Reading { raw: Some(layout.format()), ..Reading::default() };
+        let reading = ReadChoices { raw: Some(layout.to_format()), ..ReadChoices::default() };
         self.start_loading(path, reading, ctx);
     }
 
-    /// Reads the open volume again with more or fewer of its voxels; the look stays.
-    pub(crate) fn thin(&mut self, thinning: Thinning, ctx: &egui::Context) {
+    /// Reads the open volume again with another subsampling; the look stays.
+    pub(crate) fn reload_subsampled(&mut self, thinning: Downsampling, ctx: &egui::Context) {
         let Some(volume) = &self.volume else { return };
         let mut settings = self.settings.clone();
-        // Opacities refer to the same thickness, however many voxels that has.
-        if let Length::Voxels(_) = settings.opacity_unit {
-            let unit = settings.opacity_unit.in_scene(&volume.scene) * volume.scene.mm_per_unit;
-            settings.opacity_unit = Length::Mm(unit);
+        // The opacity unit keeps its thickness, whatever the number of voxels.
+        if let OpacityLength::Voxels(_) = settings.opacity_unit {
+            let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
+            settings.opacity_unit = OpacityLength::Mm(unit);
         }
-        // Whether all of it has room is asked.
+        // The memory estimate is checked again.
         let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());
-        let choice = Some(Choice { portion, ..volume.held.choice() });
-        let reading = Reading { choice, takes_all_memory: false, ..volume.reading.clone() };
+        let choice = Some(VolumeChoice { portion, ..volume.held.choice() });
+        let reading = ReadChoices { choice, takes_all_memory: false, ..volume.reading.clone() };
         let source = volume.source.clone();
         if self.start_loading(&source, reading, ctx) {
-            self.pending = Some(PendingLook::Settings(Box::new(settings)));
+            self.pending_look = Some(PendingLook::Settings(Box::new(settings)));
         }
     }
 
-    pub(crate) fn start_loading(&mut self, source: &Path, reading: Reading, ctx: &egui::Context) -> bool {
-        // What was asked or said of the file before is over, and so is what was to be opened.
-        self.file_tasks.forget(Reason::Open);
-        self.file_tasks.forget(Reason::Session);
+    pub(crate) fn start_loading(&mut self, source: &Path, reading: ReadChoices, ctx: &egui::Context) -> bool {
+        // Requests and dialogs for the previous file are obsolete, and so is a file to open.
+        self.file_tasks.drop_purpose(ReadPurpose::Open);
+        self.file_tasks.drop_purpose(ReadPurpose::Session);
         self.raw_dialog.close();
-        self.roomy.close();
-        let known = Known { up: self.memory.up_of(source), corrected: self.memory.corrections_of(source) };
-        let started = self.loader.open(source, reading, known, ctx);
+        self.large_volume_dialog.close();
+        let known = RememberedFileSettings {
+            up: self.memory.up_of(source),
+            corrections: self.memory.corrections_of(source),
+        };
+        let started = self.loader.open_on_thread(source, reading, known, ctx);
         if let Err(err) = &started {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
     }
 
-    /// What can be undone of a volume that has just been opened: that it was corrected as the last time.
+    /// Creates the history of a volume that was just opened: remembered corrections can be undone.
     fn history_of(&self, volume: &Volume) -> History {
         let by = self.settings.volume;
         if by.is_none() || by != *volume.corrections() {
             return History::default();
         }
         let mut settings = self.settings.clone();
-        settings.correct(Corrections::default(), volume);
-        History::after(&Step { settings, treated_as: None })
+        settings.apply_corrections(Corrections::default(), volume);
+        History::with_previous(&HistoryStep { settings, treated_as: None })
     }
 
-    /// Identifies the file that is open.
+    /// Identifier of the open file's volume.
     pub(super) fn opened_id(&self) -> Option<u64> {
         self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
     }
 
-    /// Something was found before there was a window to say it.
-    pub(crate) fn remember_to_say(&mut self, found: Option<String>) {
+    /// Records a notice from before there was a window to show it.
+    pub(crate) fn add_notice(&mut self, found: Option<String>) {
         if let Some(notice) = found {
             self.memory.add_notice(notice);
         }
     }
 
-    /// Keeps the look as it is now, so that nothing is lost however this run ends; and says what could not be kept.
-    pub(crate) fn keep_look(&mut self) {
+    /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
+    pub(crate) fn autosave_look(&mut self) {
         if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
-            self.memory.keep(&self.settings, &volume.source, opened_id, &volume.held.choice());
+            self.memory.autosave(&self.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
-                self.memory.show(picture);
+                self.memory.autosave_thumbnail(picture);
             }
-            // Not before there is a volume, which clears what was said.
+            // Not before there is a volume, which clears the messages.
             let notices = self.memory.take_notices();
             if !notices.is_empty() {
-                self.messages.error(text::memory::WORTH_KNOWING, notices.join("\n\n"));
+                self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
             }
         }
     }
 
-    /// A volume is ready: it replaces the one before, once the session has been read that is due with the first.
-    pub(crate) fn take_in_with_session(&mut self, opened: Opened, ctx: &egui::Context) {
+    /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
+    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
         let session = self.session.as_ref().filter(|_| self.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
-                self.read_file(Reason::Session, &path, ctx, files::load_record, |app, read, ctx| {
-                    app.take_in(opened, Some(read), ctx);
-                });
+                self.read_file(
+                    ReadPurpose::Session,
+                    &path,
+                    ctx,
+                    file_dialogs::load_record,
+                    |app, read, ctx| {
+                        app.show_opened(opened, Some(read), ctx);
+                    },
+                );
             }
-            None => self.take_in(opened, None, ctx),
+            None => self.show_opened(opened, None, ctx),
         }
     }
 
-    /// A volume is ready, and so is the session that was to be read with it.
-    fn take_in(
+    /// Replaces the open volume by one that is ready, with the session that was read for it.
+    fn show_opened(
         &mut self,
-        opened: Opened,
-        session_read: Option<Result<Record, NotRead>>,
+        opened: OpenedVolume,
+        session_read: Option<Result<LookRecord, FileReadFailure>>,
         ctx: &egui::Context,
     ) {
-        let Opened { source, reading, dataset, too_many, renderer, settings, stamp } = opened;
+        let OpenedVolume { source, reading, dataset, original_dims: too_many, renderer, settings, stamp } =
+            opened;
         let volume = Arc::clone(dataset.volume());
         self.messages.clear();
-        self.strip.forget();
-        // What is kept is worth looking at on other volumes, too.
+        self.kept_strip.reset();
+        // Saved views are useful on other volumes, too.
         let kept = self.settings.kept.clone();
-        let likeness = match (&self.pending, &self.volume) {
-            (Some(PendingLook::IfAlike), Some(open)) => Likeness::of(open, &volume),
-            _ => Likeness::Nothing,
+        let likeness = match (&self.pending_look, &self.volume) {
+            (Some(PendingLook::CurrentIfSimilar), Some(open)) => VolumeSimilarity::between(open, &volume),
+            _ => VolumeSimilarity::Different,
         };
-        if let Some(PendingLook::IfAlike) = self.pending {
-            self.pending = (likeness == Likeness::Grid).then_some(PendingLook::Current);
+        if let Some(PendingLook::CurrentIfSimilar) = self.pending_look {
+            self.pending_look = (likeness == VolumeSimilarity::SameGrid).then_some(PendingLook::Current);
         }
         // Another file has corrections of its own.
-        let by = if likeness == Likeness::Grid { settings.volume } else { self.settings.volume };
-        let is_current = matches!(self.pending, Some(PendingLook::Current));
+        let by = if likeness == VolumeSimilarity::SameGrid { settings.volume } else { self.settings.volume };
+        let is_current = matches!(self.pending_look, Some(PendingLook::Current));
         let current = is_current.then(|| Settings { volume: by, ..self.settings.clone() });
         let selected_light = if current.is_some() { self.selected_light } else { 0 };
         if let Some(before) = too_many {
-            self.messages.note(text::opening::averaged(before, volume.dims()));
+            self.messages.note(text::opening::downsampled(before, volume.dims()));
         }
         for remark in volume.remarks() {
             self.messages.note(remark.clone());
         }
         if !volume.corrections().is_none() {
-            self.messages.note(text::corrections::as_last_time(&volume.corrections().in_words()));
+            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
         }
         self.defaults = settings.clone();
-        let is_kept = (self.keeps_look || likeness == Likeness::Kind) && self.volume.is_some();
+        let is_kept =
+            (self.keeps_look_for_next || likeness == VolumeSimilarity::SameKind) && self.volume.is_some();
         if is_kept {
-            // As it was, but for where the object is: that is another one, and may stand another way up.
+            // The look stays, apart from the position of the object: the new one may have another up axis.
             let mut before = std::mem::take(&mut self.settings);
-            before.turn_object(ObjectTurn::Upright(settings.camera.up));
+            before.rotate_object(ObjectRotation::MakeUpright(settings.camera.up));
             let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
             kept.floor.height = settings.floor.height;
             self.settings = kept;
         } else {
             self.settings = settings;
         }
-        // What is measured is of the volume before; a first look is balanced, a look from there is not.
-        self.keep_balanced = KeepBalanced::new(&self.settings, !is_kept);
-        let is_named = is_kept || session_read.is_some() || self.pending.is_some() || self.adjust.is_some();
+        // Measurements belong to the volume before; a first look is balanced, a kept look is not.
+        self.keep_balanced = AutoBalance::new(&self.settings, !is_kept);
+        let is_named = is_kept
+            || session_read.is_some()
+            || self.pending_look.is_some()
+            || self.adjust_first_look.is_some();
         let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
-        // Session and command line speak of the first volume.
+        // Session and command line apply to the first volume only.
         self.session_is_due = false;
         if let Some(read) = session_read
             && let Some(mut session) = self.session.take()
         {
-            session.found(read.as_ref().ok());
+            session.set_record(read.as_ref().ok());
             match read {
-                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.not_understood(),
+                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.protect_invalid(),
                 Ok(_) => {}
-                Err(why) => self.say_not_read(text::opening::SESSION_NOT_LOADED, why),
+                Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
             }
             self.session = Some(session);
         }
-        self.memory.opened(&source, &volume.held().choice());
-        self.recent_pictures.forget();
-        match self.pending.take() {
+        self.memory.add_recent(&source, &volume.contents().choice());
+        self.recent_pictures.clear();
+        match self.pending_look.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
                 self.settings = *settings;
                 self.keep_balanced.accept(&self.settings);
             }
-            Some(PendingLook::Current | PendingLook::IfAlike) => {
+            Some(PendingLook::Current | PendingLook::CurrentIfSimilar) => {
                 self.settings = current.unwrap_or_default();
                 self.keep_balanced.accept(&self.settings);
             }
             Some(PendingLook::Record(record)) => {
-                if record.volume.as_ref().is_some_and(|of| !of.is_of(volume.opened_id())) {
-                    self.messages.note(text::opening::OF_OTHER_VALUES);
+                if record.volume.as_ref().is_some_and(|of| !of.matches_content(volume.opened_id())) {
+                    self.messages.note(text::opening::OTHER_VALUES);
                 }
                 self.apply_record(&record, &ranges, opened_id);
             }
         }
-        if let Some(adjust) = self.adjust.take() {
+        if let Some(adjust) = self.adjust_first_look.take() {
             self.settings = adjust(std::mem::take(&mut self.settings));
             self.settings.sanitise();
         }
         if self.settings.kept.is_empty() {
             self.settings.kept = kept;
         }
-        // What somebody has chosen stays.
-        self.first_lights = if is_named { FirstLights::default() } else { FirstLights::of(&self.settings) };
+        // A look that the user has chosen stays.
+        self.first_lights =
+            if is_named { LightPlacement::default() } else { LightPlacement::new(&self.settings) };
         self.light_search = None;
-        self.contact_sheet.forget();
-        self.volume = Some(VolumeFacts::of(source, reading, &dataset));
-        // With its own look, as it stands there.
-        (self.treated, self.upright) = (Treated::default(), Upright::default());
+        self.contact_sheet.discard();
+        self.volume = Some(VolumeFacts::new(source, reading, &dataset));
+        // Treated as its own kind of data, with its own up axis.
+        (self.kind_override, self.orientation_task) = (KindOverride::default(), OrientationTasks::default());
         self.viewport.set_scene(renderer, dataset);
         self.history = self.history_of(&volume);
-        self.corrected = Corrected::new(stamp, self.settings.volume);
+        self.corrections_task = CorrectionState::new(stamp, self.settings.volume);
         self.selected_light = selected_light;
         let title = text::opening::title(self.volume_name().unwrap_or_default());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));

@@ -1,85 +1,85 @@
-//! The part of the section of data that corrects what the file says.
+//! Texts of the corrections of file metadata, in the data section.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 use crate::data::{AxisOrder, SpacingUnit};
 
-/// The part, and why it could not be done.
+/// Title of the group, followed by the headline of its error message.
 pub(crate) const TITLE: &str = "Corrections";
-pub(crate) const NOT_CORRECTED: &str = "The volume was not corrected";
+pub(crate) const CORRECTION_FAILED: &str = "The volume was not corrected";
 
-pub(crate) const SPACING: Named =
-    named("Spacing", "How far voxels are apart along the three axes of the file, in the unit below");
-pub(crate) const UNIT: Named =
-    named("Unit", "The unit of these distances. Where the file says none, voxels have no known size");
-pub(crate) const FLIP: Named = named(
+pub(crate) const SPACING: ControlText =
+    control_text("Spacing", "How far voxels are apart along the three axes of the file, in the unit below");
+pub(crate) const UNIT: ControlText =
+    control_text("Unit", "The unit of these distances. Where the file says none, voxels have no known size");
+pub(crate) const FLIP: ControlText = control_text(
     "Flip",
     "Along these axes of the file voxels run the other way: a mirrored object is righted by one of them",
 );
-pub(crate) const AXIS_ORDER: Named =
-    named("Axes", "Where the first, the second and the third axis of the file run");
-pub(crate) const ORIENTATION: Named = named(
+pub(crate) const AXIS_ORDER: ControlText =
+    control_text("Axes", "Where the first, the second and the third axis of the file run");
+pub(crate) const ORIENTATION: ControlText = control_text(
     "Orientation",
     "Towards which part of a body the three axes of the file run: right or left, anterior or posterior, superior or \
      inferior",
 );
-pub(crate) const PADDING: Named =
-    named("Padding", "The value of voxels that hold nothing: they are neither seen nor counted");
-pub(crate) const PADDING_VALUE: Named = named("Padding value", "In the units of the values");
-pub(crate) const VALUE_SCALE: Named = named(
+pub(crate) const PADDING: ControlText =
+    control_text("Padding", "The value of voxels that hold nothing: they are neither seen nor counted");
+pub(crate) const PADDING_VALUE: ControlText = control_text("Padding value", "In the units of the values");
+pub(crate) const VALUE_SCALE: ControlText = control_text(
     "Values",
     "What the numbers of the file mean: they are multiplied by the first number, and the second is added",
 );
 pub(crate) const SLOPE: &str = "Slope of the values";
 pub(crate) const INTERCEPT: &str = "Intercept of the values";
-/// Before and between the two.
+/// Signs before the slope and between slope and intercept.
 pub(crate) const TIMES: &str = "×";
 pub(crate) const PLUS: &str = "+";
 
-/// The choice that leaves what the file says.
+/// Choice that keeps the metadata of the file.
 pub(crate) const IN_FILE: &str = "As in the file";
-/// The choice that a body lies nobody knows how, or that there is none.
+/// Choice of an unknown orientation, or of an object that is no body.
 pub(crate) const UNKNOWN: &str = "Unknown";
-/// No value stands for nothing.
+/// Choice without a padding value.
 pub(crate) const NO_PADDING: &str = "None";
-/// One value does.
-pub(crate) const TYPED: &str = "Value";
-pub(crate) const RESET: Named =
-    named("All as in the file", "Takes all corrections back; they are forgotten for this file, too");
+/// Choice of a padding value that is typed.
+pub(crate) const PADDING_TYPED: &str = "Value";
+pub(crate) const RESET: ControlText =
+    control_text("All as in the file", "Takes all corrections back; they are forgotten for this file, too");
 
-/// What axes of files are called.
+/// Names of the axes of the file.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The distance along an axis, as screen readers call it.
+/// Accessible name of the voxel spacing along an axis.
 pub(crate) fn spacing_along(axis: &str) -> String {
     format!("Spacing along {axis}")
 }
 
-/// The switch that flips an axis.
+/// Accessible name of the checkbox that flips an axis.
 pub(crate) fn flip(axis: &str) -> String {
     format!("Flip {axis}")
 }
 
-/// A unit of distances.
+/// Symbol of a unit of voxel spacing.
 pub(crate) fn unit(unit: SpacingUnit) -> &'static str {
     unit.symbol()
 }
 
-/// An order of axes.
+/// Name of an axis order.
 pub(crate) fn order(order: AxisOrder) -> &'static str {
     order.name()
 }
 
-/// A tip, and what the file says.
-pub(crate) fn tip(named: Named, in_file: &str) -> String {
-    format!("{}\n\nThe file says: {in_file}", named.tip)
+/// Tooltip of a correction, with the value that the file has.
+pub(crate) fn tooltip_with_metadata(named: ControlText, in_file: &str) -> String {
+    format!("{}\n\nThe file says: {in_file}", named.tooltip)
 }
 
-/// Where a file says nothing.
-pub(crate) const NOTHING_SAID: &str = "nothing";
-/// Values are the numbers of the file.
-pub(crate) const AS_THEY_ARE: &str = "they are what they are";
+/// Text in place of metadata that the file lacks.
+pub(crate) const NO_METADATA: &str = "nothing";
+/// Text for values without a scale in the file: stored numbers are the values.
+pub(crate) const NO_SCALE: &str = "they are what they are";
 
-/// A volume that was opened is corrected as it was before.
-pub(crate) fn as_last_time(corrections: &[String]) -> String {
+/// Message after a reopened volume was given the corrections of the last time.
+pub(crate) fn restored(corrections: &[String]) -> String {
     format!("Corrected as last time: {}. Undo shows it as the file says", corrections.join("; "))
 }

@@ -1,18 +1,18 @@
-//! The section of data: what the volume is.
+//! Texts of the data section: metadata and range of the open volume.
 
 use crate::app::text::common::LengthUnit;
-use crate::app::text::{Named, named};
-use crate::data::load::{Portion, Region, Thinning};
+use crate::app::text::{ControlText, control_text};
+use crate::data::load::{Downsampling, Portion, VoxelRegion};
 use crate::data::{DataKind, KindName, SpacingUnit};
 
-/// In place of the section while no volume is open.
+/// Text in place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";
 
 pub(crate) const NAME: &str = "Name";
 pub(crate) const SOURCE: &str = "Source";
 pub(crate) const DIMENSIONS: &str = "Voxels";
-/// The voxels of the file of which fewer are shown, and the part of them that was read.
-pub(crate) const SHOWN_OF: &str = "Read of";
+/// Labels for a volume of which a part was read: the dimensions of the file, and the region.
+pub(crate) const READ_OF: &str = "Read of";
 pub(crate) const REGION: &str = "Region";
 pub(crate) const VOXEL_TYPE: &str = "Type";
 pub(crate) const KIND: &str = "Kind";
@@ -21,35 +21,47 @@ pub(crate) const VALUES: &str = "Values";
 pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const NOT_FINITE: &str = "Not finite";
 
-pub(crate) const THINNING: Named = named(
+pub(crate) const SUBSAMPLE: ControlText = control_text(
     "Subsample",
     "Shows fewer voxels, each one of several or the mean of a block: quicker pictures and less memory, without the \
      finest details. The volume is read again, the look stays",
 );
 
-/// How many voxels are kept.
-pub(crate) fn thinning(thinning: Thinning) -> Named {
+/// Name and tooltip of a subsampling.
+pub(crate) fn subsampling(thinning: Downsampling) -> ControlText {
     match thinning {
-        Thinning::Every(2) => named("Every second", "An eighth of the voxels, as the file has them"),
-        Thinning::Every(4) => named("Every fourth", "A sixty-fourth of the voxels, as the file has them"),
-        Thinning::Average(2) => named("Means of 2 × 2 × 2", "An eighth of the voxels, each a mean"),
-        Thinning::Average(4) => named("Means of 4 × 4 × 4", "A sixty-fourth of the voxels, each a mean"),
-        Thinning::Every(2..) => named("Every few", "Of several voxels along each axis one"),
-        Thinning::Average(2..) => named("Means of blocks", "Each voxel is the mean of a larger block"),
-        Thinning::None | Thinning::Every(_) | Thinning::Average(_) => named("All", "All voxels of the file"),
+        Downsampling::Every(2) => {
+            control_text("Every second", "An eighth of the voxels, as the file has them")
+        }
+        Downsampling::Every(4) => {
+            control_text("Every fourth", "A sixty-fourth of the voxels, as the file has them")
+        }
+        Downsampling::Average(2) => {
+            control_text("Means of 2 × 2 × 2", "An eighth of the voxels, each a mean")
+        }
+        Downsampling::Average(4) => {
+            control_text("Means of 4 × 4 × 4", "A sixty-fourth of the voxels, each a mean")
+        }
+        Downsampling::Every(2..) => control_text("Every few", "Of several voxels along each axis one"),
+        Downsampling::Average(2..) => {
+            control_text("Means of blocks", "Each voxel is the mean of a larger block")
+        }
+        Downsampling::None | Downsampling::Every(_) | Downsampling::Average(_) => {
+            control_text("All", "All voxels of the file")
+        }
     }
 }
 
-/// What of which voxels is shown: the adapter may have averaged more.
-pub(crate) fn shown_of(portion: &Portion, file_dims: [usize; 3]) -> String {
+/// Dimensions of the file with the subsampling that was applied; the adapter may have averaged further.
+pub(crate) fn file_dimensions(portion: &Portion, file_dims: [usize; 3]) -> String {
     let all = dimensions(file_dims);
     match portion.thinning {
-        Thinning::Every(n @ 2..) => format!("{all}, every {}", ordinal(n)),
-        Thinning::None | Thinning::Every(_) | Thinning::Average(_) => format!("{all}, averaged"),
+        Downsampling::Every(n @ 2..) => format!("{all}, every {}", ordinal(n)),
+        Downsampling::None | Downsampling::Every(_) | Downsampling::Average(_) => format!("{all}, averaged"),
     }
 }
 
-/// `second`
+/// Ordinal number in English: `second`, `third`, `11th`.
 pub(crate) fn ordinal(n: usize) -> String {
     match n {
         2 => "second".to_owned(),
@@ -59,32 +71,38 @@ pub(crate) fn ordinal(n: usize) -> String {
     }
 }
 
-/// A region of a file's grid.
-pub(crate) fn region(region: &Region, grid: [usize; 3]) -> String {
+/// Region that was read, within the grid of the file.
+pub(crate) fn region(region: &VoxelRegion, grid: [usize; 3]) -> String {
     format!("{region} of {}", dimensions(grid))
 }
 
-pub(crate) const TREAT_AS: Named = named(
+pub(crate) const TREAT_AS: ControlText = control_text(
     "Treat as",
     "Makes the first look anew, for data of another kind: transfer function, view and lights. It can be undone",
 );
 
-/// What a volume can be treated as.
-pub(crate) fn treatment(kind: Option<KindName>) -> Named {
+/// Name and tooltip of a kind of data that the volume can be treated as; `None` is the automatic choice.
+pub(crate) fn kind_choice(kind: Option<KindName>) -> ControlText {
     match kind {
-        None => named("Automatic", "As what the file says, or else the values"),
-        Some(KindName::Scalar) => named("Scalar", "More is more of something: what is bright is shown"),
-        Some(KindName::DarkOnBright) => named("Dark on bright", "What is darker than all around it is shown"),
-        Some(KindName::HounsfieldCt) => named("CT", "Hounsfield units: bone and contrast agent are shown"),
-        Some(KindName::Signed) => {
-            named("Signed", "Strong values on both sides of zero are shown, in two colours")
+        None => control_text("Automatic", "As what the file says, or else the values"),
+        Some(KindName::Scalar) => {
+            control_text("Scalar", "More is more of something: what is bright is shown")
         }
-        Some(KindName::Mask) => named("Mask", "Something or nothing: a surface halfway between"),
-        Some(KindName::LabelMap) => named("Labels", "Every number is shown, in a colour of its own"),
+        Some(KindName::DarkOnBright) => {
+            control_text("Dark on bright", "What is darker than all around it is shown")
+        }
+        Some(KindName::HounsfieldCt) => {
+            control_text("CT", "Hounsfield units: bone and contrast agent are shown")
+        }
+        Some(KindName::Signed) => {
+            control_text("Signed", "Strong values on both sides of zero are shown, in two colours")
+        }
+        Some(KindName::Mask) => control_text("Mask", "Something or nothing: a surface halfway between"),
+        Some(KindName::LabelMap) => control_text("Labels", "Every number is shown, in a colour of its own"),
     }
 }
 
-/// What kind of data a volume holds.
+/// Description of the kind of data of a volume.
 pub(crate) fn kind(kind: DataKind) -> String {
     match kind {
         DataKind::Mask => "Mask".to_owned(),
@@ -97,75 +115,76 @@ pub(crate) fn kind(kind: DataKind) -> String {
     }
 }
 
-pub(crate) const RANGE: Named = named(
+pub(crate) const RANGE: ControlText = control_text(
     "Range",
     "The values among which the picture tells differences; what lies outside looks like the nearest of them. Control \
      points beyond it widen it",
 );
-pub(crate) const ROBUST: Named =
-    named("Robust", "The values that matter: without padding and without a few outliers");
-pub(crate) const FULL: Named = named("Full", "All values of the file");
-pub(crate) const TYPED: Named = named("Typed", "From one value to another");
-pub(crate) const LOW: Named = named(
+pub(crate) const ROBUST: ControlText =
+    control_text("Robust", "The values that matter: without padding and without a few outliers");
+pub(crate) const FULL: ControlText = control_text("Full", "All values of the file");
+pub(crate) const TYPED_RANGE: ControlText = control_text("Typed", "From one value to another");
+pub(crate) const LOW: ControlText = control_text(
     "Lowest value shown",
     "In the units of the file. It stops below the highest value: raise that first",
 );
-pub(crate) const HIGH: Named = named(
+pub(crate) const HIGH: ControlText = control_text(
     "Highest value shown",
     "In the units of the file. It stops above the lowest value: lower that first",
 );
 pub(crate) const SHOWN: &str = "Shown";
 
-/// The values that are shown, and all of the file, in digits.
-pub(crate) fn shown([low, high]: &[String; 2], [lowest, highest]: &[String; 2]) -> String {
+/// Range of values shown within the range of the file, both formatted.
+pub(crate) fn range_shown([low, high]: &[String; 2], [lowest, highest]: &[String; 2]) -> String {
     format!("{low} … {high} of {lowest} … {highest}")
 }
 
-pub(crate) const OPACITY_UNIT: Named = named(
+pub(crate) const OPACITY_UNIT: ControlText = control_text(
     "Opacity unit",
     "The thickness of material to which the opacities of the transfer function refer: larger makes \
      everything more transparent",
 );
-/// The list of the units in which the opacity unit can be given.
+/// Accessible name of the list of units for the opacity unit.
 pub(crate) const UNITS: &str = "Unit of the opacity unit";
-pub(crate) const MILLIMETRES: Named = named("mm", "Stays the same for every volume of the same thing");
-pub(crate) const VOXELS: Named = named("voxels", "Follows the resolution of the data");
-pub(crate) const EXTENT: Named = named("extent", "A share of the longest edge of the volume");
+pub(crate) const MILLIMETRES: ControlText =
+    control_text("mm", "Stays the same for every volume of the same thing");
+pub(crate) const VOXELS: ControlText = control_text("voxels", "Follows the resolution of the data");
+pub(crate) const EXTENT: ControlText = control_text("extent", "A share of the longest edge of the volume");
 
-/// A length in digits, with its unit.
-pub(crate) fn length(digits: &str, unit: Named) -> String {
+/// Formatted length with its unit.
+pub(crate) fn length(digits: &str, unit: ControlText) -> String {
     format!("{digits} {}", unit.name)
 }
 
-/// Voxels along x, y and z.
+/// Number of voxels along x, y and z.
 pub(crate) fn dimensions([x, y, z]: [usize; 3]) -> String {
     format!("{x} × {y} × {z}")
 }
 
-/// The unit in which distances between voxels are written.
+/// Unit in which voxel spacings are displayed.
 pub(crate) fn unit_of_spacing(spacing_mm: [f64; 3], is_unknown: bool) -> LengthUnit {
     if is_unknown {
         return LengthUnit { mm: 1.0, suffix: " (unit unknown)" };
     }
-    LengthUnit::of(SpacingUnit::of_spacing(spacing_mm))
+    LengthUnit::from_spacing_unit(SpacingUnit::suiting_spacing(spacing_mm))
 }
 
-/// Distances between voxels along x, y and z, in digits.
+/// Formatted voxel spacings along x, y and z, with their unit.
 pub(crate) fn spacing([x, y, z]: &[String; 3], unit: LengthUnit) -> String {
     format!("{x} × {y} × {z}{}", unit.suffix)
 }
 
-/// The smallest and the largest value, in digits.
+/// Formatted smallest and largest value.
 pub(crate) fn values(low: &str, high: &str) -> String {
     format!("{low} … {high}")
 }
 
-/// The memory of the voxels.
-pub(crate) fn memory(mebibytes: f64) -> String {
+/// Memory of the voxels, in MiB.
+pub(crate) fn memory_size(mebibytes: f64) -> String {
     format!("{mebibytes:.1} MiB")
 }
 
-/// How many voxels are not finite.
-pub(crate) fn not_finite(voxels: usize) -> String {
+/// Number of voxels that are NaN or infinite.
+pub(crate) fn non_finite_voxels(voxels: usize) -> String {
     format!("{voxels} voxels, shown as the smallest value")
 }

@@ -1,35 +1,42 @@
-//! The table of labels, which stands in the place of the transfer function editor.
+//! Texts of the table of labels, which replaces the transfer function editor for label maps.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 
-pub(crate) const FILTER: Named =
-    named("Filter labels", "Lists only those whose number or name has this in it; empties with Escape");
+pub(crate) const FILTER: ControlText = control_text(
+    "Filter labels",
+    "Lists only those whose number or name has this in it; empties with Escape",
+);
 pub(crate) const FILTER_HINT: &str = "number or name";
-pub(crate) const SHOW_ALL: Named =
-    named("Show listed", "Shows every label of the list; not 0 and what is below, which is around them");
-pub(crate) const HIDE_ALL: Named = named("Hide listed", "Hides every label of the list, and its shadow");
+pub(crate) const SHOW_ALL: ControlText = control_text(
+    "Show listed",
+    "Shows every label of the list; not 0 and what is below, which is around them",
+);
+pub(crate) const HIDE_ALL: ControlText =
+    control_text("Hide listed", "Hides every label of the list, and its shadow");
 pub(crate) const ONLY_TIP: &str = "Shows this one alone";
 pub(crate) const VISIBLE_TIP: &str = "Whether it is there at all, for the eye and for light";
 pub(crate) const OPACITY_TIP: &str = "Per opacity unit";
 pub(crate) const NAME_HINT: &str = "unnamed";
 
-/// Where labels are sought by name.
+/// Section name of the table in the command palette.
 pub(crate) const TITLE: &str = "Labels";
 
-/// What stands over the columns.
-pub(crate) const SHOW_COLUMN: Named = named("Show", VISIBLE_TIP);
-pub(crate) const COLOR_COLUMN: Named = named("Colour", "What it looks like");
-pub(crate) const NUMBER_COLUMN: Named = named("Label", "What voxels hold; a click shows that one alone");
-pub(crate) const NAME_COLUMN: Named = named("Name", "That of the file, until you give it another");
-pub(crate) const VOXELS_COLUMN: Named = named("Voxels", "How many hold it");
-pub(crate) const OPACITY_COLUMN: Named = named("Opacity", OPACITY_TIP);
+/// Headings of the columns, with their tooltips.
+pub(crate) const SHOW_COLUMN: ControlText = control_text("Show", VISIBLE_TIP);
+pub(crate) const COLOR_COLUMN: ControlText = control_text("Colour", "What it looks like");
+pub(crate) const NUMBER_COLUMN: ControlText =
+    control_text("Label", "What voxels hold; a click shows that one alone");
+pub(crate) const NAME_COLUMN: ControlText =
+    control_text("Name", "That of the file, until you give it another");
+pub(crate) const VOXELS_COLUMN: ControlText = control_text("Voxels", "How many hold it");
+pub(crate) const OPACITY_COLUMN: ControlText = control_text("Opacity", OPACITY_TIP);
 
-pub(crate) const AUTOMATIC: Named =
-    named("Automatic", "Puts back the looks with which the labels were opened");
-pub(crate) const USE_CURVE: Named =
-    named("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
+pub(crate) const AUTOMATIC: ControlText =
+    control_text("Automatic", "Puts back the looks with which the labels were opened");
+pub(crate) const USE_CURVE: ControlText =
+    control_text("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
 
-/// What screen readers call the parts of a row.
+/// Accessible names of the controls in a row.
 pub(crate) fn visible(number: i64) -> String {
     format!("Show label {number}")
 }
@@ -38,7 +45,7 @@ pub(crate) fn color(number: i64) -> String {
     format!("Colour of label {number}")
 }
 
-pub(crate) fn only(number: i64) -> String {
+pub(crate) fn only_name(number: i64) -> String {
     format!("Only label {number}")
 }
 
@@ -50,18 +57,18 @@ pub(crate) fn opacity(number: i64) -> String {
     format!("Opacity of label {number}")
 }
 
-/// How many labels are listed, of all.
+/// Number of labels listed, out of all.
 pub(crate) fn count(listed: usize, all: usize) -> String {
     if listed == all { format!("{all} labels") } else { format!("{listed} of {all} labels") }
 }
 
-/// How many voxels hold a label, in groups of three digits.
+/// Number of voxels with a label, in groups of three digits.
 pub(crate) fn voxels(count: u64) -> String {
     let digits = count.to_string();
     let mut grouped = String::new();
     for (at, digit) in digits.chars().enumerate() {
         if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            // Narrow, and no line ends there.
+            // Narrow no-break space.
             grouped.push('\u{202f}');
         }
         grouped.push(digit);
@@ -69,9 +76,9 @@ pub(crate) fn voxels(count: u64) -> String {
     grouped
 }
 
-/// What a label's number tells when it is pointed at: its name, how much there is of it, and with which label it shares
-/// its look, if it does.
-pub(crate) fn facts(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
+/// Tooltip of a label's number: name, number of voxels, and the label whose look it shares where there are more
+/// labels than classes.
+pub(crate) fn tooltip(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let shares = shares_with.map_or_else(String::new, |other| format!(", with the look of label {other}"));
     format!("{name}{voxels} voxels{shares}")

@@ -1,104 +1,114 @@
-//! The section of lights, their chips and their handles.
+//! Texts of the lights section, of the light chips and of the handles in the picture.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 
-pub(crate) const PARALLEL: Named =
-    named("Directional", "Parallel rays, like the sun: shadows have the size of what casts them");
-pub(crate) const PERSPECTIVE: Named =
-    named("Positional", "From a place, like a lamp: shadows grow with the distance");
+pub(crate) const PARALLEL: ControlText =
+    control_text("Directional", "Parallel rays, like the sun: shadows have the size of what casts them");
+pub(crate) const PERSPECTIVE: ControlText =
+    control_text("Positional", "From a place, like a lamp: shadows grow with the distance");
 
-pub(crate) const WITH_VOLUME: Named =
-    named("The volume", "The light stays where it is: turning the camera rebuilds no shadows");
-pub(crate) const WITH_CAMERA: Named =
-    named("The camera", "The light turns with the camera, like a lamp on the photographer's shoulder");
+pub(crate) const WITH_VOLUME: ControlText =
+    control_text("The volume", "The light stays where it is: turning the camera rebuilds no shadows");
+pub(crate) const WITH_CAMERA: ControlText =
+    control_text("The camera", "The light turns with the camera, like a lamp on the photographer's shoulder");
 
-pub(crate) const ADD: Named = named("Add light", "Adds a light beside the camera; up to eight");
-pub(crate) const REMOVE: Named = named("Remove light", "Takes this light away; undo brings it back");
+pub(crate) const ADD: ControlText = control_text("Add light", "Adds a light beside the camera; up to eight");
+pub(crate) const REMOVE: ControlText =
+    control_text("Remove light", "Takes this light away; undo brings it back");
 
-/// What a light without a name is called.
+/// Name shown for a light that has none.
 pub(crate) const UNNAMED: &str = "Light";
 pub(crate) const ON_TIP: &str = "Switches this light on or off; its shadows are kept";
 pub(crate) const SELECT_TIP: &str = "Select; its handle in the picture is marked";
 
-pub(crate) const NAME: Named = named("Name", "What this light is called in the list");
+pub(crate) const NAME: ControlText = control_text("Name", "What this light is called in the list");
 pub(crate) const NAME_HINT: &str = "Name of the light";
-pub(crate) const KIND: Named = named("Kind", "How the light's rays run");
-pub(crate) const INTENSITY: Named = named("Intensity", "How bright this light is; costs no new shadows");
-pub(crate) const DISTANCE: Named =
-    named("Distance", "From the middle of the volume; near lights spread their shadows");
-pub(crate) const LOCK: Named =
-    named("Attached to", "What the light keeps its place to while the camera turns");
-pub(crate) const HEADLIGHT: Named = named(
+pub(crate) const KIND: ControlText = control_text("Kind", "How the light's rays run");
+pub(crate) const INTENSITY: ControlText =
+    control_text("Intensity", "How bright this light is; costs no new shadows");
+pub(crate) const DISTANCE: ControlText =
+    control_text("Distance", "From the middle of the volume; near lights spread their shadows");
+pub(crate) const LOCK: ControlText =
+    control_text("Attached to", "What the light keeps its place to while the camera turns");
+pub(crate) const HEADLIGHT: ControlText = control_text(
     "Headlight",
     "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide",
 );
-pub(crate) const SUGGEST: Named =
-    named("Suggest…", "Seeks places for this light that make the most of shadows, and shows the best three");
-pub(crate) const DENSITY: Named = named(
+pub(crate) const SUGGEST: ControlText = control_text(
+    "Suggest…",
+    "Seeks places for this light that make the most of shadows, and shows the best three",
+);
+pub(crate) const DENSITY: ControlText = control_text(
     "Density",
     "Multiplies how strongly material attenuates this light alone; refills its light volume",
 );
-pub(crate) const CASTS_SHADOWS: Named =
-    named("Casts shadows", "Whether material attenuates this light; a fill light does without");
+pub(crate) const CASTS_SHADOWS: ControlText =
+    control_text("Casts shadows", "Whether material attenuates this light; a fill light does without");
 
-pub(crate) const SHAPE: Named = named(
+pub(crate) const SHAPE: ControlText = control_text(
     "Light shape",
     "What shines: the larger it looks from the volume, the softer the borders of its shadows",
 );
-pub(crate) const POINT: Named = named("Point", "Shadows are as sharp as the volume");
-pub(crate) const DISC: Named = named("Disc", "A round plate that faces the volume, like a studio lamp");
-pub(crate) const RECTANGLE: Named = named("Rectangle", "A soft box, or a window");
-pub(crate) const BALL: Named =
-    named("Ball", "Looks the same from everywhere, like a paper lantern or the sun");
-pub(crate) const ANGLE: Named = named(
+pub(crate) const POINT: ControlText = control_text("Point", "Shadows are as sharp as the volume");
+pub(crate) const DISC: ControlText =
+    control_text("Disc", "A round plate that faces the volume, like a studio lamp");
+pub(crate) const RECTANGLE: ControlText = control_text("Rectangle", "A soft box, or a window");
+pub(crate) const SPHERE: ControlText =
+    control_text("Ball", "Looks the same from everywhere, like a paper lantern or the sun");
+pub(crate) const ANGLE: ControlText = control_text(
     "Width",
     "How wide the light looks from the volume: the sun has half a degree; its border can be dragged in the picture",
 );
-pub(crate) const SIZE: Named =
-    named("Width", "How wide the light is; its border can be dragged in the picture");
-pub(crate) const ASPECT: Named = named("Width by height", "1 is a square, 2 twice as wide as high");
-pub(crate) const TURN: Named = named("Turn", "Turns the rectangle about the line to the volume");
+pub(crate) const SIZE: ControlText =
+    control_text("Width", "How wide the light is; its border can be dragged in the picture");
+pub(crate) const ASPECT: ControlText =
+    control_text("Width by height", "1 is a square, 2 twice as wide as high");
+pub(crate) const ROTATION: ControlText =
+    control_text("Turn", "Turns the rectangle about the line to the volume");
 
-pub(crate) const HOOD: Named =
-    named("Spotlight", "The light shines only within a cone around the line to the middle of the volume");
-pub(crate) const CONE: Named = named("Cone", "From the middle of the cone to where no light is left");
-pub(crate) const RIM: Named =
-    named("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
+pub(crate) const SPOTLIGHT: ControlText = control_text(
+    "Spotlight",
+    "The light shines only within a cone around the line to the middle of the volume",
+);
+pub(crate) const CONE: ControlText =
+    control_text("Cone", "From the middle of the cone to where no light is left");
+pub(crate) const FALLOFF: ControlText =
+    control_text("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
 
-/// The chip that adds a light.
+/// Caption of the chip that adds a light.
 pub(crate) const ADD_CHIP: &str = "+";
 
-/// Entries of a chip's menu.
+/// Entries in the context menu of a chip.
 pub(crate) const MUTE: &str = "Switch off";
 pub(crate) const UNMUTE: &str = "Switch on";
 pub(crate) const SOLO: &str = "Only this light";
 
-/// What a light's shadows cost, in the tip of its chip.
+/// Cost of a light's shadows in the tooltip of its chip, where there is no measurement.
 pub(crate) const NO_SHADOWS: &str = "casts no shadows";
-pub(crate) const NOT_FILLED: &str = "shadows are not filled yet";
+pub(crate) const SHADOWS_PENDING: &str = "shadows are not filled yet";
 
-/// The switch of a light.
-pub(crate) fn switch(name: &str) -> String {
+/// Accessible name of the checkbox that switches a light on.
+pub(crate) fn switch_name(name: &str) -> String {
     format!("{name} on")
 }
 
-/// The colour of the light at a place of the list, from 1.
+/// Accessible name of the colour of a light, numbered from 1.
 pub(crate) fn color(number: usize) -> String {
     format!("Colour of light {number}")
 }
 
-/// What a new light at a place of the list is called, from 1.
-pub(crate) fn numbered(number: usize) -> String {
+/// Default name of a new light, numbered from 1.
+pub(crate) fn default_name(number: usize) -> String {
     format!("Light {number}")
 }
 
-/// The chip of a light.
+/// Accessible name of a light's chip.
 pub(crate) fn chip(name: &str, on: bool) -> String {
     let state = if on { "on" } else { "off" };
     format!("Light {name}, {state}")
 }
 
-/// The tip of a light's chip. `shadows`: what they cost.
+/// Tooltip of a light's chip. `shadows`: cost of its shadows.
 pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
     format!(
         "{name}: intensity {intensity:.2}, {shadows}\n\
@@ -106,32 +116,33 @@ pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
     )
 }
 
-/// A light volume: whether all of it is there, how long it took to fill, and its memory.
+/// State of a light volume: cached or being filled, fill time and memory.
 pub(crate) fn light_volume(complete: bool, fill_ms: Option<f64>, mebibytes: f64) -> String {
     let state = if complete { "cached" } else { "being filled" };
     let ms = fill_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms"));
     format!("light volume {state}{ms}, {mebibytes:.1} MiB")
 }
 
-/// The handle by which a light is dragged.
+/// Accessible name of the handle that moves a light.
 pub(crate) fn handle(name: &str) -> String {
     format!("Light handle {name}")
 }
 
-/// The handle that opens and closes a light's hood.
-pub(crate) fn hood_handle(name: &str) -> String {
+/// Accessible name of the handle that widens a spotlight's cone.
+pub(crate) fn spotlight_handle(name: &str) -> String {
     format!("Spotlight handle {name}")
 }
 
-/// The handle on the border of a light that has a size.
+/// Accessible name of the handle on the border of an area light.
 pub(crate) fn size_handle(name: &str) -> String {
     format!("Size handle {name}")
 }
 
-/// What adding a light does, and what one more that casts shadows costs: as the dearest of those that there are.
+/// Tooltip of the button that adds a light, with the estimated cost of its shadows: that of the most expensive light
+/// so far.
 pub(crate) fn add_tip(cost: Option<&str>) -> String {
     match cost {
-        Some(cost) => format!("{}\nIts shadows take about {cost}", ADD.tip),
-        None => ADD.tip.to_owned(),
+        Some(cost) => format!("{}\nIts shadows take about {cost}", ADD.tooltip),
+        None => ADD.tooltip.to_owned(),
     }
 }

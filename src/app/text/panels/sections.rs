@@ -1,4 +1,4 @@
-//! The titles of the side panel's sections.
+//! Titles of the sections of the side panel.
 
 pub(crate) const LIGHTS: &str = "Lights";
 pub(crate) const SHADOWS: &str = "Shadows";
@@ -10,15 +10,15 @@ pub(crate) const CAMERA: &str = "Camera";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const DATA: &str = "Data";
 
-/// All of them, in the order in which they are shown.
+/// Titles of all sections, in the order shown.
 pub(crate) const ALL: [&str; 9] = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA, COMPARE, DATA];
 
-/// What leads to a section.
-pub(crate) fn go_to(title: &str) -> String {
+/// Accessible name of the button that jumps to a section.
+pub(crate) fn tab_name(title: &str) -> String {
     format!("Go to {title}")
 }
 
-/// What the dot beside a title says.
-pub(crate) fn active(title: &str) -> String {
+/// Accessible name of the dot beside a title, shown while the section has an effect.
+pub(crate) fn active_name(title: &str) -> String {
     format!("{title}: something is on")
 }

@@ -1,168 +1,178 @@
-//! The section of shadows.
+//! Texts of the shadows section.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 
-pub(crate) const ALGORITHM: Named = named("Method", "How light is attenuated on its way");
-pub(crate) const OFF: Named = named("Off", "Light reaches everything: only the shading is left");
-pub(crate) const SPLAT: Named =
-    named("Splat", "A light volume filled by sheet-buffer splatting: the quick way");
-pub(crate) const RAYCAST: Named = named(
+pub(crate) const ALGORITHM: ControlText = control_text("Method", "How light is attenuated on its way");
+pub(crate) const OFF: ControlText = control_text("Off", "Light reaches everything: only the shading is left");
+pub(crate) const SPLAT: ControlText =
+    control_text("Splat", "A light volume filled by sheet-buffer splatting: the quick way");
+pub(crate) const RAYCAST: ControlText = control_text(
     "Voxel",
     "A light volume filled by a ray from every voxel: a little sharper, many times slower when a light moves",
 );
-pub(crate) const DIRECT: Named = named(
+pub(crate) const DIRECT: ControlText = control_text(
     "Sample",
     "A ray to the light from every sample: the sharpest shadows; every picture takes as long as a light volume",
 );
 
-/// Where a driver that draws with the processor ends such rays early.
-pub(crate) const MANY_RAYS: &str = "This driver, which draws with the processor, ends rays to lights that have a size before they \
+/// Warning on software rasterisers, which end shadow rays to area lights early.
+pub(crate) const SOFTWARE_RAYS_WARNING: &str = "This driver, which draws with the processor, ends rays to lights that have a size before they \
                                     arrive: such lights are too dark. Fine shows them as they are";
 
-pub(crate) const STRENGTH: Named =
-    named("Strength", "0 shows no shadows, 1 shows them fully; between, they are mixed");
-pub(crate) const AMBIENT_OFFSET: Named = named(
+pub(crate) const STRENGTH: ControlText =
+    control_text("Strength", "0 shows no shadows, 1 shows them fully; between, they are mixed");
+pub(crate) const AMBIENT_OFFSET: ControlText = control_text(
     "Ambient offset",
     "Light that reaches everything: lifts black interiors without touching bright parts",
 );
-pub(crate) const GAIN: Named =
-    named("Gain", "Multiplies the light that is left, up to full light: brightens half-shadows");
-pub(crate) const LIGHT_BIAS: Named = named(
+pub(crate) const GAIN: ControlText =
+    control_text("Gain", "Multiplies the light that is left, up to full light: brightens half-shadows");
+pub(crate) const LIGHT_BIAS: ControlText = control_text(
     "Shadow bias",
     "Looks up the light a little nearer to its source: takes self-shadowing off surfaces",
 );
 
-pub(crate) const BALANCE: Named = named(
+pub(crate) const BALANCE: ControlText = control_text(
     "Balance",
     "Multiplies the lights while shadows are on, so that the picture is as bright as without them",
 );
-/// The button that finds the balance.
-pub(crate) const MEASURE_BALANCE: Named =
-    named("Balance brightness", "Measures the picture with and without shadows and sets the balance");
-/// The switch that has it found by itself.
-pub(crate) const KEEP_BALANCED: Named = named(
+/// Button that measures the balance once.
+pub(crate) const MEASURE_BALANCE: ControlText =
+    control_text("Balance brightness", "Measures the picture with and without shadows and sets the balance");
+/// Checkbox that keeps the balance up to date automatically.
+pub(crate) const KEEP_BALANCED: ControlText = control_text(
     "Keep balanced",
     "Balances the brightness again when a change of lights, opacities or shadows has come to rest; a balance set \
      by hand switches it off",
 );
 
-pub(crate) const NEARLY_BLACK: Named = named(
+pub(crate) const NEARLY_BLACK: ControlText = control_text(
     "Nearly black",
     "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
      narrow Gaussian or a shadow bias frees surfaces from their own shadow, an ambient offset lifts all",
 );
-/// In place of a share that is not known yet.
+/// Text in place of a share that is not measured yet.
 pub(crate) const UNKNOWN: &str = "–";
 
-pub(crate) const LIGHT_OPACITY: Named = named(
+pub(crate) const LIGHT_OPACITY: ControlText = control_text(
     "Light opacity",
     "Multiplies how strongly material attenuates light, not the eye: below 1 lets light pass thin \
      structures; refills the light volumes",
 );
-pub(crate) const LINKED: Named = named(
+pub(crate) const LINKED: ControlText = control_text(
     "Same opacity for light and eye",
     "Light meets the opacity that the eye sees. Unlinked, it gets a curve of its own in the editor below",
 );
 
-pub(crate) const TRANSMISSION: Named = named(
+pub(crate) const TRANSMISSION: ControlText = control_text(
     "Shadow colour",
     "Coloured shadows: how much of the light of its own hue a material lets through, as coloured glass does: 0 leaves shadows grey. Colours \
      are those of the curve, or of a lighting curve of its own. Light volumes take four times the memory",
 );
 
-pub(crate) const RESOLUTION: Named =
-    named("Resolution", "Resolution of the light volumes; they are refilled when it changes");
-pub(crate) const FULL: Named = named("Full", "One light voxel per voxel");
-pub(crate) const HALF: Named = named("Half", "An eighth of the memory and time; shadow edges get softer");
-pub(crate) const QUARTER: Named = named("Quarter", "Soft shadows; for very large volumes");
+pub(crate) const RESOLUTION: ControlText =
+    control_text("Resolution", "Resolution of the light volumes; they are refilled when it changes");
+pub(crate) const FULL: ControlText = control_text("Full", "One light voxel per voxel");
+pub(crate) const HALF: ControlText =
+    control_text("Half", "An eighth of the memory and time; shadow edges get softer");
+pub(crate) const QUARTER: ControlText = control_text("Quarter", "Soft shadows; for very large volumes");
 
-pub(crate) const FIRST_TOUCH: Named = named(
+pub(crate) const FIRST_TOUCH: ControlText = control_text(
     "First touch",
     "Each voxel takes only the light of the first sheet that touches it: crisper and brighter, \
      with faint steps",
 );
 
-pub(crate) const PRECISION: Named = named("Precision", "How light volumes are kept");
-pub(crate) const SIXTEEN_BITS: Named = named("16 bits", "Even in the dark, and under gain");
-pub(crate) const EIGHT_BITS: Named =
-    named("8 bits", "Half the memory; shows steps where gain lifts dark parts");
+pub(crate) const PRECISION: ControlText = control_text("Precision", "How light volumes are kept");
+pub(crate) const SIXTEEN_BITS: ControlText = control_text("16 bits", "Even in the dark, and under gain");
+pub(crate) const EIGHT_BITS: ControlText =
+    control_text("8 bits", "Half the memory; shows steps where gain lifts dark parts");
 
-pub(crate) const STORAGE: Named = named("Light volumes", "A light volume for each light, or one for all");
-pub(crate) const AUTO: Named = named("Auto", "One for all from five lights on, where nothing shines");
-pub(crate) const PER_LIGHT: Named =
-    named("Each", "A volume for each light: highlights, and colours that change at once");
-pub(crate) const COMBINED: Named = named(
+pub(crate) const STORAGE: ControlText =
+    control_text("Light volumes", "A light volume for each light, or one for all");
+pub(crate) const AUTO: ControlText =
+    control_text("Auto", "One for all from five lights on, where nothing shines");
+pub(crate) const PER_LIGHT: ControlText =
+    control_text("Each", "A volume for each light: highlights, and colours that change at once");
+pub(crate) const COMBINED: ControlText = control_text(
     "One",
     "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
 );
 
-pub(crate) const QUALITY: Named =
-    named("Quality", "How truly light is computed; sets slabs, rays and the way light gets to the volume");
-pub(crate) const FAST: Named = named("Fast", "Light volumes alone: soft shadows, quickest");
-pub(crate) const STANDARD: Named = named("Standard", "Light volumes, and short rays near what is seen");
-pub(crate) const FINE: Named = named("Fine", "Light volumes, and longer rays: for figures");
-pub(crate) const EXACT: Named = named("Exact", "Rays all the way and the thinnest slabs: true, and slow");
+pub(crate) const QUALITY: ControlText = control_text(
+    "Quality",
+    "How truly light is computed; sets slabs, rays and the way light gets to the volume",
+);
+pub(crate) const FAST: ControlText = control_text("Fast", "Light volumes alone: soft shadows, quickest");
+pub(crate) const STANDARD: ControlText =
+    control_text("Standard", "Light volumes, and short rays near what is seen");
+pub(crate) const FINE: ControlText = control_text("Fine", "Light volumes, and longer rays: for figures");
+pub(crate) const EXACT: ControlText =
+    control_text("Exact", "Rays all the way and the thinnest slabs: true, and slow");
 
-pub(crate) const NEAR_FIELD: Named = named(
+pub(crate) const NEAR_FIELD: ControlText = control_text(
     "Contact shadows",
     "What shades a point from close by: found by a short ray, which shows relief, contact and thin things sharply",
 );
-pub(crate) const NEAR_OFF: Named =
-    named("Off", "The light volume alone, as in the paper: soft, and quickest");
-pub(crate) const NEAR_SHORT: Named = named("3 voxels", "Sharp where it matters most, at little cost");
-pub(crate) const NEAR_LONG: Named = named("8 voxels", "Truer yet, and slower: for figures");
+pub(crate) const CONTACT_OFF: ControlText =
+    control_text("Off", "The light volume alone, as in the paper: soft, and quickest");
+pub(crate) const CONTACT_SHORT: ControlText =
+    control_text("3 voxels", "Sharp where it matters most, at little cost");
+pub(crate) const CONTACT_LONG: ControlText = control_text("8 voxels", "Truer yet, and slower: for figures");
 
-pub(crate) const REVERSE_KERNEL: Named =
-    named("Reverse kernel", "With which kernel light gets from the sheets into the light volume");
-pub(crate) const TENT: Named = named("Tent", "Narrow: sharper shadows, filled in less time");
-pub(crate) const FORWARD: Named = named("Kernel", "That of the light pass, as in the paper: softer shadows");
+pub(crate) const REVERSE_KERNEL: ControlText =
+    control_text("Reverse kernel", "With which kernel light gets from the sheets into the light volume");
+pub(crate) const TENT: ControlText = control_text("Tent", "Narrow: sharper shadows, filled in less time");
+pub(crate) const FORWARD_KERNEL: ControlText =
+    control_text("Kernel", "That of the light pass, as in the paper: softer shadows");
 
-pub(crate) const DEPOSIT: Named = named("Deposit", "Which light a sheet leaves in its voxels");
-pub(crate) const SLAB_MEAN: Named = named("Mean", "The mean over the slab: hardly depends on its thickness");
-pub(crate) const FRONT: Named =
-    named("Front", "What arrives in front of the slab: a little brighter; the paper's equation");
+pub(crate) const DEPOSIT: ControlText = control_text("Deposit", "Which light a sheet leaves in its voxels");
+pub(crate) const SLAB_MEAN: ControlText =
+    control_text("Mean", "The mean over the slab: hardly depends on its thickness");
+pub(crate) const SLAB_FRONT: ControlText =
+    control_text("Front", "What arrives in front of the slab: a little brighter; the paper's equation");
 
-pub(crate) const AREA_SAMPLES: Named = named(
+pub(crate) const AREA_SAMPLES: ControlText = control_text(
     "Points of lights",
     "From how many points a light that has a size is followed: fewer show as several edges of a shadow",
 );
-pub(crate) const AREA_RESOLUTION: Named = named(
+pub(crate) const AREA_RESOLUTION: ControlText = control_text(
     "Soft resolution",
     "Resolution of the light volumes of lights that have a size, whose shadows have less detail",
 );
 
-pub(crate) const LEAST_BLOCKS: Named = named(
+pub(crate) const MIN_BLOCKS: ControlText = control_text(
     "Minimum blocks",
     "In how many blocks along the longest edge light of wide lights, of the sky and of bounces is found at least: small volumes are lit as finely as large ones",
 );
 
-/// How much of what is seen is nearly black.
+/// Percentage of the visible pixels that are nearly black.
 pub(crate) fn dark_share(share: f64) -> String {
     format!("{:.0} %", share * 100.0)
 }
 
-/// The memory of the light volumes, and whether all lights share one.
+/// Memory of the light volumes, and the way they are shared.
 pub(crate) fn light_volumes(mebibytes: f64, shared: bool) -> String {
     let kind = if shared { "one for all lights" } else { "one for each light" };
     format!("Light volumes: {mebibytes:.1} MiB, {kind}")
 }
 
-/// What a light volume takes.
+/// Estimated cost of each light volume.
 pub(crate) fn volume_cost(cost: &str) -> String {
     format!("Each light volume takes about {cost}")
 }
 
-/// What each light takes that has a size.
+/// Estimated cost of each area light.
 pub(crate) fn area_cost(cost: &str) -> String {
     format!("Each light that has a size takes about {cost}")
 }
 
-/// What something takes that there is once.
+/// Estimated cost of an effect that exists once, as the sky.
 pub(crate) fn soft_cost(cost: &str) -> String {
     format!("Takes about {cost}")
 }
 
-/// Milliseconds, where they were measured, and mebibytes.
+/// Cost in milliseconds, where measured, and in MiB.
 pub(crate) fn cost(ms: Option<f64>, mebibytes: f64) -> String {
     let memory = if mebibytes < 10.0 { format!("{mebibytes:.1} MiB") } else { format!("{mebibytes:.0} MiB") };
     match ms {

@@ -1,8 +1,8 @@
-//! The names of commands, for menus, buttons and the list of keys, and the window that finds them.
+//! Names of commands for menus, buttons and the list of shortcuts, and texts of the command palette.
 
 use crate::app::text::data;
 use crate::data::KindName;
-use crate::data::load::Thinning;
+use crate::data::load::Downsampling;
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";
@@ -10,16 +10,16 @@ pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
 pub(crate) const OPEN_DROPPED: &str = "Open what was dropped";
 pub(crate) const OPEN_PATH: &str = "Open path…";
-/// The name of a command, and of the menu of what can be opened.
+/// Name of the command, and title of the submenu of built-in volumes.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
-pub(crate) const TAKE_CHOICE: &str = "Show this one";
+pub(crate) const SHOW_CHOICE: &str = "Show this one";
 pub(crate) const CANCEL_OPENING: &str = "Cancel";
-pub(crate) const GO_ON: &str = "Reopen last session";
+pub(crate) const REOPEN_LAST: &str = "Reopen last session";
 pub(crate) const SAVE_SETTINGS: &str = "Save session…";
 pub(crate) const LOAD_SETTINGS: &str = "Load session or settings…";
 pub(crate) const EXPORT: &str = "Export picture or turntable…";
 pub(crate) const COPY_PICTURE: &str = "Copy picture";
-pub(crate) const KEEP_LOOK: &str = "Keep look for next file";
+pub(crate) const KEEP_LOOK_FOR_NEXT: &str = "Keep look for next file";
 pub(crate) const QUIT: &str = "Quit";
 
 pub(crate) const UNDO: &str = "Undo";
@@ -30,21 +30,21 @@ pub(crate) const SHOW_PALETTE: &str = "Find a command…";
 
 pub(crate) const RESET_VIEW: &str = "Reset view";
 pub(crate) const FRAME_ALL: &str = "Frame all";
-pub(crate) const TURN_OBJECT: &str = "Tilt by 90°";
-pub(crate) const TURN_ROUND: &str = "Rotate by 90°";
+pub(crate) const TILT: &str = "Tilt by 90°";
+pub(crate) const ROTATE: &str = "Rotate by 90°";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
-pub(crate) const TOGGLE_KEPT: &str = "Saved views and looks";
-pub(crate) const KEEP_VIEW: &str = "Save view";
-pub(crate) const KEEP_IN_STRIP: &str = "Save look";
-pub(crate) const GO_TO_KEPT: &str = "Go to saved view or look";
-pub(crate) const EXPORT_KEPT: &str = "Contact sheet of saved views…";
+pub(crate) const TOGGLE_STRIP: &str = "Saved views and looks";
+pub(crate) const SAVE_VIEW: &str = "Save view";
+pub(crate) const SAVE_LOOK: &str = "Save look";
+pub(crate) const GO_TO_SAVED: &str = "Go to saved view or look";
+pub(crate) const EXPORT_CONTACT_SHEET: &str = "Contact sheet of saved views…";
 pub(crate) const TOGGLE_TRANSFER: &str = "Transfer function editor";
 pub(crate) const PICTURE_ONLY: &str = "Picture only";
 pub(crate) const LARGER: &str = "Larger interface";
 pub(crate) const SMALLER: &str = "Smaller interface";
-pub(crate) const USUAL_SIZE: &str = "Default interface size";
+pub(crate) const DEFAULT_SIZE: &str = "Default interface size";
 pub(crate) const TOGGLE_HANDLES: &str = "Handles";
 pub(crate) const TOGGLE_OVERLAY: &str = "Overlays";
 pub(crate) const TOGGLE_PROBE: &str = "Why is this dark? (probe)";
@@ -62,7 +62,7 @@ pub(crate) const USE_LIGHTS: &str = "Use lights";
 pub(crate) const USE_LOOK: &str = "Use look";
 pub(crate) const TRY_LOOKS: &str = "Try looks…";
 
-/// Where something is set.
+/// Command that goes to a setting: its section, and its row if there is one.
 pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
     match row {
         Some(row) => format!("{section} › {row}"),
@@ -72,7 +72,7 @@ pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
 
 pub(crate) const CANCEL_EXPORT: &str = "Stop exporting";
 pub(crate) const SUGGEST_LIGHT: &str = "Suggest a light…";
-pub(crate) const USE_SURROUNDINGS: &str = "Light by surroundings in a picture…";
+pub(crate) const USE_ENVIRONMENT_MAP: &str = "Light by surroundings in a picture…";
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";
@@ -89,65 +89,65 @@ pub(crate) const INVERT_TRANSFER: &str = "Invert opacities";
 pub(crate) const IMPORT_TRANSFER: &str = "Import transfer function…";
 pub(crate) const EXPORT_TRANSFER: &str = "Export transfer function…";
 
-/// The window in which a command is found, and its field.
+/// Title and hint of the command palette.
 pub(crate) const FIND: &str = "Find a command";
 pub(crate) const FIND_HINT: &str = "What do you want to do?";
 pub(crate) const NOTHING_FOUND: &str = "No matches";
 
-/// To show all voxels of the file, every so manyth, or means of blocks.
-pub(crate) fn thin(thinning: Thinning) -> String {
-    match thinning.step() {
+/// Command that rereads the volume with a subsampling.
+pub(crate) fn subsample(thinning: Downsampling) -> String {
+    match thinning.stride() {
         1 => "Voxels: all of the file".to_owned(),
-        _ => format!("Voxels: {}", data::thinning(thinning).name.to_lowercase()),
+        _ => format!("Voxels: {}", data::subsampling(thinning).name.to_lowercase()),
     }
 }
 
-/// To treat the volume as data of a kind, or as it is.
+/// Command that treats the volume as a kind of data; `None` is the automatic choice.
 pub(crate) fn treat_as(kind: Option<KindName>) -> String {
-    format!("Treat as: {}", data::treatment(kind).name)
+    format!("Treat as: {}", data::kind_choice(kind).name)
 }
 
-/// To look from a side.
+/// Command that looks from a standard view.
 pub(crate) fn look_from(view: &str) -> String {
     format!("Look: {view}")
 }
 
-/// To stand the object so that an axis points up.
+/// Command that turns the object so that an axis points up.
 pub(crate) fn upright(axis: &str) -> String {
     format!("Stand up: {axis} up")
 }
 
-/// To take the lights of a rig.
+/// Command that applies a light rig.
 pub(crate) fn use_rig(rig: &str) -> String {
     format!("Lights: {rig}")
 }
 
-/// To take a preset.
+/// Command that applies a preset of the transfer function.
 pub(crate) fn use_preset(title: &str) -> String {
     format!("Preset: {title}")
 }
 
-/// To take the colours of a map, perhaps from its end to its start.
+/// Command that applies a colour map, possibly reversed.
 pub(crate) fn use_colors(map: &str, reversed: bool) -> String {
     format!("Colours: {map}{}", if reversed { ", reversed" } else { "" })
 }
 
-/// Keeping a view under a digit.
+/// Command that saves a view under a digit.
 pub(crate) fn store_view(slot: u8) -> String {
     format!("Save view as {slot}")
 }
 
-/// Looking from a saved view again.
+/// Command that goes to the view saved under a digit.
 pub(crate) fn recall_view(slot: u8) -> String {
     format!("Go to saved {slot}")
 }
 
-/// The keys that keep a view.
+/// Shortcut that saves a view under a digit.
 pub(crate) fn store_view_keys(slot: u8) -> String {
     format!("Ctrl+Shift+{slot}")
 }
 
-/// The keys that look from a saved view again.
+/// Shortcut that goes to the view saved under a digit.
 pub(crate) fn recall_view_keys(slot: u8) -> String {
     format!("Ctrl+{slot}")
 }

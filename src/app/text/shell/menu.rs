@@ -1,4 +1,4 @@
-//! The menu bar; the names of commands are with the commands.
+//! Titles of the menus and submenus; the names of commands are in `commands.rs`.
 
 pub(crate) const FILE: &str = "File";
 pub(crate) const EDIT: &str = "Edit";
@@ -12,48 +12,48 @@ pub(crate) const KEEP_LOOK_TIP: &str =
     "Lights, transfer function and shadows stay when another file is opened";
 
 pub(crate) const LOOK_FROM: &str = "Look from";
-pub(crate) const KEPT: &str = "Saved views";
+pub(crate) const SAVED_VIEWS: &str = "Saved views";
 pub(crate) const PERSPECTIVE: &str = "Perspective";
 pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
 
-/// How long a preview may take.
-pub(crate) const WHILE_MOVING: &str = "Quality while moving";
+/// Submenu of the time budget of a preview.
+pub(crate) const PREVIEW_BUDGET: &str = "Quality while moving";
 pub(crate) const AUTOMATIC: &str = "Automatic";
 pub(crate) const SMOOTH: &str = "Smooth (16 ms)";
 pub(crate) const BALANCED: &str = "Balanced (33 ms)";
 pub(crate) const SHARP: &str = "Sharp (66 ms)";
 pub(crate) const SHARPEST: &str = "Sharpest (200 ms)";
 
-/// How large everything is.
+/// Submenu of the interface scale.
 pub(crate) const SIZE: &str = "Interface size";
 
-/// The colours of the window.
+/// Submenu of the colour theme.
 pub(crate) const THEME: &str = "Theme";
 pub(crate) const DARK: &str = "Dark";
-pub(crate) const BRIGHT: &str = "Light";
+pub(crate) const LIGHT_THEME: &str = "Light";
 pub(crate) const AS_SYSTEM: &str = "Same as system";
 
 pub(crate) const USE_RIG: &str = "Light rigs";
 
-/// A step of the history, and what it changes.
-pub(crate) fn step(label: &str, what: Option<&str>) -> String {
+/// Undo or redo entry, with the change that it affects.
+pub(crate) fn history_entry(label: &str, what: Option<&str>) -> String {
     what.map_or_else(|| label.to_owned(), |what| format!("{label} {what}"))
 }
 
-/// A switch and its key.
+/// Name of a toggle with its keyboard shortcut.
 pub(crate) fn with_key(label: &str, key: &str) -> String {
     format!("{label} ({key})")
 }
 
-/// The open volume's name, and what is said of it.
+/// Name of the open volume, with its dimensions and spacing.
 pub(crate) fn title(name: &str, facts: &str) -> String {
     format!("{name} · {facts}")
 }
 
-/// The open volume's voxels, and their size.
+/// Dimensions of the open volume, and its voxel spacing where that is informative.
 pub(crate) fn facts([nx, ny, nz]: [usize; 3], spacing_mm: [f64; 3], has_unknown_scale: bool) -> String {
     let [sx, sy, sz] = spacing_mm;
-    // Voxels that are cubes of a size that nobody knows: there is nothing to say of it.
+    // Cubic voxels of unknown size: their spacing says nothing.
     if has_unknown_scale && sx == sy && sy == sz {
         return format!("{nx}×{ny}×{nz}");
     }

@@ -1,9 +1,9 @@
-//! Words of menus, commands, messages and the status bar.
+//! Texts of menus, commands, messages and the status bar.
 
-pub(in crate::app) mod changes;
-pub(in crate::app) mod commands;
-pub(in crate::app) mod memory;
-pub(in crate::app) mod menu;
-pub(in crate::app) mod messages;
-pub(in crate::app) mod opening;
-pub(in crate::app) mod status;
+pub(crate) mod change_descriptions;
+pub(crate) mod commands;
+pub(crate) mod menu;
+pub(crate) mod messages;
+pub(crate) mod opening;
+pub(crate) mod persistence;
+pub(crate) mod status;

@@ -1,110 +1,111 @@
-//! Opening volumes and looks, and the window's title.
+//! Texts of opening volumes and looks, and of the window's title.
 
-use crate::data::load::Several;
-use crate::data::plain;
+use crate::data::load::VolumeAlternatives;
+use crate::data::sanitised;
 use std::fmt::Display;
 use std::path::Path;
 
-/// What the window is called while no volume is open.
+/// Title of the window while no volume is open.
 pub(crate) const PROGRAM: &str = "Chiaroscuro";
 
-/// What is being done with a volume, in this order.
+/// Phases of opening a volume, in this order.
 pub(crate) const READING: &str = "Reading";
-pub(crate) const FITTING: &str = "Trying what the graphics adapter can hold";
+pub(crate) const MEASURING_ADAPTER: &str = "Trying what the graphics adapter can hold";
 pub(crate) const COUNTING: &str = "Counting values";
 pub(crate) const UPLOADING: &str = "Uploading";
 pub(crate) const FIRST_LOOK: &str = "Finding a first look";
 
-/// What did not work; why is said with the details.
+/// Headlines of errors; the reason is in the details.
 pub(crate) const NOT_OPENED: &str = "Cannot open";
 pub(crate) const HEADER_NOT_WRITTEN: &str = "The header was not written";
 pub(crate) const SETTINGS_NOT_LOADED: &str = "The settings were not loaded";
 pub(crate) const SETTINGS_NOT_SAVED: &str = "The session was not saved";
 pub(crate) const SESSION_NOT_LOADED: &str = "The session was not loaded";
 
-/// Settings that were loaded all the same.
-pub(crate) const OF_ANOTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
-pub(crate) const OF_OTHER_VALUES: &str = "The settings were made for other values than the file has now";
+/// Warnings about settings that were loaded nevertheless.
+pub(crate) const OTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
+pub(crate) const OTHER_VALUES: &str = "The settings were made for other values than the file has now";
 
-/// On the desktop, where no window opens: that it does not, and in a paragraph of its own why, and what helps.
+/// Desktop message when no window opens: the failure, then in a second paragraph the reason and the remedy.
 pub(crate) fn no_window(why: &str) -> String {
     let mut letters = why.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     format!("The window of Chiaroscuro could not be opened.\n\n{first}{}.", letters.as_str())
 }
 
-/// The window's title, with what the open volume is called.
+/// Title of the window with the name of the open volume.
 pub(crate) fn title(volume: &str) -> String {
     format!("{volume} – {PROGRAM}")
 }
 
-/// Settings were written to a file.
-pub(crate) fn saved(file: &Path) -> String {
+/// Message after a session was written to a file.
+pub(crate) fn session_saved(file: &Path) -> String {
     format!("Saved {}", file.display())
 }
 
-/// Which volume could not be opened, after its loader panicked.
-pub(crate) fn failed(source: &Path) -> String {
+/// Headline when the loader of a volume panicked.
+pub(crate) fn loader_panicked(source: &Path) -> String {
     format!("Opening {} failed", source.display())
 }
 
-/// What a loader said that panicked.
-pub(crate) fn stopped(panic: &str) -> String {
+/// Details of the error when a loader panicked.
+pub(crate) fn panic_details(panic: &str) -> String {
     format!("the loader stopped unexpectedly: {panic}")
 }
 
-/// A file without content.
-pub(crate) fn empty(source: &Path) -> String {
+/// Error for a file of zero bytes.
+pub(crate) fn empty_file(source: &Path) -> String {
     format!("{} is empty: copy it again", source.display())
 }
 
-/// A volume that was read and is beyond the graphics card.
+/// Headline for a volume that was read but does not fit the graphics adapter.
 pub(crate) fn not_shown(source: &Path) -> String {
     format!("Cannot show {}", source.display())
 }
 
-/// The graphics adapter cannot hold all voxels of a volume.
-pub(crate) fn averaged(before: [usize; 3], after: [usize; 3]) -> String {
+/// Message that voxels were averaged because the graphics adapter cannot hold all of them.
+pub(crate) fn downsampled(before: [usize; 3], after: [usize; 3]) -> String {
     let [before, after] = [before, after].map(crate::app::text::panels::data::dimensions);
     format!("{before} voxels are shown as {after}: the graphics adapter cannot hold more")
 }
 
-/// A file holds several volumes, of which the first is shown: nobody has said which, or what was said is not there.
-pub(crate) fn first_of_several(several: &Several) -> String {
+/// Message that the first of several volumes in a file is shown: none was selected, or the selected one does not
+/// exist.
+pub(crate) fn first_of_several(several: &VolumeAlternatives) -> String {
     let (count, plural) = (several.offers.len(), several.dimension.plural());
     let first = several.offers.first().map_or("", |first| first.name.as_str());
     let first = if first.is_empty() { String::new() } else { format!(" ({first})") };
-    match &several.missed {
+    match &several.unmatched_selection {
         None => format!("The first of {count} {plural} is shown{first}: the section Data offers the others"),
         Some(said) => {
-            let said = plain(said, 60);
+            let said = sanitised(said, 60);
             format!("{said} is none of the {count} {plural} that there are now: the first is shown{first}")
         }
     }
 }
 
-/// Slices were dropped: what their folder holds is opened.
+/// Message that slices were dropped and their whole folder is opened.
 pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} files were dropped: all slices of their folder {} are opened", plain(&name, 60))
+    format!("{count} files were dropped: all slices of their folder {} are opened", sanitised(&name, 60))
 }
 
-/// Slices were dropped that are not all of their folder: they alone are opened.
-pub(crate) fn some_of_folder(count: usize, folder: &Path) -> String {
+/// Message that some slices of a folder were dropped, and only these are opened.
+pub(crate) fn part_of_folder(count: usize, folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} slices of the folder {} are opened, those that were dropped", plain(&name, 60))
+    format!("{count} slices of the folder {} are opened, those that were dropped", sanitised(&name, 60))
 }
 
-/// Several files were dropped that do not belong together.
+/// Message that unrelated files were dropped, and the first is opened.
 pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
     let name = first.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} files were dropped: the first, {}, is opened", plain(&name, 60))
+    format!("{count} files were dropped: the first, {}, is opened", sanitised(&name, 60))
 }
 
-/// The open volume is in no folder.
+/// Message when the open volume does not lie in a folder.
 pub(crate) const NO_FOLDER: &str = "The open volume is in no folder";
 
-/// There is no other file.
+/// Message when the folder has no further file in this direction.
 pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
     if is_forward {
         "This is the last volume of its folder"
@@ -113,7 +114,7 @@ pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
     }
 }
 
-/// The system is out of threads.
+/// Error when the loader thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the loader: {err}")
 }

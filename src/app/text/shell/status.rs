@@ -1,18 +1,18 @@
-//! The status bar.
+//! Texts of the status bar.
 
-use crate::app::text::{Named, named};
+use crate::app::text::{ControlText, control_text};
 use crate::data::load::human_bytes;
-use crate::gpu::Stage;
+use crate::gpu::RenderStage;
 
 pub(crate) const NO_VOLUME: &str = "No volume";
-/// The picture at full quality is on screen.
-pub(crate) const SHARP: &str = "Sharp";
+/// State of the picture: full quality, preview or failure.
+pub(crate) const FULL_QUALITY: &str = "Sharp";
 pub(crate) const PREVIEW: &str = "Preview";
 pub(crate) const NOT_RENDERED: &str = "Not rendered";
 pub(crate) const DEVICE_LOST: &str = "Graphics device lost";
 
-/// What is done to a file that is being opened, and how many of its bytes have been read.
-pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
+/// Phase of opening a file, with the bytes read so far and in total.
+pub(crate) fn opening_progress(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> String {
     match bytes {
         Some([done, total]) => {
             let [done, total] = [done, total].map(|bytes| human_bytes(bytes.into()));
@@ -22,66 +22,68 @@ pub(crate) fn opening(phase: &str, bytes: Option<[u64; 2]>, source: &str) -> Str
     }
 }
 
-/// What is waited for.
-fn name_of(stage: Stage) -> &'static str {
+/// Name of the work of a render stage.
+fn stage_name(stage: RenderStage) -> &'static str {
     match stage {
-        Stage::Upload | Stage::Pyramid => "Preparing volume",
-        Stage::LightMarch | Stage::LightBackproject | Stage::LightRaycast => "Filling light",
-        Stage::Sky => "Filling sky light",
-        Stage::Bounces => "Scattering light",
-        Stage::Eye | Stage::Display => "Refining",
+        RenderStage::Upload | RenderStage::Pyramid => "Preparing volume",
+        RenderStage::LightMarch | RenderStage::LightBackproject | RenderStage::LightRaycast => {
+            "Filling light"
+        }
+        RenderStage::Sky => "Filling sky light",
+        RenderStage::ScatteredLight => "Scattering light",
+        RenderStage::Eye | RenderStage::Display => "Refining",
     }
 }
 
-/// What is done now for the picture at full quality, and the share of all that is done.
-pub(crate) fn refining(share: f32, stage: Stage) -> String {
-    format!("{} {:.0} %", name_of(stage), share * 100.0)
+/// Current stage of a full-quality picture, with its overall progress from 0 to 1.
+pub(crate) fn refinement_progress(share: f32, stage: RenderStage) -> String {
+    format!("{} {:.0} %", stage_name(stage), share * 100.0)
 }
 
-/// What is made beside pictures.
+/// Background tasks beside the rendering of pictures.
 pub(crate) const CORRECTING: &str = "Correcting volume";
-pub(crate) const MAKING_LOOK: &str = "Preparing look";
+pub(crate) const PREPARING_LOOK: &str = "Preparing look";
 pub(crate) const PLACING_LIGHTS: &str = "Placing lights";
 pub(crate) const BALANCING: &str = "Balancing lights";
 
-/// Over the last step back or forward.
-pub(crate) const WENT_TIP: &str = "Shows the list of all steps";
+/// Tooltip of the most recent undo or redo.
+pub(crate) const HISTORY_TIP: &str = "Shows the list of all steps";
 
 pub(crate) const EXPORTING_TIP: &str = "Shows the window of the export";
 
-/// How many pictures, or parts of one, of an export are done.
-pub(crate) fn exporting(done: u32, total: u32) -> String {
+/// Progress of an export, in pictures or parts of one.
+pub(crate) fn export_progress(done: u32, total: u32) -> String {
     if total > 1 { format!("Exporting, {done} of {total}") } else { "Exporting".to_owned() }
 }
 
-/// The button behind which the costs of pictures are.
-pub(crate) const PERFORMANCE: Named =
-    named("Performance", "Shows how long pictures take, their memory, and the graphics device");
+/// Button that shows the render statistics.
+pub(crate) const PERFORMANCE: ControlText =
+    control_text("Performance", "Shows how long pictures take, their memory, and the graphics device");
 
-/// What is known of the renderer's work.
-pub(crate) struct Figures<'a> {
-    /// Milliseconds of the last picture at full quality.
+/// Statistics of the renderer for display.
+pub(crate) struct RenderStatisticsText<'a> {
+    /// Duration of the last full-quality picture, in ms.
     pub full_ms: Option<f64>,
-    /// Milliseconds of the last preview.
+    /// Duration of the last preview, in ms.
     pub preview_ms: Option<f64>,
-    /// Footprints that were splatted.
+    /// Number of footprints splatted, or 0 when gathering.
     pub splats: u64,
-    /// Light volumes that are kept.
+    /// Number of light volumes in the cache.
     pub cached_light_volumes: usize,
-    /// How often light volumes were filled.
+    /// Number of times light volumes were filled.
     pub light_rebuilds: u64,
-    /// Mebibytes of textures.
+    /// Memory of GPU textures, in MiB.
     pub gpu_mebibytes: f64,
-    /// Name of the adapter.
+    /// Name of the graphics adapter.
     pub adapter: &'a str,
-    /// Driver and interface of the adapter.
+    /// Driver and graphics API of the adapter.
     pub driver: &'a str,
-    /// Whether the adapter is the CPU.
+    /// True if the adapter is a software rasteriser.
     pub is_software: bool,
 }
 
-/// How fast, with how much memory, and on what: names and what is said of each.
-pub(crate) fn figures(figures: &Figures<'_>) -> Vec<(&'static str, String)> {
+/// Rows of the statistics, each a name and a formatted value.
+pub(crate) fn statistics(figures: &RenderStatisticsText<'_>) -> Vec<(&'static str, String)> {
     let ms = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{ms:.0} ms"));
     let software = if figures.is_software { " (software)" } else { "" };
     let mut rows = vec![

@@ -1,6 +1,6 @@
-//! Words on the picture and around it.
+//! Texts on the picture and around it.
 
-pub(in crate::app) mod compared;
-pub(in crate::app) mod cut_handles;
-pub(in crate::app) mod picture;
-pub(in crate::app) mod probe;
+pub(crate) mod comparison;
+pub(crate) mod cut_handles;
+pub(crate) mod picture;
+pub(crate) mod probe;

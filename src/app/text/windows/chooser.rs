@@ -1,80 +1,82 @@
-//! The window that shows the volumes of a file, and the rows that open it.
+//! Texts of the chooser of series, channels, time steps and components, and of the rows that open it.
 
-use crate::app::text::{Named, named};
-use crate::data::load::{Aspect, Components, Dimension, Whole};
+use crate::app::text::{ControlText, control_text};
+use crate::data::load::{ChoiceAspect, DefaultComponent, FileDimension, VoxelComponents};
 
-/// The row of an aspect, with what it means.
-pub(crate) fn row(aspect: Aspect) -> Named {
+/// Name and tooltip of the row of an aspect.
+pub(crate) fn row(aspect: ChoiceAspect) -> ControlText {
     match aspect {
-        Aspect::Of(Dimension::Series) => {
-            named("Series", "The scans that the folder or the file holds: one at a time is shown")
+        ChoiceAspect::Dimension(FileDimension::Series) => {
+            control_text("Series", "The scans that the folder or the file holds: one at a time is shown")
         }
-        Aspect::Of(Dimension::Array) => {
-            named("Array", "The arrays that the file holds: one at a time is shown")
+        ChoiceAspect::Dimension(FileDimension::Array) => {
+            control_text("Array", "The arrays that the file holds: one at a time is shown")
         }
-        Aspect::Of(Dimension::Channel) => {
-            named("Channel", "What several dyes or detectors have seen at once: one at a time is shown")
+        ChoiceAspect::Dimension(FileDimension::Channel) => control_text(
+            "Channel",
+            "What several dyes or detectors have seen at once: one at a time is shown",
+        ),
+        ChoiceAspect::Dimension(FileDimension::Frame) => {
+            control_text("Time step", "The moments that the file holds: one at a time is shown")
         }
-        Aspect::Of(Dimension::Frame) => {
-            named("Time step", "The moments that the file holds: one at a time is shown")
-        }
-        Aspect::Component => {
-            named("Component", "What is shown of voxels of several numbers: one of them, or what all make")
-        }
+        ChoiceAspect::Component => control_text(
+            "Component",
+            "What is shown of voxels of several numbers: one of them, or what all make",
+        ),
     }
 }
 
-/// The title of the window.
-pub(crate) fn title(aspect: Aspect) -> &'static str {
+/// Title of the chooser window.
+pub(crate) fn title(aspect: ChoiceAspect) -> &'static str {
     match aspect {
-        Aspect::Of(Dimension::Series) => "Choose a series",
-        Aspect::Of(Dimension::Array) => "Choose an array",
-        Aspect::Of(Dimension::Channel) => "Choose a channel",
-        Aspect::Of(Dimension::Frame) => "Choose a time step",
-        Aspect::Component => "Choose a component",
+        ChoiceAspect::Dimension(FileDimension::Series) => "Choose a series",
+        ChoiceAspect::Dimension(FileDimension::Array) => "Choose an array",
+        ChoiceAspect::Dimension(FileDimension::Channel) => "Choose a channel",
+        ChoiceAspect::Dimension(FileDimension::Frame) => "Choose a time step",
+        ChoiceAspect::Component => "Choose a component",
     }
 }
 
-/// The command that opens it.
-pub(crate) fn command(aspect: Aspect) -> String {
+/// Command that opens the chooser.
+pub(crate) fn command(aspect: ChoiceAspect) -> String {
     format!("{}…", title(aspect))
 }
 
-/// The command that takes the next one, or the one before.
-pub(crate) fn step(aspect: Aspect, is_forward: bool) -> String {
+/// Command that goes to the next or the previous item.
+pub(crate) fn step(aspect: ChoiceAspect, is_forward: bool) -> String {
     let what = row(aspect).name.to_lowercase();
     if is_forward { format!("Next {what}") } else { format!("Previous {what}") }
 }
 
-/// The buttons that take them.
+/// Captions of the buttons that go one item back and forward.
 pub(crate) const BACK: &str = "‹";
 pub(crate) const FORWARD: &str = "›";
 
-/// The open file holds but one.
-pub(crate) fn none(aspect: Aspect) -> String {
+/// Message when the open file holds a single item of this aspect.
+pub(crate) fn single_item(aspect: ChoiceAspect) -> String {
     let what = match aspect {
-        Aspect::Of(dimension) => dimension.plural(),
-        Aspect::Component => "components",
+        ChoiceAspect::Dimension(dimension) => dimension.plural(),
+        ChoiceAspect::Component => "components",
     };
     format!("The open file does not hold several {what}")
 }
 
-/// A volume without a name of its own, from 0.
-pub(crate) fn numbered(dimension: Dimension, at: usize) -> String {
-    format!("{} {}", row(Aspect::Of(dimension)).name, at + 1)
+/// Default name of an unnamed item, numbered from 0.
+pub(crate) fn default_name(dimension: FileDimension, at: usize) -> String {
+    format!("{} {}", row(ChoiceAspect::Dimension(dimension)).name, at + 1)
 }
 
-/// What all components make.
-pub(crate) fn whole(whole: Whole) -> &'static str {
+/// Name of a scalar that is computed from all components.
+pub(crate) fn scalar_name(whole: DefaultComponent) -> &'static str {
     match whole {
-        Whole::Magnitude => "Magnitude",
-        Whole::Luminance => "Luminance",
-        Whole::First => "First",
+        DefaultComponent::Magnitude => "Magnitude",
+        DefaultComponent::Luminance => "Luminance",
+        DefaultComponent::First => "First",
     }
 }
 
-/// A component, from 0.
-pub(crate) fn component(at: usize, of: &Components) -> String {
+/// Name of a component, numbered from 0: a colour where they are colours.
+pub(crate) fn component_name(at: usize, of: &VoxelComponents) -> String {
     const COLORS: [&str; 4] = ["Red", "Green", "Blue", "Opacity"];
     const GREYS: [&str; 2] = ["Grey", "Opacity"];
     let names: &[&str] = match (of.is_color, of.count) {
@@ -85,48 +87,47 @@ pub(crate) fn component(at: usize, of: &Components) -> String {
     names.get(at).map_or_else(|| format!("Component {}", at + 1), |name| (*name).to_owned())
 }
 
-/// Which of how many is shown, and what it is called.
-pub(crate) fn present(at: usize, count: usize, name: &str) -> String {
+/// Position, count and name of the item shown.
+pub(crate) fn current_item(at: usize, count: usize, name: &str) -> String {
     format!("{} of {count} · {name}", at + 1)
 }
 
-/// Characters of a name beside the name of the file: dyes and arrays have as many.
-const LONGEST_BESIDE_TITLE: usize = 20;
+/// Maximum number of characters of an item's name beside the file name; dyes and arrays fit.
+const MAX_TITLE_SUFFIX: usize = 20;
 
-/// What is shown, beside the name of the file: a component by its name, all else by its number, with its name where it has
-/// one.
-pub(crate) fn beside_title(aspect: Aspect, at: usize, count: usize, name: Option<&str>) -> String {
+/// Item beside the file name in the title: a component by name, others by number, with a name where there is one.
+pub(crate) fn title_suffix(aspect: ChoiceAspect, at: usize, count: usize, name: Option<&str>) -> String {
     let name = name.unwrap_or_default();
-    if aspect == Aspect::Component {
+    if aspect == ChoiceAspect::Component {
         return name.to_owned();
     }
-    let place = format!("{} {}", row(aspect).name, place(at, count));
-    match name.char_indices().nth(LONGEST_BESIDE_TITLE) {
+    let place = format!("{} {}", row(aspect).name, position(at, count));
+    match name.char_indices().nth(MAX_TITLE_SUFFIX) {
         _ if name.is_empty() => place,
         Some((end, _)) => format!("{place} · {}…", name[..end].trim_end()),
         None => format!("{place} · {name}"),
     }
 }
 
-/// Which it is of how many.
-pub(crate) fn place(at: usize, count: usize) -> String {
+/// Position of the item, from 1, and the count.
+pub(crate) fn position(at: usize, count: usize) -> String {
     format!("{} of {count}", at + 1)
 }
 
-/// Voxels along x, y and z.
+/// Number of voxels along x, y and z.
 pub(crate) fn size([x, y, z]: [u64; 3]) -> String {
     format!("{x} × {y} × {z} voxels")
 }
 
-/// The one that is shown already.
-pub(crate) const SHOWN: &str = "shown";
+/// Mark of the item that is shown already.
+pub(crate) const SHOWN_MARK: &str = "shown";
 
-/// Of colours.
+/// Note for colours, which are shown as luminance.
 pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one of them";
 
-/// Below the list.
+/// Keyboard hint below the list.
 pub(crate) const KEYS: &str = "Arrow keys and Enter choose, Esc closes";
-pub(crate) const KEEP_LOOK: Named = named(
+pub(crate) const KEEP_LOOK: ControlText = control_text(
     "Keep the look",
     "View, lights and transfer function stay as they are; otherwise a first look is made for what is chosen",
 );
@@ -137,10 +138,10 @@ mod tests {
 
     #[test]
     fn names_stand_behind_numbers_as_far_as_there_is_room() {
-        let channel = |name| beside_title(Aspect::Of(Dimension::Channel), 0, 3, name);
+        let channel = |name| title_suffix(ChoiceAspect::Dimension(FileDimension::Channel), 0, 3, name);
         assert_eq!(channel(None), "Channel 1 of 3");
         assert_eq!(channel(Some("DAPI")), "Channel 1 of 3 · DAPI");
         assert_eq!(channel(Some("Phalloidin, Alexa Fluor 568")), "Channel 1 of 3 · Phalloidin, Alexa Fl…");
-        assert_eq!(beside_title(Aspect::Component, 1, 3, Some("Green")), "Green");
+        assert_eq!(title_suffix(ChoiceAspect::Component, 1, 3, Some("Green")), "Green");
     }
 }

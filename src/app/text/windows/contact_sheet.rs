@@ -1,4 +1,4 @@
-//! The contact sheet.
+//! Texts of the contact sheet of looks, lights and presets.
 
 use std::fmt::Display;
 
@@ -7,8 +7,8 @@ pub(crate) const LIGHTS: &str = "Try lights";
 pub(crate) const SUGGESTIONS: &str = "Suggested lights";
 pub(crate) const PRESETS: &str = "Try presets";
 
-/// How many of them have been tried.
-pub(crate) fn trying(done: usize, count: usize) -> String {
+/// Progress of the thumbnails, with their total number.
+pub(crate) fn progress(done: usize, count: usize) -> String {
     if count == 0 {
         "Trying them on your volume".to_owned()
     } else {
@@ -16,37 +16,37 @@ pub(crate) fn trying(done: usize, count: usize) -> String {
     }
 }
 pub(crate) const AGAIN: &str = "Refresh";
-/// Why the pictures are small and coarse.
-pub(crate) const QUALITY: &str = "Click to apply";
+/// Hint below the small, coarse pictures.
+pub(crate) const CLICK_HINT: &str = "Click to apply";
 pub(crate) const USE_TIP: &str = "Use it";
 
-/// Why no light is suggested.
+/// Reason why no light can be suggested.
 pub(crate) const NO_LIGHT: &str = "There is no light to be placed: add one, or select one";
 
-/// What suggestions are compared with.
-pub(crate) const AS_IT_IS: &str = "As it is";
+/// Name of the unchanged picture beside the suggestions.
+pub(crate) const UNCHANGED: &str = "As it is";
 
-/// A place for a light, from 1: the best first.
-pub(crate) fn suggestion(light: &str, number: usize) -> String {
+/// Name of a suggested light position, numbered from 1 with the best first.
+pub(crate) fn suggestion_name(light: &str, number: usize) -> String {
     format!("{light}, suggestion {number}")
 }
 
-/// A whole look, from 1.
-pub(crate) fn look(number: usize, name: &str) -> String {
+/// Name of a suggested look, numbered from 1.
+pub(crate) fn look_name(number: usize, name: &str) -> String {
     format!("{number} · {name}")
 }
 
-/// What screen readers call a picture of a look.
+/// Accessible name of the thumbnail of a look.
 pub(crate) fn use_look(name: &str) -> String {
     format!("Use {name}")
 }
 
-/// A light at an hour of a clock face.
-pub(crate) fn at_hour(light: &str, hour: u32) -> String {
+/// Name of a light position by the hour of a clock face.
+pub(crate) fn clock_position(light: &str, hour: u32) -> String {
     format!("{light} at {hour} o'clock")
 }
 
-/// The system is out of threads.
+/// Error when the thumbnail thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
     format!("no thread for the pictures: {err}")
 }

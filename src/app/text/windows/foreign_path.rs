@@ -1,8 +1,8 @@
-//! The question before a look from outside opens a volume.
+//! Texts of the confirmation before a look opens a volume outside its own folder.
 
 pub(crate) const TITLE: &str = "Open the volume of this look?";
 
-/// Why it is asked.
+/// Reason why the confirmation is needed.
 pub(crate) const OUTSIDE: &str =
     "The look names a file outside its own folder that you have not opened here before";
 

@@ -1,9 +1,9 @@
-//! The windows of help, and the hints over the first picture.
+//! Texts of the help windows, and of the hints on the first use of the program.
 
-/// The window of keys and mouse, and the command that shows it.
+/// Title of the window of shortcuts, and name of its command.
 pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
 
-/// What the mouse does, in the picture and in the editor.
+/// Mouse actions in the picture and in the editor, each with its effect.
 pub(crate) const MOUSE: [(&str, &str); 22] = [
     ("Drag the picture", "Orbit"),
     ("Double click on the volume", "Turn about what is there"),
@@ -29,7 +29,7 @@ pub(crate) const MOUSE: [(&str, &str); 22] = [
     ("Escape while dragging", "Back to where it was"),
 ];
 
-/// The window that says what this is, and the command that shows it.
+/// Title of the about window, and name of its command.
 pub(crate) const ABOUT: &str = "About Chiaroscuro";
 pub(crate) const PURPOSE: &str =
     "See the shape of volume data: true volumetric shadows by sheet-buffer splatting.";
@@ -37,7 +37,7 @@ pub(crate) const AFTER: &str = "After Splatting With Shadows (Nulkar and Mueller
 pub(crate) const SOFTWARE_ADAPTER: &str =
     "This is a software adapter: previews are coarser, the final picture is the same.";
 
-/// Over the first picture: what can be done, and what comes of it.
+/// Hints over the picture on the first use of the program, each an action and its result.
 pub(crate) const HINTS: [(&str, &str); 3] = [
     ("Drag a light's disc", "The shadows follow your hand"),
     ("Drag the picture, turn the wheel", "To look from elsewhere, and nearer"),
@@ -45,17 +45,17 @@ pub(crate) const HINTS: [(&str, &str); 3] = [
 ];
 pub(crate) const CLOSE_HINTS: &str = "Close the hints";
 
-/// The program and its version.
+/// Name of the program with its version.
 pub(crate) fn program(version: &str) -> String {
     format!("Chiaroscuro {version}")
 }
 
-/// The graphics adapter that draws the pictures.
+/// Name of the graphics adapter in use.
 pub(crate) fn adapter(name: &str) -> String {
     format!("Graphics adapter {name}")
 }
 
-/// The interface and driver by which pictures are drawn.
+/// Graphics API and driver in use.
 pub(crate) fn interface(driver: &str) -> String {
     format!("Interface {driver}")
 }

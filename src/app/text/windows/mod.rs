@@ -1,13 +1,13 @@
-//! Words of windows over the main one.
+//! Texts of tool windows and dialogs.
 
-pub(in crate::app) mod chooser;
-pub(in crate::app) mod contact_sheet;
-pub(in crate::app) mod export;
-pub(in crate::app) mod files;
-pub(in crate::app) mod foreign_path;
-pub(in crate::app) mod help;
-pub(in crate::app) mod light_volume;
-pub(in crate::app) mod palette;
-pub(in crate::app) mod raw;
-pub(in crate::app) mod roomy;
-pub(in crate::app) mod slices;
+pub(crate) mod chooser;
+pub(crate) mod contact_sheet;
+pub(crate) mod export;
+pub(crate) mod files;
+pub(crate) mod foreign_path;
+pub(crate) mod help;
+pub(crate) mod large_volume;
+pub(crate) mod light_volume;
+pub(crate) mod palette_synonyms;
+pub(crate) mod raw;
+pub(crate) mod slices;

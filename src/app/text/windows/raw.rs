@@ -1,7 +1,7 @@
-//! The window that asks how a file of bare voxels is stored.
+//! Texts of the import dialog for raw volumes.
 
-use crate::app::text::{Named, named};
-use crate::data::load::raw::Evidence;
+use crate::app::text::{ControlText, control_text};
+use crate::data::load::raw::LayoutEvidence;
 use crate::data::load::{Endian, RawLayout};
 
 pub(crate) const TITLE: &str = "Import raw volume";
@@ -10,62 +10,62 @@ pub(crate) const OPEN_TIP: &str = "Enter";
 
 pub(crate) const VOXELS: &str = "Voxels";
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
-/// Behind the voxels along each axis.
+/// Axis order behind the fields of the dimensions.
 pub(crate) const FASTEST_AXIS: &str = "x, y, z; x fastest";
 pub(crate) const FASTEST_AXIS_TIP: &str = "Width and height of a slice, and how many slices; voxels that lie side by side in the file are neighbours along x";
 
 pub(crate) const NUMBER_TYPE: &str = "Number type";
 
 pub(crate) const BYTE_ORDER: &str = "Byte order";
-pub(crate) const LITTLE: Named = named("Little-endian", "Lowest byte first: usual");
-pub(crate) const BIG: Named = named("Big-endian", "Highest byte first");
-/// Why no byte order can be chosen.
+pub(crate) const LITTLE: ControlText = control_text("Little-endian", "Lowest byte first: usual");
+pub(crate) const BIG: ControlText = control_text("Big-endian", "Highest byte first");
+/// Text in place of the byte order for one-byte numbers.
 pub(crate) const NO_ORDER: &str = "Numbers of one byte have no order";
 
 pub(crate) const SPACING: &str = "Spacing";
-/// What screen readers call the list of units.
+/// Accessible name of the list of spacing units.
 pub(crate) const SPACING_UNIT: &str = "Unit of the spacing";
 pub(crate) const SPACING_UNIT_TIP: &str = "The file does not say how far apart its voxels are; without that, they are taken for cubes of unknown size";
 
 pub(crate) const HEADER: &str = "Header";
-/// What screen readers call the length of the header.
+/// Accessible name of the header's length.
 pub(crate) const HEADER_BYTES: &str = "Bytes before the first voxel";
-/// What stands behind the field for the header's length.
+/// Suffix of the header's length.
 pub(crate) const HEADER_UNIT: &str = "bytes before the first voxel";
 pub(crate) const HEADER_TIP: &str =
     "A small NRRD header that says all this: opened in place of the file, here and in other programs";
 
-/// The length of the file.
+/// Verdicts on the length of the file.
 pub(crate) const COMPRESSED: &str = "The file is compressed: how long it is inside is not known yet";
 pub(crate) const TOO_MANY: &str = "That is more than any file can hold";
-/// Takes the bytes that are too many for a header.
-pub(crate) const ARE_HEADER: &str = "Skip them as a header";
-/// Leaves out a header.
+/// Button that adds the surplus bytes to the header.
+pub(crate) const SKIP_SURPLUS: &str = "Skip them as a header";
+/// Button that sets the header's length to 0.
 pub(crate) const WITHOUT_HEADER: &str = "No header";
 
-/// Over the list of likely ways of storing the file.
+/// Heading of the list of likely layouts.
 pub(crate) const PROPOSALS: &str = "What its bytes suggest";
-pub(crate) const LOOKING: &str = "Comparing neighbouring voxels…";
+pub(crate) const ANALYSING: &str = "Comparing neighbouring voxels…";
 
-/// Over the slices.
+/// Captions of the three preview slices.
 pub(crate) const SLICES: [&str; 3] =
     ["Axial: x and y, middle of z", "Coronal: x and z, middle of y", "Sagittal: y and z, middle of x"];
-/// Beside the slices.
+/// Guide to diagnosing a wrong layout from the slices.
 pub(crate) const READING_SLICES: &str = "All three should show the object.\n\nNoise: type, byte order or header.\n\
     Slanted or doubled: voxels along x.\nBands in the lower two: voxels along y.\nDark red: not in the file.";
 
-/// How long the voxels are with all that precedes them, after inflating.
+/// Uncompressed length of the file, with everything before the voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Length {
-    /// In bytes.
+pub(crate) struct RawLengthText {
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// Whether they were counted, not only said by the file's end.
+    /// True if the bytes were counted; false if the length comes from the trailer of a compressed file.
     pub is_exact: bool,
 }
 
-/// A unit of length; none if nobody knows it.
+/// Unit of the voxel spacing, possibly unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Unit {
+pub(crate) enum RawSpacingUnit {
     Unknown,
     Nanometres,
     Micrometres,
@@ -73,7 +73,7 @@ pub(crate) enum Unit {
     Metres,
 }
 
-impl Unit {
+impl RawSpacingUnit {
     pub(crate) const ALL: [Self; 5] =
         [Self::Unknown, Self::Nanometres, Self::Micrometres, Self::Millimetres, Self::Metres];
 
@@ -87,7 +87,7 @@ impl Unit {
         }
     }
 
-    /// How many millimetres it is long.
+    /// Length of the unit in mm, if known.
     pub(crate) fn mm(self) -> Option<f64> {
         match self {
             Self::Unknown => None,
@@ -99,29 +99,29 @@ impl Unit {
     }
 }
 
-/// How many voxels there are along an axis.
+/// Accessible name of the number of voxels along an axis.
 pub(crate) fn voxels_along(axis: &str) -> String {
     format!("Voxels along {axis}")
 }
 
-/// How far apart voxels are along an axis.
+/// Accessible name of the voxel spacing along an axis.
 pub(crate) fn spacing_along(axis: &str) -> String {
     format!("Spacing along {axis}")
 }
 
-/// The switch for writing a header of that name.
-pub(crate) fn write(header: &str) -> String {
+/// Checkbox that also writes a header with this file name.
+pub(crate) fn write_header(header: &str) -> String {
     format!("Also write {header} beside the file")
 }
 
-/// The switch for writing a header where there is one already.
-pub(crate) fn rewrite(header: &str) -> String {
+/// Checkbox that overwrites an existing header.
+pub(crate) fn rewrite_header(header: &str) -> String {
     format!("Rewrite {header}, which lies beside the file")
 }
 
-/// The file is as long as it must be.
-pub(crate) fn fits(bytes: u64, is_exact: bool) -> String {
-    let bytes = grouped(bytes);
+/// Verdict that the length of the file matches the layout.
+pub(crate) fn length_matches(bytes: u64, is_exact: bool) -> String {
+    let bytes = group_thousands(bytes);
     if is_exact {
         format!("Bytes fit: the file has just these {bytes}")
     } else {
@@ -129,29 +129,29 @@ pub(crate) fn fits(bytes: u64, is_exact: bool) -> String {
     }
 }
 
-/// The file is longer.
-pub(crate) fn longer(bytes: u64) -> String {
-    format!("{} bytes too many in the file", grouped(bytes))
+/// Verdict that the file has surplus bytes.
+pub(crate) fn surplus_bytes(bytes: u64) -> String {
+    format!("{} bytes too many in the file", group_thousands(bytes))
 }
 
-/// The file is shorter.
-pub(crate) fn shorter(found: u64, expected: u64) -> String {
-    let [missing, found, expected] = [expected - found, found, expected].map(grouped);
+/// Verdict that the file lacks bytes.
+pub(crate) fn missing_bytes(found: u64, expected: u64) -> String {
+    let [missing, found, expected] = [expected - found, found, expected].map(group_thousands);
     format!("{missing} bytes missing: the file has {found} of {expected}")
 }
 
-/// As many slices as the file has.
+/// Button that sets the number of slices to the one that the file holds.
 pub(crate) fn with_slices(slices: u64) -> String {
     format!("Make it {slices} slices")
 }
 
-/// The file could not be read.
+/// Error when the file cannot be read.
 pub(crate) fn not_read(error: &std::io::Error) -> String {
     format!("The file could not be read: {error}")
 }
 
-/// A way of storing, in a line.
-pub(crate) fn layout(layout: &RawLayout) -> String {
+/// Summary of a raw layout in one line.
+pub(crate) fn layout_summary(layout: &RawLayout) -> String {
     let [x, y, z] = layout.dims;
     let order = match layout.endian {
         _ if layout.voxel_type.bytes() == 1 => "",
@@ -160,18 +160,22 @@ pub(crate) fn layout(layout: &RawLayout) -> String {
     };
     let header = match layout.offset {
         0 => String::new(),
-        bytes => format!(", header of {} bytes", grouped(bytes)),
+        bytes => format!(", header of {} bytes", group_thousands(bytes)),
     };
     format!("{x} × {y} × {z}, {}{order}{header}", layout.voxel_type.name())
 }
 
-/// What speaks for it.
-pub(crate) fn why(evidence: &Evidence, layout: &RawLayout, length: Option<Length>) -> String {
+/// Evidence for a layout in one line: similarity of rows and slices, the file name and the length.
+pub(crate) fn evidence_summary(
+    evidence: &LayoutEvidence,
+    layout: &RawLayout,
+    length: Option<RawLengthText>,
+) -> String {
     let percent = |share: f64| {
         let percent = share * 100.0;
         if percent >= 10.0 { format!("{percent:.0} %") } else { format!("{percent:.1} %") }
     };
-    let [_, row, slice] = evidence.neighbours;
+    let [_, row, slice] = evidence.neighbour_differences;
     let agreement = match (evidence.rows_agree, evidence.slices_agree) {
         (true, true) => {
             format!("rows and slices agree: neighbours differ by {} and {}", percent(row), percent(slice))
@@ -190,20 +194,20 @@ pub(crate) fn why(evidence: &Evidence, layout: &RawLayout, length: Option<Length
     format!("{name}{agreement}; {fit}")
 }
 
-/// How sure the first proposal is.
-pub(crate) fn verdict(first: Option<Evidence>) -> &'static str {
+/// Confidence in the first proposal.
+pub(crate) fn confidence(first: Option<LayoutEvidence>) -> &'static str {
     match first {
         None => "Nothing that would fit was found",
-        Some(Evidence { is_clear: true, .. }) => "The first stands out; click one to take it over",
-        Some(Evidence { rows_agree: false, slices_agree: false, .. }) => {
+        Some(LayoutEvidence { is_clear: true, .. }) => "The first stands out; click one to take it over",
+        Some(LayoutEvidence { rows_agree: false, slices_agree: false, .. }) => {
             "None stands out: these are guesses by size alone"
         }
         Some(_) => "Several are alike: look at the slices; click one to take it over",
     }
 }
 
-/// A number with its thousands apart.
-fn grouped(number: u64) -> String {
+/// Formats a number with its thousands separated.
+fn group_thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
     for (at, digit) in digits.chars().enumerate() {
@@ -222,7 +226,7 @@ mod tests {
     #[test]
     fn thousands_are_apart() {
         for (number, expected) in [(0, "0"), (999, "999"), (1000, "1 000"), (14155776, "14 155 776")] {
-            assert_eq!(grouped(number), expected);
+            assert_eq!(group_thousands(number), expected);
         }
     }
 }

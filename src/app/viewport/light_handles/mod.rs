@@ -1,61 +1,61 @@
-//! Handles in the picture by which lights are dragged.
+//! Light handles: discs in the picture by which lights are dragged.
 //!
-//! A parallel light's handle lies on a sphere around the volume and is turned like a trackball; a
-//! perspective light's handle lies where the light is and moves in the plane that faces the eye.
-//! Handles are painted by the window over the picture and are therefore never in an export.
+//! The handle of a parallel light lies on a sphere around the volume and turns like a trackball; the handle of a
+//! perspective light lies at the light's position and moves in the plane that faces the eye. The window paints
+//! handles over the picture, so they never appear in an export.
 
 mod geometry;
-mod grip;
 mod guides;
-mod hood_handle;
 mod size_handle;
+mod small_handle;
+mod spotlight_handle;
 
 use eframe::egui::{self, Color32, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo};
 
-use self::geometry::View;
-use self::hood_handle::HoodHandle;
-use self::size_handle::{Dragged, SizeHandle};
-use super::orbit::wheel_notches;
+use self::geometry::LightHandleView;
+use self::size_handle::{DraggedLightSize, SizeHandle};
+use self::spotlight_handle::SpotlightHandle;
+use super::mouse_navigation::wheel_notches;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{LightKind, Settings};
+use crate::model::{LightGeometry, Settings};
 
-/// A drag that is under way.
+/// Drag in progress of a light's handle.
 #[derive(Debug, Clone, Copy)]
-struct Drag {
+struct LightHandleDrag {
     light: usize,
-    /// The handle was on the far side of its sphere.
-    behind: bool,
-    /// From the pointer to the handle.
-    grip: Vec2,
+    /// True if the handle was on the far side of its sphere.
+    is_behind: bool,
+    /// Offset from the pointer to the handle, in points.
+    pointer_offset: Vec2,
 }
 
-/// State of the handles between frames.
+/// State of the light handles between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightHandles {
-    /// The user does not want them.
-    pub hidden: bool,
-    drag: Option<Drag>,
-    /// The handle of the hood of the selected light.
-    hood: HoodHandle,
-    /// The handle on its border, if it has a size.
-    size: SizeHandle,
-    /// The pointer is on a handle for which the wheel means distance.
-    pub takes_wheel: bool,
-    /// Where they were painted last, in points.
+    /// True if the user has switched the handles off.
+    pub is_hidden: bool,
+    drag: Option<LightHandleDrag>,
+    /// Spotlight handle of the selected light.
+    spotlight_handle: SpotlightHandle,
+    /// Size handle of the selected light, if it is an area light.
+    size_handle: SizeHandle,
+    /// True if the pointer is on a handle for which the wheel changes the distance.
+    pub captures_wheel: bool,
+    /// Positions of the handles in the last frame, in points.
     positions: Vec<Pos2>,
 }
 
 impl LightHandles {
-    /// Where the handles are, in points; empty while hidden.
+    /// Positions of the handles, in points; empty while hidden.
     pub(crate) fn positions(&self) -> &[Pos2] {
         &self.positions
     }
 
-    /// Shows none.
-    pub(crate) fn leave(&mut self) {
+    /// Clears the state that belongs to one frame.
+    pub(crate) fn clear_frame_state(&mut self) {
         self.positions.clear();
-        self.takes_wheel = false;
+        self.captures_wheel = false;
     }
 
     /// Shows the handles, lets the user drag them, and moves the lights.
@@ -67,11 +67,11 @@ impl LightHandles {
         support_radius: f64,
         selected: &mut usize,
     ) {
-        self.leave();
-        if self.hidden {
+        self.clear_frame_state();
+        if self.is_hidden {
             return;
         }
-        let view = View::new(settings.camera.clone(), picture, support_radius);
+        let view = LightHandleView::new(settings.camera.clone(), picture, support_radius);
         let hovered = ui.rect_contains_pointer(picture);
         let visible = hovered || self.drag.is_some();
         let opacity = ui.ctx().animate_bool_with_time(Id::unique("light handles"), visible, theme::FADE_S);
@@ -81,32 +81,42 @@ impl LightHandles {
             if !settings.lights[light].on {
                 continue;
             }
-            let seen = |settings: &Settings| view.handle(&settings.lights[light].in_scene(&settings.camera));
+            let seen = |settings: &Settings| view.handle(&settings.lights[light].resolve(&settings.camera));
             let Some(handle) = seen(settings) else { continue };
             let area = Rect::from_center_size(handle.position, Vec2::splat(2.0 * theme::HANDLE_RADIUS + 6.0));
             let response = ui.interact(area, Id::unique("light handle").with(light), Sense::click_and_drag());
             let name = text::lights::handle(&settings.lights[light].name);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-            self.drag(ui, &response, &view, &handle, light, settings, selected);
+            self.handle_drag(ui, &response, &view, &handle, light, settings, selected);
             let active = response.hovered() || self.drag.is_some_and(|drag| drag.light == light);
             let handle = seen(settings).unwrap_or(handle);
             self.positions.push(handle.position);
-            let lamp = settings.lights[light].in_scene(&settings.camera);
-            if active || (*selected == light && (self.hood.is_active() || self.size.is_active())) {
+            let scene_light = settings.lights[light].resolve(&settings.camera);
+            if active
+                || (*selected == light && (self.spotlight_handle.is_active() || self.size_handle.is_active()))
+            {
                 let up = settings.camera.up.direction();
-                guides::paint(&painter, &view, &lamp, up, settings.floor.height);
+                guides::paint_guides(&painter, &view, &scene_light, up, settings.floor.height);
             }
             if *selected == light
-                && let Some(half_angle_deg) =
-                    self.hood.show(ui, &painter, &view, &lamp, &settings.lights[light].name, light)
+                && let Some(half_angle_deg) = self.spotlight_handle.show(
+                    ui,
+                    &painter,
+                    &view,
+                    &scene_light,
+                    &settings.lights[light].name,
+                    light,
+                )
             {
                 settings.lights[light].hood.half_angle_deg = half_angle_deg;
             }
             if *selected == light {
                 let of_light = (settings.lights[light].name.as_str(), light);
-                match self.size.show(ui, &painter, &view, &lamp, of_light) {
-                    Some(Dragged::Size(size)) => settings.lights[light].size = size,
-                    Some(Dragged::AngleDeg(angle_deg)) => settings.lights[light].angle_deg = angle_deg,
+                match self.size_handle.show(ui, &painter, &view, &scene_light, of_light) {
+                    Some(DraggedLightSize::Size(size)) => settings.lights[light].size = size,
+                    Some(DraggedLightSize::AngleDeg(angle_deg)) => {
+                        settings.lights[light].angle_deg = angle_deg;
+                    }
                     None => {}
                 }
             }
@@ -115,9 +125,9 @@ impl LightHandles {
             if *selected == light {
                 painter.circle_stroke(handle.position, radius + 4.0, Stroke::new(1.5, theme::ACCENT));
             }
-            paint_handle(&painter, handle.position, radius, color, handle.behind);
-            if let Some(direction) = handle.outside {
-                // Beyond the ring of the selected light.
+            paint_handle(&painter, handle.position, radius, color, handle.is_behind);
+            if let Some(direction) = handle.direction_outside {
+                // Outside the ring of the selected light.
                 let from = radius + if *selected == light { 4.5 } else { 0.0 };
                 paint_arrow(&painter, handle.position + direction * from, direction, color);
             }
@@ -128,12 +138,12 @@ impl LightHandles {
     }
 
     #[expect(clippy::too_many_arguments, reason = "one call, right above")]
-    fn drag(
+    fn handle_drag(
         &mut self,
         ui: &egui::Ui,
         response: &Response,
-        view: &View,
-        handle: &geometry::Handle,
+        view: &LightHandleView,
+        handle: &geometry::LightHandlePlacement,
         light: usize,
         settings: &mut Settings,
         selected: &mut usize,
@@ -145,28 +155,33 @@ impl LightHandles {
         if response.drag_started()
             && let Some(pointer) = pointer
         {
-            // Where the button went down: egui reports a drag only some points later.
+            // From where the button was pressed: egui reports a drag only some points later.
             let pressed = ui.input(|input| input.pointer.press_origin()).unwrap_or(pointer);
-            self.drag = Some(Drag { light, behind: handle.behind, grip: handle.position - pressed });
+            self.drag = Some(LightHandleDrag {
+                light,
+                is_behind: handle.is_behind,
+                pointer_offset: handle.position - pressed,
+            });
         }
         if let (Some(drag), Some(pointer)) = (self.drag, pointer)
             && drag.light == light
             && response.dragged()
             && ui.input(|input| input.pointer.delta()) != Vec2::ZERO
         {
-            let mut moved = settings.lights[light].in_scene(&settings.camera);
-            view.move_light(&mut moved, pointer + drag.grip, drag.behind);
+            let mut moved = settings.lights[light].resolve(&settings.camera);
+            view.move_light(&mut moved, pointer + drag.pointer_offset, drag.is_behind);
             settings.lights[light].set_scene_position(moved.position.into(), &settings.camera);
         }
         if self.drag.is_some_and(|drag| drag.light == light && !response.dragged()) {
             self.drag = None;
         }
-        if (response.hovered() || response.dragged()) && settings.lights[light].kind == LightKind::Perspective
+        if (response.hovered() || response.dragged())
+            && settings.lights[light].kind == LightGeometry::Perspective
         {
-            self.takes_wheel = true;
+            self.captures_wheel = true;
             let notches = wheel_notches(ui);
             if notches != 0.0 {
-                let mut moved = settings.lights[light].in_scene(&settings.camera);
+                let mut moved = settings.lights[light].resolve(&settings.camera);
                 view.move_along_sight(&mut moved, notches);
                 settings.lights[light].set_scene_position(moved.position.into(), &settings.camera);
             }
@@ -174,24 +189,24 @@ impl LightHandles {
     }
 }
 
-/// A disc in the light's colour, or a ring for a light on the far side.
+/// Paints a disc in the light's colour, or a ring for a light on the far side.
 fn paint_handle(painter: &egui::Painter, at: Pos2, radius: f32, color: Color32, hollow: bool) {
     painter.circle_filled(at, radius + 1.5, theme::OUTLINE);
     if hollow {
         painter.circle_stroke(at, radius - 1.0, Stroke::new(2.5, color));
     } else {
         painter.circle_filled(at, radius, color);
-        // A darker middle tells white lights from white material.
+        // A darker circle inside distinguishes white lights from white material.
         painter.circle_stroke(at, radius - 3.0, Stroke::new(1.0, theme::OUTLINE.gamma_multiply(0.6)));
     }
 }
 
-/// Points of an arrow's length, and half of its width.
-const ARROW: Vec2 = Vec2::new(6.0, 5.0);
+/// Length and half width of an arrow, in points.
+const ARROW_SIZE: Vec2 = Vec2::new(6.0, 5.0);
 
-/// An arrow from the border of a handle to where its light is.
+/// Paints an arrow at the border of a handle that points towards its light outside the picture.
 fn paint_arrow(painter: &egui::Painter, from: Pos2, direction: Vec2, color: Color32) {
-    let (foot, side) = (from + direction * 1.5, direction.rot90() * ARROW.y);
-    let corners = vec![foot + side, foot + direction * ARROW.x, foot - side];
+    let (foot, side) = (from + direction * 1.5, direction.rot90() * ARROW_SIZE.y);
+    let corners = vec![foot + side, foot + direction * ARROW_SIZE.x, foot - side];
     painter.add(egui::Shape::convex_polygon(corners, color, Stroke::new(1.0, theme::OUTLINE)));
 }

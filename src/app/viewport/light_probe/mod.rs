@@ -1,162 +1,166 @@
-//! "Why is this dark?": what is under the pointer, and what of every light gets there; and how far two places are apart.
+//! Light probe ("Why is this dark?"): the material under the pointer, the share of every light that arrives there,
+//! and the distance between two points.
 
-mod cause;
+mod diagnosis;
 mod tag;
 
 use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
-use self::cause::Cause;
-use self::tag::Tag;
+use self::diagnosis::BrightnessCause;
+use self::tag::ProbeTag;
 
-use crate::app::common::frame;
+use crate::app::common::overlay_windows;
 use crate::app::common::theme;
-use crate::app::common::volume_facts::decimals;
+use crate::app::common::volume_facts::range_decimals;
 use crate::app::text::{self, common::LengthUnit};
 use crate::data::{DataKind, Volume};
-use crate::model::{Camera, Light, LightKind, Settings};
-use crate::plan::{Arrival, Probe, probe};
+use crate::model::{Camera, LightGeometry, LightSettings, Settings};
+use crate::plan::{LightArrival, Probe, probe};
 
-/// A place that was clicked.
+/// Point of the volume that was clicked.
 #[derive(Debug, Clone, Copy)]
-struct Pin {
-    /// In scene space.
+struct ProbePin {
+    /// Position in scene space.
     point: DVec3,
 }
 
-/// State of the probe between frames.
+/// State of the light probe between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightProbe {
-    /// Whether it is shown.
-    pub on: bool,
-    /// The last answer, and the question.
-    last: Option<(Pos2, Settings, Option<Probe>)>,
-    /// The volume that all this is of.
-    of: Option<u64>,
-    /// Places that were clicked, the latest last: at most two.
-    pins: Vec<Pin>,
+    /// True if the probe is active.
+    pub is_active: bool,
+    /// Last result, with the window position and the settings that it belongs to.
+    last_result: Option<(Pos2, Settings, Option<Probe>)>,
+    /// Content id of the volume that the state belongs to.
+    volume_id: Option<u64>,
+    /// Clicked points, the latest last: at most two.
+    pins: Vec<ProbePin>,
 }
 
-/// What the probe asks, and how the user has answered.
+/// Pointer input of the probe in this frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pointing {
-    /// Where the pointer is, if nothing is dragged.
+pub(crate) struct ProbePointer {
+    /// Position of the pointer in points, if nothing is being dragged.
     pub pointer: Option<Pos2>,
-    /// The picture was clicked.
+    /// True if the picture was clicked.
     pub clicked: bool,
 }
 
 impl LightProbe {
-    /// Asks what is under the pointer, or at the place that was clicked, and shows the answer; does what helps, if the user
-    /// wants that.
+    /// Probes the point under the pointer, or the clicked one, and shows the result; applies a remedy if the user
+    /// clicks it.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
         picture: Rect,
         settings: &mut Settings,
         volume: &Volume,
-        Pointing { pointer, clicked }: Pointing,
+        ProbePointer { pointer, clicked }: ProbePointer,
     ) {
         let of = Some(volume.content_id());
-        if !self.on || self.of != of {
-            (self.last, self.pins, self.of) = (None, Vec::new(), of);
+        if !self.is_active || self.volume_id != of {
+            (self.last_result, self.pins, self.volume_id) = (None, Vec::new(), of);
         }
-        if !self.on {
+        if !self.is_active {
             return;
         }
-        if !self.pins.is_empty() && frame::is_for_picture(ui.ctx()) {
+        if !self.pins.is_empty() && overlay_windows::escape_for_picture(ui.ctx()) {
             self.pins.clear();
         }
         if let Some(at) = pointer.filter(|_| clicked) {
-            match seen_at(volume, settings, picture, at) {
+            match probe_at(volume, settings, picture, at) {
                 Some(found) => {
                     if self.pins.len() == 2 {
                         self.pins.remove(0);
                     }
-                    self.pins.push(Pin { point: found.point });
+                    self.pins.push(ProbePin { point: found.point });
                 }
-                // Beside the object the place is let go.
+                // A click beside the object removes the pins.
                 None => self.pins.clear(),
             }
         }
-        let pinned = self.pins.last().and_then(|pin| place(&settings.camera, picture, pin.point));
+        let pinned = self.pins.last().and_then(|pin| project(&settings.camera, picture, pin.point));
         let Some(at) = pinned.or(pointer) else {
-            self.last = None;
+            self.last_result = None;
             return;
         };
-        if self.last.as_ref().is_none_or(|(of, look, _)| *of != at || look != settings) {
-            let found = seen_at(volume, settings, picture, at);
-            self.last = Some((at, settings.clone(), found));
+        if self.last_result.as_ref().is_none_or(|(of, look, _)| *of != at || look != settings) {
+            let found = probe_at(volume, settings, picture, at);
+            self.last_result = Some((at, settings.clone(), found));
         }
-        let found = self.last.as_ref().and_then(|(_, _, found)| found.as_ref());
+        let found = self.last_result.as_ref().and_then(|(_, _, found)| found.as_ref());
         let painter = ui.painter_at(picture);
         if let Some(found) = found {
-            rays(&painter, picture, settings, found);
+            paint_light_rays(&painter, picture, settings, found);
         }
-        let (mm_per_unit, unit) = (volume.scene().mm_per_unit, unit_of(volume));
+        let (mm_per_unit, unit) = (volume.scene().mm_per_unit, length_unit(volume));
         let distance = match &self.pins[..] {
             [from, to] => {
                 let length = text::probe::length(from.point.distance(to.point) * mm_per_unit, unit);
-                measure(&painter, picture, &settings.camera, [from.point, to.point], &length);
-                Some(text::probe::apart(&length))
+                paint_distance(&painter, picture, &settings.camera, [from.point, to.point], &length);
+                Some(text::probe::distance_to_previous(&length))
             }
             _ => None,
         };
-        let cause = found.map(|found| Cause::of(settings, found));
+        let cause = found.map(|found| BrightnessCause::diagnose(settings, found));
         let lost = found.and_then(|found| {
             let blocked = settings.lights.iter().zip(&found.lights).find_map(|(light, arrival)| {
                 let [near, _] = arrival.blocked.filter(|_| light.on)?;
-                Some(found.point + towards(light, &settings.camera, found.point) * near)
+                Some(found.point + direction_to_light(light, &settings.camera, found.point) * near)
             })?;
-            Some(place(&settings.camera, picture, blocked)? - at)
+            Some(project(&settings.camera, picture, blocked)? - at)
         });
-        let shown = Tag {
-            subject: found.and_then(|found| label(settings, volume, found)),
+        let shown = ProbeTag {
+            subject: found.and_then(|found| label_text(settings, volume, found)),
             cause,
-            cures: cause.filter(|_| pinned.is_some()).map(|cause| cause.cures(settings)).unwrap_or_default(),
+            remedies: cause
+                .filter(|_| pinned.is_some())
+                .map(|cause| cause.remedies(settings))
+                .unwrap_or_default(),
             sentence: cause.map_or_else(
                 || text::probe::NOTHING.to_owned(),
-                |cause| cause.words(settings, mm_per_unit, unit),
+                |cause| cause.description(settings, mm_per_unit, unit),
             ),
-            facts: found.map_or_else(String::new, |found| answer(settings, volume, found)),
+            facts: found.map_or_else(String::new, |found| result_text(settings, volume, found)),
             distance,
-            lost,
+            occluder_offset: lost,
             is_pinned: pinned.is_some(),
         };
-        if let Some(cure) = tag::show(ui, picture, at, &shown) {
+        if let Some(cure) = tag::show_probe_tag(ui, picture, at, &shown) {
             cure.apply(settings);
         }
     }
 
-    /// The value under the pointer, for other views to mark.
+    /// Returns the value under the pointer, for other views to mark.
     pub(crate) fn value(&self) -> Option<f64> {
-        let (_, _, found) = self.last.as_ref().filter(|_| self.on)?;
+        let (_, _, found) = self.last_result.as_ref().filter(|_| self.is_active)?;
         Some(found.as_ref()?.value)
     }
 }
 
-/// The unit of lengths in a volume.
-fn unit_of(volume: &Volume) -> LengthUnit {
-    LengthUnit::of(volume.length_unit())
+/// Returns the unit of lengths in a volume.
+fn length_unit(volume: &Volume) -> LengthUnit {
+    LengthUnit::from_spacing_unit(volume.length_unit())
 }
 
-/// A line between two places, and how long it is.
-fn measure(painter: &egui::Painter, picture: Rect, camera: &Camera, ends: [DVec3; 2], length: &str) {
-    let [Some(from), Some(to)] = ends.map(|end| place(camera, picture, end)) else { return };
-    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
+/// Paints a line between two points, with its length.
+fn paint_distance(painter: &egui::Painter, picture: Rect, camera: &Camera, ends: [DVec3; 2], length: &str) {
+    let [Some(from), Some(to)] = ends.map(|end| project(camera, picture, end)) else { return };
+    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::PICTURE_TEXT)] {
         painter.line_segment([from, to], Stroke::new(width, ink));
         painter.circle(from, 3.0, ink, Stroke::NONE);
     }
     let middle = from + (to - from) / 2.0;
     let font = egui::FontId::proportional(13.0);
-    let galley = painter.layout_no_wrap(length.to_owned(), font, theme::EYE_CURVE);
+    let galley = painter.layout_no_wrap(length.to_owned(), font, theme::PICTURE_TEXT);
     let ground = Rect::from_center_size(middle, galley.size() + vec2(10.0, 4.0));
     painter.rect_filled(ground, 4.0, theme::OUTLINE.gamma_multiply(0.85));
-    painter.galley(ground.min + vec2(5.0, 2.0), galley, theme::EYE_CURVE);
+    painter.galley(ground.min + vec2(5.0, 2.0), galley, theme::PICTURE_TEXT);
 }
 
-/// What is seen at a point of the window.
-pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: Pos2) -> Option<Probe> {
+/// Probes the volume along the viewing ray through a point of the window.
+pub(crate) fn probe_at(volume: &Volume, settings: &Settings, picture: Rect, at: Pos2) -> Option<Probe> {
     let offset = at - picture.min;
     let (origin, direction) = settings.camera.ray_through(
         f64::from(offset.x),
@@ -167,16 +171,16 @@ pub(crate) fn seen_at(volume: &Volume, settings: &Settings, picture: Rect, at: P
     probe(volume, settings, origin, direction)
 }
 
-/// The label that is seen, by its number and its name; `None` where values are no labels.
-fn label(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
+/// Returns the visible label as number and name; `None` if the values are not labels.
+fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
     let is_by_curve = settings.labels.is_empty();
-    // Of other data they would be counted first, for seconds.
+    // Other data would be counted first, which takes seconds.
     if is_by_curve && !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
         return None;
     }
     volume.labels()?;
     let number = if is_by_curve {
-        // A curve mixes numbers: what is there is what the nearest voxel holds.
+        // A transfer function interpolates label numbers, so the nearest voxel decides.
         let last = volume.dims().map(|n| n - 1);
         let [x, y, z] = [0, 1, 2].map(|axis| (found.index[axis].round().max(0.0) as usize).min(last[axis]));
         volume.value(x, y, z)
@@ -184,39 +188,39 @@ fn label(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> 
         found.value
     } as i64;
     let named = settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
-    let in_file = volume.hints().labels.get(number).map(|label| label.name.as_str());
+    let in_file = volume.metadata().labels.get(number).map(|label| label.name.as_str());
     Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
 }
 
-/// The answer in words and numbers.
-fn answer(settings: &Settings, volume: &Volume, found: &Probe) -> String {
-    let unit = unit_of(volume);
+/// Formats the probe's result: the value, its position, and a line per light.
+fn result_text(settings: &Settings, volume: &Volume, found: &Probe) -> String {
+    let unit = length_unit(volume);
     let place =
         text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit, volume.is_anatomical());
     let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
-        text::probe::found(found.value, decimals(volume.table_range()), found.opacity, &place)
+        text::probe::sample(found.value, range_decimals(volume.table_range()), found.opacity, &place)
     } else {
-        text::probe::found_label(found.opacity, &place)
+        text::probe::label_sample(found.opacity, &place)
     };
     for (light, arrival) in settings.lights.iter().zip(&found.lights) {
         words.push('\n');
-        words.push_str(&text::probe::of_light(&light.name, &reason(light, arrival)));
+        words.push_str(&text::probe::light_row(&light.name, &light_explanation(light, arrival)));
     }
     if let Some(open) = found.sky {
         words.push('\n');
-        words.push_str(&text::probe::of_light(text::probe::SKY, &text::probe::open(open)));
+        words.push_str(&text::probe::light_row(text::probe::SKY, &text::probe::sky_visibility(open)));
     }
     words
 }
 
-/// Why a light lights a point, or does not.
-fn reason(light: &Light, arrival: &Arrival) -> String {
-    let Arrival { transmittance, hood, facing, blocked: _ } = *arrival;
+/// Explains the contribution of one light at the probed point.
+fn light_explanation(light: &LightSettings, arrival: &LightArrival) -> String {
+    let LightArrival { transmittance, hood, facing, blocked: _ } = *arrival;
     if !light.on {
         return text::probe::OFF.to_owned();
     }
     if hood <= 0.0 {
-        return text::probe::OUTSIDE_HOOD.to_owned();
+        return text::probe::OUTSIDE_CONE.to_owned();
     }
     if let Some(facing) = facing
         && facing <= 0.0
@@ -228,36 +232,36 @@ fn reason(light: &Light, arrival: &Arrival) -> String {
     let through = match arrives {
         _ if !light.casts_shadows => text::probe::CASTS_NO_SHADOWS.to_owned(),
         share if share < 0.005 => text::probe::IN_ITS_WAY.to_owned(),
-        share => text::probe::arrives(share),
+        share => text::probe::transmittance(share),
     };
     text::probe::arrival(&through, angle_deg)
 }
 
-/// Where a light is, as seen from a point.
-fn towards(light: &Light, camera: &Camera, point: DVec3) -> DVec3 {
-    let world = light.in_scene(camera);
+/// Unit vector from a point towards a light, in scene space.
+fn direction_to_light(light: &LightSettings, camera: &Camera, point: DVec3) -> DVec3 {
+    let world = light.resolve(camera);
     match light.kind {
-        LightKind::Parallel => world.direction(),
-        LightKind::Perspective => (DVec3::from(world.position) - point).normalize_or(DVec3::Z),
+        LightGeometry::Parallel => world.direction(),
+        LightGeometry::Perspective => (DVec3::from(world.position) - point).normalize_or(DVec3::Z),
     }
 }
 
-/// Lines from the point to the lights: as strong as what arrives.
-fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Probe) {
+/// Paints lines from the probed point to the lights, with an opacity that follows the share that arrives.
+fn paint_light_rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Probe) {
     let camera = &settings.camera;
-    let Some(from) = place(camera, picture, found.point) else { return };
+    let Some(from) = project(camera, picture, found.point) else { return };
     for (light, arrival) in settings.lights.iter().zip(&found.lights).filter(|(light, _)| light.on) {
-        let world = light.in_scene(camera);
+        let world = light.resolve(camera);
         let to = match light.kind {
-            LightKind::Parallel => found.point + world.direction() * 2.0,
-            LightKind::Perspective => DVec3::from(world.position),
+            LightGeometry::Parallel => found.point + world.direction() * 2.0,
+            LightGeometry::Perspective => DVec3::from(world.position),
         };
-        let Some(to) = place(camera, picture, to) else { continue };
-        // Where the light is lost.
+        let Some(to) = project(camera, picture, to) else { continue };
+        // Section of the ray in which the light is absorbed.
         if let Some([near, far]) = arrival.blocked {
-            let towards = towards(light, camera, found.point);
+            let towards = direction_to_light(light, camera, found.point);
             let [Some(near), Some(far)] =
-                [near, far].map(|distance| place(camera, picture, found.point + towards * distance))
+                [near, far].map(|distance| project(camera, picture, found.point + towards * distance))
             else {
                 continue;
             };
@@ -280,7 +284,7 @@ fn rays(painter: &egui::Painter, picture: Rect, settings: &Settings, found: &Pro
     painter.circle(from, 3.5, theme::ACCENT, Stroke::new(1.5, theme::OUTLINE));
 }
 
-fn place(camera: &Camera, picture: Rect, point: DVec3) -> Option<Pos2> {
+fn project(camera: &Camera, picture: Rect, point: DVec3) -> Option<Pos2> {
     let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
     let (x, y, _) = camera.pixel_from_scene(point, width, height)?;
     Some(picture.min + vec2(x as f32, y as f32))
@@ -302,14 +306,15 @@ mod tests {
         let samples = Samples::U8((0..N.pow(3)).map(value).collect());
         let volume = Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap();
         let mut settings = Settings::default();
-        let named =
-            |number, name: &str| (number, LabelLook { name: name.to_owned(), ..LabelLook::of(number) });
+        let named = |number, name: &str| {
+            (number, LabelLook { name: name.to_owned(), ..LabelLook::default_for(number) })
+        };
         settings.labels = [named(3, "Liver"), named(9, "")].into_iter().collect();
-        // From the side of the low numbers, and from the other.
+        // Probed from the side of the low numbers, and from the opposite one.
         let said = |settings: &Settings, from: f64| {
             let found =
                 probe(&volume, settings, DVec3::X * from, DVec3::X * -from.signum()).expect("a label");
-            label(settings, &volume, &found)
+            label_text(settings, &volume, &found)
         };
         assert_eq!(said(&settings, -3.0).as_deref(), Some("Label 3: Liver"));
         assert_eq!(said(&settings, 3.0).as_deref(), Some("Label 9"));
@@ -323,19 +328,19 @@ mod tests {
             lights: Vec::new(),
             sky: None,
         };
-        assert_eq!(label(&Settings::default(), &grey, &found), None);
+        assert_eq!(label_text(&Settings::default(), &grey, &found), None);
     }
 
     #[test]
     fn every_darkness_has_its_reason() {
-        let lit = Arrival { transmittance: 0.37, hood: 1.0, facing: Some(0.5), blocked: None };
-        let key = Light::default();
-        assert_eq!(reason(&key, &lit), "37 % arrives, at 30° to the surface");
-        assert_eq!(reason(&Light { on: false, ..key.clone() }, &lit), "off");
-        assert_eq!(reason(&key, &Arrival { hood: 0.0, ..lit }), "outside its spotlight cone");
-        assert!(reason(&key, &Arrival { facing: Some(-0.2), ..lit }).contains("faces away"));
-        assert!(reason(&key, &Arrival { transmittance: 1e-4, ..lit }).contains("in its way"));
-        let fill = Light { casts_shadows: false, ..key };
-        assert!(reason(&fill, &Arrival { facing: None, ..lit }).contains("no shadows"));
+        let lit = LightArrival { transmittance: 0.37, hood: 1.0, facing: Some(0.5), blocked: None };
+        let key = LightSettings::default();
+        assert_eq!(light_explanation(&key, &lit), "37 % arrives, at 30° to the surface");
+        assert_eq!(light_explanation(&LightSettings { on: false, ..key.clone() }, &lit), "off");
+        assert_eq!(light_explanation(&key, &LightArrival { hood: 0.0, ..lit }), "outside its spotlight cone");
+        assert!(light_explanation(&key, &LightArrival { facing: Some(-0.2), ..lit }).contains("faces away"));
+        assert!(light_explanation(&key, &LightArrival { transmittance: 1e-4, ..lit }).contains("in its way"));
+        let fill = LightSettings { casts_shadows: false, ..key };
+        assert!(light_explanation(&fill, &LightArrival { facing: None, ..lit }).contains("no shadows"));
     }
 }

@@ -1,10 +1,10 @@
-//! Overlay over the picture: the volume's box, a scale bar, and a cube that says from where one looks. They are
-//! painted by the window and are therefore never in an export; while one is asked for, its own marks take their place.
+//! Overlay over the picture: the volume's box, a scale bar, and an orientation cube. The window paints it, so it
+//! never appears in an export; while an export is being prepared, the marks of the export replace it.
 
-pub(in crate::app) mod ct_looks;
-pub(in crate::app) mod export_marks;
-mod outlined;
-pub(in crate::app) mod side_letters;
+pub(crate) mod ct_preset_row;
+pub(crate) mod export_marks_preview;
+pub(crate) mod orientation_letters;
+mod outlined_text;
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
@@ -12,32 +12,32 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-use self::outlined::outlined;
+use self::outlined_text::paint_outlined_text;
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
-use crate::export::{SIDES, scale_bar as bar_for, sides};
+use crate::export::{SCENE_SIDES, orientation_letters, scale_bar as bar_for};
 use crate::math::SceneSpace;
 use crate::model::{Camera, StandardView};
 
-/// Edge of the cube in points, before it is turned.
-const CUBE: f32 = 44.0;
+/// Edge length of the unrotated cube, in points.
+const CUBE_EDGE: f32 = 44.0;
 
-/// Whether the overlay is shown.
+/// Visibility of the overlay.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Overlay {
-    /// All of it is shown, or nothing.
-    pub on: bool,
+pub(crate) struct ViewportOverlay {
+    /// True if the overlay is shown, false to hide all of it.
+    pub visible: bool,
 }
 
-impl Default for Overlay {
+impl Default for ViewportOverlay {
     fn default() -> Self {
-        Self { on: true }
+        Self { visible: true }
     }
 }
 
-impl Overlay {
-    /// Paints scale bar, cube, and in a part of the picture which side of a body is where, if it is one. The side of the
-    /// cube that was clicked, if one was.
+impl ViewportOverlay {
+    /// Paints the scale bar and the orientation cube, and for anatomical data the orientation letters into `body`, a
+    /// part of the picture. Returns the view of the cube's face that was clicked, if any.
     pub(crate) fn show(
         self,
         ui: &Ui,
@@ -46,20 +46,32 @@ impl Overlay {
         (scene, has_unknown_scale): (&SceneSpace, bool),
         body: Option<Rect>,
     ) -> Option<StandardView> {
-        if !self.on || picture.width() < 4.0 * CUBE || picture.height() < 4.0 * CUBE {
+        if !self.visible || picture.width() < 4.0 * CUBE_EDGE || picture.height() < 4.0 * CUBE_EDGE {
             return None;
         }
         let painter = ui.painter_at(picture);
         scale_bar(&painter, picture, camera, (scene, has_unknown_scale));
         if let Some(part) = body {
-            side_letters::write(&painter, part, sides(camera), side_letters::MARGIN);
+            orientation_letters::paint_orientation_letters(
+                &painter,
+                part,
+                orientation_letters(camera),
+                orientation_letters::MARGIN,
+            );
         }
-        cube(ui, &painter, picture, camera, body.is_some())
+        show_orientation_cube(ui, &painter, picture, camera, body.is_some())
     }
 
-    /// The box of the grid, while something is dragged or the pointer asks for it.
-    pub(crate) fn outline(self, ui: &Ui, picture: Rect, camera: &Camera, scene: &SceneSpace, strength: f32) {
-        if !self.on || strength <= 0.0 {
+    /// Paints the grid's bounding box while something is being dragged or the pointer requests it.
+    pub(crate) fn show_bounding_box(
+        self,
+        ui: &Ui,
+        picture: Rect,
+        camera: &Camera,
+        scene: &SceneSpace,
+        strength: f32,
+    ) {
+        if !self.visible || strength <= 0.0 {
             return;
         }
         let painter = ui.painter_at(picture);
@@ -68,7 +80,7 @@ impl Overlay {
         let corner = |at: usize| {
             let side = |axis: usize| if at >> axis & 1 == 0 { -0.5 } else { dims[axis] - 0.5 };
             let point = scene.scene_from_index.transform_point3(DVec3::new(side(0), side(1), side(2)));
-            view_projection.point(point)
+            view_projection.project(point)
         };
         let stroke = Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.45 * strength));
         for from in 0..8_usize {
@@ -84,7 +96,7 @@ impl Overlay {
     }
 }
 
-/// A bar at the bottom left whose length holds at the middle of the view.
+/// Paints a scale bar at the bottom left; its length is exact at the depth of the view's target.
 fn scale_bar(
     painter: &Painter,
     picture: Rect,
@@ -97,7 +109,7 @@ fn scale_bar(
     let length = (bar.length_mm / mm_per_point) as f32;
     let left = pos2(picture.left() + 16.0, picture.bottom() - 16.0);
     let right = left + vec2(length, 0.0);
-    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::EYE_CURVE)] {
+    for (width, ink) in [(4.0, theme::OUTLINE), (1.5, theme::PICTURE_TEXT)] {
         let stroke = Stroke::new(width, ink);
         painter.line_segment([left, right], stroke);
         for end in [left, right] {
@@ -105,26 +117,26 @@ fn scale_bar(
         }
     }
     let middle = left + vec2(length / 2.0, -6.0);
-    outlined(painter, middle, Align2::CENTER_BOTTOM, &bar.words);
+    paint_outlined_text(painter, middle, Align2::CENTER_BOTTOM, &bar.label);
 }
 
-/// The cube at the top right: its sides can be clicked.
-fn cube(
+/// Paints the orientation cube at the top right; its faces can be clicked.
+fn show_orientation_cube(
     ui: &Ui,
     painter: &Painter,
     picture: Rect,
     camera: &Camera,
     is_anatomical: bool,
 ) -> Option<StandardView> {
-    let middle = pos2(picture.right() - 1.1 * CUBE, picture.top() + 1.1 * CUBE);
+    let middle = pos2(picture.right() - 1.1 * CUBE_EDGE, picture.top() + 1.1 * CUBE_EDGE);
     let view = camera.scene_from_view();
     let seen = |point: DVec3| {
         let local = view.transpose() * point;
-        middle + vec2(local.x as f32, -local.y as f32) * (CUBE / 2.0)
+        middle + vec2(local.x as f32, -local.y as f32) * (CUBE_EDGE / 2.0)
     };
     let mut clicked = None;
     let pointer = ui.ctx().pointer_hover_pos();
-    for (normal, names) in SIDES {
+    for (normal, names) in SCENE_SIDES {
         let name = names[usize::from(is_anatomical)];
         let facing = view.z_axis.dot(normal);
         if facing <= 0.02 {
@@ -134,8 +146,8 @@ fn cube(
         let corners = [a + b, b - a, -a - b, a - b].map(|corner| seen(normal + corner));
         let area = Rect::from_points(&corners);
         let hovered = pointer.is_some_and(|pointer| contains(&corners, pointer));
-        let view = StandardView::facing(normal, camera.up);
-        // The side that is under the pointer takes the clicks of its whole box.
+        let view = StandardView::nearest_side(normal, camera.up);
+        // The face under the pointer receives the clicks of its bounding box.
         if hovered {
             let response = ui.interact(area, ui.scope_id().with(("cube", name)), Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, view.name(camera.up)));
@@ -152,7 +164,7 @@ fn cube(
         };
         painter.add(Shape::convex_polygon(
             corners.to_vec(),
-            over(theme::OUTLINE, fill),
+            composite_over(theme::OUTLINE, fill),
             Stroke::new(1.0, theme::GUIDE.gamma_multiply(0.6)),
         ));
         if facing > 0.35 {
@@ -161,15 +173,15 @@ fn cube(
                 Align2::CENTER_CENTER,
                 name,
                 FontId::proportional(12.0),
-                theme::EYE_CURVE.gamma_multiply(facing.sqrt() as f32),
+                theme::PICTURE_TEXT.gamma_multiply(facing.sqrt() as f32),
             );
         }
     }
     clicked
 }
 
-/// An opaque colour: one over another.
-fn over(below: Color32, ink: Color32) -> Color32 {
+/// Composites a translucent colour over an opaque one.
+fn composite_over(below: Color32, ink: Color32) -> Color32 {
     let blend = |a: u8, b: u8| (f32::from(a) * (1.0 - f32::from(ink.a()) / 255.0)).round() as u8 + b;
     let [r, g, b, _] = below.to_array();
     Color32::from_rgb(
@@ -179,7 +191,7 @@ fn over(below: Color32, ink: Color32) -> Color32 {
     )
 }
 
-/// Whether a convex polygon holds a point.
+/// Returns true if a convex polygon contains a point.
 fn contains(corners: &[Pos2; 4], point: Pos2) -> bool {
     let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
     let side = |at: usize| cross(corners[(at + 1) % 4] - corners[at], point - corners[at]);

@@ -1,7 +1,7 @@
-//! A contact sheet: looks that are tried on the open volume. Whole ones, lights (rigs, and places for the selected
-//! light, all of them or the best), or the library's presets.
+//! Contact sheet: looks tried on the open volume as small pictures. Whole looks, lights (rigs and positions for the
+//! selected light, all of them or the best), or the library's presets.
 
-mod sheet;
+mod candidates;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,128 +9,128 @@ use std::sync::mpsc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
 
-use self::sheet::{Candidate, SIZE, Tried};
-use super::export::Subject;
-use crate::app::common::commands::Command;
-use crate::app::common::dock::Tool;
+use self::candidates::{LookCandidate, PICTURE_SIZE, RenderedCandidate};
+use super::export::ExportScene;
+use crate::app::common::commands::AppCommand;
+use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::worker::task::Work;
+use crate::app::worker::background_task::BackgroundTask;
 use crate::model::Settings;
 
-pub(in crate::app) use self::sheet::{SIZE as SMALL, Sheet, small_picture};
+pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
 
-/// Points that the window has above the pictures and below them: its default place, its title, the row of buttons, and
+/// Height above and below the pictures, in points: default position of the window, its title, the row of buttons, and
 /// margins.
-const AROUND: f32 = 170.0;
-/// Points of the lowest sheet: a picture with its name.
-const LEAST_HEIGHT: f32 = 150.0;
+const CHROME_HEIGHT: f32 = 170.0;
+/// Smallest height of the sheet, in points: one picture with its name.
+const MIN_HEIGHT: f32 = 150.0;
 
-/// Pictures side by side, before somebody makes the window wider or narrower.
+/// Number of columns before the user resizes the window.
 const COLUMNS: usize = 4;
-/// The most of them: as many as the largest sheets have.
-const MOST_COLUMNS: usize = 12;
+/// Largest number of columns: that of the largest sheets.
+const MAX_COLUMNS: usize = 12;
 
-/// Points between pictures.
-const GAP: f32 = 8.0;
-/// Widths of pictures as shares of that which they were made for: from where they are still told apart to where they are
-/// blurred.
-const WIDTHS: std::ops::RangeInclusive<f32> = 0.65..=1.35;
+/// Gap between pictures, in points.
+const TILE_GAP: f32 = 8.0;
+/// Range of picture widths relative to their rendered width: from where they can still be told apart to where they
+/// look blurred.
+const RELATIVE_WIDTHS: std::ops::RangeInclusive<f32> = 0.65..=1.35;
 
-/// How pictures lie side by side.
+/// Grid layout of the pictures in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Tiles {
+struct TileLayout {
     columns: usize,
-    /// Points of a picture.
+    /// Width of a picture, in points.
     width: f32,
 }
 
-impl Tiles {
-    /// As they fill a width, with as few places left empty in the last row as can be, and about as large as they were made.
-    fn within(room: f32, count: usize) -> Self {
-        let made = SIZE[0] as f32;
-        let width = |columns: usize| (room + GAP) / columns as f32 - GAP;
-        let fits = |columns: &usize| WIDTHS.contains(&(width(*columns) / made));
+impl TileLayout {
+    /// Layout that fills a width with the fewest empty places in the last row, at about the rendered size.
+    fn fit(room: f32, count: usize) -> Self {
+        let made = PICTURE_SIZE[0] as f32;
+        let width = |columns: usize| (room + TILE_GAP) / columns as f32 - TILE_GAP;
+        let fits = |columns: &usize| RELATIVE_WIDTHS.contains(&(width(*columns) / made));
         let empty = |columns: usize| if count < columns { 0 } else { (columns - count % columns) % columns };
         let off = |columns: usize| (width(columns) / made).ln().abs();
-        let best = (1..=MOST_COLUMNS)
+        let best = (1..=MAX_COLUMNS)
             .filter(fits)
             .min_by(|&a, &b| empty(a).cmp(&empty(b)).then(off(a).total_cmp(&off(b))));
         match best {
             Some(columns) => Self { columns, width: width(columns) },
-            // Narrower than one, or wider than all.
+            // Narrower than one picture, or wider than all.
             None if room < made => Self { columns: 1, width: room.max(1.0) },
-            None => Self { columns: MOST_COLUMNS, width: made },
+            None => Self { columns: MAX_COLUMNS, width: made },
         }
     }
 }
 
-/// A candidate and its small picture, on the GPU of the window.
-struct Print {
+/// Candidate look with its small picture, as a texture of the window.
+struct ContactPrint {
     name: String,
     tip: String,
-    command: Command,
+    command: AppCommand,
     texture: TextureHandle,
-    /// It is for data of this kind.
-    fits: bool,
+    /// True if the candidate suits the kind of data.
+    suits_data: bool,
 }
 
-/// A sheet whose pictures are being made.
-struct Trying {
-    work: Work<Result<(), String>>,
-    /// What has been tried, and how many there will be.
-    tried: mpsc::Receiver<(usize, Tried)>,
-    /// Whether pictures of a sheet before are still shown.
-    is_fresh: bool,
+/// Contact sheet in progress on a background thread.
+struct SheetTask {
+    work: BackgroundTask<Result<(), String>>,
+    /// Finished candidates, each with the total number of candidates.
+    results: mpsc::Receiver<(usize, RenderedCandidate)>,
+    /// True while the pictures of the previous sheet are still shown.
+    shows_previous: bool,
     count: usize,
-    sheet: Sheet,
-    /// What is tried on: the look, and the light that is selected.
-    of: (Settings, usize),
-    is_unwanted: Arc<AtomicBool>,
+    sheet: ContactSheetKind,
+    /// Look and selected light that the candidates are derived from.
+    base: (Settings, usize),
+    is_cancelled: Arc<AtomicBool>,
 }
 
-impl Trying {
-    /// It ends at its next picture, and nobody looks at what it has made.
+impl SheetTask {
+    /// Requests the task to end at its next picture; its further results are discarded.
     fn cancel(&self) {
-        self.is_unwanted.store(true, Ordering::Relaxed);
+        self.is_cancelled.store(true, Ordering::Relaxed);
     }
 
     fn is_cancelled(&self) -> bool {
-        self.is_unwanted.load(Ordering::Relaxed)
+        self.is_cancelled.load(Ordering::Relaxed)
     }
 }
 
-impl Drop for Trying {
+impl Drop for SheetTask {
     fn drop(&mut self) {
         self.cancel();
     }
 }
 
-/// The window.
+/// State of the contact sheet window.
 #[derive(Default)]
-pub(crate) struct ContactSheet {
-    /// Whether it is shown.
+pub(crate) struct ContactSheetWindow {
+    /// True while the window is shown.
     open: bool,
-    /// What it shows.
-    sheet: Sheet,
-    /// Whether pictures are to be made as soon as that is possible.
+    /// Kind of sheet that the window shows.
+    sheet: ContactSheetKind,
+    /// True if pictures are to be made as soon as possible.
     is_due: bool,
-    /// One at a time: each takes a device of its own.
-    trying: Option<Trying>,
-    prints: Vec<Print>,
-    /// What was taken last.
+    /// Sheet in progress; one at a time, because each opens a device of its own.
+    task: Option<SheetTask>,
+    prints: Vec<ContactPrint>,
+    /// Name of the candidate that was chosen last.
     chosen: Option<String>,
 }
 
-impl std::fmt::Debug for ContactSheet {
+impl std::fmt::Debug for ContactSheetWindow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("ContactSheet").field("open", &self.open).finish_non_exhaustive()
     }
 }
 
-impl ContactSheet {
-    /// Opens the window and asks for pictures.
-    pub(crate) fn open(&mut self, sheet: Sheet) {
+impl ContactSheetWindow {
+    /// Opens the window and requests pictures.
+    pub(crate) fn open(&mut self, sheet: ContactSheetKind) {
         if self.sheet != sheet {
             self.prints.clear();
         }
@@ -138,35 +138,35 @@ impl ContactSheet {
         (self.open, self.is_due, self.sheet) = (true, true, sheet);
     }
 
-    /// Closes the window and forgets what it shows: the volume has been replaced.
-    pub(crate) fn forget(&mut self) {
+    /// Closes the window and discards its pictures, because the volume has been replaced.
+    pub(crate) fn discard(&mut self) {
         self.prints.clear();
         (self.open, self.is_due) = (false, false);
         self.cancel();
     }
 
-    /// Whether pictures are to be made.
-    pub(crate) fn is_due(&self) -> bool {
+    /// Returns true if pictures are to be made.
+    pub(crate) fn needs_start(&self) -> bool {
         self.is_due
     }
 
-    /// What is being made is not wanted any more.
+    /// Cancels the sheet in progress, if any.
     fn cancel(&self) {
-        if let Some(trying) = &self.trying {
+        if let Some(trying) = &self.task {
             trying.cancel();
         }
     }
 
-    /// Starts to make the pictures, or goes on where the same are being made. Others end first, so that a key that is
-    /// held starts one thread and not many. Without a subject there is nothing to try on.
-    pub(crate) fn start(&mut self, subject: Option<Subject>, ctx: &egui::Context) -> Result<(), String> {
+    /// Starts to render the pictures, or continues if the same ones are in progress. Another sheet in progress ends
+    /// first, so that a held key starts one thread and not many. Without a subject nothing is started.
+    pub(crate) fn start(&mut self, subject: Option<ExportScene>, ctx: &egui::Context) -> Result<(), String> {
         let Some(subject) = subject else {
             self.is_due = false;
             return Ok(());
         };
         let (sheet, of) = (self.sheet, (subject.settings.clone(), subject.selected_light));
-        if let Some(trying) = &self.trying {
-            if trying.sheet == sheet && trying.of == of && !trying.is_cancelled() {
+        if let Some(trying) = &self.task {
+            if trying.sheet == sheet && trying.base == of && !trying.is_cancelled() {
                 self.is_due = false;
             } else {
                 trying.cancel();
@@ -175,80 +175,89 @@ impl ContactSheet {
         }
         self.is_due = false;
         let is_unwanted = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&is_unwanted);
+        let cancel_flag = Arc::clone(&is_unwanted);
         let (sender, tried) = mpsc::channel();
         let wake = ctx.clone();
         let task = move || {
-            let hand_on = |count: usize, of: Tried| {
-                // Nobody looks any more when the receiver is gone.
+            let hand_on = |count: usize, of: RenderedCandidate| {
+                // The receiver may be gone; the result is then dropped.
                 drop(sender.send((count, of)));
                 wake.request_repaint();
             };
-            sheet.try_all(&subject, &asked, &hand_on)
+            sheet.render_candidates(&subject, &cancel_flag, &hand_on)
         };
-        let work = Work::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
-        self.trying = Some(Trying { work, tried, is_fresh: true, count: 0, sheet, of, is_unwanted });
+        let work =
+            BackgroundTask::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
+        self.task = Some(SheetTask {
+            work,
+            results: tried,
+            shows_previous: true,
+            count: 0,
+            sheet,
+            base: of,
+            is_cancelled: is_unwanted,
+        });
         Ok(())
     }
 
-    /// Takes what has been made, unless nobody wants it any more.
-    fn take(&mut self, ctx: &egui::Context) -> Result<(), String> {
-        let Some(trying) = &mut self.trying else { return Ok(()) };
-        // Asked before what was handed on is taken: nothing comes after the end.
-        let result = trying.work.take();
-        for (count, (look, picture)) in trying.tried.try_iter() {
-            if trying.is_unwanted.load(Ordering::Relaxed) {
+    /// Collects the finished pictures, unless the sheet was cancelled.
+    fn collect(&mut self, ctx: &egui::Context) -> Result<(), String> {
+        let Some(trying) = &mut self.task else { return Ok(()) };
+        // Queried before the channel is drained: nothing is sent after the end of the task.
+        let result = trying.work.take_result();
+        for (count, (look, picture)) in trying.results.try_iter() {
+            if trying.is_cancelled.load(Ordering::Relaxed) {
                 continue;
             }
-            if std::mem::take(&mut trying.is_fresh) {
+            if std::mem::take(&mut trying.shows_previous) {
                 self.prints.clear();
             }
             trying.count = count;
-            self.prints.push(print(ctx, look, picture));
+            self.prints.push(upload_candidate(ctx, look, picture));
         }
         let Some(result) = result else { return Ok(()) };
-        let is_unwanted = self.trying.take().is_none_or(|trying| trying.is_cancelled());
+        let is_unwanted = self.task.take().is_none_or(|trying| trying.is_cancelled());
         if is_unwanted { Ok(()) } else { result.and_then(|result| result) }
     }
 
-    /// Shows the window, and adds what was chosen. An error says why there are no pictures.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) -> Result<(), String> {
-        let outcome = self.take(ctx);
+    /// Shows the window, and adds the command of the chosen look. An error says why there are no pictures.
+    pub(crate) fn ui(&mut self, ctx: &egui::Context, commands: &mut Vec<AppCommand>) -> Result<(), String> {
+        let outcome = self.collect(ctx);
         let mut open = self.open;
-        let default_width = COLUMNS as f32 * (SIZE[0] as f32 + GAP);
-        let tool = Tool { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
+        let default_width = COLUMNS as f32 * (PICTURE_SIZE[0] as f32 + TILE_GAP);
+        let tool = ToolWindow { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
-                if self.trying.is_some() || self.is_due {
+                if self.task.is_some() || self.is_due {
                     ui.spinner();
                     let (done, count) = self
-                        .trying
+                        .task
                         .as_ref()
-                        .filter(|trying| !trying.is_fresh)
+                        .filter(|trying| !trying.shows_previous)
                         .map_or((0, 0), |trying| (self.prints.len(), trying.count));
-                    ui.label(text::contact_sheet::trying(done, count));
+                    ui.label(text::contact_sheet::progress(done, count));
                 } else if ui.button(text::contact_sheet::AGAIN).clicked() {
                     self.is_due = true;
                 }
                 ui.add_space(theme::HANDLE_RADIUS);
-                ui.weak(text::contact_sheet::QUALITY);
+                ui.weak(text::contact_sheet::CLICK_HINT);
             });
-            // Low windows have bars instead of a sheet that hangs over.
-            let most = (ctx.content_rect().height() - AROUND).max(LEAST_HEIGHT);
+            // In a low window the sheet scrolls instead of overflowing.
+            let most = (ctx.content_rect().height() - CHROME_HEIGHT).max(MIN_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
-                let count = self.trying.as_ref().map_or(0, |trying| trying.count).max(self.prints.len());
-                let Tiles { columns, width } = Tiles::within(ui.available_width(), count);
-                let size = vec2(width, width * SIZE[1] as f32 / SIZE[0] as f32);
-                egui::Grid::new("contact sheet").spacing([GAP, GAP]).show(ui, |ui| {
+                let count = self.task.as_ref().map_or(0, |trying| trying.count).max(self.prints.len());
+                let TileLayout { columns, width } = TileLayout::fit(ui.available_width(), count);
+                let size = vec2(width, width * PICTURE_SIZE[1] as f32 / PICTURE_SIZE[0] as f32);
+                egui::Grid::new("contact sheet").spacing([TILE_GAP, TILE_GAP]).show(ui, |ui| {
                     for (at, tried) in self.prints.iter().enumerate() {
                         if at > 0 && at % columns == 0 {
                             ui.end_row();
                         }
                         ui.vertical(|ui| {
                             let image = egui::Image::new((tried.texture.id(), size));
-                            // What is for other data is there, and no more.
-                            let tint = if tried.fits {
+                            // Candidates for other kinds of data are dimmed.
+                            let tint = if tried.suits_data {
                                 egui::Color32::WHITE
                             } else {
                                 egui::Color32::from_gray(0x60)
@@ -280,80 +289,80 @@ impl ContactSheet {
     }
 }
 
-fn print(ctx: &egui::Context, look: Candidate, picture: ColorImage) -> Print {
-    let Candidate { name, tip, command, settings: _, fits } = look;
+fn upload_candidate(ctx: &egui::Context, look: LookCandidate, picture: ColorImage) -> ContactPrint {
+    let LookCandidate { name, tip, command, settings: _, suits_data: fits } = look;
     let texture = ctx.load_texture(format!("contact sheet {name}"), picture, TextureOptions::LINEAR);
-    Print { name, tip, command, texture, fits }
+    ContactPrint { name, tip, command, texture, suits_data: fits }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::{Dataset, synthetic::builtin};
-    use crate::gpu::Context;
+    use crate::gpu::GpuContext;
 
-    /// The flag of the thread that makes pictures, if one does.
-    fn flag(sheet: &ContactSheet) -> Option<Arc<AtomicBool>> {
-        sheet.trying.as_ref().map(|trying| Arc::clone(&trying.is_unwanted))
+    /// Cancel flag of the running thread, if there is one.
+    fn cancel_flag(sheet: &ContactSheetWindow) -> Option<Arc<AtomicBool>> {
+        sheet.task.as_ref().map(|trying| Arc::clone(&trying.is_cancelled))
     }
 
     #[test]
     fn pictures_fill_their_window() {
-        let tiles = |room: f32, count: usize| Tiles::within(room, count);
+        let tiles = |room: f32, count: usize| TileLayout::fit(room, count);
         for room in 132..2000 {
             for count in [1, 3, 4, 10, 12, 22] {
-                let Tiles { columns, width } = tiles(room as f32, count);
-                let taken = columns as f32 * (width + GAP) - GAP;
+                let TileLayout { columns, width } = tiles(room as f32, count);
+                let taken = columns as f32 * (width + TILE_GAP) - TILE_GAP;
                 assert!((taken - room as f32).abs() < 1e-2, "{count} in {room}: {columns} × {width}");
-                assert!((width / SIZE[0] as f32) < 1.36, "{count} in {room}: {width}");
+                assert!((width / PICTURE_SIZE[0] as f32) < 1.36, "{count} in {room}: {width}");
             }
         }
-        // Ten pictures in a window that has room for almost four: none stands alone.
+        // Ten pictures in a window that almost fits four columns: no picture is alone in a row.
         assert_eq!(tiles(720.0, 10).columns, 5);
         assert_eq!(tiles(728.0, 12).columns, 4);
-        assert_eq!(tiles(100.0, 10), Tiles { columns: 1, width: 100.0 });
+        assert_eq!(tiles(100.0, 10), TileLayout { columns: 1, width: 100.0 });
     }
 
     #[test]
     fn one_thread_tries_at_a_time() {
         let ctx = egui::Context::default();
-        let subject = Subject {
-            context: Context::headless().expect("an adapter"),
+        let subject = ExportScene {
+            context: GpuContext::headless().expect("an adapter"),
             dataset: Dataset::new(builtin("sphere", Some(8)).expect("a volume")),
             settings: Settings::default(),
-            first: Settings::default(),
+            first_look: Settings::default(),
             source: "builtin:sphere:8".into(),
             selected_light: 0,
             outline: None,
         };
-        let mut sheet = ContactSheet::default();
-        let ask = |sheet: &mut ContactSheet, subject: Option<&Subject>| {
-            sheet.open(Sheet::Lights);
+        let mut sheet = ContactSheetWindow::default();
+        let ask = |sheet: &mut ContactSheetWindow, subject: Option<&ExportScene>| {
+            sheet.open(ContactSheetKind::Lights);
             sheet.start(subject.cloned(), &ctx).expect("a thread");
-            flag(sheet)
+            cancel_flag(sheet)
         };
-        assert!(ask(&mut sheet, None).is_none() && !sheet.is_due(), "nothing to try on");
+        assert!(ask(&mut sheet, None).is_none() && !sheet.needs_start(), "nothing to try on");
         let first = ask(&mut sheet, Some(&subject)).expect("a thread");
         for _ in 0..5 {
             let again = ask(&mut sheet, Some(&subject)).expect("a thread");
-            assert!(Arc::ptr_eq(&first, &again) && !sheet.is_due(), "it is on its way");
+            assert!(Arc::ptr_eq(&first, &again) && !sheet.needs_start(), "it is on its way");
         }
         assert!(!first.load(Ordering::Relaxed));
-        // Something else is wanted: the first one ends, and only then there is another.
-        let other = Subject { selected_light: 1, ..subject };
+        // For another subject the first task ends before the second starts.
+        let other = ExportScene { selected_light: 1, ..subject };
         let still = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.is_due());
-        while sheet.trying.is_some() {
-            sheet.take(&ctx).expect("no error");
+        assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.needs_start());
+        while sheet.task.is_some() {
+            sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
         assert!(sheet.prints.is_empty(), "of what nobody wants");
         let second = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(!second.load(Ordering::Relaxed) && !sheet.is_due());
-        sheet.forget();
+        assert!(!second.load(Ordering::Relaxed) && !sheet.needs_start());
+        sheet.discard();
         assert!(second.load(Ordering::Relaxed) && !sheet.open);
-        while sheet.trying.is_some() {
-            sheet.take(&ctx).expect("no error");
+        while sheet.task.is_some() {
+            sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
     }

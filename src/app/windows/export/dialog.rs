@@ -1,105 +1,109 @@
-//! The export window: what is made, how large and how fine, and into which file.
+//! Export window: kind of export, size, samples, format, marks and file.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use eframe::egui::{self, Ui};
 
-use super::{Export, Kind, Request, destination};
-use crate::app::common::dock::Tool;
+use super::{ExportKind, ExportRequest, ExportWindow, destination};
+use crate::app::common::dock::ToolWindow;
 use crate::app::common::shortcuts;
-use crate::app::text::{self, Named};
+use crate::app::text::{self, ControlText};
 use crate::export::{AnimationFormat, PictureFormat, frame_names};
-use crate::model::{Depth, MAX_EDGE, MAX_SAMPLES, Marks};
+use crate::model::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
-const KINDS: [(Kind, Named); 3] = [
-    (Kind::Still, text::export::STILL),
-    (Kind::Turntable, text::export::TURNTABLE),
-    (Kind::LightTurn, text::export::LIGHT_TURN),
+const EXPORT_KINDS: [(ExportKind, ControlText); 3] = [
+    (ExportKind::Still, text::export::STILL),
+    (ExportKind::Turntable, text::export::TURNTABLE),
+    (ExportKind::LightTurntable, text::export::LIGHT_TURN),
 ];
 
-/// Files for a picture, and their ending.
-const STILLS: [(Depth, Named, &str); 3] = [
-    (Depth::Eight, text::export::PNG, "png"),
-    (Depth::Sixteen, text::export::PNG_16, "png"),
-    (Depth::Linear, text::export::EXR, "exr"),
+/// File formats of a picture, with their extensions.
+const STILL_FORMATS: [(PixelFormat, ControlText, &str); 3] = [
+    (PixelFormat::Eight, text::export::PNG, "png"),
+    (PixelFormat::Sixteen, text::export::PNG_16, "png"),
+    (PixelFormat::Linear, text::export::EXR, "exr"),
 ];
 
-/// Files for a turn, and their ending.
-const TURNS: [(AnimationFormat, Named, &str); 4] = [
+/// File formats of an animation, with their extensions.
+const ANIMATION_FORMATS: [(AnimationFormat, ControlText, &str); 4] = [
     (AnimationFormat::Apng, text::export::APNG, "png"),
     (AnimationFormat::Gif, text::export::GIF, "gif"),
     (AnimationFormat::Mp4, text::export::MP4, "mp4"),
     (AnimationFormat::Folder, text::export::FOLDER, ""),
 ];
 
-/// All endings of files that are written.
-const ENDINGS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
+/// Extensions of all files that can be written.
+const EXTENSIONS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
 
-impl Export {
-    /// Shows the window if it is open.
+impl ExportWindow {
+    /// Shows the window if it is open, and returns the user's request.
     ///
-    /// `is_anatomical`: the volume says which side of a body is where.
-    pub(in crate::app) fn ui(
+    /// `is_anatomical`: the volume has anatomical directions.
+    pub(crate) fn ui(
         &mut self,
         ctx: &egui::Context,
         viewport: [u32; 2],
         is_anatomical: bool,
-    ) -> Option<Request> {
+    ) -> Option<ExportRequest> {
         let mut request = None;
         let mut open = self.open;
-        let tool = Tool { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
+        let tool =
+            ToolWindow { title: text::export::TITLE, default_pos: [160.0, 90.0], default_width: 440.0 };
         if open && tool.is_floating_dialog(ctx) {
             shortcuts::reserve_letters(ctx);
         }
         tool.show_dialog(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
-                for (kind, Named { name, tip }) in KINDS {
+                for (kind, ControlText { name, tooltip: tip }) in EXPORT_KINDS {
                     if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
                         self.set_kind(kind);
                     }
                 }
             });
             self.size_ui(ui, viewport);
-            if self.kind == Kind::Still {
+            if self.kind == ExportKind::Still {
                 self.still_ui(ui);
             } else {
-                self.turn_ui(ui);
+                self.turntable_ui(ui);
             }
-            let fits = self.kind == Kind::Still || self.animation() != AnimationFormat::Mp4;
-            let mut left_out = self.shot.transparent && fits;
+            let fits = self.kind == ExportKind::Still || self.animation_format() != AnimationFormat::Mp4;
+            let mut left_out = self.image_spec.transparent && fits;
             let switch = egui::Checkbox::new(&mut left_out, text::export::TRANSPARENT.name);
-            let response = ui.add_enabled(fits, switch).on_hover_text(text::export::TRANSPARENT.tip);
+            let response = ui.add_enabled(fits, switch).on_hover_text(text::export::TRANSPARENT.tooltip);
             if response.on_disabled_hover_text(text::export::NOT_TRANSPARENT_TIP).changed() {
-                self.shot.transparent = left_out;
+                self.image_spec.transparent = left_out;
             }
             self.marks_ui(ui, is_anatomical);
             ui.horizontal(|ui| {
                 let label = ui.label(text::export::FILE);
                 let field = egui::TextEdit::singleline(&mut self.path).desired_width(320.0);
                 if ui.add(field).labelled_by(label.id).changed() {
-                    self.is_named = true;
-                    self.follow_name();
+                    self.has_user_name = true;
+                    self.adapt_depth_to_name();
                 }
                 if ui.button(text::export::CHOOSE).clicked() {
-                    request = Some(Request::Choose);
+                    request = Some(ExportRequest::ChooseFile);
                 }
             });
             self.destination_ui(ui);
             ui.horizontal(|ui| {
                 let ready = !self.is_busy() && !self.path.trim().is_empty();
-                if ui.add_enabled(ready && !self.asks, egui::Button::new(text::export::EXPORT)).clicked() {
-                    self.asks = self.would_replace();
-                    request = (!self.asks).then_some(Request::Export);
+                if ui
+                    .add_enabled(ready && !self.asks_to_replace, egui::Button::new(text::export::EXPORT))
+                    .clicked()
+                {
+                    self.asks_to_replace = self.would_replace();
+                    request = (!self.asks_to_replace).then_some(ExportRequest::Export);
                 }
                 if self.is_busy() {
                     self.progress_ui(ui);
                 }
             });
-            if self.asks && self.question_ui(ui) {
-                request = Some(Request::Export);
+            if self.asks_to_replace && self.replace_question_ui(ui) {
+                request = Some(ExportRequest::Export);
             }
-            if let Some(asked) = self.last_ui(ui) {
+            if let Some(asked) = self.last_file_ui(ui) {
                 request = Some(asked);
             }
         });
@@ -107,44 +111,45 @@ impl Export {
         request
     }
 
-    /// What is written over the picture.
+    /// Row of switches for the marks drawn over the picture.
     fn marks_ui(&mut self, ui: &mut Ui, is_anatomical: bool) {
         ui.horizontal_wrapped(|ui| {
-            ui.label(text::export::MARKS);
-            let Marks { scale_bar, letters, legend } = &mut self.shot.marks;
-            ui.checkbox(scale_bar, text::export::SCALE_BAR.name).on_hover_text(text::export::SCALE_BAR.tip);
+            ui.label(text::export::ANNOTATIONS);
+            let Annotations { scale_bar, letters, legend } = &mut self.image_spec.marks;
+            ui.checkbox(scale_bar, text::export::SCALE_BAR.name)
+                .on_hover_text(text::export::SCALE_BAR.tooltip);
             let mut are_drawn = *letters && is_anatomical;
             let switch = egui::Checkbox::new(&mut are_drawn, text::export::LETTERS.name);
-            let response = ui.add_enabled(is_anatomical, switch).on_hover_text(text::export::LETTERS.tip);
+            let response = ui.add_enabled(is_anatomical, switch).on_hover_text(text::export::LETTERS.tooltip);
             if response.on_disabled_hover_text(text::export::NO_LETTERS_TIP).changed() {
                 *letters = are_drawn;
             }
-            ui.checkbox(legend, text::export::LEGEND.name).on_hover_text(text::export::LEGEND.tip);
+            ui.checkbox(legend, text::export::LEGEND.name).on_hover_text(text::export::LEGEND.tooltip);
         });
     }
 
-    /// Where the file goes, if the name does not say all of it.
+    /// Shows the absolute path of the file, if the typed one is relative.
     fn destination_ui(&self, ui: &mut Ui) {
-        let whole = destination::whole(&self.path);
-        if whole != Path::new(self.path.trim()) {
-            let words = text::export::goes_to(&whole);
+        let absolute = destination::absolute_path(&self.path);
+        if absolute != Path::new(self.path.trim()) {
+            let words = text::export::target_path(&absolute);
             ui.add(egui::Label::new(egui::RichText::new(&words).weak()).truncate()).on_hover_text(words);
         }
     }
 
-    /// What was written last, and how to get there.
-    fn last_ui(&self, ui: &mut Ui) -> Option<Request> {
-        let last = self.last.as_ref().filter(|_| !self.is_busy())?;
+    /// Shows the file that was written last, with buttons to open its folder and copy its path.
+    fn last_file_ui(&self, ui: &mut Ui) -> Option<ExportRequest> {
+        let last = self.last_file.as_ref().filter(|_| !self.is_busy())?;
         let mut request = None;
         ui.separator();
         ui.horizontal(|ui| {
             if ui.button(text::export::SHOW_IN_FOLDER).clicked()
                 && let Err(err) = destination::show_in_folder(last)
             {
-                request = Some(Request::NoFolder(err.to_string()));
+                request = Some(ExportRequest::FileManagerFailed(err.to_string()));
             }
             if ui.button(text::export::COPY_PATH).clicked() {
-                ui.ctx().copy_text(destination::whole(&last.to_string_lossy()).display().to_string());
+                ui.ctx().copy_text(destination::absolute_path(&last.to_string_lossy()).display().to_string());
             }
             let words = text::messages::exported(last);
             ui.add(egui::Label::new(egui::RichText::new(&words).weak()).truncate()).on_hover_text(words);
@@ -152,56 +157,58 @@ impl Export {
         request
     }
 
-    /// Whether there is a file of that name, which the user has not agreed to replace.
+    /// Returns true if the file exists and the user has not agreed to replace it.
     fn would_replace(&self) -> bool {
-        self.is_there() && self.agreed.as_deref() != Some(Path::new(self.path.trim()))
+        self.target_exists() && self.replaceable.as_deref() != Some(Path::new(self.path.trim()))
     }
 
-    /// Whether what is written has the name of something that is there: a file, or one of the pictures in a folder.
-    fn is_there(&self) -> bool {
+    /// Returns true if the export would overwrite a file: the target, or a picture in the target folder.
+    fn target_exists(&self) -> bool {
         let path = Path::new(self.path.trim());
-        let is_folder = self.kind != Kind::Still && self.animation() == AnimationFormat::Folder;
+        let is_folder = self.kind != ExportKind::Still && self.animation_format() == AnimationFormat::Folder;
         path.is_file() || is_folder && frame_names(path, self.frames).iter().any(|name| name.exists())
     }
 
-    /// Asks whether the file may be replaced; whether it may.
-    fn question_ui(&mut self, ui: &mut Ui) -> bool {
+    /// Asks whether the file may be replaced; returns true if the user agrees.
+    fn replace_question_ui(&mut self, ui: &mut Ui) -> bool {
         let path = PathBuf::from(self.path.trim());
-        // Another name was typed meanwhile.
-        self.asks = self.is_there();
+        // The name may have been edited meanwhile.
+        self.asks_to_replace = self.target_exists();
         let mut agreed = false;
         ui.horizontal(|ui| {
-            ui.label(text::files::is_there_already(&path));
+            ui.label(text::files::overwrite_question(&path));
             agreed = ui.button(text::files::REPLACE).clicked();
-            self.asks &= !agreed && !ui.button(text::common::CANCEL).clicked();
+            self.asks_to_replace &= !agreed && !ui.button(text::common::CANCEL).clicked();
         });
         agreed
     }
 
-    /// What a turn is written as.
-    pub(crate) fn animation(&self) -> AnimationFormat {
-        AnimationFormat::of_path(Path::new(self.path.trim()))
+    /// Format of an animation, by the extension of its path.
+    pub(crate) fn animation_format(&self) -> AnimationFormat {
+        AnimationFormat::from_path(Path::new(self.path.trim()))
     }
 
-    /// Turns and pictures are not written as the same kinds of files.
-    fn set_kind(&mut self, kind: Kind) {
-        if (self.kind == Kind::Still) != (kind == Kind::Still) {
-            self.set_ending("png");
+    /// Sets the kind of export; changes the extension if its file formats differ.
+    fn set_kind(&mut self, kind: ExportKind) {
+        if (self.kind == ExportKind::Still) != (kind == ExportKind::Still) {
+            self.set_extension("png");
         }
         self.kind = kind;
-        self.follow_name();
+        self.adapt_depth_to_name();
     }
 
-    /// What the name says of the depth holds.
-    pub(crate) fn follow_name(&mut self) {
-        self.shot.depth = PictureFormat::of_path(Path::new(self.path.trim())).depth(self.shot.depth);
+    /// Sets the bit depth to one that the file name's format allows.
+    pub(crate) fn adapt_depth_to_name(&mut self) {
+        self.image_spec.depth =
+            PictureFormat::from_path(Path::new(self.path.trim())).supported_depth(self.image_spec.depth);
     }
 
-    /// Gives the name an ending, instead of one of ours if it has one: what follows another dot is a part of it.
-    fn set_ending(&mut self, ending: &str) {
+    /// Replaces a known extension of the file name, or appends one; other text after a dot is part of the name.
+    fn set_extension(&mut self, ending: &str) {
         let path = Path::new(self.path.trim());
-        let known =
-            path.extension().is_some_and(|found| ENDINGS.iter().any(|own| found.eq_ignore_ascii_case(own)));
+        let known = path
+            .extension()
+            .is_some_and(|found| EXTENSIONS.iter().any(|own| found.eq_ignore_ascii_case(own)));
         let stem = if known { path.with_extension("") } else { path.to_owned() };
         self.path = stem.display().to_string();
         if !ending.is_empty() {
@@ -209,56 +216,61 @@ impl Export {
         }
     }
 
-    /// How fine a picture is, and what its file holds.
+    /// Rows for the samples per pixel of a picture, and its file format.
     fn still_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.label(text::export::SAMPLES.name);
-            for samples in 1..=MAX_SAMPLES {
+            for samples in 1..=MAX_SAMPLES_PER_EDGE {
                 let count = samples * samples;
-                let response = ui.selectable_label(self.shot.samples == samples, count.to_string());
-                let response = response.on_hover_text(text::export::SAMPLES.tip);
+                let response = ui.selectable_label(self.image_spec.samples == samples, count.to_string());
+                let response = response.on_hover_text(text::export::SAMPLES.tooltip);
                 response.widget_info(|| {
                     let label = text::export::samples(count);
-                    egui::WidgetInfo::selected(egui::Role::Button, true, samples == self.shot.samples, label)
+                    egui::WidgetInfo::selected(
+                        egui::Role::Button,
+                        true,
+                        samples == self.image_spec.samples,
+                        label,
+                    )
                 });
                 if response.clicked() {
-                    self.shot.samples = samples;
+                    self.image_spec.samples = samples;
                 }
             }
         });
         ui.horizontal(|ui| {
-            for (depth, Named { name, tip }, ending) in STILLS {
-                if ui.selectable_label(self.shot.depth == depth, name).on_hover_text(tip).clicked() {
-                    self.shot.depth = depth;
-                    self.set_ending(ending);
+            for (depth, ControlText { name, tooltip: tip }, ending) in STILL_FORMATS {
+                if ui.selectable_label(self.image_spec.depth == depth, name).on_hover_text(tip).clicked() {
+                    self.image_spec.depth = depth;
+                    self.set_extension(ending);
                 }
             }
         });
     }
 
-    /// How many pictures a turn has, how fast they go by, and what its file is.
-    fn turn_ui(&mut self, ui: &mut Ui) {
+    /// Rows for the number of frames of a turntable, its frame rate and its file format.
+    fn turntable_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let field = egui::DragValue::new(&mut self.frames)
                 .range(2..=3600)
                 .suffix(text::export::TURN_PICTURES_UNIT);
-            ui.name_inputs(text::export::TURN_PICTURES, |ui| ui.add(field));
+            ui.name_inputs(text::export::FRAMES, |ui| ui.add(field));
             let field = egui::DragValue::new(&mut self.rate).range(1..=120).suffix(text::export::RATE_UNIT);
             ui.name_inputs(text::export::RATE, |ui| ui.add(field));
             ui.weak(text::export::seconds(f64::from(self.frames) / f64::from(self.rate.max(1))));
         });
         ui.horizontal(|ui| {
-            for (format, Named { name, tip }, ending) in TURNS {
-                let is_it = self.animation() == format;
-                if ui.selectable_label(is_it, name).on_hover_text(tip).clicked() && !is_it {
-                    self.set_ending(ending);
+            for (format, ControlText { name, tooltip: tip }, ending) in ANIMATION_FORMATS {
+                let is_selected = self.animation_format() == format;
+                if ui.selectable_label(is_selected, name).on_hover_text(tip).clicked() && !is_selected {
+                    self.set_extension(ending);
                 }
             }
         });
     }
 
     fn progress_ui(&self, ui: &mut Ui) {
-        // First, so that it stays where it is when there is something to count.
+        // Comes first, so that it stays in place when the progress bar appears.
         if ui.button(text::common::CANCEL).clicked() {
             self.cancel();
         }
@@ -266,14 +278,14 @@ impl Export {
             (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         if total > 1 {
             let bar = egui::ProgressBar::new(done as f32 / total as f32).desired_width(120.0);
-            let count = if self.kind == Kind::Still {
+            let count = if self.kind == ExportKind::Still {
                 text::export::parts_done(done, total)
             } else {
-                text::export::pictures_done(done, total)
+                text::export::frames_done(done, total)
             };
             ui.add(bar.text(count));
-            if let Some(left) = self.left() {
-                ui.weak(text::export::left(left));
+            if let Some(left) = self.remaining_time() {
+                ui.weak(text::export::time_left(left));
             }
         } else {
             ui.spinner();
@@ -285,13 +297,15 @@ impl Export {
     fn size_ui(&mut self, ui: &mut Ui, viewport: [u32; 2]) {
         ui.horizontal(|ui| {
             ui.label(text::export::SIZE);
-            for (edge, name) in self.shot.size.iter_mut().zip([text::export::WIDTH, text::export::HEIGHT]) {
-                let field = egui::DragValue::new(edge).range(1..=MAX_EDGE).suffix(text::export::PIXELS);
+            for (edge, name) in
+                self.image_spec.size.iter_mut().zip([text::export::WIDTH, text::export::HEIGHT])
+            {
+                let field = egui::DragValue::new(edge).range(1..=MAX_IMAGE_EDGE).suffix(text::export::PIXELS);
                 ui.name_inputs(name, |ui| ui.add(field));
             }
-            let [width, height] = self.shot.size.map(f64::from);
-            // At the 300 dots per inch that journals ask for.
-            ui.weak(text::export::on_paper(width / 300.0 * 25.4, height / 300.0 * 25.4));
+            let [width, height] = self.image_spec.size.map(f64::from);
+            // At 300 dots per inch, as journals require.
+            ui.weak(text::export::print_size(width / 300.0 * 25.4, height / 300.0 * 25.4));
         });
         ui.horizontal(|ui| {
             let presets = [
@@ -302,7 +316,7 @@ impl Export {
                 (text::export::ULTRA_HD_8K, [7680, 4320]),
             ];
             for (name, size) in presets {
-                if ui.selectable_label(self.shot.size == size, name).clicked() {
+                if ui.selectable_label(self.image_spec.size == size, name).clicked() {
                     self.set_size(size);
                 }
             }

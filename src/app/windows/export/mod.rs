@@ -1,4 +1,4 @@
-//! Export: what the user asks for, the window that asks, and the worker that does it.
+//! Export of pictures and animations: the user's choices, the export window, and the worker that renders and writes.
 
 mod destination;
 mod dialog;
@@ -11,226 +11,236 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
-use self::worker::Progress;
-pub(in crate::app) use self::worker::{Exported, Subject, Worker, shown_of};
+use self::worker::SharedExportProgress;
+pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, settings_for_kept};
 use crate::app::text;
-use crate::app::worker::task::Work;
+use crate::app::worker::background_task::BackgroundTask;
 use crate::export::{AnimationFormat, AnimationSpec};
 use crate::model::ImageSpec;
 
-/// How long a window that closes waits for an export to end: a part of a picture takes seconds on slow adapters.
-const LONGEST_WAIT: Duration = Duration::from_secs(10);
+/// Longest wait of a closing window for an export to end: a part of a picture takes seconds on slow adapters.
+const CANCEL_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// What is made.
+/// Kind of export: still or turntable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    /// One picture.
+enum ExportKind {
+    /// A single still picture.
     Still,
     /// A turntable of the camera.
     Turntable,
     /// A turntable of the selected light.
-    LightTurn,
+    LightTurntable,
 }
 
-/// What the user asks of the export window.
+/// Request of the user to the export window.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Request {
-    /// Choose a file with a dialog.
-    Choose,
-    /// Render and write.
+pub(crate) enum ExportRequest {
+    /// Choose a file with the file dialog.
+    ChooseFile,
+    /// Render the picture and write it.
     Export,
-    /// No program shows folders, and why.
-    NoFolder(String),
+    /// Reports that no file manager could be started, and why.
+    FileManagerFailed(String),
 }
 
-/// How far an export is whose window does not say so.
+/// Progress of an export whose window is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Unseen {
-    /// Pictures, or parts of one, that are done.
+pub(crate) struct ExportProgress {
+    /// Number of pictures, or parts of one, that are done.
     pub done: u32,
-    /// That are to be made.
+    /// Number of pictures, or parts of one, in total.
     pub total: u32,
-    /// How long the rest takes, where that can be told.
-    pub left: Option<Duration>,
+    /// Estimated remaining time, once one part is done.
+    pub remaining: Option<Duration>,
 }
 
-/// What is to be exported, and its progress.
+/// State of the export window: specification and progress of the export.
 #[derive(Debug)]
-pub(crate) struct Export {
+pub(crate) struct ExportWindow {
     open: bool,
-    shot: ImageSpec,
+    image_spec: ImageSpec,
     path: String,
-    kind: Kind,
+    kind: ExportKind,
     frames: u32,
     rate: u16,
-    /// The file that may be replaced, as the user has said.
-    agreed: Option<PathBuf>,
-    /// The user is being asked whether it may.
-    asks: bool,
-    progress: Arc<Progress>,
-    began: Instant,
-    work: Option<Work<Result<Exported, String>>>,
-    /// The user has chosen a name, or typed one.
-    is_named: bool,
-    /// What was written last.
-    last: Option<PathBuf>,
+    /// File that the user has agreed to replace.
+    replaceable: Option<PathBuf>,
+    /// True while the user is asked whether the file may be replaced.
+    asks_to_replace: bool,
+    progress: Arc<SharedExportProgress>,
+    started: Instant,
+    work: Option<BackgroundTask<Result<ExportOutcome, String>>>,
+    /// True if the user has chosen or typed the file name.
+    has_user_name: bool,
+    /// File that was written last.
+    last_file: Option<PathBuf>,
 }
 
-impl Default for Export {
+impl Default for ExportWindow {
     fn default() -> Self {
         Self {
             open: false,
-            shot: ImageSpec::new([0, 0]),
+            image_spec: ImageSpec::new([0, 0]),
             path: "chiaroscuro.png".to_owned(),
-            kind: Kind::Still,
+            kind: ExportKind::Still,
             frames: 72,
             rate: 24,
-            agreed: None,
-            asks: false,
+            replaceable: None,
+            asks_to_replace: false,
             progress: Arc::default(),
-            began: Instant::now(),
+            started: Instant::now(),
             work: None,
-            is_named: false,
-            last: None,
+            has_user_name: false,
+            last_file: None,
         }
     }
 }
 
-impl Export {
-    /// Shows the window, at first with the size of the viewport and the name of the volume.
+impl ExportWindow {
+    /// Opens the window, at first with the size of the viewport and the name of the volume.
     pub(crate) fn open(&mut self, viewport: [u32; 2], folder: Option<&Path>, volume: &str) {
         self.open = true;
-        if !self.is_named {
-            // A folder of pictures has no ending.
+        if !self.has_user_name {
+            // A folder of pictures has no extension.
             let ending = Path::new(&self.path).extension().map(std::ffi::OsStr::to_owned).unwrap_or_default();
-            let name = Path::new(&destination::file_name(volume)).with_extension(ending);
-            self.path = destination::folder(folder).join(name).display().to_string();
+            let name = Path::new(&destination::default_file_name(volume)).with_extension(ending);
+            self.path = destination::default_folder(folder).join(name).display().to_string();
         }
-        if self.shot.size == [0, 0] {
-            self.shot.size = viewport;
+        if self.image_spec.size == [0, 0] {
+            self.image_spec.size = viewport;
         }
     }
 
-    /// Where to write.
+    /// Sets the file to write, and opens the window.
     pub(crate) fn set_path(&mut self, path: &Path) {
         self.path = path.display().to_string();
-        self.is_named = true;
-        self.follow_name();
+        self.has_user_name = true;
+        self.adapt_depth_to_name();
         self.open = true;
     }
 
-    /// A file that may be replaced: whoever named it has been asked, or is a program.
-    pub(crate) fn agree_to(&mut self, path: &Path) {
+    /// Sets the file to write and permits replacing it: the user has been asked already, or the call comes from a
+    /// program.
+    pub(crate) fn allow_replacing(&mut self, path: &Path) {
         self.set_path(path);
-        self.agreed = Some(path.to_owned());
+        self.replaceable = Some(path.to_owned());
     }
 
-    /// How large.
+    /// Sets the size of the picture in pixels, within the limits.
     pub(crate) fn set_size(&mut self, size: [u32; 2]) {
-        self.shot = ImageSpec { size, ..self.shot }.within_limits();
+        self.image_spec = ImageSpec { size, ..self.image_spec }.clamped();
     }
 
-    /// Whether a picture is being made.
+    /// Returns true while an export is in progress.
     pub(crate) fn is_busy(&self) -> bool {
         self.work.is_some()
     }
 
-    /// How many pictures, or parts of one, are done and are to be made, where the window does not say so; `None` while
-    /// nothing is made.
-    pub(crate) fn progress_unseen(&self) -> Option<Unseen> {
-        let Progress { done, total, cancelled: _ } = &*self.progress;
-        (self.is_busy() && !self.open).then(|| Unseen {
+    /// Progress of an export in progress, if its window is closed.
+    pub(crate) fn background_progress(&self) -> Option<ExportProgress> {
+        let SharedExportProgress { done, total, cancelled: _ } = &*self.progress;
+        (self.is_busy() && !self.open).then(|| ExportProgress {
             done: done.load(Ordering::Relaxed),
             total: total.load(Ordering::Relaxed),
-            left: self.left(),
+            remaining: self.remaining_time(),
         })
     }
 
-    /// How long it will take until it is done, where that can be told.
-    pub(crate) fn left(&self) -> Option<Duration> {
+    /// Estimated remaining time of the export, once one part is done.
+    pub(crate) fn remaining_time(&self) -> Option<Duration> {
         let [done, total] = [&self.progress.done, &self.progress.total].map(|n| n.load(Ordering::Relaxed));
-        // Of the first one nobody knows how long it takes.
-        (total > 1 && done > 0).then(|| self.began.elapsed() * total.saturating_sub(done) / done)
+        // The first part gives no estimate yet.
+        (total > 1 && done > 0).then(|| self.started.elapsed() * total.saturating_sub(done) / done)
     }
 
-    /// The picture that would be made, while the window asks.
-    pub(crate) fn asked(&self) -> Option<ImageSpec> {
-        (self.open && !self.shot.size.contains(&0)).then_some(self.shot)
+    /// Specification of the picture that would be exported, while the window is open.
+    pub(crate) fn requested_image(&self) -> Option<ImageSpec> {
+        (self.open && !self.image_spec.size.contains(&0)).then_some(self.image_spec)
     }
 
-    /// Ends what is being made.
+    /// Cancels the export in progress.
     pub(crate) fn cancel(&self) {
         self.progress.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Ends what is being made, because the window closes, and waits for that: so that nothing is left of it.
-    pub(crate) fn abandon(&mut self) {
+    /// Cancels the export because the window closes, and waits for its end, so that no temporary file remains.
+    pub(crate) fn cancel_and_wait(&mut self) {
         self.cancel();
         let begin = Instant::now();
-        while self.is_busy() && self.take().is_none() && begin.elapsed() < LONGEST_WAIT {
+        while self.is_busy() && self.take_result().is_none() && begin.elapsed() < CANCEL_TIMEOUT {
             std::thread::sleep(Duration::from_millis(20));
         }
     }
 
-    /// How the last export ended, once.
-    pub(crate) fn take(&mut self) -> Option<Result<Exported, String>> {
-        let result = self.work.as_ref()?.take()?;
+    /// Returns the result of the last export, once.
+    pub(crate) fn take_result(&mut self) -> Option<Result<ExportOutcome, String>> {
+        let result = self.work.as_ref()?.take_result()?;
         self.work = None;
         let result = result.and_then(|result| result);
-        if let Ok(Exported::File(path)) = &result {
-            self.last = Some(path.clone());
+        if let Ok(ExportOutcome::File(path)) = &result {
+            self.last_file = Some(path.clone());
         }
         Some(result)
     }
 
-    /// Starts to render and write.
-    pub(crate) fn start(&mut self, subject: Subject, ctx: &egui::Context) -> Result<(), String> {
-        self.agreed = None;
-        let (shot, path) = (self.shot.within_limits(), PathBuf::from(self.path.trim()));
+    /// Starts to render and write the export.
+    pub(crate) fn start(&mut self, subject: ExportScene, ctx: &egui::Context) -> Result<(), String> {
+        self.replaceable = None;
+        let (image_spec, path) = (self.image_spec.clamped(), PathBuf::from(self.path.trim()));
         self.progress = Arc::default();
         let progress = Arc::clone(&self.progress);
         let light = match self.kind {
-            Kind::Still => return self.run(ctx, move || worker::still(&subject, &shot, path, &progress)),
-            Kind::Turntable => None,
-            Kind::LightTurn => Some(subject.selected_light),
+            ExportKind::Still => {
+                return self.run(ctx, move || worker::export_still(&subject, &image_spec, path, &progress));
+            }
+            ExportKind::Turntable => None,
+            ExportKind::LightTurntable => Some(subject.selected_light),
         };
-        let transparent = shot.transparent && self.animation() != AnimationFormat::Mp4;
-        let reel = AnimationSpec { size: shot.size, frames: self.frames, rate: self.rate, transparent };
-        let marks = shot.marks;
-        self.run(ctx, move || worker::turn(&subject, light, (&reel, marks), path, &progress))
+        let transparent = image_spec.transparent && self.animation_format() != AnimationFormat::Mp4;
+        let animation_spec =
+            AnimationSpec { size: image_spec.size, frames: self.frames, rate: self.rate, transparent };
+        let marks = image_spec.marks;
+        self.run(ctx, move || {
+            worker::export_turntable(&subject, light, (&animation_spec, marks), path, &progress)
+        })
     }
 
-    /// Starts to render for the clipboard, as large as the window's picture.
-    pub(crate) fn copy(
+    /// Starts to render a picture for the clipboard, as large as the viewport.
+    pub(crate) fn copy_to_clipboard(
         &mut self,
-        subject: Subject,
+        subject: ExportScene,
         size: [u32; 2],
         ctx: &egui::Context,
     ) -> Result<(), String> {
-        let Self { shot: ImageSpec { transparent, marks, .. }, .. } = *self;
-        let shot = ImageSpec { transparent, marks, ..ImageSpec::new(size) };
+        let Self { image_spec: ImageSpec { transparent, marks, .. }, .. } = *self;
+        let image_spec = ImageSpec { transparent, marks, ..ImageSpec::new(size) };
         self.progress = Arc::default();
-        self.run(ctx, move || worker::copy(&subject, &shot))
+        self.run(ctx, move || worker::render_for_clipboard(&subject, &image_spec))
     }
 
-    /// Starts to render all views and looks that are kept into one picture.
-    pub(crate) fn sheet(&mut self, subject: Subject, path: &Path, ctx: &egui::Context) -> Result<(), String> {
+    /// Starts to render all kept views and looks into one picture.
+    pub(crate) fn export_kept_sheet(
+        &mut self,
+        subject: ExportScene,
+        path: &Path,
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
         if self.is_busy() {
             return Err(text::messages::EXPORT_RUNS.to_owned());
         }
         let path = path.to_owned();
         self.progress = Arc::default();
         let progress = Arc::clone(&self.progress);
-        self.run(ctx, move || worker::sheet(&subject, path, &progress))
+        self.run(ctx, move || worker::export_kept_sheet(&subject, path, &progress))
     }
 
     fn run(
         &mut self,
         ctx: &egui::Context,
-        task: impl FnOnce() -> Result<Exported, String> + Send + 'static,
+        task: impl FnOnce() -> Result<ExportOutcome, String> + Send + 'static,
     ) -> Result<(), String> {
-        self.began = Instant::now();
-        let work = Work::start("export", ctx, task);
+        self.started = Instant::now();
+        let work = BackgroundTask::start("export", ctx, task);
         self.work = Some(work.map_err(text::export::no_thread)?);
         Ok(())
     }

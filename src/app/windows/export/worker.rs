@@ -1,4 +1,4 @@
-//! What an export does on its own thread, on a renderer of its own: always full quality, whatever the preview
+//! Export worker: renders on its own thread with its own renderer, always at full quality, whatever the preview
 //! shows.
 
 use std::path::{Path, PathBuf};
@@ -10,244 +10,256 @@ use eframe::egui;
 use crate::app::text;
 use crate::data::{Dataset, Volume};
 use crate::export::{
-    Animation, AnimationFormat, AnimationSpec, ExportError, Rows, Sheet, export_png, marks, write_picture,
+    Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
+    marks_layer, write_picture,
 };
-use crate::fault::{Place, may_panic};
-use crate::gpu::{Context, GpuError, RenderOptions, Renderer, ShaderLibrary, SmallLook};
-use crate::model::auto::Outline;
-use crate::model::{ImageSpec, KeptThing, Marks, PictureRecord, Record, Settings, VolumeRecord};
+use crate::fault::{FaultThread, panic_if_injected};
+use crate::gpu::{GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary};
+use crate::model::first_look::ObjectOutline;
+use crate::model::{Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord};
 
-/// Pixels of a picture on a sheet of what is kept: 4:3, as first looks are framed, and four beside each other fill a page
-/// at 300 dots per inch.
-const TILE: [u32; 2] = [640, 480];
+/// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
+/// fill a page at 300 dots per inch.
+const KEPT_TILE_SIZE: [u32; 2] = [640, 480];
 
-/// What is to be exported.
+/// Scene to export: volume, settings and device.
 #[derive(Debug, Clone)]
-pub(in crate::app) struct Subject {
-    /// The window's device.
-    pub context: Context,
-    /// The open volume.
+pub(crate) struct ExportScene {
+    /// Window's device, of which the worker opens a sibling.
+    pub context: GpuContext,
+    /// Open volume with its derived data.
     pub dataset: Dataset,
-    /// The whole look.
+    /// Settings of the whole look.
     pub settings: Settings,
-    /// The first look at the volume.
-    pub first: Settings,
-    /// What was opened.
+    /// First look at the volume.
+    pub first_look: Settings,
+    /// Path or name that was opened.
     pub source: PathBuf,
-    /// The light that turns, if one is to.
+    /// Index of the selected light, for a turntable of the light.
     pub selected_light: usize,
-    /// Where the object ends, if that is known.
-    pub outline: Option<Arc<Outline>>,
+    /// Outline of the visible object, if it is known.
+    pub outline: Option<Arc<ObjectOutline>>,
 }
 
-/// What an export ended with.
+/// Outcome of an export that did not fail.
 #[derive(Debug)]
-pub(in crate::app) enum Exported {
-    /// A file was written.
+pub(crate) enum ExportOutcome {
+    /// The file that was written.
     File(PathBuf),
-    /// A picture for the clipboard.
+    /// The picture for the clipboard.
     Picture(egui::ColorImage),
-    /// The user did not want it any more.
+    /// The user has cancelled the export.
     Cancelled,
 }
 
-/// How far an export is, shared by the window and its worker.
+/// Progress of an export, shared by the window and its worker.
 #[derive(Debug, Default)]
-pub(crate) struct Progress {
-    /// Pictures or parts of one that are done.
+pub(crate) struct SharedExportProgress {
+    /// Number of pictures or parts of one that are done.
     pub done: AtomicU32,
-    /// Pictures or parts of one that are to be made; 0 while nobody knows.
+    /// Number of pictures or parts in total; 0 while unknown.
     pub total: AtomicU32,
-    /// Nobody wants the rest.
+    /// True once the user has cancelled.
     pub cancelled: AtomicBool,
 }
 
-/// Why an export ended early.
+/// Reason for which an export ended early.
 #[derive(Debug)]
-enum Ended {
+enum ExportEnd {
     Cancelled,
     Failed(String),
 }
 
-impl From<ExportError> for Ended {
+impl From<ExportError> for ExportEnd {
     fn from(err: ExportError) -> Self {
         Self::Failed(err.to_string())
     }
 }
 
-impl From<GpuError> for Ended {
+impl From<GpuError> for ExportEnd {
     fn from(err: GpuError) -> Self {
         Self::Failed(err.to_string())
     }
 }
 
-impl Ended {
-    /// The result for the window: a cancelled export is no error.
-    fn result(self) -> Result<Exported, String> {
+impl ExportEnd {
+    /// Converts into the result for the window: a cancelled export is no error.
+    fn into_result(self) -> Result<ExportOutcome, String> {
         match self {
-            Self::Cancelled => Ok(Exported::Cancelled),
+            Self::Cancelled => Ok(ExportOutcome::Cancelled),
             Self::Failed(why) => Err(why),
         }
     }
 }
 
-impl Progress {
-    fn set(&self, done: u32, total: u32) -> Result<(), Ended> {
+impl SharedExportProgress {
+    fn update(&self, done: u32, total: u32) -> Result<(), ExportEnd> {
         self.done.store(done, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
-        if self.cancelled.load(Ordering::Relaxed) { Err(Ended::Cancelled) } else { Ok(()) }
+        if self.cancelled.load(Ordering::Relaxed) { Err(ExportEnd::Cancelled) } else { Ok(()) }
     }
 }
 
-/// A renderer beside the window's device, so that the window stays alive.
-pub(in crate::app) struct Worker {
+/// Renderer on a device beside the window's, so that the window stays responsive.
+pub(crate) struct ExportWorker {
     renderer: Renderer,
     adapter: String,
 }
 
-impl Worker {
-    /// A renderer for a subject.
-    pub(in crate::app) fn new(subject: &Subject) -> Result<Self, String> {
-        may_panic(Place::Export);
-        let beside = subject.context.sibling().map_err(|err| err.to_string())?;
+impl ExportWorker {
+    /// Opens a sibling device and creates a renderer on it.
+    pub(crate) fn new(subject: &ExportScene) -> Result<Self, String> {
+        panic_if_injected(FaultThread::Export);
+        let beside = subject.context.second_device().map_err(|err| err.to_string())?;
         let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
         Ok(Self { renderer, adapter: beside.description() })
     }
 
-    /// A picture of the subject with settings of one's own, as it is shown.
-    pub(in crate::app) fn render(
+    /// Renders a picture of the subject with other settings, tone mapped and with marks; RGBA, 8 bits.
+    pub(crate) fn render(
         &mut self,
-        subject: &Subject,
+        subject: &ExportScene,
         settings: &Settings,
-        shot: &ImageSpec,
+        image_spec: &ImageSpec,
     ) -> Result<Vec<u8>, String> {
-        let options = RenderOptions::of_shot(shot);
-        let shown = self.renderer.render_shown(&subject.dataset, settings, shot.size, &options);
-        let mut shown = Rows::Bytes(shown.map_err(|err| err.to_string())?);
-        marks(shot, settings, subject.dataset.volume()).lay_over(shot, 0, &mut shown);
+        let options = RenderOptions::for_image(image_spec);
+        let shown = self.renderer.render_display(&subject.dataset, settings, image_spec.size, &options);
+        let mut shown = PixelRows::Bytes(shown.map_err(|err| err.to_string())?);
+        marks_layer(image_spec, settings, subject.dataset.volume()).composite_over(image_spec, 0, &mut shown);
         match shown {
-            Rows::Bytes(shown) => Ok(shown),
-            Rows::Floats(_) => Err(text::export::NO_BYTES.to_owned()),
+            PixelRows::Bytes(shown) => Ok(shown),
+            PixelRows::Floats(_) => Err(text::export::EMPTY_PICTURE.to_owned()),
         }
     }
 
-    /// The pipelines of the worker's device.
-    pub(in crate::app) fn shaders(&self) -> ShaderLibrary {
+    /// Pipelines of the worker's device.
+    pub(crate) fn shaders(&self) -> ShaderLibrary {
         self.renderer.shaders()
     }
 
-    /// How bright a look of a volume is, on a small copy of it.
-    pub(in crate::app) fn measure(
+    /// Measures the brightness of a look on a small copy of the volume.
+    pub(crate) fn measure_brightness(
         &mut self,
         whole: &Volume,
         small: &Dataset,
         settings: &Settings,
-    ) -> Result<SmallLook, String> {
-        SmallLook::measure(&mut self.renderer, whole, small, settings).map_err(|err| err.to_string())
+    ) -> Result<MeasuredSettings, String> {
+        MeasuredSettings::measure(&mut self.renderer, whole, small, settings).map_err(|err| err.to_string())
     }
 
-    /// How a picture was made, for a file in a folder.
-    fn record(
+    /// Metadata record of a picture (settings, volume, adapter), for a file in a folder.
+    fn picture_record(
         &self,
-        subject: &Subject,
+        subject: &ExportScene,
         settings: &Settings,
-        shot: &ImageSpec,
+        image_spec: &ImageSpec,
         folder: Option<&Path>,
     ) -> String {
         let of = subject.dataset.volume();
-        let volume = VolumeRecord::new(&subject.source, of.opened_id(), folder).choosing(of.held().choice());
-        let how = PictureRecord::new(*shot, self.adapter.clone());
-        Record::text(settings, Some(&volume), Some(&how))
+        let volume =
+            VolumeRecord::new(&subject.source, of.opened_id(), folder).with_choice(of.contents().choice());
+        let picture_record = ImageRecord::new(*image_spec, self.adapter.clone());
+        LookRecord::to_json(settings, Some(&volume), Some(&picture_record))
     }
 }
 
-/// Renders and writes one picture.
-pub(crate) fn still(
-    subject: &Subject,
-    shot: &ImageSpec,
+/// Renders and writes one picture in bands.
+pub(crate) fn export_still(
+    subject: &ExportScene,
+    image_spec: &ImageSpec,
     path: PathBuf,
-    progress: &Progress,
-) -> Result<Exported, String> {
-    let mut worker = Worker::new(subject)?;
-    let record = worker.record(subject, &subject.settings, shot, path.parent());
-    let Subject { dataset, settings, .. } = subject;
-    let mut bands = worker.renderer.bands(dataset, settings, shot);
-    let (layer, mut first) = (marks(shot, settings, dataset.volume()), 0);
+    progress: &SharedExportProgress,
+) -> Result<ExportOutcome, String> {
+    let mut worker = ExportWorker::new(subject)?;
+    let record = worker.picture_record(subject, &subject.settings, image_spec, path.parent());
+    let ExportScene { dataset, settings, .. } = subject;
+    let mut bands = worker.renderer.bands(dataset, settings, image_spec);
+    let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
         let (done, total) = bands.progress();
-        progress.set(done as u32, total as u32)?;
+        progress.update(done as u32, total as u32)?;
         let mut rows = bands.next_rows()?;
         if let Some(rows) = &mut rows {
-            layer.lay_over(shot, first, rows);
-            first += rows.count(shot);
+            layer.composite_over(image_spec, first, rows);
+            first += rows.count(image_spec);
         }
         Ok(rows)
     };
-    write_picture(&path, shot, Some(&record), &mut rows)
-        .map_or_else(Ended::result, |()| Ok(Exported::File(path)))
+    write_picture(&path, image_spec, Some(&record), &mut rows)
+        .map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
 }
 
-/// Renders and writes one turn, of a light or else of the camera.
-pub(crate) fn turn(
-    subject: &Subject,
+/// Renders and writes an animation, in which a light or else the camera turns once around.
+pub(crate) fn export_turntable(
+    subject: &ExportScene,
     light: Option<usize>,
-    (reel, marks): (&AnimationSpec, Marks),
+    (animation_spec, marks): (&AnimationSpec, Annotations),
     path: PathBuf,
-    progress: &Progress,
-) -> Result<Exported, String> {
-    let mut worker = Worker::new(subject)?;
+    progress: &SharedExportProgress,
+) -> Result<ExportOutcome, String> {
+    let mut worker = ExportWorker::new(subject)?;
     let folder = AnimationFormat::record_folder(&path);
-    let shot = ImageSpec { transparent: reel.transparent, marks, ..ImageSpec::new(reel.size) };
+    let image_spec =
+        ImageSpec { transparent: animation_spec.transparent, marks, ..ImageSpec::new(animation_spec.size) };
     let mut write = || {
-        let mut file = Animation::create(&path, reel)?;
-        for frame in 0..reel.frames {
-            progress.set(frame, reel.frames)?;
-            let settings = subject.settings.turned(light, f64::from(frame) / f64::from(reel.frames));
-            let shown = worker.render(subject, &settings, &shot).map_err(Ended::Failed)?;
-            file.add(&shown, &worker.record(subject, &settings, &shot, folder))?;
+        let mut file = Animation::create(&path, animation_spec)?;
+        for frame in 0..animation_spec.frames {
+            progress.update(frame, animation_spec.frames)?;
+            let settings = subject
+                .settings
+                .at_turntable_angle(light, f64::from(frame) / f64::from(animation_spec.frames));
+            let shown = worker.render(subject, &settings, &image_spec).map_err(ExportEnd::Failed)?;
+            file.add(&shown, &worker.picture_record(subject, &settings, &image_spec, folder))?;
         }
         file.finish()?;
         Ok(())
     };
-    write().map_or_else(Ended::result, |()| Ok(Exported::File(path)))
+    write().map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
 }
 
-/// Renders all views and looks that are kept, and writes them side by side into one picture.
-pub(crate) fn sheet(subject: &Subject, path: PathBuf, progress: &Progress) -> Result<Exported, String> {
-    let mut worker = Worker::new(subject)?;
-    let shot = ImageSpec::new(TILE);
+/// Renders all kept views and looks, and writes them side by side into one picture.
+pub(crate) fn export_kept_sheet(
+    subject: &ExportScene,
+    path: PathBuf,
+    progress: &SharedExportProgress,
+) -> Result<ExportOutcome, String> {
+    let mut worker = ExportWorker::new(subject)?;
+    let image_spec = ImageSpec::new(KEPT_TILE_SIZE);
     let kept = &subject.settings.kept;
-    let mut sheet = Sheet::new(kept.len() as u32, TILE);
-    let mut write = || -> Result<(), Ended> {
+    let mut sheet = ContactSheetImage::new(kept.len() as u32, KEPT_TILE_SIZE);
+    let mut write = || -> Result<(), ExportEnd> {
         for (at, kept) in (0..).zip(kept) {
-            progress.set(at, subject.settings.kept.len() as u32)?;
-            let settings = shown_of(&kept.what, &subject.settings);
-            let shown = worker.render(subject, &settings, &shot).map_err(Ended::Failed)?;
+            progress.update(at, subject.settings.kept.len() as u32)?;
+            let settings = settings_for_kept(&kept.what, &subject.settings);
+            let shown = worker.render(subject, &settings, &image_spec).map_err(ExportEnd::Failed)?;
             sheet.add(&kept.name, &shown);
         }
         Ok(())
     };
     if let Err(ended) = write() {
-        return ended.result();
+        return ended.into_result();
     }
     let (size, shown) = sheet.finish();
-    // Whoever opens it has the look with all that is kept.
-    let record = worker.record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
+    // The record contains the current look with all kept items.
+    let record = worker.picture_record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
     export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;
-    Ok(Exported::File(path))
+    Ok(ExportOutcome::File(path))
 }
 
-/// Settings that show something that is kept: views in the look that there is, looks as they were seen.
-pub(in crate::app) fn shown_of(what: &KeptThing, settings: &Settings) -> Settings {
+/// Settings that show a kept item: a view in the current look, a look as it was kept.
+pub(crate) fn settings_for_kept(what: &SavedContent, settings: &Settings) -> Settings {
     match what {
-        KeptThing::View(camera) => Settings { camera: camera.clone(), ..settings.clone() },
-        KeptThing::Look(look) => Settings { volume: settings.volume, ..look.settings().clone() },
+        SavedContent::View(camera) => Settings { camera: camera.clone(), ..settings.clone() },
+        SavedContent::Look(look) => Settings { volume: settings.volume, ..look.settings().clone() },
     }
 }
 
-/// Renders for the clipboard.
-pub(crate) fn copy(subject: &Subject, shot: &ImageSpec) -> Result<Exported, String> {
-    let shown = Worker::new(subject)?.render(subject, &subject.settings, shot)?;
-    let size = shot.size.map(|n| n as usize);
-    Ok(Exported::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))
+/// Renders a picture for the clipboard.
+pub(crate) fn render_for_clipboard(
+    subject: &ExportScene,
+    image_spec: &ImageSpec,
+) -> Result<ExportOutcome, String> {
+    let shown = ExportWorker::new(subject)?.render(subject, &subject.settings, image_spec)?;
+    let size = image_spec.size.map(|n| n as usize);
+    Ok(ExportOutcome::Picture(egui::ColorImage::from_rgba_unmultiplied(size, &shown)))
 }

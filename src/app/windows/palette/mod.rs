@@ -1,42 +1,42 @@
-//! Finding a command or a setting by its name, or by what else people call it.
+//! Command palette: finds a command or a setting by its name or by a synonym.
 
-mod matching;
+mod command_search;
 mod synonyms;
 
 use eframe::egui::{self, Align2, Key, Modifiers, RichText, TextEdit};
 
-use self::matching::{Finding, Findings, Subject, matching};
-use crate::app::common::commands::Command;
+use self::command_search::{CommandMatch, PaletteContext, SearchResult, search_commands};
+use crate::app::common::commands::AppCommand;
 use crate::app::common::shortcuts;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
 use crate::model::SceneAxis;
 
-/// Lines that are shown at once.
-const LINES: usize = 12;
+/// Number of lines that are shown at once.
+const VISIBLE_LINES: usize = 12;
 
-/// The window with the search field.
+/// State of the window with the search field.
 #[derive(Debug, Default)]
-pub(crate) struct Palette {
+pub(crate) struct CommandPalette {
     open: bool,
     text: String,
-    chosen: usize,
+    selected_line: usize,
 }
 
-impl Palette {
-    /// Opens it, empty.
+impl CommandPalette {
+    /// Opens the palette with an empty search field.
     pub(crate) fn open(&mut self) {
         *self = Self { open: true, ..Self::default() };
     }
 
-    /// Shows it, and adds the command that was chosen. Some names say which axis of the scene points up. Presets for another
-    /// kind of data than that of the volume are dim, and rows about labels are there where it has some.
+    /// Shows the palette, and adds the chosen command. Some names state which axis of the scene points up. Presets
+    /// for another kind of data than that of the volume are dimmed, and rows about labels appear only if it has some.
     pub(crate) fn ui(
         &mut self,
         ctx: &egui::Context,
         up_axis: SceneAxis,
         volume: Option<&VolumeFacts>,
-        commands: &mut Vec<Command>,
+        commands: &mut Vec<AppCommand>,
     ) {
         if !self.open {
             return;
@@ -47,10 +47,12 @@ impl Palette {
         let enter = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
         let escape = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         let has_labels = volume.is_some_and(|volume| !volume.labels.is_empty());
-        let Findings { missing, mut found } = matching(&self.text, Subject { up: up_axis, has_labels });
-        let last = found.len().min(LINES).saturating_sub(1);
-        self.chosen = (self.chosen + usize::from(down)).saturating_sub(usize::from(up)).min(last);
-        let mut run = if enter && !found.is_empty() { Some(self.chosen) } else { None };
+        let SearchResult { missing_feature: missing, matches: mut found } =
+            search_commands(&self.text, PaletteContext { up: up_axis, has_labels });
+        let last = found.len().min(VISIBLE_LINES).saturating_sub(1);
+        self.selected_line =
+            (self.selected_line + usize::from(down)).saturating_sub(usize::from(up)).min(last);
+        let mut run = if enter && !found.is_empty() { Some(self.selected_line) } else { None };
         let window =
             egui::Window::new(text::commands::FIND).title_bar(false).resizable(false).collapsible(false);
         window.anchor(Align2::CENTER_TOP, [0.0, 60.0]).fixed_size([440.0, 320.0]).show(ctx, |ui| {
@@ -59,26 +61,29 @@ impl Palette {
                 ui.name_inputs(text::commands::FIND, |ui| ui.add(field.desired_width(f32::INFINITY)));
             response.request_focus();
             if response.changed() {
-                self.chosen = 0;
+                self.selected_line = 0;
             }
             ui.separator();
             if let Some(missing) = missing {
                 ui.add(egui::Label::new(RichText::new(missing).weak()).wrap());
                 ui.add_space(2.0);
             }
-            for (at, Finding { command, note }) in found.iter().take(LINES).enumerate() {
+            for (at, CommandMatch { command, remark: note }) in found.iter().take(VISIBLE_LINES).enumerate() {
                 let label = command.label_with(up_axis);
                 let suits = match (command, volume) {
-                    (Command::UsePreset(preset), Some(volume)) => preset.suits(&volume.kind),
+                    (AppCommand::UsePreset(preset), Some(volume)) => preset.suits_data(&volume.kind),
                     _ => true,
                 };
                 let label = RichText::new(&*label);
                 let label = if suits { label } else { label.weak() };
                 let shortcut = command.shortcut_text(ui.ctx());
                 let button = if note.is_empty() {
-                    egui::Button::selectable(at == self.chosen, label)
+                    egui::Button::selectable(at == self.selected_line, label)
                 } else {
-                    egui::Button::selectable(at == self.chosen, (label, RichText::new(*note).small().weak()))
+                    egui::Button::selectable(
+                        at == self.selected_line,
+                        (label, RichText::new(*note).small().weak()),
+                    )
                 };
                 let button = button.shortcut_text(shortcut);
                 let mut line = ui.add_sized([ui.available_width(), 20.0], button);

@@ -1,104 +1,113 @@
-//! Table of what people call things that are called otherwise here, and of what is not here, with what is nearest to it.
+//! Synonyms of commands and settings, and features that the program lacks, with the commands nearest to them.
 
-use crate::app::common::commands::Command;
-use crate::app::common::places::PLACES;
-use crate::app::text::palette::{self, Sought};
+use crate::app::common::commands::AppCommand;
+use crate::app::common::searchable_settings::SEARCHABLE_SETTINGS;
+use crate::app::text::palette_synonyms::{self, PaletteSynonyms};
 use crate::app::text::{self, sections};
 use crate::data::KindName;
-use crate::data::load::{Aspect, Dimension, Thinning};
-use crate::model::ObjectTurn;
+use crate::data::load::{ChoiceAspect, Downsampling, FileDimension};
+use crate::model::ObjectRotation;
 
-/// Something that is sought, and what leads there.
+/// Search words with the commands that they lead to.
 #[derive(Debug)]
 pub(super) struct Synonym {
-    /// The words, and what is said to them.
-    pub sought: Sought,
-    /// Whether the program has it; else what is said is that it does not.
-    pub is_there: bool,
-    /// What is meant, or else what is nearest to it: the nearest first.
-    pub targets: Vec<Command>,
+    /// Search words, and the remark shown for them.
+    pub search_words: PaletteSynonyms,
+    /// True if the program has the feature; otherwise the remark says that it is missing.
+    pub is_supported: bool,
+    /// Commands that are meant, or else the nearest ones, best first.
+    pub targets: Vec<AppCommand>,
 }
 
-/// What leads to a row of a panel, or to a section as a whole.
-fn row(section: &str, row: Option<&str>) -> Option<Command> {
-    let place = PLACES.iter().map(|(place, _)| *place);
-    place.into_iter().find(|place| place.section == section && place.row == row).map(Command::Reveal)
+/// Command that reveals a row of a panel, or a section as a whole.
+fn reveal_row(section: &str, row: Option<&str>) -> Option<AppCommand> {
+    let place = SEARCHABLE_SETTINGS.iter().map(|(place, _)| *place);
+    place.into_iter().find(|place| place.section == section && place.row == row).map(AppCommand::Reveal)
 }
 
-/// The table, for a volume that has labels or not.
-pub(super) fn all(has_labels: bool) -> Vec<Synonym> {
-    let here = |sought, targets: Vec<Option<Command>>| Synonym {
-        sought,
-        is_there: true,
+/// Table of synonyms, for a volume with or without labels.
+pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
+    let supported = |sought, targets: Vec<Option<AppCommand>>| Synonym {
+        search_words: sought,
+        is_supported: true,
         targets: targets.into_iter().flatten().collect(),
     };
-    let missing = |sought, targets| Synonym { is_there: false, ..here(sought, targets) };
-    let channel = Aspect::Of(Dimension::Channel);
-    let frame = Aspect::Of(Dimension::Frame);
-    let series = Aspect::Of(Dimension::Series);
+    let missing = |sought, targets| Synonym { is_supported: false, ..supported(sought, targets) };
+    let channel = ChoiceAspect::Dimension(FileDimension::Channel);
+    let frame = ChoiceAspect::Dimension(FileDimension::Frame);
+    let series = ChoiceAspect::Dimension(FileDimension::Series);
     let mut all = vec![
-        here(palette::TURN_OBJECT, vec![Some(Command::TurnObject(ObjectTurn::Over))]),
-        here(palette::TURN_ROUND, vec![Some(Command::TurnRound)]),
-        here(palette::SCALE, [1, -1, 0].map(Command::Scale).map(Some).to_vec()),
-        here(palette::GO_ON, vec![Some(Command::GoOn)]),
-        here(palette::SAVE, vec![Some(Command::SaveSettings)]),
-        here(palette::TRANSFER, vec![Some(Command::ImportTransfer)]),
-        here(palette::SOLO, vec![Some(Command::Solo)]),
-        here(palette::MUTE, vec![Some(Command::Mute)]),
-        here(palette::COMPARE, vec![Some(Command::ToggleCompare)]),
-        here(palette::PICTURE_ONLY, vec![Some(Command::TogglePictureOnly)]),
-        here(palette::EXPORT, vec![Some(Command::Export)]),
-        here(palette::ANIMATION, vec![Some(Command::Export)]),
-        here(palette::MEASURE, vec![Some(Command::ToggleProbe)]),
-        here(palette::MARKS, vec![Some(Command::ToggleOverlay), Some(Command::Export)]),
-        here(palette::SKY, vec![row(sections::SOFT_LIGHT, Some(text::sky::MODE.name))]),
-        here(
-            palette::WINDOW_LEVEL,
+        supported(palette_synonyms::TILT, vec![Some(AppCommand::TurnObject(ObjectRotation::TipBack))]),
+        supported(palette_synonyms::ROTATE, vec![Some(AppCommand::RotateObject)]),
+        supported(palette_synonyms::SCALE, [1, -1, 0].map(AppCommand::Scale).map(Some).to_vec()),
+        supported(palette_synonyms::REOPEN_LAST, vec![Some(AppCommand::ReopenLast)]),
+        supported(palette_synonyms::SAVE, vec![Some(AppCommand::SaveSettings)]),
+        supported(palette_synonyms::TRANSFER, vec![Some(AppCommand::ImportTransfer)]),
+        supported(palette_synonyms::SOLO, vec![Some(AppCommand::Solo)]),
+        supported(palette_synonyms::MUTE, vec![Some(AppCommand::Mute)]),
+        supported(palette_synonyms::COMPARE, vec![Some(AppCommand::ToggleCompare)]),
+        supported(palette_synonyms::PICTURE_ONLY, vec![Some(AppCommand::TogglePictureOnly)]),
+        supported(palette_synonyms::EXPORT, vec![Some(AppCommand::Export)]),
+        supported(palette_synonyms::ANIMATION, vec![Some(AppCommand::Export)]),
+        supported(palette_synonyms::MEASURE, vec![Some(AppCommand::ToggleProbe)]),
+        supported(
+            palette_synonyms::ANNOTATIONS,
+            vec![Some(AppCommand::ToggleOverlay), Some(AppCommand::Export)],
+        ),
+        supported(palette_synonyms::SKY, vec![reveal_row(sections::SOFT_LIGHT, Some(text::sky::MODE.name))]),
+        supported(
+            palette_synonyms::WINDOW_LEVEL,
             vec![
-                row(text::transfer::TITLE, Some(text::transfer::LEVEL.name)),
-                row(text::transfer::TITLE, Some(text::transfer::WINDOW.name)),
-                Some(Command::ShowSlices),
+                reveal_row(text::transfer::TITLE, Some(text::transfer::LEVEL.name)),
+                reveal_row(text::transfer::TITLE, Some(text::transfer::WINDOW.name)),
+                Some(AppCommand::ShowSlices),
             ],
         ),
-        here(
-            palette::FEWER_VOXELS,
+        supported(
+            palette_synonyms::FEWER_VOXELS,
             vec![
-                row(sections::DATA, Some(text::data::THINNING.name)),
-                Some(Command::Thin(Thinning::Average(2))),
-                Some(Command::Thin(Thinning::Every(2))),
+                reveal_row(sections::DATA, Some(text::data::SUBSAMPLE.name)),
+                Some(AppCommand::Subsample(Downsampling::Average(2))),
+                Some(AppCommand::Subsample(Downsampling::Every(2))),
             ],
         ),
         missing(
-            palette::NO_PLAYING,
-            vec![Some(Command::StepChoice(frame, true)), Some(Command::Choose(frame))],
+            palette_synonyms::NO_PLAYING,
+            vec![Some(AppCommand::StepChoice(frame, true)), Some(AppCommand::ShowChooser(frame))],
         ),
         missing(
-            palette::NO_COMPOSITE,
-            vec![Some(Command::Choose(channel)), Some(Command::StepChoice(channel, true))],
+            palette_synonyms::NO_COMPOSITE,
+            vec![Some(AppCommand::ShowChooser(channel)), Some(AppCommand::StepChoice(channel, true))],
         ),
-        missing(palette::NO_PROJECTION, vec![Some(Command::TryLooks)]),
-        missing(palette::NO_ANNOTATION, vec![Some(Command::Export)]),
+        missing(palette_synonyms::NO_PROJECTION, vec![Some(AppCommand::TryLooks)]),
+        missing(palette_synonyms::NO_ANNOTATION, vec![Some(AppCommand::Export)]),
         missing(
-            palette::NO_FILTER,
+            palette_synonyms::NO_FILTER,
             vec![
-                row(sections::CAMERA, Some(text::sampling::KERNEL.name)),
-                row(sections::SHADING, Some(text::shading::SURFACE_GRADIENT.name)),
-                Some(Command::Thin(Thinning::Average(2))),
+                reveal_row(sections::CAMERA, Some(text::sampling::KERNEL.name)),
+                reveal_row(sections::SHADING, Some(text::shading::SURFACE_GRADIENT.name)),
+                Some(AppCommand::Subsample(Downsampling::Average(2))),
             ],
         ),
-        missing(palette::NO_STEREO, Vec::new()),
-        missing(palette::NO_FUSION, vec![Some(Command::Choose(series)), Some(Command::NextFile)]),
+        missing(palette_synonyms::NO_STEREO, Vec::new()),
         missing(
-            palette::NO_DEPTH_OF_FIELD,
-            vec![row(sections::CAMERA, Some(text::camera::FIELD_OF_VIEW.name))],
+            palette_synonyms::NO_FUSION,
+            vec![Some(AppCommand::ShowChooser(series)), Some(AppCommand::NextFile)],
         ),
-        missing(palette::NO_OBJECTS, vec![Some(Command::ToggleCrop), Some(Command::TogglePlane)]),
+        missing(
+            palette_synonyms::NO_DEPTH_OF_FIELD,
+            vec![reveal_row(sections::CAMERA, Some(text::camera::FIELD_OF_VIEW.name))],
+        ),
+        missing(
+            palette_synonyms::NO_OBJECTS,
+            vec![Some(AppCommand::ToggleCrop), Some(AppCommand::TogglePlane)],
+        ),
     ];
     all.push(if has_labels {
-        here(palette::LABELS, vec![row(text::labels::TITLE, None)])
+        supported(palette_synonyms::LABELS, vec![reveal_row(text::labels::TITLE, None)])
     } else {
-        let as_labels = Command::TreatAs(Some(KindName::LabelMap));
-        missing(palette::NO_SEGMENTATION, vec![Some(Command::OpenDialog), Some(as_labels)])
+        let as_labels = AppCommand::TreatAs(Some(KindName::LabelMap));
+        missing(palette_synonyms::NO_SEGMENTATION, vec![Some(AppCommand::OpenDialog), Some(as_labels)])
     });
     all
 }
@@ -106,16 +115,17 @@ pub(super) fn all(has_labels: bool) -> Vec<Synonym> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::common::commands::listed;
+    use crate::app::common::commands::searchable_commands;
 
     #[test]
     fn every_target_exists() {
-        let commands = listed();
+        let commands = searchable_commands();
         for has_labels in [false, true] {
-            for Synonym { sought, is_there, targets } in all(has_labels) {
+            for Synonym { search_words: sought, is_supported: is_there, targets } in synonym_table(has_labels)
+            {
                 assert!(targets.iter().all(|target| commands.contains(target)), "{sought:?}: {targets:?}");
-                // Only of a stereo picture there is nothing near.
-                let is_led = !targets.is_empty() || sought == palette::NO_STEREO;
+                // Stereo pictures are the only feature without a nearest command.
+                let is_led = !targets.is_empty() || sought == palette_synonyms::NO_STEREO;
                 assert!(is_led && (is_there || !sought.note.is_empty()), "{sought:?}");
                 assert!(
                     !sought.words.is_empty() && sought.words.to_lowercase() == sought.words,
@@ -125,17 +135,17 @@ mod tests {
         }
     }
 
-    /// A row that is not in the panels would be left out without a word.
+    /// Guards against rows that no panel has, which would be left out silently.
     #[test]
     fn rows_are_those_of_the_panels() {
         let source = include_str!("synonyms.rs").split("#[cfg(test)]").next().unwrap_or_default();
         let named = source.matches("row(sections::").count() + source.matches("row(text::").count();
         let mut rows: Vec<_> = [false, true]
             .into_iter()
-            .flat_map(all)
+            .flat_map(synonym_table)
             .flat_map(|synonym| synonym.targets)
             .filter_map(|target| match target {
-                Command::Reveal(place) => Some((place.section, place.row)),
+                AppCommand::Reveal(place) => Some((place.section, place.row)),
                 _ => None,
             })
             .collect();

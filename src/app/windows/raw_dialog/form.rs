@@ -1,4 +1,4 @@
-//! The numbers that say how a file is stored.
+//! Form of the raw import dialog: dimensions, voxel type, byte order, header size and spacing of a file.
 
 use std::cmp::Ordering;
 
@@ -6,37 +6,37 @@ use eframe::egui::{self, DragValue, Response, Ui};
 
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::text::raw::{Length, Unit};
+use crate::app::text::raw::{RawLengthText, RawSpacingUnit};
 use crate::data::VoxelType;
-use crate::data::load::raw::Proposal;
+use crate::data::load::raw::LayoutProposal;
 use crate::data::load::{Endian, RawGuess, RawLayout};
 
-/// The longest edge that can be typed.
-const LONGEST: usize = 65_536;
+/// Longest edge that can be typed, in voxels.
+const MAX_EDGE: usize = 65_536;
 
-/// The numbers, and what is known of the file's length.
+/// Values of the form, and the known length of the file.
 #[derive(Debug)]
-pub(super) struct Form {
+pub(super) struct RawImportForm {
     guess: RawGuess,
     layout: RawLayout,
-    /// Distances between voxels, in a unit; kept while the unit is not known.
+    /// Spacing of voxels in `unit`; kept while the unit is unknown.
     spacing: [f64; 3],
-    unit: Unit,
-    length: Option<Length>,
-    /// Whether the user has changed a number: then none is changed by itself.
-    is_touched: bool,
+    unit: RawSpacingUnit,
+    file_length: Option<RawLengthText>,
+    /// True once the user has edited a value; then none is changed automatically.
+    is_edited: bool,
 }
 
-impl Form {
+impl RawImportForm {
     pub(super) fn new(guess: RawGuess) -> Self {
-        let exact = Length { bytes: guess.file_bytes, is_exact: true };
+        let exact = RawLengthText { bytes: guess.file_bytes, is_exact: true };
         Self {
             guess,
             layout: guess.layout,
             spacing: [1.0; 3],
-            unit: Unit::Unknown,
-            length: (!guess.is_gzip).then_some(exact),
-            is_touched: false,
+            unit: RawSpacingUnit::Unknown,
+            file_length: (!guess.is_gzip).then_some(exact),
+            is_edited: false,
         }
     }
 
@@ -44,33 +44,33 @@ impl Form {
         self.guess.is_gzip
     }
 
-    /// The numbers as they are now.
+    /// Layout of the file as currently entered.
     pub(super) fn layout(&self) -> RawLayout {
         let spacing_mm = self.unit.mm().map(|mm| self.spacing.map(|spacing| spacing * mm));
         RawLayout { spacing_mm, ..self.layout }
     }
 
-    /// What was found of the file.
-    pub(super) fn found(&mut self, length: Option<Length>, first: Option<&Proposal>) {
-        self.length = length.or(self.length);
-        if let Some(first) = first.filter(|_| !self.is_touched) {
+    /// Takes over the length of the file and, unless the user has edited a value, the first proposal.
+    pub(super) fn set_analysis(&mut self, length: Option<RawLengthText>, first: Option<&LayoutProposal>) {
+        self.file_length = length.or(self.file_length);
+        if let Some(first) = first.filter(|_| !self.is_edited) {
             self.layout = first.layout;
         }
     }
 
-    /// Takes over a proposal; distances stay.
-    pub(super) fn fill(&mut self, layout: &RawLayout) {
+    /// Takes over a proposal; the spacing stays.
+    pub(super) fn set_layout(&mut self, layout: &RawLayout) {
         self.layout = *layout;
-        self.is_touched = true;
+        self.is_edited = true;
     }
 
-    /// Whether the numbers are those of a proposal.
-    pub(super) fn is_of(&self, layout: &RawLayout) -> bool {
+    /// Returns true if the form matches a proposal.
+    pub(super) fn has_layout(&self, layout: &RawLayout) -> bool {
         self.layout == *layout
     }
 
-    /// Shows the numbers; gives the first of them.
-    pub(super) fn fields(&mut self, ui: &mut Ui) -> Response {
+    /// Shows the fields, and returns the first of them.
+    pub(super) fn show_fields(&mut self, ui: &mut Ui) -> Response {
         let before = self.layout;
         let grid = egui::Grid::new("raw layout").num_columns(2).spacing([12.0, 5.0]).show(ui, |ui| {
             ui.label(text::raw::VOXELS);
@@ -94,7 +94,7 @@ impl Form {
             ui.end_row();
             first
         });
-        self.is_touched |= self.layout != before;
+        self.is_edited |= self.layout != before;
         grid.inner
     }
 
@@ -103,7 +103,7 @@ impl Form {
             let mut first = None;
             for (axis, n) in text::raw::AXES.into_iter().zip(&mut self.layout.dims) {
                 let field = ui.name_inputs(text::raw::voxels_along(axis), |ui| {
-                    ui.add(DragValue::new(n).range(1..=LONGEST))
+                    ui.add(DragValue::new(n).range(1..=MAX_EDGE))
                 });
                 first.get_or_insert(field);
             }
@@ -130,7 +130,7 @@ impl Form {
             ui.horizontal(|ui| {
                 for (endian, order) in [(Endian::Little, text::raw::LITTLE), (Endian::Big, text::raw::BIG)] {
                     let choice = ui.selectable_value(&mut self.layout.endian, endian, order.name);
-                    choice.on_hover_text(order.tip).on_disabled_hover_text(text::raw::NO_ORDER);
+                    choice.on_hover_text(order.tooltip).on_disabled_hover_text(text::raw::NO_ORDER);
                 }
             });
         });
@@ -138,7 +138,7 @@ impl Form {
 
     fn spacing(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.add_enabled_ui(self.unit != Unit::Unknown, |ui| {
+            ui.add_enabled_ui(self.unit != RawSpacingUnit::Unknown, |ui| {
                 for (axis, spacing) in text::raw::AXES.into_iter().zip(&mut self.spacing) {
                     let field = DragValue::new(spacing).range(1e-6..=1e6).speed(0.01).max_decimals(6);
                     ui.name_inputs(text::raw::spacing_along(axis), |ui| ui.add(field));
@@ -147,7 +147,7 @@ impl Form {
             let combo =
                 egui::ComboBox::from_id_salt("spacing unit").selected_text(self.unit.name()).width(80.0);
             let shown = combo.show_ui(ui, |ui| {
-                for unit in Unit::ALL {
+                for unit in RawSpacingUnit::ALL {
                     ui.selectable_value(&mut self.unit, unit, unit.name());
                 }
             });
@@ -157,9 +157,9 @@ impl Form {
         });
     }
 
-    /// Says whether the file is as long as that, and what helps. Whether it is, or may be.
-    pub(super) fn length(&mut self, ui: &mut Ui) -> bool {
-        let Some(Length { bytes: found, is_exact }) = self.length else {
+    /// Shows whether the file's length matches, with remedies; returns true if it does, or may.
+    pub(super) fn show_length_check(&mut self, ui: &mut Ui) -> bool {
+        let Some(RawLengthText { bytes: found, is_exact }) = self.file_length else {
             ui.weak(text::raw::COMPRESSED);
             return true;
         };
@@ -170,19 +170,19 @@ impl Form {
             return false;
         };
         match expected.cmp(&found) {
-            Ordering::Equal => ui.colored_label(good, text::raw::fits(found, is_exact)),
-            Ordering::Less => ui.colored_label(warning, text::raw::longer(found - expected)),
-            Ordering::Greater => ui.colored_label(wrong, text::raw::shorter(found, expected)),
+            Ordering::Equal => ui.colored_label(good, text::raw::length_matches(found, is_exact)),
+            Ordering::Less => ui.colored_label(warning, text::raw::surplus_bytes(found - expected)),
+            Ordering::Greater => ui.colored_label(wrong, text::raw::missing_bytes(found, expected)),
         };
-        ui.horizontal_wrapped(|ui| self.remedies(ui, found, expected));
-        // What the end of a compressed file says may be wrong.
+        ui.horizontal_wrapped(|ui| self.show_remedies(ui, found, expected));
+        // The length in the trailer of a compressed file may be wrong.
         expected == found || !is_exact
     }
 
-    /// Buttons that make the numbers fit.
-    fn remedies(&mut self, ui: &mut Ui, found: u64, expected: u64) {
+    /// Shows buttons that make the values match the file's length.
+    fn show_remedies(&mut self, ui: &mut Ui, found: u64, expected: u64) {
         let before = self.layout;
-        if expected < found && ui.small_button(text::raw::ARE_HEADER).clicked() {
+        if expected < found && ui.small_button(text::raw::SKIP_SURPLUS).clicked() {
             self.layout.offset += found - expected;
         }
         if expected == found {
@@ -192,7 +192,7 @@ impl Form {
         let slice_bytes = (x * y * bytes).max(1);
         let voxel_bytes = found.saturating_sub(before.offset);
         let slices = voxel_bytes / slice_bytes;
-        let is_possible = voxel_bytes.is_multiple_of(slice_bytes) && (1..=LONGEST as u64).contains(&slices);
+        let is_possible = voxel_bytes.is_multiple_of(slice_bytes) && (1..=MAX_EDGE as u64).contains(&slices);
         if is_possible && ui.small_button(text::raw::with_slices(slices)).clicked() {
             self.layout.dims[2] = slices as usize;
         }
@@ -203,6 +203,6 @@ impl Form {
         {
             self.layout.offset = 0;
         }
-        self.is_touched |= self.layout != before;
+        self.is_edited |= self.layout != before;
     }
 }

@@ -1,4 +1,4 @@
-//! One of the three cuts of the window "Slices": its picture, the letters at its edges, and what the mouse does on it.
+//! One of the three cuts of the window "Slices": texture, letters at its edges, and mouse gestures.
 
 use std::sync::Arc;
 
@@ -7,48 +7,48 @@ use eframe::egui::{
     TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
-use super::image::{Grey, lookup, slice};
 use super::plane::{BodyPlane, SlicePlane};
+use super::slice_image::{GreyWindow, color_table, render_slice};
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::viewport::orbit::wheel_notches;
-use crate::app::viewport::overlay::side_letters;
-use crate::data::{Shown, ValueRange, Volume};
+use crate::app::viewport::mouse_navigation::wheel_notches;
+use crate::app::viewport::overlay::orientation_letters;
+use crate::data::{DensityMapping, ValueRange, Volume};
 use crate::model::TransferFunction;
 
-/// Points from the edges of a slice to its letters.
+/// Distance from the edges of a slice to its letters, in points.
 const LETTER_MARGIN: f32 = 3.0;
 
-/// What a texture shows: volume, plane, slice, grey levels, colours.
-type Drawn = (u64, SlicePlane, usize, Grey, Option<TransferFunction>);
+/// Inputs of a texture: content id of the volume, plane, slice index, grey levels, colours.
+type SliceTextureKey = (u64, SlicePlane, usize, GreyWindow, Option<TransferFunction>);
 
-/// Plane of a cut, and its size.
+/// Plane of a cut, and its size on screen.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
+pub(super) struct CutGeometry {
     pub plane: SlicePlane,
     /// Longest edge on screen, in points.
     pub edge: f32,
 }
 
-/// A cut, with the texture that was made last.
+/// Cut through the volume, with its cached texture.
 #[derive(Default)]
-pub(super) struct Cut {
+pub(super) struct SliceCut {
     texture: Option<TextureHandle>,
-    drawn: Option<Drawn>,
+    texture_key: Option<SliceTextureKey>,
 }
 
-impl Cut {
-    /// Shows the cut through the cursor. `turned`: what the wheel has turned beyond whole slices.
+impl SliceCut {
+    /// Shows the cut through the cursor. `turned`: fraction of a slice that the wheel has turned.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
-        Shape { plane, edge }: Shape,
+        CutGeometry { plane, edge }: CutGeometry,
         volume: &Arc<Volume>,
-        (cursor, turned): (&mut [usize; 3], &mut f64),
-        grey: &mut Grey,
+        (cursor, wheel_fraction): (&mut [usize; 3], &mut f64),
+        grey_window: &mut GreyWindow,
         colors: Option<&TransferFunction>,
     ) {
-        self.draw(ui, plane, volume, cursor[plane.across], *grey, colors);
+        self.update_texture(ui, plane, volume, cursor[plane.normal_axis], *grey_window, colors);
         let Some(texture) = &self.texture else { return };
         let (dims, spacing) = (volume.dims(), volume.spacing_mm());
         let [u, v] = [plane.right.axis, plane.up.axis];
@@ -57,30 +57,34 @@ impl Cut {
         ui.vertical(|ui| {
             ui.set_max_width(edge);
             ui.spacing_mut().item_spacing.y = 2.0;
-            let name = text::slices::plane(name(plane), plane.across, cursor[plane.across]);
+            let name = text::slices::plane(plane_name(plane), plane.normal_axis, cursor[plane.normal_axis]);
             ui.add(egui::Label::new(egui::RichText::new(name).small().weak()).truncate());
-            // Beside each other they begin at the same places.
+            // All frames begin at the same height when side by side.
             let (frame, response) =
                 ui.allocate_exact_size(vec2(edge, size.y.max(0.4 * edge)), Sense::click_and_drag());
             let area = Rect::from_center_size(frame.center(), size);
-            let sides = volume.is_anatomical().then(|| plane.sides(&volume.scene()));
+            let sides = volume.is_anatomical().then(|| plane.side_letters(&volume.scene()));
             response.widget_info(|| {
-                let across = plane.across;
-                let name = sides.as_ref().map(|sides| text::slices::across_body(across, sides));
-                WidgetInfo::labeled(Role::Canvas, true, name.unwrap_or_else(|| text::slices::across(across)))
+                let across = plane.normal_axis;
+                let name = sides.as_ref().map(|sides| text::slices::anatomical_slice_name(across, sides));
+                WidgetInfo::labeled(
+                    Role::Canvas,
+                    true,
+                    name.unwrap_or_else(|| text::slices::slice_name(across)),
+                )
             });
             let painter = ui.painter_at(frame);
-            // Not as black as data may be, so that it is seen where these end.
+            // Lighter than black data, so that the edge of the slice is visible.
             painter.rect_filled(frame, 0.0, theme::EMPTY_CANVAS);
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), area, whole, Color32::WHITE);
-            move_cursor(ui, &response, area, plane, dims, (cursor, turned));
+            move_cursor(ui, &response, area, plane, dims, (cursor, wheel_fraction));
             if response.dragged_by(PointerButton::Secondary) {
-                grey.drag(response.drag_delta() / edge, volume.shown_range());
+                grey_window.drag(response.drag_delta() / edge, volume.shown_range());
             }
             crosshair(&painter, area, plane, *cursor, dims);
             if let Some(sides) = sides {
-                side_letters::write(&painter, frame, sides, LETTER_MARGIN);
+                orientation_letters::paint_orientation_letters(&painter, frame, sides, LETTER_MARGIN);
             }
             if response.hovered() {
                 ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
@@ -88,42 +92,42 @@ impl Cut {
         });
     }
 
-    /// Makes the texture anew, if what it is to show has changed.
-    fn draw(
+    /// Updates the texture if its inputs have changed.
+    fn update_texture(
         &mut self,
         ui: &Ui,
         plane: SlicePlane,
         volume: &Arc<Volume>,
         at: usize,
-        grey: Grey,
+        grey: GreyWindow,
         colors: Option<&TransferFunction>,
     ) {
         let what = (volume.content_id(), plane, at, grey, colors.cloned());
-        if self.drawn.as_ref() == Some(&what) {
+        if self.texture_key.as_ref() == Some(&what) {
             return;
         }
-        // Whatever the picture shows: beyond these all values look the same.
+        // Independent of the shown range of the picture: beyond these grey levels all values look alike.
         let ValueRange { low, high } = volume.shown_range();
-        let greys = Shown::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
+        let greys = DensityMapping::Range(ValueRange::new(low.min(grey.black), high.max(grey.white)));
         let is_by_label = colors.is_some() && volume.shown_labels().is_some();
-        let shown = if is_by_label { Shown::Labels } else { greys };
-        let volume = volume.showing(shown);
-        let image = slice(&volume, &plane, at, &lookup(&volume, grey, colors));
+        let shown = if is_by_label { DensityMapping::Labels } else { greys };
+        let volume = volume.with_density_mapping(shown);
+        let image = render_slice(&volume, &plane, at, &color_table(&volume, grey, colors));
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             empty => *empty = Some(ui.ctx().load_texture("slice", image, TextureOptions::LINEAR)),
         }
-        self.drawn = Some(what);
+        self.texture_key = Some(what);
     }
 }
 
-/// What a plane is called.
-fn name(plane: SlicePlane) -> &'static str {
-    match plane.of_body {
+/// Name of a slice plane, anatomical if the volume is.
+fn plane_name(plane: SlicePlane) -> &'static str {
+    match plane.body_plane {
         Some(BodyPlane::Sagittal) => text::slices::SAGITTAL,
         Some(BodyPlane::Coronal) => text::slices::CORONAL,
         Some(BodyPlane::Axial) => text::slices::AXIAL,
-        None => text::slices::span(plane.across),
+        None => text::slices::axes(plane.normal_axis),
     }
 }
 
@@ -143,16 +147,16 @@ fn move_cursor(
         *turned += wheel_notches(ui);
         let whole = turned.trunc();
         *turned -= whole;
-        let at = &mut cursor[plane.across];
-        *at = at.saturating_add_signed(whole as isize).min(dims[plane.across] - 1);
+        let at = &mut cursor[plane.normal_axis];
+        *at = at.saturating_add_signed(whole as isize).min(dims[plane.normal_axis] - 1);
     }
 }
 
-/// Where the other two cuts go through this one.
+/// Paints where the other two cuts intersect this one.
 fn crosshair(painter: &Painter, area: Rect, plane: SlicePlane, cursor: [usize; 3], dims: [usize; 3]) {
-    let at = plane.place(cursor, dims, area);
+    let at = plane.screen_position(cursor, dims, area);
     let stroke = |axis: usize| Stroke::new(1.0, theme::AXES[axis].gamma_multiply(0.8));
-    // A line lies along the axis that it stands for.
+    // A line runs along the axis whose colour it has.
     painter.hline(area.x_range(), at.y, stroke(plane.right.axis));
     painter.vline(at.x, area.y_range(), stroke(plane.up.axis));
 }

@@ -1,141 +1,141 @@
-//! How a slice lies on the screen: which axes of the grid run to the right and upwards, and which sides of a body are at
-//! its edges.
+//! Orientation of slices on the screen: grid axes to the right and upwards, and the anatomical sides at their edges.
 //!
-//! Slices of a body lie as people look at them: the front at the top of axial ones, the head at the top of the others,
-//! and a body's right on the side that the convention names. Of other data x runs to the right and z, or else y, upwards.
+//! Slices of a body follow the radiological viewing convention or the neurological one: anterior at the top of axial
+//! slices, superior at the top of the others, and the body's right on the side that the convention names. For other
+//! data x runs to the right and z, or else y, upwards.
 
 use eframe::egui::{Pos2, Rect, Vec2, pos2};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Headings, Volume};
-use crate::export::sides_along;
+use crate::data::{AnatomicalAxes, Volume};
+use crate::export::orientation_letters_of_plane;
 use crate::math::SceneSpace;
 
 /// Side of the screen on which axial and coronal slices show a body's right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Convention {
-    /// On the left, as if the body faced the viewer.
+pub(crate) enum ViewingConvention {
+    /// Body's right on the left, as if the body faced the viewer.
     #[default]
     Radiological,
-    /// On the right, as if the viewer stood behind the body.
+    /// Body's right on the right, as if the viewer stood behind the body.
     Neurological,
 }
 
-/// Plane of a body, named by the axis of the body across which it lies.
+/// Anatomical plane, named by the axis of the body across which it lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BodyPlane {
-    /// Across the axis from left to right.
+    /// Plane across the left–right axis.
     Sagittal,
-    /// Across the axis from back to front.
+    /// Plane across the posterior–anterior axis.
     Coronal,
-    /// Across the axis from feet to head.
+    /// Plane across the inferior–superior axis.
     Axial,
 }
 
-/// Axis of the grid in a direction of the screen.
+/// Grid axis that runs along a direction of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ScreenAxis {
-    /// Axis of index space.
+    /// Index of the axis in index space.
     pub axis: usize,
-    /// Indices fall in that direction.
+    /// True if indices decrease in that direction.
     pub is_reversed: bool,
 }
 
-/// Way in which the slices across one axis of the grid lie on the screen.
+/// Orientation on the screen of the slices across one grid axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SlicePlane {
-    /// Axis of index space across which they lie.
-    pub across: usize,
-    /// Axis to the right.
+    /// Axis of index space across which the slices lie.
+    pub normal_axis: usize,
+    /// Grid axis that runs to the right.
     pub right: ScreenAxis,
-    /// Axis upwards.
+    /// Grid axis that runs upwards.
     pub up: ScreenAxis,
-    /// Plane of the body that is nearest, where there is a body.
-    pub of_body: Option<BodyPlane>,
+    /// Nearest anatomical plane, if the volume has anatomical directions.
+    pub body_plane: Option<BodyPlane>,
 }
 
-/// Axes of a body, of right-anterior-superior space.
+/// Indices of the body's axes in right–anterior–superior space.
 const RIGHT: usize = 0;
 const ANTERIOR: usize = 1;
 const SUPERIOR: usize = 2;
 
 impl ScreenAxis {
-    /// Share of the way along this axis, from the left or from the bottom, at which the middle of a voxel lies.
-    fn share(self, index: usize, count: usize) -> f32 {
+    /// Position of a voxel's centre along this axis, as a share from the left or the bottom.
+    fn share_of_index(self, index: usize, count: usize) -> f32 {
         let share = (index as f32 + 0.5) / count as f32;
         if self.is_reversed { 1.0 - share } else { share }
     }
 
-    /// Voxel at a share of the way along this axis.
-    fn index(self, share: f32, count: usize) -> usize {
+    /// Index of the voxel at a share of the length of this axis.
+    fn index_of_share(self, share: f32, count: usize) -> usize {
         let share = if self.is_reversed { 1.0 - share } else { share };
         ((share * count as f32).max(0.0) as usize).min(count - 1)
     }
 
-    /// Voxel that is so many voxels from the left or from the bottom.
-    pub(super) fn nth(self, nth: usize, count: usize) -> usize {
+    /// Index of the n-th voxel from the left or the bottom.
+    pub(super) fn nth_index(self, nth: usize, count: usize) -> usize {
         if self.is_reversed { count - 1 - nth } else { nth }
     }
 
-    /// Direction of this axis in scene space, of length 1.
-    fn in_scene(self, scene: &SceneSpace) -> DVec3 {
+    /// Direction of this axis in scene space, a unit vector.
+    fn scene_direction(self, scene: &SceneSpace) -> DVec3 {
         let along = scene.scene_from_index.matrix3.col(self.axis).normalize_or_zero();
         if self.is_reversed { -along } else { along }
     }
 }
 
 impl SlicePlane {
-    /// Slices across an axis of a grid of no body.
-    pub(crate) fn across(axis: usize) -> Self {
+    /// Creates the plane across an axis of a grid without anatomical directions.
+    pub(crate) fn across_axis(axis: usize) -> Self {
         let [right, up] = [[1, 2], [0, 2], [0, 1]][axis].map(|axis| ScreenAxis { axis, is_reversed: false });
-        Self { across: axis, right, up, of_body: None }
+        Self { normal_axis: axis, right, up, body_plane: None }
     }
 
-    /// The three cuts of a volume: from above, from the front and from the side.
-    pub(crate) fn all(volume: &Volume, convention: Convention) -> [Self; 3] {
+    /// Planes of the three cuts of a volume: from above, from the front and from the side.
+    pub(crate) fn for_volume(volume: &Volume, convention: ViewingConvention) -> [Self; 3] {
         if !volume.is_anatomical() {
-            return [2, 1, 0].map(Self::across);
+            return [2, 1, 0].map(Self::across_axis);
         }
         let axes = volume.world_from_index().matrix3;
-        let headings = Headings::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).directions();
-        // The axis of the grid that runs along an axis of the body, towards its end or towards its start.
-        let run = |of_body: usize, to_end: bool| {
+        let headings = AnatomicalAxes::nearest([axes.x_axis, axes.y_axis, axes.z_axis]).directions();
+        // The grid axis that runs along an axis of the body, towards its end or its start.
+        let screen_axis = |of_body: usize, to_end: bool| {
             let axis = (0..3).find(|&axis| headings[axis][of_body] != 0.0).unwrap_or(of_body);
             ScreenAxis { axis, is_reversed: (headings[axis][of_body] > 0.0) != to_end }
         };
-        let to_right = convention == Convention::Neurological;
+        let to_right = convention == ViewingConvention::Neurological;
         let plane = |across, right, up, of_body| Self {
-            across: run(across, true).axis,
+            normal_axis: screen_axis(across, true).axis,
             right,
-            up: run(up, true),
-            of_body: Some(of_body),
+            up: screen_axis(up, true),
+            body_plane: Some(of_body),
         };
         [
-            plane(SUPERIOR, run(RIGHT, to_right), ANTERIOR, BodyPlane::Axial),
-            plane(ANTERIOR, run(RIGHT, to_right), SUPERIOR, BodyPlane::Coronal),
-            // Both conventions look at a body's left side: its front is on the left.
-            plane(RIGHT, run(ANTERIOR, false), SUPERIOR, BodyPlane::Sagittal),
+            plane(SUPERIOR, screen_axis(RIGHT, to_right), ANTERIOR, BodyPlane::Axial),
+            plane(ANTERIOR, screen_axis(RIGHT, to_right), SUPERIOR, BodyPlane::Coronal),
+            // Both conventions look at a body's left side, with its front on the left.
+            plane(RIGHT, screen_axis(ANTERIOR, false), SUPERIOR, BodyPlane::Sagittal),
         ]
     }
 
-    /// Letters of the body's sides at the right, the left, the top and the bottom of the slices.
-    pub(crate) fn sides(&self, scene: &SceneSpace) -> [String; 4] {
-        sides_along(self.right.in_scene(scene), self.up.in_scene(scene))
+    /// Anatomical letters at the right, left, top and bottom of the slices.
+    pub(crate) fn side_letters(&self, scene: &SceneSpace) -> [String; 4] {
+        orientation_letters_of_plane(self.right.scene_direction(scene), self.up.scene_direction(scene))
     }
 
-    /// Where the middle of a voxel lies in an area of the screen that the slice fills.
-    pub(crate) fn place(&self, voxel: [usize; 3], dims: [usize; 3], area: Rect) -> Pos2 {
-        let share = |run: ScreenAxis| run.share(voxel[run.axis], dims[run.axis]);
+    /// Position of a voxel's centre on the screen, in an area that the slice fills.
+    pub(crate) fn screen_position(&self, voxel: [usize; 3], dims: [usize; 3], area: Rect) -> Pos2 {
+        let share = |run: ScreenAxis| run.share_of_index(voxel[run.axis], dims[run.axis]);
         pos2(area.left() + share(self.right) * area.width(), area.bottom() - share(self.up) * area.height())
     }
 
-    /// Moves a voxel within its slice to a place of the screen.
+    /// Moves a voxel within its slice to a position on the screen.
     pub(crate) fn move_to(&self, at: Pos2, area: Rect, dims: [usize; 3], voxel: &mut [usize; 3]) {
         let Vec2 { x, y } = (at - area.left_bottom()) / area.size();
-        voxel[self.right.axis] = self.right.index(x, dims[self.right.axis]);
-        voxel[self.up.axis] = self.up.index(-y, dims[self.up.axis]);
+        voxel[self.right.axis] = self.right.index_of_share(x, dims[self.right.axis]);
+        voxel[self.up.axis] = self.up.index_of_share(-y, dims[self.up.axis]);
     }
 }
 
@@ -146,15 +146,15 @@ mod tests {
     use super::*;
     use crate::data::Samples;
 
-    /// Volume of 2 × 3 × 4 voxels of a body, with axes of the grid in these directions of right-anterior-superior space.
+    /// Anatomical volume of 2 × 3 × 4 voxels, with grid axes in these directions of right–anterior–superior space.
     fn body(axes: [[f64; 3]; 3]) -> Volume {
         let world_from_index = DAffine3::from_mat3(DMat3::from_cols_array_2d(&axes));
         let samples = Samples::U8((0..24).collect());
-        Volume::new("body", [2, 3, 4], world_from_index, samples).unwrap().with_anatomy(true)
+        Volume::new("body", [2, 3, 4], world_from_index, samples).unwrap().with_anatomical_axes(true)
     }
 
-    fn letters(volume: &Volume, convention: Convention) -> [String; 3] {
-        SlicePlane::all(volume, convention).map(|plane| plane.sides(&volume.scene()).concat())
+    fn letters(volume: &Volume, convention: ViewingConvention) -> [String; 3] {
+        SlicePlane::for_volume(volume, convention).map(|plane| plane.side_letters(&volume.scene()).concat())
     }
 
     #[test]
@@ -163,14 +163,22 @@ mod tests {
         let back = |axis: [f64; 3]| axis.map(|c| -c);
         for axes in [[x, y, z], [back(x), back(y), z], [y, back(z), x], [back(z), x, back(y)]] {
             let volume = body(axes);
-            // Right, left, top and bottom.
-            assert_eq!(letters(&volume, Convention::Radiological), ["LRAP", "LRSI", "PASI"], "{axes:?}");
-            assert_eq!(letters(&volume, Convention::Neurological), ["RLAP", "RLSI", "PASI"], "{axes:?}");
-            let planes = SlicePlane::all(&volume, Convention::Radiological);
-            let mut across = planes.map(|plane| plane.across);
+            // Letters at right, left, top and bottom.
+            assert_eq!(
+                letters(&volume, ViewingConvention::Radiological),
+                ["LRAP", "LRSI", "PASI"],
+                "{axes:?}"
+            );
+            assert_eq!(
+                letters(&volume, ViewingConvention::Neurological),
+                ["RLAP", "RLSI", "PASI"],
+                "{axes:?}"
+            );
+            let planes = SlicePlane::for_volume(&volume, ViewingConvention::Radiological);
+            let mut across = planes.map(|plane| plane.normal_axis);
             for plane in planes {
                 assert!(
-                    ![plane.right.axis, plane.up.axis].contains(&plane.across)
+                    ![plane.right.axis, plane.up.axis].contains(&plane.normal_axis)
                         && plane.right.axis != plane.up.axis,
                     "{plane:?}"
                 );
@@ -178,7 +186,7 @@ mod tests {
             across.sort_unstable();
             assert_eq!(across, [0, 1, 2]);
             assert_eq!(
-                planes.map(|plane| plane.of_body),
+                planes.map(|plane| plane.body_plane),
                 [BodyPlane::Axial, BodyPlane::Coronal, BodyPlane::Sagittal].map(Some)
             );
         }
@@ -186,35 +194,36 @@ mod tests {
 
     #[test]
     fn oblique_bodies_have_the_letters_of_both_sides() {
-        // A quarter of a right angle about the axis from feet to head, then less than 17°.
+        // At 30° about the inferior–superior axis both letters are shown, at 10° only the nearer one.
         let turned = |deg: f64| DMat3::from_rotation_z(deg.to_radians()).to_cols_array_2d();
-        let oblique = letters(&body(turned(30.0)), Convention::Radiological);
+        let oblique = letters(&body(turned(30.0)), ViewingConvention::Radiological);
         assert_eq!(oblique, ["LPRAALPR", "LPRASI", "PRALSI"]);
-        assert_eq!(letters(&body(turned(10.0)), Convention::Radiological), ["LRAP", "LRSI", "PASI"]);
+        assert_eq!(letters(&body(turned(10.0)), ViewingConvention::Radiological), ["LRAP", "LRSI", "PASI"]);
     }
 
     #[test]
     fn other_data_lie_along_their_axes() {
         let volume = Volume::with_spacing("t", [2, 3, 4], DVec3::ONE, Samples::U8(vec![0; 24])).unwrap();
-        let planes = SlicePlane::all(&volume, Convention::Radiological);
-        assert_eq!(planes.map(|plane| plane.across), [2, 1, 0]);
+        let planes = SlicePlane::for_volume(&volume, ViewingConvention::Radiological);
+        assert_eq!(planes.map(|plane| plane.normal_axis), [2, 1, 0]);
         assert_eq!(planes.map(|plane| [plane.right.axis, plane.up.axis]), [[0, 1], [0, 2], [1, 2]]);
-        assert!(planes.iter().all(|plane| plane.of_body.is_none() && !plane.right.is_reversed));
+        assert!(planes.iter().all(|plane| plane.body_plane.is_none() && !plane.right.is_reversed));
     }
 
     #[test]
     fn places_on_the_screen_lead_back_to_their_voxels() {
         let area = Rect::from_min_max(pos2(10.0, 20.0), pos2(30.0, 80.0));
         let dims = [2, 3, 4];
-        for convention in [Convention::Radiological, Convention::Neurological] {
-            for plane in
-                SlicePlane::all(&body([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), convention)
-            {
+        for convention in [ViewingConvention::Radiological, ViewingConvention::Neurological] {
+            for plane in SlicePlane::for_volume(
+                &body([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]),
+                convention,
+            ) {
                 for at in 0..24 {
                     let voxel = [at % 2, at / 2 % 3, at / 6];
                     let mut found = [0; 3];
-                    found[plane.across] = voxel[plane.across];
-                    plane.move_to(plane.place(voxel, dims, area), area, dims, &mut found);
+                    found[plane.normal_axis] = voxel[plane.normal_axis];
+                    plane.move_to(plane.screen_position(voxel, dims, area), area, dims, &mut found);
                     assert_eq!(found, voxel, "{plane:?}");
                 }
             }

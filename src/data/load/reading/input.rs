@@ -1,38 +1,38 @@
-//! Regular files, opened only after a look at what they are.
+//! Opening of regular files; the file type is checked first.
 
 use std::fs::{self, File, FileType};
 use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
 use std::path::Path;
 use std::time::SystemTime;
 
-use super::beside::{LOST_LINK, LOST_LINK_HELP};
-use super::read_files::note;
+use super::companion_path::{DANGLING_LINK, DANGLING_LINK_HELP};
+use super::read_files::record_read;
 use super::{LoadControl, LoadError};
-use crate::data::attempt::Attempt;
-use crate::data::plain;
+use crate::data::load_context::LoadContext;
+use crate::data::sanitised;
 
-/// A regular file open for reading, at its beginning.
+/// Regular file open for reading, positioned at its beginning.
 #[derive(Debug)]
-pub(crate) struct Input {
-    /// The content of the file.
+pub(crate) struct InputFile {
+    /// Buffered reader of the file's content.
     pub(crate) reader: BufReader<File>,
     /// Length of the file in bytes when it was opened.
     pub(crate) len: u64,
 }
 
-impl Input {
-    /// Opens a regular file; a symbolic link may lead to it.
+impl InputFile {
+    /// Opens a regular file; symbolic links are followed.
     ///
     /// # Errors
-    /// `Io` when it is not there, not readable, or a directory, pipe, socket or device. Those are
+    /// `Io` when it does not exist, is not readable, or is a directory, pipe, socket or device. Pipes and devices are
     /// never opened: opening a pipe blocks, and a device may have no end.
-    pub(crate) fn open(attempt: Attempt<'_>) -> Result<Self, LoadError> {
-        let io = |error| attempt.io(error);
+    pub(crate) fn open(attempt: LoadContext<'_>) -> Result<Self, LoadError> {
+        let io = |error| attempt.io_error(error);
         let refuse = |file_type: FileType| {
             if file_type.is_dir() {
-                attempt.not_a_file("it is a directory", "name one file")
+                attempt.not_a_file_error("it is a directory", "name one file")
             } else {
-                attempt.not_a_file(
+                attempt.not_a_file_error(
                     "it is a pipe, socket or device, not a regular file",
                     "copy it to a file first",
                 )
@@ -43,7 +43,7 @@ impl Input {
             Err(error)
                 if error.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(attempt.path).is_ok() =>
             {
-                return Err(attempt.not_a_file(LOST_LINK, LOST_LINK_HELP));
+                return Err(attempt.not_a_file_error(DANGLING_LINK, DANGLING_LINK_HELP));
             }
             Err(error) => return Err(io(error)),
         };
@@ -51,7 +51,7 @@ impl Input {
             return Err(refuse(file_type));
         }
         let file = File::open(attempt.path).map_err(io)?;
-        // The name may mean something else by now; the open file cannot.
+        // The path may name another file by now; the open handle cannot.
         let metadata = file.metadata().map_err(io)?;
         if !metadata.is_file() {
             return Err(refuse(metadata.file_type()));
@@ -59,17 +59,15 @@ impl Input {
         Ok(Self { reader: BufReader::with_capacity(256 << 10, file), len: metadata.len() })
     }
 
-    /// Goes to byte `position`.
+    /// Seeks to byte `position` of the file.
     pub(crate) fn seek(&mut self, position: u64) -> io::Result<()> {
         self.reader.seek(SeekFrom::Start(position)).map(drop)
     }
 
-    /// Skips `lines` lines; their bytes, or `None` when the file ends before that.
-    ///
-    /// Nothing is collected, so that a file without line ends costs no memory.
+    /// Skips `lines` lines and returns their length in bytes, or `None` when the file ends before that.
     pub(crate) fn skip_lines(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         lines: u64,
         control: &LoadControl,
     ) -> Result<Option<u64>, LoadError> {
@@ -77,7 +75,7 @@ impl Input {
         let mut skipped = 0;
         while left > 0 {
             control.check()?;
-            let block = self.reader.fill_buf().map_err(|error| attempt.io(error))?;
+            let block = self.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
             if block.is_empty() {
                 return Ok(None);
             }
@@ -95,70 +93,77 @@ impl Input {
     }
 }
 
-/// Remembers a file as it was when it was opened: what is read while somebody writes it would be neither what was there
-/// nor what will be.
+/// Length and modification time of a file when it was opened, to detect writes by other programs while it is read:
+/// such content would be a mixture of two versions.
 #[derive(Debug)]
-pub(crate) struct Witness {
+pub(crate) struct FileChangeGuard {
     file: File,
-    before: (u64, Option<SystemTime>),
+    initial_state: (u64, Option<SystemTime>),
 }
 
-/// Length and, where the system knows it, the time of the last write.
-fn state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
+/// Length, and modification time where the system provides it.
+fn file_state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
     file.metadata().map(|metadata| (metadata.len(), metadata.modified().ok()))
 }
 
-impl Witness {
-    /// Looks at an input that nothing has been read from.
-    pub(crate) fn of(attempt: Attempt<'_>, input: &Input) -> Result<Self, LoadError> {
-        note(attempt.path);
-        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((state(&file)?, file)));
-        seen.map(|(before, file)| Self { file, before }).map_err(|error| attempt.io(error))
+impl FileChangeGuard {
+    /// Records the state of an input before anything is read from it.
+    pub(crate) fn new(attempt: LoadContext<'_>, input: &InputFile) -> Result<Self, LoadError> {
+        record_read(attempt.path);
+        let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((file_state(&file)?, file)));
+        seen.map(|(before, file)| Self { file, initial_state: before })
+            .map_err(|error| attempt.io_error(error))
     }
 
-    /// What was read, unless the file has changed meanwhile.
+    /// Returns the result of reading, unless the file has changed since it was opened.
     ///
     /// # Errors
-    /// `Io` when it has, whatever reading it led to, unless that was given up.
-    pub(crate) fn vouch<T>(&self, attempt: Attempt<'_>, read: Result<T, LoadError>) -> Result<T, LoadError> {
+    /// `Io` when it has changed, even if reading failed for another reason, except for `Cancelled`, which is passed
+    /// on.
+    pub(crate) fn check_unchanged<T>(
+        &self,
+        attempt: LoadContext<'_>,
+        read: Result<T, LoadError>,
+    ) -> Result<T, LoadError> {
         if matches!(read, Err(LoadError::Cancelled)) {
             return read;
         }
-        if state(&self.file).map_err(|error| attempt.io(error))? == self.before {
+        if file_state(&self.file).map_err(|error| attempt.io_error(error))? == self.initial_state {
             return read;
         }
-        Err(attempt.not_a_file(
+        Err(attempt.not_a_file_error(
             "the file has changed while it was being read",
             "open it again when whatever writes it has finished",
         ))
     }
 }
 
-/// Whether a file that begins like this is a gzip file (RFC 1952: magic, then method 8).
+/// Returns true if a file with these first bytes is a gzip file (RFC 1952: magic, then method 8).
 pub(crate) fn is_gzip(magic: &[u8]) -> bool {
     magic.starts_with(&[0x1f, 0x8b, 8])
 }
 
-/// The most bytes that so many compressed ones can stand for: deflate makes no more than 1032 of one
+/// Upper bound of the inflated size of `bytes` compressed bytes: deflate expands a byte to at most 1032
 /// (<https://zlib.net/zlib_tech.html>).
-pub(in crate::data::load) fn most_inflated(bytes: u64) -> u64 {
+pub(crate) fn max_inflated_bytes(bytes: u64) -> u64 {
     bytes.saturating_mul(1032)
 }
 
-/// The file name without that of the endings (lower case, longest first) which it has, in any case.
-pub(in crate::data::load) fn bare_name(path: &Path, endings: &[&str]) -> String {
+/// File name without its extension, if that is one of `endings` (lower case, longest first); the comparison ignores
+/// case.
+pub(crate) fn name_without_extension(path: &Path, endings: &[&str]) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let lower = name.to_lowercase();
     let ending = endings.iter().find(|ending| lower.ends_with(**ending) && lower.len() > ending.len());
-    // Lower case can have another length: then the name is kept whole.
+    // Lower-casing can change the length in bytes: then the name stays whole.
     let kept = ending.and_then(|ending| name.get(..name.len().saturating_sub(ending.len())));
     kept.unwrap_or(&name).to_owned()
 }
 
-/// The file name without its last extension, and without `.gz` behind that, for a volume that has no other name.
+/// File name without its last extension and without `.gz` after that: the default name of a volume.
 pub(crate) fn stem(path: &Path) -> String {
     let is_zipped = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
     let unzipped = path.file_stem().filter(|_| is_zipped).map_or(path, Path::new);
     let stem = unzipped.file_stem().unwrap_or(path.as_os_str());
-    plain(&stem.to_string_lossy(), 120)
+    sanitised(&stem.to_string_lossy(), 120)
 }

@@ -1,18 +1,18 @@
-//! What readers of all formats share: files, numbers, places, and what stands beside a file.
+//! Parts that the readers of all formats share: files, numbers, placement, and companion files.
 
-pub(super) mod beside;
+pub(super) mod companion_path;
 pub(super) mod content;
 pub(super) mod input;
-pub(super) mod label_files;
+pub(super) mod label_tables;
 pub(super) mod number;
+mod parallel_read;
 pub(super) mod placement;
 pub(super) mod read_files;
 pub(super) mod reader;
-pub(super) mod rescaled;
+pub(super) mod rescale;
 pub(super) mod samples;
-pub(super) mod sieve;
-mod stored;
 pub(super) mod text_numbers;
+pub(super) mod voxel_filter;
 pub(super) mod voxels;
 
-use super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
+use super::{Endian, FileDimension, LoadControl, LoadError, LoadOptions, VolumeOffer};

@@ -1,18 +1,20 @@
-//! Numbers as files have them to voxels as volumes have them: also of types that volumes have not, and of several
-//! numbers for each voxel.
+//! Conversion of the number types of files to those of volumes, including types that volumes lack (64-bit integers,
+//! half floats) and voxels of several components.
 
 use std::io::Read;
 
-use super::samples::{BLOCK_BYTES, Fault, Layout, Sample as _, fill, read_binary, reserve};
-use super::sieve::{Leap, Sieve};
-use super::voxels::{Meant, NoMeans, Voxels, averaged};
+use super::samples::{
+    BLOCK_BYTES, DecodeSample as _, ReadFault, VoxelLayout, alloc_with_capacity, read_binary, read_until_full,
+};
+use super::voxel_filter::{SkipFn, VoxelFilter};
+use super::voxels::{AveragingError, ReadVoxels, ValueMapping, average_blocks};
 use super::{Endian, LoadControl, LoadError};
-use crate::data::attempt::{Attempt, Extent};
+use crate::data::load_context::{GridExtent, LoadContext};
 use crate::data::{Samples, VoxelType};
 
-/// A number type of files.
+/// Number type of voxels in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data::load) enum Number {
+pub(crate) enum FileNumberType {
     U8,
     I8,
     U16,
@@ -26,9 +28,9 @@ pub(in crate::data::load) enum Number {
     F64,
 }
 
-impl Number {
-    /// That of voxels as they are.
-    pub(in crate::data::load) const fn of(voxel_type: VoxelType) -> Self {
+impl FileNumberType {
+    /// Returns the number type that equals a voxel type.
+    pub(crate) const fn from_voxel_type(voxel_type: VoxelType) -> Self {
         match voxel_type {
             VoxelType::U8 => Self::U8,
             VoxelType::I8 => Self::I8,
@@ -41,8 +43,8 @@ impl Number {
         }
     }
 
-    /// Size of one in bytes.
-    pub(in crate::data::load) const fn bytes(self) -> usize {
+    /// Size of a number, in bytes.
+    pub(crate) const fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
             Self::U16 | Self::I16 | Self::F16 => 2,
@@ -51,8 +53,8 @@ impl Number {
         }
     }
 
-    /// The type of the voxels that they become, at most: whole numbers of 64 bits that need no more take 32.
-    pub(in crate::data::load) const fn voxel_type(self) -> VoxelType {
+    /// Type of the resulting voxels at most: 64-bit integers whose values fit into 32 bits take only 32.
+    pub(crate) const fn voxel_type(self) -> VoxelType {
         match self {
             Self::U8 => VoxelType::U8,
             Self::I8 => VoxelType::I8,
@@ -65,8 +67,8 @@ impl Number {
         }
     }
 
-    /// Whether voxels have the type as it is.
-    const fn is_kept(self) -> bool {
+    /// Returns true if volumes have this number type, so that no conversion is needed.
+    const fn is_voxel_type(self) -> bool {
         !matches!(self, Self::U64 | Self::I64 | Self::F16)
     }
 
@@ -74,8 +76,8 @@ impl Number {
         matches!(self, Self::U64 | Self::I64)
     }
 
-    /// The value of some bytes, as many as one has.
-    pub(in crate::data::load) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
+    /// Decodes a number from its bytes; `bytes` has the length of the type.
+    pub(crate) fn value(self, bytes: &[u8], endian: Endian) -> f64 {
         match self {
             Self::U8 => f64::from(u8::from_bytes(bytes, endian)),
             Self::I8 => f64::from(i8::from_bytes(bytes, endian)),
@@ -92,114 +94,120 @@ impl Number {
     }
 }
 
-/// What of the several numbers of a voxel is shown.
+/// Scalar that is derived from a voxel of several components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data::load) enum Part {
-    /// One of them, from 0.
+pub(crate) enum ScalarReduction {
+    /// Index of a component, from 0.
     Component(usize),
-    /// The length of a vector.
+    /// Euclidean length of a vector.
     Magnitude,
-    /// How light a colour is, as a standard for television weighs red, green and blue (ITU-R BT.709). What comes after
-    /// them, as opacity does, does not count.
+    /// Luminance of a colour: weights of red, green and blue after ITU-R BT.709. Further components, such as opacity,
+    /// do not count.
     Luminance,
 }
 
-/// How the voxels of a file are stored: one after the other, x fastest, the numbers of one beside each other.
+/// Storage of a file's voxels: contiguous, x fastest, components interleaved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data::load) struct Stored {
-    pub(in crate::data::load) number: Number,
-    pub(in crate::data::load) endian: Endian,
-    /// Numbers of each voxel.
-    pub(in crate::data::load) components: usize,
-    pub(in crate::data::load) part: Part,
+pub(crate) struct VoxelEncoding {
+    pub(crate) number: FileNumberType,
+    pub(crate) endian: Endian,
+    /// Number of components per voxel.
+    pub(crate) components: usize,
+    pub(crate) reduction: ScalarReduction,
 }
 
-impl Stored {
-    /// Voxels of a number each.
-    pub(in crate::data::load) fn scalar(number: Number, endian: Endian) -> Self {
-        Self { number, endian, components: 1, part: Part::Component(0) }
+impl VoxelEncoding {
+    /// Storage of scalar voxels, one number each.
+    pub(crate) fn scalar(number: FileNumberType, endian: Endian) -> Self {
+        Self { number, endian, components: 1, reduction: ScalarReduction::Component(0) }
     }
 
-    /// The type of the voxels that are read, at most.
-    pub(in crate::data::load) fn voxel_type(&self) -> VoxelType {
-        match (self.part, self.number) {
-            (Part::Component(_), number) => number.voxel_type(),
-            (Part::Luminance, Number::U8 | Number::U16) => self.number.voxel_type(),
-            (Part::Magnitude | Part::Luminance, _) => VoxelType::F32,
+    /// Type of the voxels after reading, at most.
+    pub(crate) fn voxel_type(&self) -> VoxelType {
+        match (self.reduction, self.number) {
+            (ScalarReduction::Component(_), number) => number.voxel_type(),
+            (ScalarReduction::Luminance, FileNumberType::U8 | FileNumberType::U16) => {
+                self.number.voxel_type()
+            }
+            (ScalarReduction::Magnitude | ScalarReduction::Luminance, _) => VoxelType::F32,
         }
     }
 
-    /// Bytes of a voxel in the file.
-    pub(in crate::data::load) fn bytes_of_voxel(&self) -> u64 {
+    /// Bytes per voxel in the file, all components together.
+    pub(crate) fn voxel_bytes(&self) -> u64 {
         self.number.bytes() as u64 * self.components as u64
     }
 
-    /// Reads what is kept of a grid's voxels, which are values as they are stored; what follows them is left alone.
-    pub(in crate::data::load) fn read(
+    /// Reads the selected voxels of a grid, whose values are the stored numbers; bytes after the grid are not
+    /// touched.
+    pub(crate) fn read(
         &self,
         reader: &mut impl Read,
-        extent: Extent,
+        extent: GridExtent,
         control: &LoadControl,
-    ) -> Result<Voxels, Fault> {
-        self.read_meant(reader, None, extent, &Meant::as_stored(None), control)
+    ) -> Result<ReadVoxels, ReadFault> {
+        self.read_values(reader, None, extent, &ValueMapping::identity(None), control)
     }
 
-    /// Reads what is kept of a grid's voxels as values; what follows them is left alone. What is left out is leapt over
-    /// where the reader can.
-    pub(in crate::data::load) fn read_meant<R: Read>(
+    /// Reads the selected voxels of a grid and converts them to values; bytes after the grid are not touched. Skipped
+    /// voxels are skipped by seeking where the reader can seek.
+    pub(crate) fn read_values<R: Read>(
         &self,
         reader: &mut R,
-        leap: Option<Leap<R>>,
-        extent: Extent,
-        meant: &Meant<'_>,
+        skip: Option<SkipFn<R>>,
+        extent: GridExtent,
+        mapping: &ValueMapping<'_>,
         control: &LoadControl,
-    ) -> Result<Voxels, Fault> {
-        let Extent { read: kept, .. } = extent;
+    ) -> Result<ReadVoxels, ReadFault> {
+        let GridExtent { read: selection, .. } = extent;
         let voxel_type = self.voxel_type();
-        if kept.is_all() {
+        if selection.is_whole_grid() {
             control.start(extent.bytes);
-            return Ok((meant.values)(self.read_all(reader, extent, control)?)?.into());
+            return Ok((mapping.map)(self.read_all(reader, extent, control)?)?.into());
         }
         let mut sieve =
-            Sieve::new(reader, leap, kept.boxed_if_averaged(), self.bytes_of_voxel() as usize, control);
-        let read = if kept.is_averaged {
-            control.start(Extent::sized(kept.edges(), voxel_type).bytes);
-            let [width, height, _] = kept.edges();
-            let read = averaged(&kept, voxel_type.bytes(), meant, control, |slices| {
-                let slab = Extent::sized([width, height, slices.len()], voxel_type);
+            VoxelFilter::new(reader, skip, selection.voxels_to_read(), self.voxel_bytes() as usize, control);
+        let read = if selection.is_averaged {
+            control.start(GridExtent::unchecked(selection.box_dims(), voxel_type).bytes);
+            let [width, height, _] = selection.box_dims();
+            let read = average_blocks(&selection, voxel_type.bytes(), mapping, control, |slices| {
+                let slab = GridExtent::unchecked([width, height, slices.len()], voxel_type);
                 self.read_all(&mut sieve, slab, control)
             });
             read.map_err(|why| match why {
-                NoMeans::Unread(fault) => fault,
-                NoMeans::NoMemory => Fault::NoMemory,
+                AveragingError::Read(fault) => fault,
+                AveragingError::NoMemory => ReadFault::NoMemory,
             })
         } else {
-            let part = Extent::sized(kept.dims(), voxel_type);
+            let part = GridExtent::unchecked(selection.dims(), voxel_type);
             control.start(part.bytes);
-            self.read_all(&mut sieve, part, control).and_then(|samples| Ok((meant.values)(samples)?.into()))
+            self.read_all(&mut sieve, part, control).and_then(|samples| Ok((mapping.map)(samples)?.into()))
         };
-        // To where the grid ends: what is left out must be there, too.
-        let ended = read.and_then(|voxels| fill(&mut sieve, &mut [0], control).map(|_none| voxels));
+        // To the end of the grid: truncated data are an error even where the missing voxels are not selected.
+        let ended =
+            read.and_then(|voxels| read_until_full(&mut sieve, &mut [0], control).map(|_none| voxels));
         ended.map_err(|fault| match sieve.fault.take().unwrap_or(fault) {
-            Fault::Short { .. } => Fault::Short { got: sieve.voxels_passed() * voxel_type.bytes() as u64 },
+            ReadFault::Short { .. } => {
+                ReadFault::Short { got: sieve.voxels_consumed() * voxel_type.bytes() as u64 }
+            }
             fault => fault,
         })
     }
 
-    /// Whether voxels have these numbers as they are, but for the order of their bytes.
-    pub(super) fn is_as_in_memory(&self) -> bool {
-        self.components == 1 && self.number.is_kept()
+    /// Returns true if the voxels lie in the file as in memory, up to byte order.
+    pub(super) fn matches_memory_layout(&self) -> bool {
+        self.components == 1 && self.number.is_voxel_type()
     }
 
     /// Reads all voxels of a grid.
     fn read_all(
         &self,
         reader: &mut impl Read,
-        extent: Extent,
+        extent: GridExtent,
         control: &LoadControl,
-    ) -> Result<Samples, Fault> {
-        let layout = Layout { extent, voxel_type: self.voxel_type(), endian: self.endian };
-        if self.is_as_in_memory() {
+    ) -> Result<Samples, ReadFault> {
+        let layout = VoxelLayout { extent, voxel_type: self.voxel_type(), endian: self.endian };
+        if self.matches_memory_layout() {
             return read_binary(reader, &layout, control);
         }
         let size = self.number.bytes();
@@ -213,81 +221,79 @@ impl Stored {
             };
         }
         let part_of = |voxel: &[u8]| {
-            self.part.of(|at| self.number.value(&voxel[at * size..][..size], endian), self.components)
+            self.reduction
+                .evaluate(|at| self.number.value(&voxel[at * size..][..size], endian), self.components)
         };
-        let read = match (self.part, self.number) {
-            (Part::Component(at), Number::U8) => of_component!(U8, u8, at),
-            (Part::Component(at), Number::I8) => of_component!(I8, i8, at),
-            (Part::Component(at), Number::U16) => of_component!(U16, u16, at),
-            (Part::Component(at), Number::I16) => of_component!(I16, i16, at),
-            (Part::Component(at), Number::U32) => of_component!(U32, u32, at),
-            (Part::Component(at), Number::I32) => of_component!(I32, i32, at),
-            (Part::Component(at), Number::F32) => of_component!(F32, f32, at),
-            (Part::Component(_), Number::F64 | Number::U64 | Number::I64) => {
-                self.read_voxels(reader, &layout, control, part_of).map(Samples::F64)
-            }
-            (Part::Luminance, Number::U8) => self
+        let read = match (self.reduction, self.number) {
+            (ScalarReduction::Component(at), FileNumberType::U8) => of_component!(U8, u8, at),
+            (ScalarReduction::Component(at), FileNumberType::I8) => of_component!(I8, i8, at),
+            (ScalarReduction::Component(at), FileNumberType::U16) => of_component!(U16, u16, at),
+            (ScalarReduction::Component(at), FileNumberType::I16) => of_component!(I16, i16, at),
+            (ScalarReduction::Component(at), FileNumberType::U32) => of_component!(U32, u32, at),
+            (ScalarReduction::Component(at), FileNumberType::I32) => of_component!(I32, i32, at),
+            (ScalarReduction::Component(at), FileNumberType::F32) => of_component!(F32, f32, at),
+            (
+                ScalarReduction::Component(_),
+                FileNumberType::F64 | FileNumberType::U64 | FileNumberType::I64,
+            ) => self.read_voxels(reader, &layout, control, part_of).map(Samples::F64),
+            (ScalarReduction::Luminance, FileNumberType::U8) => self
                 .read_voxels(reader, &layout, control, |voxel| part_of(voxel).round() as u8)
                 .map(Samples::U8),
-            (Part::Luminance, Number::U16) => self
+            (ScalarReduction::Luminance, FileNumberType::U16) => self
                 .read_voxels(reader, &layout, control, |voxel| part_of(voxel).round() as u16)
                 .map(Samples::U16),
             _ => self.read_voxels(reader, &layout, control, |voxel| part_of(voxel) as f32).map(Samples::F32),
         };
-        read.map(|samples| if self.number.is_wide_integer() { narrowed(samples) } else { samples })
+        read.map(|samples| if self.number.is_wide_integer() { narrow_integers(samples) } else { samples })
     }
 
     fn read_voxels<T>(
         &self,
         reader: &mut impl Read,
-        layout: &Layout,
+        layout: &VoxelLayout,
         control: &LoadControl,
         voxel_of: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<T>, Fault> {
+    ) -> Result<Vec<T>, ReadFault> {
         let (count, bytes) = (layout.extent.voxels, self.number.bytes() * self.components);
-        let mut values = reserve(count)?;
+        let mut values = alloc_with_capacity(count)?;
         let at_once = (BLOCK_BYTES / bytes).max(1);
         let mut block = vec![0; at_once.min(count) * bytes];
         while values.len() < count {
             let want = block.len().min((count - values.len()) * bytes);
-            let got = fill(reader, &mut block[..want], control)?;
+            let got = read_until_full(reader, &mut block[..want], control)?;
             values.extend(block[..got].chunks_exact(bytes).map(&voxel_of));
             control.advance((got / bytes * layout.voxel_type.bytes()) as u64);
             if got < want {
-                return Err(Fault::Short { got: (values.len() * layout.voxel_type.bytes()) as u64 });
+                return Err(ReadFault::Short { got: (values.len() * layout.voxel_type.bytes()) as u64 });
             }
         }
         Ok(values)
     }
 }
 
-impl Part {
-    /// What is shown of vectors or colours of so many components: the component that the user has named, or what all of
-    /// them make. `None` where there is no such component.
-    pub(in crate::data::load) fn chosen(
-        component: Option<usize>,
-        components: usize,
-        is_color: bool,
-    ) -> Option<Self> {
+impl ScalarReduction {
+    /// Scalar to derive from vectors or colours of `components` components: the component that the user has chosen,
+    /// or else the magnitude or luminance. `None` if there is no such component.
+    pub(crate) fn from_choice(component: Option<usize>, components: usize, is_color: bool) -> Option<Self> {
         match component {
             Some(at) => (at < components).then_some(Self::Component(at)),
             None if components == 1 => Some(Self::Component(0)),
             None if is_color && components >= 3 => Some(Self::Luminance),
-            // Grey and its opacity.
+            // Grey with opacity: the opacity is ignored.
             None if is_color => Some(Self::Component(0)),
             None => Some(Self::Magnitude),
         }
     }
 
-    /// As [`Self::chosen`], with the error for a component that is not there.
-    pub(in crate::data::load) fn asked(
-        attempt: Attempt<'_>,
+    /// Calls [`Self::from_choice`] and turns a missing component into an error.
+    pub(crate) fn require(
+        attempt: LoadContext<'_>,
         component: Option<usize>,
         components: usize,
         is_color: bool,
     ) -> Result<Self, LoadError> {
-        Self::chosen(component, components, is_color).ok_or_else(|| {
-            attempt.bad_input(
+        Self::from_choice(component, components, is_color).ok_or_else(|| {
+            attempt.bad_input_error(
                 "--component",
                 format!(
                     "component {} is not among its {components} components, of which the first is 0",
@@ -298,8 +304,8 @@ impl Part {
         })
     }
 
-    /// What the user is told where not all of a voxel is seen.
-    pub(in crate::data::load) fn remark(self) -> Option<&'static str> {
+    /// Remark for the user that voxels are reduced to a scalar; `None` for a single component.
+    pub(crate) fn remark(self) -> Option<&'static str> {
         match self {
             Self::Component(_) => None,
             Self::Magnitude => Some("vectors are shown by their length"),
@@ -307,8 +313,8 @@ impl Part {
         }
     }
 
-    /// What is shown of a voxel with such components.
-    pub(in crate::data::load) fn of(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
+    /// Derives the scalar from a voxel, given its components.
+    pub(crate) fn evaluate(self, component: impl Fn(usize) -> f64, components: usize) -> f64 {
         match self {
             Self::Component(at) => component(at),
             Self::Magnitude => (0..components).map(|at| component(at).powi(2)).sum::<f64>().sqrt(),
@@ -317,8 +323,8 @@ impl Part {
     }
 }
 
-/// Whole numbers in 32 bits where they need no more.
-fn narrowed(samples: Samples) -> Samples {
+/// Narrows integers to 32 bits where all values fit.
+fn narrow_integers(samples: Samples) -> Samples {
     let Samples::F64(values) = &samples else { return samples };
     let within = |low: f64, high: f64| values.iter().all(|&value| (low..=high).contains(&value));
     if within(f64::from(i32::MIN), f64::from(i32::MAX)) {
@@ -334,8 +340,8 @@ fn narrowed(samples: Samples) -> Samples {
 mod tests {
     use super::*;
 
-    fn read(stored: Stored, bytes: &[u8], voxels: usize) -> Samples {
-        let extent = Extent::sized([voxels, 1, 1], stored.voxel_type());
+    fn read(stored: VoxelEncoding, bytes: &[u8], voxels: usize) -> Samples {
+        let extent = GridExtent::unchecked([voxels, 1, 1], stored.voxel_type());
         stored.read(&mut &bytes[..], extent, &LoadControl::new()).unwrap().samples
     }
 
@@ -343,32 +349,45 @@ mod tests {
     fn numbers_of_other_types_become_voxels() {
         let wide = [-5i64, 7, 1 << 20].map(i64::to_be_bytes).concat();
         assert_eq!(
-            read(Stored::scalar(Number::I64, Endian::Big), &wide, 3),
+            read(VoxelEncoding::scalar(FileNumberType::I64, Endian::Big), &wide, 3),
             Samples::I32(vec![-5, 7, 1 << 20])
         );
         let wider = [3u64, 1 << 31].map(u64::to_le_bytes).concat();
-        let stored = Stored::scalar(Number::U64, Endian::Little);
+        let stored = VoxelEncoding::scalar(FileNumberType::U64, Endian::Little);
         assert_eq!(read(stored, &wider, 2), Samples::U32(vec![3, 1 << 31]));
         let widest = [3u64, 1 << 40].map(u64::to_le_bytes).concat();
         assert_eq!(read(stored, &widest, 2), Samples::F64(vec![3.0, (1u64 << 40) as f64]));
         let halves = [0.5f32, -2.0].map(|value| half::f16::from_f32(value).to_le_bytes()).concat();
         assert_eq!(
-            read(Stored::scalar(Number::F16, Endian::Little), &halves, 2),
+            read(VoxelEncoding::scalar(FileNumberType::F16, Endian::Little), &halves, 2),
             Samples::F32(vec![0.5, -2.0])
         );
     }
 
     #[test]
-    fn a_voxel_of_several_numbers_is_one_of_them_or_what_they_make() {
+    fn components_reduce_to_a_scalar() {
         let colors = [255u8, 255, 255, 0, 0, 0, 0, 255, 0];
-        let stored = |part| Stored { number: Number::U8, endian: Endian::Little, components: 3, part };
-        assert_eq!(read(stored(Part::Luminance), &colors, 3), Samples::U8(vec![255, 0, 182]));
-        assert_eq!(read(stored(Part::Component(1)), &colors, 3), Samples::U8(vec![255, 0, 255]));
+        let stored = |part| VoxelEncoding {
+            number: FileNumberType::U8,
+            endian: Endian::Little,
+            components: 3,
+            reduction: part,
+        };
+        assert_eq!(read(stored(ScalarReduction::Luminance), &colors, 3), Samples::U8(vec![255, 0, 182]));
+        assert_eq!(read(stored(ScalarReduction::Component(1)), &colors, 3), Samples::U8(vec![255, 0, 255]));
         let vectors = [3.0f32, 4.0].map(f32::to_be_bytes).concat();
-        let vector =
-            Stored { number: Number::F32, endian: Endian::Big, components: 2, part: Part::Magnitude };
+        let vector = VoxelEncoding {
+            number: FileNumberType::F32,
+            endian: Endian::Big,
+            components: 2,
+            reduction: ScalarReduction::Magnitude,
+        };
         assert_eq!(read(vector, &vectors, 1), Samples::F32(vec![5.0]));
-        assert_eq!(Part::chosen(Some(3), 3, true), None);
-        assert_eq!(Part::chosen(None, 2, true), Some(Part::Component(0)), "grey and its opacity");
+        assert_eq!(ScalarReduction::from_choice(Some(3), 3, true), None);
+        assert_eq!(
+            ScalarReduction::from_choice(None, 2, true),
+            Some(ScalarReduction::Component(0)),
+            "grey and its opacity"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Which files are read, for who must not write over one of them: a header names others, and a slice brings its series.
+//! Record of the files that are read, so that no output overwrites one of them: a header names others, and a slice
+//! brings its series.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -6,32 +7,32 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 type Paths = Mutex<BTreeSet<PathBuf>>;
 
-/// Who wants to know.
-static WATCHES: Mutex<Vec<Weak<Paths>>> = Mutex::new(Vec::new());
+/// Recorders that are still alive.
+static RECORDERS: Mutex<Vec<Weak<Paths>>> = Mutex::new(Vec::new());
 
-/// The files that any thread of this process has read voxels, or what is said of them, from since it was made.
+/// Files that any thread of this process has read voxels or metadata from since this recorder was made.
 #[derive(Debug)]
 pub struct ReadFiles(Arc<Paths>);
 
 impl ReadFiles {
-    /// Begins to take notes.
-    pub fn watch() -> Self {
+    /// Starts recording the files that are read.
+    pub fn record() -> Self {
         let paths = Arc::<Paths>::default();
-        let mut watches = WATCHES.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut watches = RECORDERS.lock().unwrap_or_else(PoisonError::into_inner);
         watches.retain(|watch| watch.strong_count() > 0);
         watches.push(Arc::downgrade(&paths));
         Self(paths)
     }
 
-    /// What was read until now, by the names that it was opened by.
+    /// Paths that were read so far, as they were opened.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
 }
 
-/// Notes that a file is read.
-pub(in crate::data::load) fn note(path: &Path) {
-    for watch in WATCHES.lock().unwrap_or_else(PoisonError::into_inner).iter().filter_map(Weak::upgrade) {
+/// Adds a path to all active recorders.
+pub(crate) fn record_read(path: &Path) {
+    for watch in RECORDERS.lock().unwrap_or_else(PoisonError::into_inner).iter().filter_map(Weak::upgrade) {
         watch.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
     }
 }
@@ -41,13 +42,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_noted_while_somebody_wants_to_know() {
+    fn reads_are_recorded_while_a_recorder_exists() {
         let name = Path::new("files_are_noted_while_somebody_wants_to_know");
-        note(name);
-        let [first, second] = [ReadFiles::watch(), ReadFiles::watch()];
+        record_read(name);
+        let [first, second] = [ReadFiles::record(), ReadFiles::record()];
         let has = |watch: &ReadFiles| watch.paths().iter().any(|path| path == name);
         assert!(!has(&first));
-        note(name);
-        assert!(has(&first) && has(&second) && !has(&ReadFiles::watch()));
+        record_read(name);
+        assert!(has(&first) && has(&second) && !has(&ReadFiles::record()));
     }
 }

@@ -1,59 +1,60 @@
-//! What a format is told by, and what its reader is given.
+//! Interface of a format's reader: how its files are recognised, and the source that it reads from.
 
 use std::io::{self, BufReader, Read, Seek as _};
 use std::path::Path;
 
 use super::content::members::GzipMembers;
-use super::input::{Input, is_gzip, most_inflated};
-use super::number::{Part, Stored};
-use super::samples::{Fault, Layout, fill, is_corruption, skip_bytes};
-use super::voxels::{Meant, Voxels};
-use super::{Dimension, LoadControl, LoadError, LoadOptions, Offer};
+use super::input::{InputFile, is_gzip, max_inflated_bytes};
+use super::number::{ScalarReduction, VoxelEncoding};
+use super::samples::{ReadFault, VoxelLayout, is_corruption, read_until_full, skip_bytes};
+use super::voxels::{ReadVoxels, ValueMapping};
+use super::{FileDimension, LoadControl, LoadError, LoadOptions, VolumeOffer};
 use crate::data::Volume;
-use crate::data::attempt::{Attempt, Extent};
+use crate::data::load_context::{GridExtent, LoadContext};
 
-/// Bytes of a file's beginning that are looked at: a header of NIfTI-2 has 540, DICOM's mark ends at 132.
+/// Bytes of a file's beginning that are inspected to recognise it: a NIfTI-2 header has 540, the DICOM magic ends at
+/// 132.
 const START_BYTES: usize = 1024;
 
-/// Most volumes that a file may offer by their numbers: more than any list can be chosen from.
-const MOST_OFFERS: u64 = 1 << 16;
+/// Maximum number of volumes that a file may offer by index: more than can be chosen from a list.
+const MAX_OFFERS: u64 = 1 << 16;
 
-/// What may follow the voxels that are read.
+/// Content that may follow the voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::data::load) enum After {
-    /// Anything.
-    More,
-    /// The end of the content.
-    End,
+pub(crate) enum TrailingData {
+    /// Anything may follow the voxels.
+    Allowed,
+    /// The content must end with the voxels.
+    Refused,
 }
 
-/// A format.
-pub(in crate::data::load) struct Reader {
-    /// What messages and menus call it.
-    pub(in crate::data::load) name: &'static str,
-    /// Endings of its files, in lower case and with their dots.
-    pub(in crate::data::load) endings: &'static [&'static str],
-    /// Whether a file that begins like this is one, whatever it is called.
-    pub(in crate::data::load) recognises: fn(&Start) -> bool,
-    /// Reads such a file.
-    pub(in crate::data::load) load: fn(Source<'_>) -> Result<Volume, LoadError>,
+/// Reader of a file format.
+pub(crate) struct FormatReader {
+    /// Name of the format in messages and menus.
+    pub(crate) name: &'static str,
+    /// Extensions of its files, in lower case and with their dots.
+    pub(crate) extensions: &'static [&'static str],
+    /// Returns true if a file with this beginning has the format, whatever its name.
+    pub(crate) recognises: fn(&FileStart) -> bool,
+    /// Reads a file of the format.
+    pub(crate) load: fn(VolumeSource<'_>) -> Result<Volume, LoadError>,
 }
 
-/// A file to be read.
-pub(in crate::data::load) struct Source<'a> {
-    pub(in crate::data::load) path: &'a Path,
-    /// Open at its beginning.
-    pub(in crate::data::load) input: Input,
-    pub(in crate::data::load) start: Start,
-    pub(in crate::data::load) options: &'a LoadOptions,
-    pub(in crate::data::load) control: &'a LoadControl,
+/// File to be read, with its options.
+pub(crate) struct VolumeSource<'a> {
+    pub(crate) path: &'a Path,
+    /// Handle, positioned at the file's beginning.
+    pub(crate) input: InputFile,
+    pub(crate) start: FileStart,
+    pub(crate) options: &'a LoadOptions,
+    pub(crate) control: &'a LoadControl,
 }
 
-impl Source<'_> {
-    /// What the file holds from its beginning: inflated where it is compressed as a whole.
+impl VolumeSource<'_> {
+    /// Content of the file from its beginning, inflated where the whole file is compressed.
     ///
-    /// Whoever reads it takes no more than was announced: a compressed file may hold anything.
-    pub(in crate::data::load) fn content(&mut self) -> Box<dyn Read + '_> {
+    /// Callers must limit how much they read: a compressed file may expand to any size.
+    pub(crate) fn content(&mut self) -> Box<dyn Read + '_> {
         if self.start.is_gzip() {
             Box::new(BufReader::new(GzipMembers::new(&mut self.input.reader)))
         } else {
@@ -61,121 +62,122 @@ impl Source<'_> {
         }
     }
 
-    /// Reads what is kept of the voxels of a grid, which begin at byte `at` of the content. There must be enough, as far as
-    /// this shows in a compressed file, before anything is allocated.
+    /// Reads the selected voxels of a grid that begins at byte `at` of the content. The length is checked before
+    /// anything is allocated; for compressed files against the largest possible inflated size.
     ///
     /// # Errors
-    /// `BadInput` for data that are too short, too long or broken, with `help`; `Limit` where the memory is not there.
-    pub(in crate::data::load) fn voxels(
+    /// `BadInput` for data that are too short, too long or corrupt, with `help`; `Limit` where memory is exhausted.
+    pub(crate) fn voxels(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         at: u64,
-        (stored, extent): (&Stored, Extent),
-        after: After,
+        (stored, extent): (&VoxelEncoding, GridExtent),
+        after: TrailingData,
         help: &str,
-    ) -> Result<Voxels, LoadError> {
-        let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
-        let needed = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
+    ) -> Result<ReadVoxels, LoadError> {
+        let layout = VoxelLayout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
+        let needed = (extent.voxels as u64).saturating_mul(stored.voxel_bytes());
         let control = self.control;
         let [x, y, z] = extent.dims;
         let grid = format!("for {x} x {y} x {z} voxels of {}", layout.voxel_type.name());
         if self.start.is_gzip() {
-            let most = most_inflated(self.input.len).saturating_sub(at);
+            let most = max_inflated_bytes(self.input.len).saturating_sub(at);
             if most < needed {
                 let why =
                     format!("the data are truncated: {needed} bytes expected {grid}, room for {most} found");
-                return Err(attempt.bad_input("data", why, help));
+                return Err(attempt.bad_input_error("data", why, help));
             }
         } else {
             let found = self.input.len.saturating_sub(at);
             if found < needed {
                 let why = format!("the data are truncated: {needed} bytes expected {grid}, {found} found");
-                return Err(attempt.bad_input("data", why, help));
+                return Err(attempt.bad_input_error("data", why, help));
             }
-            if found > needed && after == After::End {
+            if found > needed && after == TrailingData::Refused {
                 let why = format!("there are {found} bytes where {needed} were expected {grid}");
-                return Err(attempt.bad_input("data", why, help));
+                return Err(attempt.bad_input_error("data", why, help));
             }
-            let read = stored.read_of_file(&mut self.input, at, extent, &Meant::as_stored(None), control);
+            let read =
+                stored.read_from_file(&mut self.input, at, extent, &ValueMapping::identity(None), control);
             return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
         }
         let skip = at;
-        // One byte more than needed tells "too much" from "enough", and no bomb gets further.
+        // One byte more than needed distinguishes "too much" from "enough", and limits decompression bombs.
         let mut content = self.content().take(skip.saturating_add(needed).saturating_add(1));
         let mut read = || {
             if skip_bytes(&mut content, skip, control)? < skip {
-                return Err(Fault::Short { got: 0 });
+                return Err(ReadFault::Short { got: 0 });
             }
             let voxels = stored.read(&mut content, extent, control)?;
-            // Also makes the decoder look at the checksum, where nothing else follows.
-            if fill(&mut content, &mut [0], control)? > 0 && after == After::End {
-                return Err(Fault::Long);
+            // Also makes the decoder verify the checksum, where nothing else follows.
+            if read_until_full(&mut content, &mut [0], control)? > 0 && after == TrailingData::Refused {
+                return Err(ReadFault::Long);
             }
             Ok(voxels)
         };
         read().map_err(|fault| {
             let fault = match fault {
-                Fault::Io(error) if is_corruption(&error) => Fault::Corrupt(error),
+                ReadFault::Io(error) if is_corruption(&error) => ReadFault::Corrupt(error),
                 fault => fault,
             };
             fault.into_error(attempt, &layout, "bytes", help)
         })
     }
 
-    /// Which of so many volumes of a dimension is meant, each with a name that may be empty.
+    /// Index of the chosen one of `count` volumes along a dimension; their names may be empty.
     ///
     /// # Errors
-    /// As [`Attempt::chosen`]; `Limit` for more than anybody can choose from.
-    pub(in crate::data::load) fn numbered(
+    /// As [`LoadContext::resolve_choice`]; `Limit` for more than [`MAX_OFFERS`].
+    pub(crate) fn choose_numbered(
         &self,
-        attempt: Attempt<'_>,
-        dimension: Dimension,
+        attempt: LoadContext<'_>,
+        dimension: FileDimension,
         count: u64,
         dims: [u64; 3],
         name: impl Fn(usize) -> String,
     ) -> Result<usize, LoadError> {
-        if count > MOST_OFFERS {
-            return Err(attempt.limit(
+        if count > MAX_OFFERS {
+            return Err(attempt.limit_error(
                 dimension.option(),
-                format!("it holds {count} {}, {MOST_OFFERS} are allowed", dimension.plural()),
+                format!("it holds {count} {}, {MAX_OFFERS} are allowed", dimension.plural()),
                 "check the header, or write fewer into one file",
             ));
         }
-        let offers = (0..count as usize).map(|at| Offer::numbered(at, &name(at), dims)).collect();
-        attempt.chosen(&self.options.choice, dimension, offers)
+        let offers = (0..count as usize).map(|at| VolumeOffer::with_number(at, &name(at), dims)).collect();
+        attempt.resolve_choice(&self.options.choice, dimension, offers)
     }
 
-    /// What is shown of voxels of several numbers.
+    /// Scalar to derive from voxels of several components, by the user's choice.
     ///
     /// # Errors
-    /// `BadInput` where the user has named a component that there is not.
-    pub(in crate::data::load) fn part(
+    /// `BadInput` where the user has chosen a component that does not exist.
+    pub(crate) fn scalar_reduction(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         components: usize,
         is_color: bool,
-    ) -> Result<Part, LoadError> {
-        let component = self.options.choice.component_among(components, is_color);
-        Part::asked(attempt, component, components, is_color)
+    ) -> Result<ScalarReduction, LoadError> {
+        let component = self.options.choice.resolve_component(components, is_color);
+        ScalarReduction::require(attempt, component, components, is_color)
     }
 }
 
-/// How a file begins.
-pub(in crate::data::load) struct Start {
+/// First bytes of a file, as stored and inflated.
+pub(crate) struct FileStart {
     stored: Vec<u8>,
-    /// What the file holds, where it is compressed as a whole.
+    /// First bytes of the content, where the whole file is compressed.
     inflated: Option<Vec<u8>>,
 }
 
-impl Start {
-    /// Looks at a file, and goes back to its beginning.
-    pub(in crate::data::load) fn of(input: &mut Input) -> io::Result<Self> {
+impl FileStart {
+    /// Reads the first bytes of an input, and seeks back to its beginning.
+    pub(crate) fn read(input: &mut InputFile) -> io::Result<Self> {
         let mut stored = Vec::with_capacity(START_BYTES);
         input.reader.by_ref().take(START_BYTES as u64).read_to_end(&mut stored)?;
         input.reader.rewind()?;
         let inflated = is_gzip(&stored).then(|| {
             let mut found = Vec::new();
-            // What is broken, or cut off where the look ends, says what it says until there.
+            // A stream that is corrupt, or that the limit cuts off, still yields the bytes before that.
             let mut decoder = GzipMembers::new(&mut input.reader).take(START_BYTES as u64);
             let _how_far = decoder.read_to_end(&mut found);
             found
@@ -184,28 +186,28 @@ impl Start {
         Ok(Self { stored, inflated })
     }
 
-    /// The first bytes of what the file holds, inflated where it is compressed.
-    pub(in crate::data::load) fn bytes(&self) -> &[u8] {
+    /// First bytes of the content, inflated where the file is compressed.
+    pub(crate) fn bytes(&self) -> &[u8] {
         self.inflated.as_ref().unwrap_or(&self.stored)
     }
 
-    /// The first bytes of the file.
-    pub(in crate::data::load) fn stored(&self) -> &[u8] {
+    /// First bytes of the file as stored.
+    pub(crate) fn stored(&self) -> &[u8] {
         &self.stored
     }
 
-    /// Whether the file is compressed as a whole.
-    pub(in crate::data::load) fn is_gzip(&self) -> bool {
+    /// Returns true if the whole file is compressed.
+    pub(crate) fn is_gzip(&self) -> bool {
         self.inflated.is_some()
     }
 
-    /// True where the content of a compressed file is compressed once more.
+    /// True if the content of a compressed file is compressed once more.
     pub(crate) fn is_packed_twice(&self) -> bool {
         self.inflated.as_deref().is_some_and(is_gzip)
     }
 
-    /// Whether the content has some bytes at a place.
-    pub(in crate::data::load) fn has(&self, bytes: &[u8], at: usize) -> bool {
+    /// Returns true if the content has `bytes` at offset `at`.
+    pub(crate) fn has_at(&self, bytes: &[u8], at: usize) -> bool {
         self.bytes().get(at..).is_some_and(|rest| rest.starts_with(bytes))
     }
 }

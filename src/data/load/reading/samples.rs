@@ -1,77 +1,77 @@
-//! Bytes to typed voxels, block by block.
+//! Decoding of bytes into typed voxels, block by block.
 //!
-//! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a
-//! header that lies about its size gets an error, not an abort.
+//! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a header that lies about
+//! its size causes an error, not an abort.
 
 use std::io::{self, Read};
 
 use bytemuck::Pod;
 
 use super::{Endian, LoadControl, LoadError};
-use crate::data::attempt::{Attempt, quoted};
-use crate::data::attempt::{Extent, human_bytes};
-use crate::data::load::large_pages::expect_to_fill;
+use crate::data::load::huge_pages::advise_huge_pages;
+use crate::data::load_context::{GridExtent, human_bytes};
+use crate::data::load_context::{LoadContext, quoted};
 use crate::data::{Samples, VoxelType};
 use crate::fault;
 
-/// Bytes that are read and decoded at a time, and between two looks at `cancel`.
-pub(in crate::data::load) const BLOCK_BYTES: usize = 1 << 20;
+/// Bytes that are read and decoded at a time, between two checks for cancellation.
+pub(crate) const BLOCK_BYTES: usize = 1 << 20;
 
-/// How voxels are stored.
+/// Size, number type and byte order of stored voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Layout {
-    pub(crate) extent: Extent,
+pub(crate) struct VoxelLayout {
+    pub(crate) extent: GridExtent,
     pub(crate) voxel_type: VoxelType,
     pub(crate) endian: Endian,
 }
 
-/// What can go wrong between a file and its voxels.
+/// Failure between a file and its voxels.
 #[derive(Debug)]
-pub(crate) enum Fault {
-    /// The data end after so many bytes (or numbers) of voxels.
+pub(crate) enum ReadFault {
+    /// The data end after `got` bytes (or numbers) of voxels.
     Short { got: u64 },
     /// There are more voxels than announced.
     Long,
-    /// The compressed stream is broken.
+    /// The compressed stream is corrupt.
     Corrupt(io::Error),
-    /// Some text is not a number of the voxel type.
+    /// Text where a number of the voxel type was expected.
     NotANumber { text: String },
-    /// The memory for the voxels is not there.
+    /// Allocation of the memory for the voxels failed.
     NoMemory,
-    /// The file could not be read.
+    /// The operating system could not read the file.
     Io(io::Error),
-    /// `cancel` was set.
+    /// Reading was cancelled, or stopped by another error that is passed on.
     Stopped(LoadError),
 }
 
-impl From<LoadError> for Fault {
+impl From<LoadError> for ReadFault {
     fn from(stopped: LoadError) -> Self {
         Self::Stopped(stopped)
     }
 }
 
-impl Fault {
-    /// The fault of what comes after so many bytes of voxels that were read.
-    pub(super) fn after(self, bytes: u64) -> Self {
+impl ReadFault {
+    /// Adds to `Short` the bytes of voxels that had been read before this part.
+    pub(super) fn with_bytes_before(self, bytes: u64) -> Self {
         match self {
             Self::Short { got } => Self::Short { got: bytes + got },
             fault => fault,
         }
     }
 
-    /// The fault, of which it is known that a decoder lies between the file and what was read.
-    pub(in crate::data::load) fn of_stream(self) -> Self {
+    /// Reclassifies an I/O error as `Corrupt` where a decoder reported it: for streams that were read through one.
+    pub(crate) fn into_decoder_fault(self) -> Self {
         match self {
             Self::Io(error) if is_corruption(&error) => Self::Corrupt(error),
             fault => fault,
         }
     }
 
-    /// The error to report, with `help` for sizes that do not fit.
+    /// Converts to the error to report, with `help` for sizes that do not fit.
     pub(crate) fn into_error(
         self,
-        attempt: Attempt<'_>,
-        layout: &Layout,
+        attempt: LoadContext<'_>,
+        layout: &VoxelLayout,
         unit: &str,
         help: &str,
     ) -> LoadError {
@@ -80,17 +80,17 @@ impl Fault {
         let announced = if unit == "bytes" { layout.extent.bytes } else { layout.extent.voxels as u64 };
         let grid = format!("{x} x {y} x {z} voxels of {name}");
         match self {
-            Self::Short { got } => attempt.bad_input(
+            Self::Short { got } => attempt.bad_input_error(
                 "data",
                 format!("the data are truncated: {announced} {unit} expected for {grid}, {got} found"),
                 help,
             ),
-            Self::Long => attempt.bad_input(
+            Self::Long => attempt.bad_input_error(
                 "data",
                 format!("there is more data than the {announced} {unit} expected for {grid}"),
                 help,
             ),
-            Self::Corrupt(error) => attempt.bad_input(
+            Self::Corrupt(error) => attempt.bad_input_error(
                 "data",
                 match error.kind() {
                     io::ErrorKind::UnexpectedEof => {
@@ -100,12 +100,12 @@ impl Fault {
                 },
                 "copy or download the file again",
             ),
-            Self::NotANumber { text } => attempt.bad_input(
+            Self::NotANumber { text } => attempt.bad_input_error(
                 "data",
                 format!("a number of type {name} was expected, {} was found", quoted(&text)),
                 "check the type and that the data are plain numbers",
             ),
-            Self::NoMemory => attempt.limit(
+            Self::NoMemory => attempt.limit_error(
                 "data",
                 format!(
                     "the memory for {grid} is not there: {}",
@@ -113,25 +113,25 @@ impl Fault {
                 ),
                 "close other programs or load a smaller volume",
             ),
-            Self::Io(error) => attempt.io(error),
+            Self::Io(error) => attempt.io_error(error),
             Self::Stopped(error) => error,
         }
     }
 }
 
-/// One voxel's number type: how it is read.
-pub(in crate::data::load) trait Sample: Pod + Send {
+/// Number type of a voxel that can be decoded from bytes.
+pub(crate) trait DecodeSample: Pod + Send {
     fn from_bytes(bytes: &[u8], endian: Endian) -> Self;
 
-    /// The number whose bytes this one's are in a file.
-    fn reordered(self, endian: Endian) -> Self;
+    /// Swaps the bytes of a number that was read in file order into machine order.
+    fn to_native_order(self, endian: Endian) -> Self;
 }
 
 macro_rules! sample {
     ($($type:ty),*) => { $(
-        impl Sample for $type {
+        impl DecodeSample for $type {
             fn from_bytes(bytes: &[u8], endian: Endian) -> Self {
-                // Blocks hold whole voxels: the chunk always has the right length.
+                // Blocks hold whole voxels, so that the chunk always has the right length.
                 let mut array = [0; size_of::<Self>()];
                 array.copy_from_slice(bytes);
                 match endian {
@@ -140,7 +140,7 @@ macro_rules! sample {
                 }
             }
 
-            fn reordered(self, endian: Endian) -> Self {
+            fn to_native_order(self, endian: Endian) -> Self {
                 match endian {
                     Endian::Little => Self::from_le_bytes(self.to_ne_bytes()),
                     Endian::Big => Self::from_be_bytes(self.to_ne_bytes()),
@@ -151,7 +151,7 @@ macro_rules! sample {
 }
 sample!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
-/// Reads all voxels with the generic reader below.
+/// Calls a generic reader with the voxel type, and wraps its vector in `Samples`.
 macro_rules! read_as {
     ($voxel_type:expr, $read:ident($($argument:expr),*)) => {
         match $voxel_type {
@@ -169,61 +169,61 @@ macro_rules! read_as {
 
 pub(super) use read_as;
 
-/// Reads binary voxels of a grid, all of them; what follows them is left alone.
+/// Reads all binary voxels of a grid; bytes after them are not touched.
 pub(crate) fn read_binary(
     reader: &mut impl Read,
-    layout: &Layout,
+    layout: &VoxelLayout,
     control: &LoadControl,
-) -> Result<Samples, Fault> {
+) -> Result<Samples, ReadFault> {
     read_as!(layout.voxel_type, read_blocks(reader, layout, control))
 }
 
-/// Whether a decoder complains about the data (and not the disk about the file).
-pub(in crate::data::load) fn is_corruption(error: &io::Error) -> bool {
+/// Returns true if a decoder complains about the data (rather than the disk about the file).
+pub(crate) fn is_corruption(error: &io::Error) -> bool {
     matches!(
         error.kind(),
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
     )
 }
 
-/// Blocks that were read, for faults on purpose.
-static BLOCKS: fault::Count = fault::Count::new();
+/// Number of blocks read, for fault injection.
+static BLOCKS: fault::FaultCounter = fault::FaultCounter::new();
 
-/// Fills `block` as far as the reader goes; the number of bytes read.
-pub(in crate::data::load) fn fill(
+/// Fills `block` until it is full or the reader ends; returns the number of bytes read.
+pub(crate) fn read_until_full(
     reader: &mut impl Read,
     block: &mut [u8],
     control: &LoadControl,
-) -> Result<usize, Fault> {
+) -> Result<usize, ReadFault> {
     let mut filled = 0;
     while filled < block.len() {
-        control.check().map_err(Fault::Stopped)?;
-        if fault::is_due(&BLOCKS, fault::Fault::ReadError) {
-            return Err(Fault::Io(io::Error::other("a fault was asked for")));
+        control.check().map_err(ReadFault::Stopped)?;
+        if fault::is_due(&BLOCKS, fault::InjectedFault::ReadError) {
+            return Err(ReadFault::Io(io::Error::other("a fault was asked for")));
         }
-        // Somebody may ask to stop meanwhile.
+        // In blocks, so that cancellation is noticed in between.
         let end = block.len().min(filled + BLOCK_BYTES);
         match reader.read(&mut block[filled..end]) {
             Ok(0) => break,
             Ok(n) => filled += n,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(Fault::Io(error)),
+            Err(error) => return Err(ReadFault::Io(error)),
         }
     }
     Ok(filled)
 }
 
-/// Reads and forgets up to `count` bytes; how many there were.
-pub(in crate::data::load) fn skip_bytes(
+/// Reads and discards up to `count` bytes; returns how many there were.
+pub(crate) fn skip_bytes(
     reader: &mut impl Read,
     count: u64,
     control: &LoadControl,
-) -> Result<u64, Fault> {
+) -> Result<u64, ReadFault> {
     let mut block = vec![0; BLOCK_BYTES.min(usize::try_from(count).unwrap_or(BLOCK_BYTES))];
     let mut skipped = 0;
     while skipped < count {
         let want = block.len().min(usize::try_from(count - skipped).unwrap_or(block.len()));
-        let got = fill(reader, &mut block[..want], control)?;
+        let got = read_until_full(reader, &mut block[..want], control)?;
         skipped += got as u64;
         if got < want {
             break;
@@ -232,56 +232,58 @@ pub(in crate::data::load) fn skip_bytes(
     Ok(skipped)
 }
 
-fn read_blocks<T: Sample>(
+fn read_blocks<T: DecodeSample>(
     reader: &mut impl Read,
-    layout: &Layout,
+    layout: &VoxelLayout,
     control: &LoadControl,
-) -> Result<Vec<T>, Fault> {
-    let mut values = zeroed::<T>(layout.extent.voxels)?;
+) -> Result<Vec<T>, ReadFault> {
+    let mut values = alloc_zeroed::<T>(layout.extent.voxels)?;
     let mut done = 0;
     for block in values.chunks_mut(BLOCK_BYTES / size_of::<T>()) {
-        done += read_block(reader, block, layout.endian, control).map_err(|fault| fault.after(done))?;
+        done += read_block(reader, block, layout.endian, control)
+            .map_err(|fault| fault.with_bytes_before(done))?;
     }
     Ok(values)
 }
 
-/// Reads as many voxels as there is room for; how many bytes they have in the file.
-pub(super) fn read_block<T: Sample>(
+/// Reads voxels until `block` is full; returns their number of bytes in the file.
+pub(super) fn read_block<T: DecodeSample>(
     reader: &mut impl Read,
     block: &mut [T],
     endian: Endian,
     control: &LoadControl,
-) -> Result<u64, Fault> {
+) -> Result<u64, ReadFault> {
     let bytes: &mut [u8] = bytemuck::cast_slice_mut(block);
     let wanted = bytes.len();
-    let got = fill(reader, bytes, control)?;
+    let got = read_until_full(reader, bytes, control)?;
     control.advance(got as u64);
     if got < wanted {
-        return Err(Fault::Short { got: got as u64 });
+        return Err(ReadFault::Short { got: got as u64 });
     }
-    // In the order of the machine there is nothing to be done, which the compiler sees.
+    // In machine order this is the identity, which the compiler optimises away.
     match endian {
-        Endian::Little => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Little)),
-        Endian::Big => block.iter_mut().for_each(|value| *value = value.reordered(Endian::Big)),
+        Endian::Little => block.iter_mut().for_each(|value| *value = value.to_native_order(Endian::Little)),
+        Endian::Big => block.iter_mut().for_each(|value| *value = value.to_native_order(Endian::Big)),
     }
     Ok(got as u64)
 }
 
-/// So many values of 0, or an error where the memory is not there. It is taken as it is written to.
-pub(in crate::data::load) fn zeroed<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
-    let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| Fault::NoMemory)?;
-    expect_to_fill(values.as_mut_ptr(), count);
+/// Allocates `count` zeros, or returns an error where memory is exhausted. Pages are committed as they are written
+/// to.
+pub(crate) fn alloc_zeroed<T: Pod>(count: usize) -> Result<Vec<T>, ReadFault> {
+    let mut values = bytemuck::allocation::try_zeroed_vec(count).map_err(|()| ReadFault::NoMemory)?;
+    advise_huge_pages(values.as_mut_ptr(), count);
     Ok(values)
 }
 
-/// An empty vector with room for `count` values, or an error where the memory is not there.
-pub(in crate::data::load) fn reserve<T>(count: usize) -> Result<Vec<T>, Fault> {
+/// Allocates an empty vector of capacity `count`, or returns an error where memory is exhausted.
+pub(crate) fn alloc_with_capacity<T>(count: usize) -> Result<Vec<T>, ReadFault> {
     let mut values = Vec::new();
     match values.try_reserve_exact(count) {
         Ok(()) => {
-            expect_to_fill::<T>(values.as_mut_ptr(), count);
+            advise_huge_pages::<T>(values.as_mut_ptr(), count);
             Ok(values)
         }
-        Err(_) => Err(Fault::NoMemory),
+        Err(_) => Err(ReadFault::NoMemory),
     }
 }

@@ -1,4 +1,4 @@
-//! Giving up: whatever is being done to a volume, hardly anything of it is done afterwards.
+//! Tests of cancellation: whatever is being done to a volume stops almost immediately.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use tempfile::TempDir;
 
-use super::shared::gzip;
-use crate::data::load::{Choice, LoadControl, LoadError, LoadOptions, Portion, load};
+use super::helpers::gzip;
+use crate::data::load::{LoadControl, LoadError, LoadOptions, Portion, VolumeChoice, load};
 use crate::data::{Dataset, Volume};
 
-/// Voxels along an edge: 2 MiB of them.
+/// Voxels along an edge of the test volume, 2 MiB in all.
 const EDGE: usize = 128;
 
-/// Values between two looks at whether they are wanted.
+/// Number of values between two checks for cancellation.
 const PIECE: usize = 1 << 16;
 
 fn write(folder: &TempDir, edge: usize, is_packed: bool) -> PathBuf {
@@ -25,14 +25,14 @@ fn write(folder: &TempDir, edge: usize, is_packed: bool) -> PathBuf {
 }
 
 fn read(path: &Path, portion: Portion, control: &LoadControl) -> Result<Volume, LoadError> {
-    let choice = Choice { portion: Some(portion), ..Choice::default() };
+    let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default() };
     load(path, &LoadOptions { choice, ..LoadOptions::default() }, control)
 }
 
-/// All that is done to a volume before its first picture.
+/// Runs all processing of a volume before its first image.
 fn open(path: &Path, portion: Portion, control: &LoadControl) -> Result<Dataset, LoadError> {
     let volume = read(path, portion, control)?;
-    let dataset = control.during(|| Dataset::new(volume));
+    let dataset = control.run(|| Dataset::new(volume));
     if control.is_cancelled() { Err(LoadError::Cancelled) } else { Ok(dataset) }
 }
 
@@ -43,32 +43,32 @@ fn every_stage_is_cut_into_small_pieces() {
     let control = LoadControl::new();
     let volume = read(&path, Portion::default(), &control).unwrap();
     let pieces = EDGE.pow(3) / PIECE;
-    // Range, values that matter, identity, and at most a MiB of what is read at a time.
-    let of_reading = control.begun();
+    // Value range, statistics and fingerprint, and blocks of at most 1 MiB for reading.
+    let of_reading = control.pieces_begun();
     assert!(of_reading >= 3 * pieces as u64 + 2, "{of_reading}");
-    control.during(|| volume.averaged([2; 3])).unwrap();
-    let of_means = control.begun() - of_reading;
+    control.run(|| volume.to_block_averaged([2; 3])).unwrap();
+    let of_means = control.pieces_begun() - of_reading;
     assert!(of_means >= EDGE as u64, "{of_means}: a slice at a time");
-    control.during(|| Dataset::new(volume));
-    let of_bounds = control.begun() - of_means - of_reading;
+    control.run(|| Dataset::new(volume));
+    let of_bounds = control.pieces_begun() - of_means - of_reading;
     // Bricks, cells and histogram.
     assert!(of_bounds >= 4 * EDGE as u64, "{of_bounds}");
 }
 
 #[test]
-fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
+fn cancelling_waits_for_pieces_in_progress_only() {
     let folder = TempDir::new().unwrap();
     for (is_packed, portion) in [
         (false, Portion::default()),
         (true, Portion::default()),
-        (false, Portion::every(2)),
-        (true, Portion::average(2)),
+        (false, Portion::with_stride(2)),
+        (true, Portion::with_block_average(2)),
     ] {
         let path = write(&folder, EDGE, is_packed);
         let control = LoadControl::new();
         open(&path, portion, &control).unwrap();
-        let all = control.begun();
-        // The first and the last ones, and twenty between.
+        let all = control.pieces_begun();
+        // The first moments, the last one, and nineteen in between.
         let moments =
             [1, 2, 3, all - 1].into_iter().chain((1..20).map(|at| at * all / 20).filter(|&at| at > 0));
         for moment in moments {
@@ -76,17 +76,18 @@ fn who_cancels_at_any_moment_waits_for_no_more_than_the_pieces_in_hand() {
             control.cancel_after(moment);
             let given_up = open(&path, portion, &control);
             assert!(matches!(given_up, Err(LoadError::Cancelled)), "{moment} of {all}");
-            // One piece for each core may have been begun at the same moment.
-            let late = control.begun() - moment;
+            // Each core may have begun one piece at the same moment.
+            let late = control.pieces_begun() - moment;
             assert!(late <= rayon::current_num_threads() as u64 + 1, "{late} pieces after {moment} of {all}");
         }
     }
 }
 
+/// Measures the longest delay of cancellation:
 /// `cargo nextest run --lib --run-ignored only -E 'test(how_long)' --no-capture`
 #[test]
 #[ignore = "it measures, and checks nothing"]
-fn how_long_who_cancels_waits() {
+fn measure_cancellation_delay() {
     let folder = TempDir::new().unwrap();
     for is_packed in [false, true] {
         let path = write(&folder, 512, is_packed);

@@ -1,29 +1,29 @@
-//! Volumes that a file does not have: what is chosen must be there, in every format.
+//! Tests that choosing a volume that a file does not contain is an error in every format.
 
 use tempfile::TempDir;
 
-use super::shared::assert_refused;
+use super::helpers::assert_refused;
 use super::*;
 
-/// Choices that a file of one volume cannot answer, and the option that is named.
-fn unanswerable() -> [(Choice, &'static str); 5] {
-    let choice = Choice::default;
+/// Choices that a file of a single volume does not offer, and the option that the error names.
+fn unanswerable() -> [(VolumeChoice, &'static str); 5] {
+    let choice = VolumeChoice::default;
     [
-        (Choice { channel: Some(5), ..choice() }, "--channel"),
-        (Choice { frame: Some(3), ..choice() }, "--frame"),
-        (Choice { series: Some("4".to_owned()), ..choice() }, "--series"),
-        (Choice { array: Some("xyz".to_owned()), ..choice() }, "--array"),
-        (Choice { component: Some(2), ..choice() }, "--component"),
+        (VolumeChoice { channel: Some(5), ..choice() }, "--channel"),
+        (VolumeChoice { frame: Some(3), ..choice() }, "--frame"),
+        (VolumeChoice { series: Some("4".to_owned()), ..choice() }, "--series"),
+        (VolumeChoice { array: Some("xyz".to_owned()), ..choice() }, "--array"),
+        (VolumeChoice { component: Some(2), ..choice() }, "--component"),
     ]
 }
 
-fn load_choice(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
+fn load_choice(path: &Path, choice: VolumeChoice) -> Result<Volume, LoadError> {
     let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
     open(path, &options, &LoadControl::new())
 }
 
 #[test]
-fn what_a_file_does_not_have_cannot_be_chosen_in_any_format() {
+fn missing_volumes_cannot_be_chosen_in_any_format() {
     let folder = TempDir::new().unwrap();
     let voxels: Vec<u8> = (0..8).collect();
     let numbers = "0 1 2 3 4 5 6 7";
@@ -56,27 +56,27 @@ fn what_a_file_does_not_have_cannot_be_chosen_in_any_format() {
     }
     paths.extend([slices.path().to_owned(), slices.path().join("1.png"), PathBuf::from("builtin:box:16")]);
     for path in paths {
-        load_choice(&path, Choice::default()).unwrap();
+        load_choice(&path, VolumeChoice::default()).unwrap();
         for (choice, option) in unanswerable() {
             assert_refused(load_choice(&path, choice.clone()), LoadErrorKind::BadInput, &[option]);
-            // Who can choose again gets the first.
-            load_choice(&path, choice.or_first()).unwrap();
+            // With a fallback allowed, the first volume is read.
+            load_choice(&path, choice.with_first_as_fallback()).unwrap();
         }
-        let first = Choice { channel: Some(0), frame: Some(0), ..Choice::default() };
+        let first = VolumeChoice { channel: Some(0), frame: Some(0), ..VolumeChoice::default() };
         load_choice(&path, first).unwrap_or_else(|error| panic!("every file has a first: {error}"));
     }
 }
 
 #[test]
-fn what_there_is_instead_is_said() {
+fn errors_list_the_available_choices() {
     let folder = TempDir::new().unwrap();
     let nrrd = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\n\n";
     let path = write(&folder, "v.nrrd", &[nrrd.as_bytes(), &[1; 24]].concat());
-    let choice = Choice { channel: Some(1), frame: Some(2), ..Choice::default() };
+    let choice = VolumeChoice { channel: Some(1), frame: Some(2), ..VolumeChoice::default() };
     let words = ["\"1\" is named, and it has no channels", "time steps (--frame 0 to 2)"];
     assert_refused(load_choice(&path, choice), LoadErrorKind::BadInput, &words);
     let plain = nrrd.replace("dimension: 4", "dimension: 3").replace("2 2 2 3", "2 2 2");
     let path = write(&folder, "p.nrrd", &[plain.as_bytes(), &[1; 8]].concat());
-    let choice = Choice { channel: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { channel: Some(1), ..VolumeChoice::default() };
     assert_refused(load_choice(&path, choice), LoadErrorKind::BadInput, &["one volume: leave --channel out"]);
 }

@@ -1,9 +1,9 @@
-//! RAW files and dispatch, from the outside: what is read and what is refused.
+//! Tests of RAW files and of format detection through the public interface: accepted and refused files.
 
 mod cancelling;
 mod choices;
+pub(super) mod helpers;
 mod portions;
-pub(super) mod shared;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use tempfile::TempDir;
 
-use self::shared::gzip;
+use self::helpers::gzip;
 use super::*;
-use crate::data::attempt::Extent;
+use crate::data::load_context::GridExtent;
 use crate::data::open;
 use crate::data::{Samples, VoxelType};
 
@@ -31,7 +31,7 @@ fn load_as(path: &Path, raw: RawFormat) -> Result<Volume, LoadError> {
     load(path, &options(raw), &LoadControl::new())
 }
 
-/// The kind and the words of the failure.
+/// Kind and message of the error for a file that must be refused.
 fn refusal(path: &Path, raw: RawFormat) -> (LoadErrorKind, String) {
     let error = load_as(path, raw).unwrap_err();
     (error.kind(), error.to_string())
@@ -46,7 +46,7 @@ fn assert_refused(path: &Path, raw: RawFormat, kind: LoadErrorKind, words: &[&st
     }
 }
 
-/// Six voxels of every type, little and big-endian, with negative and fractional ones where possible.
+/// Runs a check with six voxels of every type, including negative and fractional ones where possible.
 macro_rules! for_each_type {
     ($check:ident) => {
         $check!(u8, U8, [0, 1, 2, 127, 254, 255]);
@@ -130,7 +130,7 @@ fn gzip_is_recognised_by_its_content() {
     // Voxels that look like gzip's magic.
     let path = write(&folder, "c_4x1x1_uint8.raw", &[0x1f, 0x8b, 8, 0]);
     assert_eq!(load_as(&path, RawFormat::default()).unwrap().value(1, 0, 0), 139.0);
-    // Bytes behind a whole stream are none of its own.
+    // Bytes after a complete stream are no part of it.
     let padded = [gzip(&voxels), vec![0; 4096]].concat();
     let path = write(&folder, "p_4x4x4_uint8.raw.gz", &padded);
     assert_eq!(*load_as(&path, RawFormat::default()).unwrap().samples(), Samples::U8(voxels.clone()));
@@ -169,7 +169,7 @@ fn wrong_lengths_are_refused() {
     broken[checksum] ^= 1;
     let path = write(&folder, "h_4x4x4_uint8.raw.gz", &broken);
     assert_refused(&path, name, LoadErrorKind::BadInput, &["broken"]);
-    // A bomb is inflated no further than the size that the name gives.
+    // A decompression bomb is inflated no further than the size that the name gives.
     let path = write(&folder, "i_4x4x4_uint8.raw.gz", &gzip(&vec![0; 50 << 20]));
     assert_refused(&path, name, LoadErrorKind::BadInput, &["more data"]);
 }
@@ -239,7 +239,7 @@ fn loading_can_be_watched_and_cancelled() {
     }
 }
 
-/// Gives zeros for ever and cancels after its first block.
+/// Endless reader of zeros, which cancels during its first block.
 struct CancellingReader<'a>(&'a LoadControl);
 
 impl std::io::Read for CancellingReader<'_> {
@@ -253,11 +253,11 @@ impl std::io::Read for CancellingReader<'_> {
 #[test]
 fn cancelling_stops_within_a_block() {
     let control = LoadControl::new();
-    let extent = Extent::sized([64 << 20, 1, 1], VoxelType::U8);
+    let extent = GridExtent::unchecked([64 << 20, 1, 1], VoxelType::U8);
     let layout =
-        super::reading::samples::Layout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
+        super::reading::samples::VoxelLayout { extent, voxel_type: VoxelType::U8, endian: Endian::Little };
     let stopped = super::reading::samples::read_binary(&mut CancellingReader(&control), &layout, &control);
-    assert!(matches!(stopped, Err(super::reading::samples::Fault::Stopped(LoadError::Cancelled))));
+    assert!(matches!(stopped, Err(super::reading::samples::ReadFault::Stopped(LoadError::Cancelled))));
     assert!(control.done_bytes.load(std::sync::atomic::Ordering::Relaxed) <= 4 << 20);
 }
 

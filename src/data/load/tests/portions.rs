@@ -1,16 +1,16 @@
-//! Portions of volumes: what is read of a file is what is left of all of it.
+//! Tests of partial reading: a portion read from a file equals the same portion of the whole volume.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::data::attempt::{Kept, in_little_room};
 use crate::data::load::{
-    Choice, LoadControl, LoadError, LoadOptions, Portion, Region, Stretch, Thinning, load,
+    Downsampling, LoadControl, LoadError, LoadOptions, Portion, VolumeChoice, VoxelRegion, VoxelSpan, load,
 };
-use crate::data::{Missing, Volume};
+use crate::data::load_context::{ResolvedPortion, with_forced_averaging};
+use crate::data::{MissingVoxels, Volume};
 
-/// Files of all formats that other programs have written, of 5 × 4 × 3 voxels and the like.
+/// Sample files of all formats, written by other programs, of about 5 × 4 × 3 voxels.
 fn samples() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle/written");
     let mut found: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -19,15 +19,15 @@ fn samples() -> Vec<PathBuf> {
 }
 
 fn read(path: &Path, portion: Portion) -> Result<Volume, LoadError> {
-    let choice = Choice { portion: Some(portion), ..Choice::default().or_first() };
-    // Nothing here needs more.
+    let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default().with_first_as_fallback() };
+    // Enough for all samples.
     let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 
-/// A region without the first voxel of every axis that has another.
-fn inner(dims: [usize; 3]) -> Region {
-    Region(dims.map(|n| Stretch { first: usize::from(n > 1), end: (n > 3).then_some(n - 1) }))
+/// Region without the first voxel of every axis that has several.
+fn inner(dims: [usize; 3]) -> VoxelRegion {
+    VoxelRegion(dims.map(|n| VoxelSpan { first: usize::from(n > 1), end: (n > 3).then_some(n - 1) }))
 }
 
 fn values(volume: &Volume) -> Vec<u64> {
@@ -40,16 +40,21 @@ fn assert_same(read: &Volume, left: &Volume, what: &str) {
     assert!(read.world_from_index() == left.world_from_index(), "{what}: it lies elsewhere");
     assert!(values(read) == values(left), "{what}: it has other values");
     assert_eq!(read.padding_value(), left.padding_value(), "{what}");
-    let missing = |volume: &Volume| volume.missing().map(Missing::count);
+    let missing = |volume: &Volume| volume.missing().map(MissingVoxels::count);
     assert_eq!(missing(read), missing(left), "{what}");
     let same = |volume: &Volume| {
-        (volume.name().to_owned(), volume.hints().clone(), volume.has_unknown_scale(), volume.is_anatomical())
+        (
+            volume.name().to_owned(),
+            volume.metadata().clone(),
+            volume.has_unknown_scale(),
+            volume.is_anatomical(),
+        )
     };
     assert_eq!(same(read), same(left), "{what}");
 }
 
 #[test]
-fn what_is_read_of_every_format_is_what_is_left_of_all_of_it() {
+fn partial_reads_match_portions_of_whole_volumes() {
     let mut formats = BTreeSet::new();
     for path in samples() {
         let Ok(whole) = read(&path, Portion::default()) else { continue };
@@ -57,31 +62,31 @@ fn what_is_read_of_every_format_is_what_is_left_of_all_of_it() {
         let dims = whole.dims();
         let region = Some(inner(dims));
         for portion in [
-            Portion::every(2),
-            Portion::every(3),
-            Portion { region, thinning: Thinning::None },
-            Portion { region, thinning: Thinning::Every(2) },
-            Portion::average(2),
-            Portion::average(3),
-            Portion { region, thinning: Thinning::Average(2) },
+            Portion::with_stride(2),
+            Portion::with_stride(3),
+            Portion { region, thinning: Downsampling::None },
+            Portion { region, thinning: Downsampling::Every(2) },
+            Portion::with_block_average(2),
+            Portion::with_block_average(3),
+            Portion { region, thinning: Downsampling::Average(2) },
         ] {
             let what = format!("{} {portion:?}", path.display());
-            let wanted = Kept::of(&portion, dims, false).unwrap();
-            // Of a phantom's corner no voxel may be finite.
-            let Ok(left) = whole.clone().portion(&Kept::all(dims), &wanted) else {
+            let wanted = ResolvedPortion::resolve(&portion, dims, false).unwrap();
+            // The corner of a phantom may contain no finite voxel.
+            let Ok(left) = whole.clone().extract_portion(&ResolvedPortion::whole_grid(dims), &wanted) else {
                 assert!(read(&path, portion).is_err(), "{what}");
                 continue;
             };
             let part = read(&path, portion).unwrap_or_else(|err| panic!("{what}: {err}"));
             assert_same(&part, &left, &what);
             let streamed =
-                in_little_room(|| read(&path, portion)).unwrap_or_else(|err| panic!("{what}: {err}"));
+                with_forced_averaging(|| read(&path, portion)).unwrap_or_else(|err| panic!("{what}: {err}"));
             assert_same(&streamed, &left, &format!("{what} while it was read"));
-            assert_eq!((part.held().portion, part.held().grid), (portion, Some(dims)), "{what}");
-            assert_eq!(part.held().choice().portion, Some(portion), "{what}");
+            assert_eq!((part.contents().portion, part.contents().grid), (portion, Some(dims)), "{what}");
+            assert_eq!(part.contents().choice().portion, Some(portion), "{what}");
         }
     }
-    // Whoever adds a format to the samples is told when it is not among those that were compared.
+    // Every format with samples must be among those that were compared.
     for format in
         ["nrrd", "nhdr", "mha", "mhd", "nii", "gz", "raw", "mrc", "npy", "npz", "pvm", "cube", "vti", "vtk"]
     {
@@ -99,33 +104,33 @@ fn labels_that_no_file_calls_labels_are_not_averaged() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("labels_12x12x40_uint8.raw");
     fs::write(&path, values).unwrap();
-    let averaged = in_little_room(|| read(&path, Portion::average(2))).unwrap();
+    let averaged = with_forced_averaging(|| read(&path, Portion::with_block_average(2))).unwrap();
     let whole = read(&path, Portion::default()).unwrap();
-    assert!(whole.is_of_labels(), "{:?}", whole.kind());
-    assert_same(&averaged, &whole.reduced([2; 3]).unwrap(), "most frequent labels");
+    assert!(whole.is_label_map(), "{:?}", whole.kind());
+    assert_same(&averaged, &whole.block_averaged([2; 3]).unwrap(), "most frequent labels");
     assert!(averaged.value_range() == (1.0, 9.0).into());
 }
 
 #[test]
 fn a_file_larger_than_the_memory_is_read_in_part() {
-    // 512 KiB of voxels where there is room for two fifths.
+    // 512 KiB of voxels within a budget of two fifths of that.
     let n = 64usize;
     let bytes: Vec<u8> = (0..n * n * n).flat_map(|at| ((at * 7919) as u16).to_le_bytes()).collect();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(format!("large_{n}x{n}x{n}_uint16.raw"));
     fs::write(&path, bytes).unwrap();
     let within = |portion: Portion, budget: u64| {
-        let choice = Choice { portion: Some(portion), ..Choice::default() };
+        let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default() };
         let options = LoadOptions { choice, memory_budget_bytes: budget, ..LoadOptions::default() };
         load(&path, &options, &LoadControl::new())
     };
     let error = within(Portion::default(), 200 << 10).unwrap_err().to_string();
     assert!(error.contains("--every 2 reads 32 x 32 x 32 voxels in 64.0 KiB"), "{error}");
     assert!(error.contains("--reduce 3") && error.contains("--region"), "{error}");
-    assert_eq!(within(Portion::every(2), 200 << 10).unwrap().dims(), [32; 3]);
-    assert_eq!(within(Portion::average(3), 200 << 10).unwrap().dims(), [22; 3]);
+    assert_eq!(within(Portion::with_stride(2), 200 << 10).unwrap().dims(), [32; 3]);
+    assert_eq!(within(Portion::with_block_average(3), 200 << 10).unwrap().dims(), [22; 3]);
     let region = Portion { region: "0:64,0:64,60:".parse().ok(), ..Portion::default() };
     assert_eq!(within(region, 200 << 10).unwrap().dims(), [64, 64, 4]);
-    let error = within(Portion::average(2), 200 << 10).unwrap_err().to_string();
+    let error = within(Portion::with_block_average(2), 200 << 10).unwrap_err().to_string();
     assert!(error.contains("means of 2 x 2 x 2 voxels of 64 x 64 x 64"), "{error}");
 }

@@ -1,67 +1,67 @@
-//! Files that hold no volume at all: documents, films, pages, and what stands in place of data that were not fetched.
+//! Files that contain no volume: documents, films, web pages, and placeholders of data that were not fetched.
 
 use super::UnsupportedFormat;
-use super::mark::Mark;
+use super::signature::FormatSignature;
 
-/// Makes slices of a film.
+/// Command that extracts the frames of a film.
 const FRAMES: &str = "make slices of its pictures: ffmpeg -i IN slices/%04d.png, and open their folder";
 
 pub(super) const FORMATS: &[UnsupportedFormat] = &[
     UnsupportedFormat {
-        what: "a pointer of Git LFS in place of the data",
-        marks: &[Mark::Words("version https://git-lfs.github.com/spec/")],
-        endings: &[],
-        help: "fetch the data: git lfs pull",
+        description: "a pointer of Git LFS in place of the data",
+        signatures: &[FormatSignature::Text("version https://git-lfs.github.com/spec/")],
+        extensions: &[],
+        advice: "fetch the data: git lfs pull",
     },
     UnsupportedFormat {
-        what: "a pointer of git-annex in place of the data",
-        marks: &[Mark::Words("/annex/objects/")],
-        endings: &[],
-        help: "fetch the data: datalad get FILE, or git annex get FILE",
+        description: "a pointer of git-annex in place of the data",
+        signatures: &[FormatSignature::Text("/annex/objects/")],
+        extensions: &[],
+        advice: "fetch the data: datalad get FILE, or git annex get FILE",
     },
     UnsupportedFormat {
-        what: "a web page in place of the data",
-        marks: &[Mark::Words("<!doctype html"), Mark::Words("<html")],
-        endings: &[],
-        help: "download the file again: what was saved is the page around it, or a message that it is not there",
+        description: "a web page in place of the data",
+        signatures: &[FormatSignature::Text("<!doctype html"), FormatSignature::Text("<html")],
+        extensions: &[],
+        advice: "download the file again: what was saved is the page around it, or a message that it is not there",
     },
     UnsupportedFormat {
-        what: "a PDF document",
-        marks: &[Mark::Bytes(0, b"%PDF-")],
-        endings: &[],
-        help: "it is no volume: open the data that it is about; pictures in it are saved by pdfimages -png IN.pdf OUT",
+        description: "a PDF document",
+        signatures: &[FormatSignature::Bytes(0, b"%PDF-")],
+        extensions: &[],
+        advice: "it is no volume: open the data that it is about; pictures in it are saved by pdfimages -png IN.pdf OUT",
     },
     UnsupportedFormat {
-        what: "an Office document",
-        marks: &[
-            Mark::Holding(0, b"PK\x03\x04", b"[Content_Types].xml"),
-            Mark::Holding(0, b"PK\x03\x04", b"vnd.oasis"),
+        description: "an Office document",
+        signatures: &[
+            FormatSignature::Container(0, b"PK\x03\x04", b"[Content_Types].xml"),
+            FormatSignature::Container(0, b"PK\x03\x04", b"vnd.oasis"),
         ],
-        endings: &[".docx", ".xlsx", ".pptx"],
-        help: "it is no volume: open the data that it is about",
+        extensions: &[".docx", ".xlsx", ".pptx"],
+        advice: "it is no volume: open the data that it is about",
     },
     UnsupportedFormat {
-        what: "a film or picture of several (GIF)",
-        marks: &[Mark::Bytes(0, b"GIF87a"), Mark::Bytes(0, b"GIF89a")],
-        endings: &[],
-        help: FRAMES,
+        description: "a film or picture of several (GIF)",
+        signatures: &[FormatSignature::Bytes(0, b"GIF87a"), FormatSignature::Bytes(0, b"GIF89a")],
+        extensions: &[],
+        advice: FRAMES,
     },
     UnsupportedFormat {
-        what: "a film or picture (MPEG-4, HEIF, AVIF)",
-        marks: &[Mark::Bytes(4, b"ftyp")],
-        endings: &[],
-        help: FRAMES,
+        description: "a film or picture (MPEG-4, HEIF, AVIF)",
+        signatures: &[FormatSignature::Bytes(4, b"ftyp")],
+        extensions: &[],
+        advice: FRAMES,
     },
     UnsupportedFormat {
-        what: "a film (AVI)",
-        marks: &[Mark::Test(|look| look.has(0, b"RIFF") && look.has(8, b"AVI "))],
-        endings: &[],
-        help: FRAMES,
+        description: "a film (AVI)",
+        signatures: &[FormatSignature::Test(|look| look.has_at(0, b"RIFF") && look.has_at(8, b"AVI "))],
+        extensions: &[],
+        advice: FRAMES,
     },
     UnsupportedFormat {
-        what: "a picture (WebP)",
-        marks: &[Mark::Test(|look| look.has(0, b"RIFF") && look.has(8, b"WEBP"))],
-        endings: &[],
-        help: "convert it, and the others of its series: dwebp IN.webp -o OUT.png, then open their folder",
+        description: "a picture (WebP)",
+        signatures: &[FormatSignature::Test(|look| look.has_at(0, b"RIFF") && look.has_at(8, b"WEBP"))],
+        extensions: &[],
+        advice: "convert it, and the others of its series: dwebp IN.webp -o OUT.png, then open their folder",
     },
 ];

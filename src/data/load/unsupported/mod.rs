@@ -1,17 +1,17 @@
-//! Formats that are known and not read: what a file is, and the command that makes something of it that is read.
+//! Formats that are recognised but not supported, each with a command that converts its files.
 //!
-//! They are told by the bytes of their files; by a name alone only where these say nothing.
+//! They are recognised by the bytes of their files; by the name only where these are not specific.
 
 mod archives;
 mod compound;
 mod documents;
-mod fields;
 mod folders;
 mod hdf5;
-mod mark;
 mod medical;
 mod microscopy;
 mod ole2;
+mod signature;
+mod simulation;
 mod surfaces;
 #[cfg(test)]
 mod tests;
@@ -19,37 +19,36 @@ mod tests;
 use std::path::Path;
 
 use super::LoadError;
-use super::reading::input::Input;
-use super::reading::reader::Start;
-use crate::data::attempt::Attempt;
-pub(crate) use folders::of_folder;
-use mark::{Look, Mark};
+use super::reading::input::InputFile;
+use super::reading::reader::FileStart;
+use crate::data::load_context::LoadContext;
+pub(crate) use folders::unsupported_folder;
+use signature::{FormatSignature, InspectedFile};
 
-/// A format that is known and not read.
+/// Format that is recognised but not supported.
 #[derive(Debug)]
 pub(crate) struct UnsupportedFormat {
-    /// What a file of it is, with its article: `a CZI file of Zeiss microscopes`.
-    what: &'static str,
-    /// What its files have, any of these.
-    marks: &'static [Mark],
-    /// Endings of its files in lower case, for those whose bytes say nothing.
-    endings: &'static [&'static str],
-    /// What makes something that is read of it. IN and OUT stand for files.
-    help: &'static str,
+    /// Description of a file, with its article: `a CZI file of Zeiss microscopes`.
+    description: &'static str,
+    /// Signatures of its files; one of them must match.
+    signatures: &'static [FormatSignature],
+    /// Extensions of its files in lower case, for those without a signature.
+    extensions: &'static [&'static str],
+    /// Command or advice to convert a file. IN and OUT stand for file names.
+    advice: &'static str,
 }
 
-/// Bytes of a file's beginning that are looked at where its first ones say that it is a container: the names of what it
-/// holds begin there.
-const LOOK_BYTES: u64 = 64 << 10;
+/// Bytes of a file's beginning that are searched for the names in a container.
+const INSPECTED_BYTES: u64 = 64 << 10;
 
-/// All of them, the surest marks first.
+/// All unsupported formats, those with the most specific signatures first.
 fn all() -> impl Iterator<Item = &'static UnsupportedFormat> {
     let tables = [
         hdf5::FORMATS,
         compound::FORMATS,
         microscopy::FORMATS,
         medical::FORMATS,
-        fields::FORMATS,
+        simulation::FORMATS,
         surfaces::FORMATS,
         documents::FORMATS,
         archives::FORMATS,
@@ -57,36 +56,40 @@ fn all() -> impl Iterator<Item = &'static UnsupportedFormat> {
     tables.into_iter().flatten()
 }
 
-/// The format of a file by its bytes; goes back to its beginning.
+/// Recognises the format of a file by its bytes; the file is positioned at its beginning afterwards.
 ///
-/// What cannot be read now will be refused for that when it is.
+/// Read errors are ignored here: they will be reported when the file is read.
 pub(crate) fn by_content(
     path: &Path,
-    start: &Start,
-    input: &mut Input,
+    start: &FileStart,
+    input: &mut InputFile,
 ) -> Option<&'static UnsupportedFormat> {
-    let look = Look::new(path, start, input, LOOK_BYTES);
-    all().find(|format| format.marks.iter().any(|mark| mark.is_found(&look)))
+    let look = InspectedFile::new(path, start, input, INSPECTED_BYTES);
+    all().find(|format| format.signatures.iter().any(|mark| mark.matches(&look)))
 }
 
-/// Endings of files that are told by their names first: by their bytes they are another format, without what matters.
-const DISGUISED: [&str; 1] = [".vsi"];
+/// Extensions that take precedence over the content: it looks like another format, without the actual data.
+const OVERRIDING_EXTENSIONS: [&str; 1] = [".vsi"];
 
-/// The format of a file whose bytes are those of another.
-pub(crate) fn disguised(path: &Path) -> Option<&'static UnsupportedFormat> {
+/// Unsupported format of a file whose content looks like a supported one.
+pub(crate) fn by_overriding_extension(path: &Path) -> Option<&'static UnsupportedFormat> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    DISGUISED.iter().any(|ending| name.ends_with(ending)).then(|| by_name(path)).flatten()
+    OVERRIDING_EXTENSIONS.iter().any(|ending| name.ends_with(ending)).then(|| by_name(path)).flatten()
 }
 
-/// The format of a file by its name alone.
+/// Recognises the format of a file by its name alone.
 pub(crate) fn by_name(path: &Path) -> Option<&'static UnsupportedFormat> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    all().find(|format| format.endings.iter().any(|ending| name.ends_with(ending)))
+    all().find(|format| format.extensions.iter().any(|ending| name.ends_with(ending)))
 }
 
 impl UnsupportedFormat {
-    /// The refusal, in one line.
-    pub(crate) fn refusal(&self, attempt: Attempt<'_>) -> LoadError {
-        attempt.bad_input("format", format!("it is {}, which is not read", self.what), self.help)
+    /// Error message of one line, with the advice.
+    pub(crate) fn refusal(&self, attempt: LoadContext<'_>) -> LoadError {
+        attempt.bad_input_error(
+            "format",
+            format!("it is {}, which is not read", self.description),
+            self.advice,
+        )
     }
 }

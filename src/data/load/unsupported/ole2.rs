@@ -1,29 +1,29 @@
-//! Names in compound files of OLE 2, which hold streams as a disk holds files.
+//! Names of streams in OLE 2 compound files, which are file systems within a file.
 //!
 //! After MS-CFB of Microsoft, version 11: section 2.2 for the header, 2.6 for the directory.
 
 use std::io::{Read as _, Seek as _, SeekFrom};
 
-use super::super::reading::input::Input;
+use super::super::reading::input::InputFile;
 
 /// First bytes of a compound file.
 pub(super) const SIGNATURE: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 
-/// Bytes of an entry of the directory.
+/// Bytes of a directory entry.
 const ENTRY_BYTES: usize = 128;
 
-/// Bytes of the directory that are looked at: what makes a format stands among the first names.
+/// Bytes of the directory that are read: the names that identify a format are among the first.
 const DIRECTORY_BYTES: u64 = 16 << 10;
 
-/// Names of the first streams and storages of a compound file; none for any other file.
+/// Names of the first streams and storages of a compound file; empty for any other file.
 ///
-/// The directory is taken for one piece, as it is where it begins.
-pub(super) fn names(start: &[u8], input: &mut Input) -> Vec<String> {
+/// The directory is assumed to be contiguous, which holds at its beginning.
+pub(super) fn names(start: &[u8], input: &mut InputFile) -> Vec<String> {
     let word = |at: usize| {
         let bytes = start.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
         u64::from(u32::from_le_bytes(bytes.unwrap_or_default()))
     };
-    // Sectors have 512 or 4096 bytes; the header takes the first.
+    // Sectors have 512 to 4096 bytes; the header takes the first.
     let shift = word(30) & 0xffff;
     if !start.starts_with(SIGNATURE) || !(9..=12).contains(&shift) {
         return Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn names(start: &[u8], input: &mut Input) -> Vec<String> {
     directory.chunks_exact(ENTRY_BYTES).map(name).filter(|name| !name.is_empty()).collect()
 }
 
-/// The name of an entry: up to 31 letters of UTF-16 and a zero.
+/// Decodes the name of an entry: up to 31 UTF-16 code units and a zero.
 fn name(entry: &[u8]) -> String {
     let letters = entry[..64].chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]]));
     char::decode_utf16(letters.take_while(|&letter| letter != 0)).filter_map(Result::ok).collect()

@@ -1,26 +1,27 @@
-//! Every format that is named: by its bytes, whatever the file is called, with a command that helps.
+//! Tests that every known but unsupported format is recognised by its bytes, whatever its name, and refused with a
+//! helpful command.
 
 use std::path::Path;
 
-use super::super::tests::shared::{assert_refused, gzip, load_bytes, load_path};
-use super::super::{Choice, LoadControl, LoadErrorKind, LoadOptions, RawFormat, load};
+use super::super::tests::helpers::{assert_refused, gzip, load_bytes, load_path};
+use super::super::{LoadControl, LoadErrorKind, LoadOptions, RawFormat, VolumeChoice, load};
 use crate::data::VoxelType;
 
-/// Bytes behind a beginning, as files of a format have them.
+/// Pads the beginning of a file with bytes.
 fn file(start: &[u8]) -> Vec<u8> {
     let mut bytes = start.to_vec();
     bytes.resize(start.len().max(2048), 7);
     bytes
 }
 
-/// A start with others at a place behind it.
+/// Builds a file with these first bytes, and others at an offset.
 fn with(start: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
     let mut made = file(start);
     made[at..at + bytes.len()].copy_from_slice(bytes);
     made
 }
 
-/// A compound file of OLE 2 whose directory, in the second sector, has these names.
+/// Builds an OLE 2 compound file whose directory, in the second sector, has these names.
 fn compound(names: &[&str]) -> Vec<u8> {
     let mut bytes = with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", 30, &9u16.to_le_bytes());
     bytes[48..52].copy_from_slice(&1u32.to_le_bytes());
@@ -33,19 +34,19 @@ fn compound(names: &[&str]) -> Vec<u8> {
     bytes
 }
 
-/// A file of a format, and words of what is said of it.
-struct Example {
+/// Sample file of a format, and words of the error message.
+struct UnsupportedSample {
     name: &'static str,
     bytes: Vec<u8>,
     words: &'static [&'static str],
 }
 
-fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -> Example {
-    Example { name, bytes, words }
+fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -> UnsupportedSample {
+    UnsupportedSample { name, bytes, words }
 }
 
-/// One of each format that bytes tell.
-fn files() -> Vec<Example> {
+/// One sample of each format that is recognised by content.
+fn files() -> Vec<UnsupportedSample> {
     const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
     const ZIP: &[u8] = b"PK\x03\x04";
     let stl = [&[b'x'; 80][..], &2u32.to_le_bytes(), &[1; 100]].concat();
@@ -127,7 +128,7 @@ fn files() -> Vec<Example> {
         example("bzip2", file(b"BZh9\x31\x41\x59\x26\x53\x59"), &["bunzip2"]),
         example("LZ4", file(b"\x04\x22\x4d\x18"), &["lz4 -d"]),
         example("gzip twice", gzip(&gzip(&[7; 100])), &["twice", "gunzip"]),
-        // Their length tells, with the name.
+        // Recognised by name, with length or content.
         example("part.stl", stl, &["surface (STL)", "trimesh"]),
         example("scan.vsi", b"II*\0\x08\0\0\0\0\0\0\0\0\0".to_vec(), &["VSI", "bfconvert"]),
         example("scan.Z", file(b"\x1f\x9d\x90"), &["compress", "uncompress"]),
@@ -136,14 +137,14 @@ fn files() -> Vec<Example> {
 
 #[test]
 fn formats_are_named_by_their_bytes_with_a_command_that_helps() {
-    for Example { name, bytes, words } in files() {
+    for UnsupportedSample { name, bytes, words } in files() {
         let names = match name {
             named if named.contains('.') && !named.contains(' ') => vec![named],
-            // Whatever it is called: nothing, nonsense, or what is read.
+            // Whatever the extension: none, an unknown one, or that of a supported format.
             _ => vec!["it", "it.xyz", "it.raw", "it.nrrd"],
         };
         for called in names {
-            let error = load_bytes(called, &bytes, Choice::default()).unwrap_err();
+            let error = load_bytes(called, &bytes, VolumeChoice::default()).unwrap_err();
             let said = error.to_string();
             assert_eq!(error.kind(), LoadErrorKind::BadInput, "{name}: {said}");
             assert!(error.is_about("format") && !said.contains("describe its voxels"), "{name}: {said}");
@@ -157,7 +158,7 @@ fn formats_are_named_by_their_bytes_with_a_command_that_helps() {
 fn inside_gzip_they_are_told_as_well() {
     let tar = with(b"slice1.dcm", 257, b"ustar\x0000");
     assert_refused(
-        load_bytes("x.tgz", &gzip(&tar), Choice::default()),
+        load_bytes("x.tgz", &gzip(&tar), VolumeChoice::default()),
         LoadErrorKind::BadInput,
         &["tar archive"],
     );
@@ -176,11 +177,11 @@ fn names_tell_where_bytes_say_nothing() {
         ("2dseq", ["Bruker", "brkraw"]),
         ("brain.vmr", ["BrainVoyager", "NIfTI"]),
     ] {
-        let refused = load_bytes(name, &[3; 700], Choice::default());
+        let refused = load_bytes(name, &[3; 700], VolumeChoice::default());
         assert_refused(refused, LoadErrorKind::BadInput, &words);
     }
     assert_refused(
-        load_bytes("notes.xyz", &[3; 700], Choice::default()),
+        load_bytes("notes.xyz", &[3; 700], VolumeChoice::default()),
         LoadErrorKind::BadInput,
         &["not one that is read"],
     );
@@ -200,9 +201,9 @@ fn folders_are_named_too() {
         for mark in marks {
             std::fs::write(path.join(mark), "{}").unwrap();
         }
-        assert_refused(load_path(&path, Choice::default()), LoadErrorKind::BadInput, &words);
+        assert_refused(load_path(&path, VolumeChoice::default()), LoadErrorKind::BadInput, &words);
         if name == "third" {
-            let inside = load_path(&path.join("zarr.json"), Choice::default());
+            let inside = load_path(&path.join("zarr.json"), VolumeChoice::default());
             assert_refused(inside, LoadErrorKind::BadInput, &["Zarr", "folder"]);
         }
     }
@@ -211,8 +212,8 @@ fn folders_are_named_too() {
 #[test]
 fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described() {
     let folder = tempfile::tempdir().unwrap();
-    for Example { name, bytes, .. } in files() {
-        // Not those that are no voxels as they are: gzip is unpacked.
+    for UnsupportedSample { name, bytes, .. } in files() {
+        // Except those that RAW would not read as stored: gzip is inflated.
         if name == "gzip twice" || name == "scan.vsi" {
             continue;
         }
@@ -228,7 +229,7 @@ fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described(
         assert!(volume.is_ok_and(|volume| volume.dims() == [bytes.len(), 1, 1]), "{name} by options");
         let named = folder.path().join(format!("odd_{}x1x1_uint8.raw", bytes.len()));
         std::fs::write(&named, &bytes).unwrap();
-        assert!(load_path(&named, Choice::default()).is_ok(), "{name} by its name");
+        assert!(load_path(&named, VolumeChoice::default()).is_ok(), "{name} by its name");
     }
-    assert!(super::of_folder(Path::new("nowhere")).is_none());
+    assert!(super::unsupported_folder(Path::new("nowhere")).is_none());
 }

@@ -1,58 +1,58 @@
-//! Volumes as a user knows them better than their files: made from what was opened, with which they share the voxels.
+//! Application of corrections to a volume, which shares its voxels with the opened one where values are unaffected.
 
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::scaled::{scaled, scaled_hints};
+use super::rescale::{rescaled, rescaled_metadata};
 use super::{Corrections, Orientation, PaddingValue, SpacingUnit};
-use crate::data::attempt::{is_usable_affine, memory_budget_bytes};
+use crate::data::load_context::{is_usable_affine, memory_budget_bytes};
 use crate::data::volume::{Volume, VolumeError};
 use crate::math::SceneSpace;
 
-/// What a volume was made from.
+/// Corrections of a volume, and the opened volume they were applied to.
 #[derive(Debug, Clone)]
-pub(in crate::data::volume) struct Corrected {
-    by: Corrections,
+pub(crate) struct AppliedCorrections {
+    corrections: Corrections,
     opened: Volume,
 }
 
-/// No corrections, for volumes without.
-static NONE: std::sync::LazyLock<Corrections> = std::sync::LazyLock::new(Corrections::default);
+/// Default corrections, for volumes without any.
+static NO_CORRECTIONS: std::sync::LazyLock<Corrections> = std::sync::LazyLock::new(Corrections::default);
 
-/// Distances between voxels, and whether they are lengths at all.
-struct Distances {
+/// Corrected voxel spacings in mm, and the scale of the origin.
+struct CorrectedSpacing {
     along_axes: [f64; 3],
-    /// What is left of an origin in the file's unit.
-    of_origin: f64,
+    /// Factor that converts the origin from the file's unit to mm.
+    origin_scale: f64,
 }
 
 impl Volume {
-    /// The volume as it was opened, whatever has been corrected since.
+    /// Returns the volume as opened, without any corrections.
     pub fn as_opened(&self) -> &Self {
         self.corrected.as_ref().map_or(self, |corrected| &corrected.opened)
     }
 
-    /// How it differs from the volume that was opened.
+    /// Returns the corrections that were applied to the opened volume.
     pub fn corrections(&self) -> &Corrections {
-        self.corrected.as_ref().map_or(&NONE, |corrected| &corrected.by)
+        self.corrected.as_ref().map_or(&NO_CORRECTIONS, |corrected| &corrected.corrections)
     }
 
-    /// Identifies what was opened: see [`Self::content_id`].
+    /// Returns the content id of the opened volume: see [`Self::content_id`].
     pub fn opened_id(&self) -> u64 {
         self.as_opened().content_id
     }
 
-    /// Whether another volume has the voxels of this one in the same memory, with the same ones missing.
-    pub(in crate::data) fn shares_voxels(&self, other: &Self) -> bool {
+    /// Returns true if both volumes share their voxels in memory and treat the same ones as missing.
+    pub(crate) fn shares_voxels(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.samples, &other.samples) && self.padding_value == other.padding_value
     }
 
-    /// The volume that was opened, corrected: whatever has been corrected before does not count. Where the values stay,
-    /// it takes no time and no memory.
+    /// Applies corrections to the opened volume, replacing any earlier ones. Takes no time and no memory if they
+    /// leave the values unchanged.
     ///
     /// # Errors
-    /// When no voxels are left that hold something, values or places cannot be told apart, or the memory is not there.
+    /// Fails if all voxels become missing, values or positions degenerate, or memory is short.
     pub fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let opened = self.as_opened();
         if by.is_none() {
@@ -65,13 +65,15 @@ impl Volume {
         }
         let mut volume = match &self.corrected {
             _ if by.keeps_values() => opened.clone(),
-            Some(known) if known.by.has_values_of(by) => self.showing(self.ranges.robust),
-            _ => opened.with_values(by)?,
+            Some(known) if known.corrections.corrects_values_like(by) => {
+                self.with_density_mapping(self.ranges.robust)
+            }
+            _ => opened.with_corrected_values(by)?,
         };
         volume.world_from_index = world_from_index;
-        // Opacities refer to the same share of the object.
+        // Scaled with the object, so that opacities stay the same for every share of it.
         let longer = volume.scene().mm_per_unit / opened.scene().mm_per_unit;
-        volume.unit_mm = opened.unit_mm.map(|unit| unit * longer);
+        volume.opacity_unit_mm = opened.opacity_unit_mm.map(|unit| unit * longer);
         volume.is_anatomical = match by.orientation {
             None => opened.is_anatomical,
             Some(orientation) => orientation != Orientation::Unknown,
@@ -81,37 +83,37 @@ impl Volume {
             None => opened.length_unit,
             Some(unit) => unit,
         };
-        // What is said of a volume differs with all of them, and whatever is kept of it goes with what identifies it.
+        // Derived facts differ with every correction, and caches are keyed by this id, so it depends on all of them.
         let words = format!("{by:?}");
         volume.content_id = words.bytes().fold(opened.content_id, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         });
-        volume.corrected = Some(Arc::new(Corrected { by: *by, opened: opened.clone() }));
+        volume.corrected = Some(Arc::new(AppliedCorrections { corrections: *by, opened: opened.clone() }));
         Ok(volume)
     }
 
-    /// How the grid would lie in scene space.
+    /// Returns the scene space that the grid would have with these corrections.
     pub fn corrected_scene(&self, by: &Corrections) -> SceneSpace {
         let opened = self.as_opened();
         SceneSpace::new(opened.dims, opened.corrected_affine(by))
     }
 
-    /// Distances between the voxels of the file, of which one of the volume may be the mean of several.
+    /// Returns the spacings of the file's voxels in mm; a voxel of the volume may be the mean of several of them.
     pub fn file_spacing_mm(&self) -> DVec3 {
-        self.spacing_mm() / self.block.steps()
+        self.spacing_mm() / self.file_grid.steps()
     }
 
-    /// The same volume with other values.
-    fn with_values(&self, by: &Corrections) -> Result<Self, VolumeError> {
+    /// Returns the volume with rescaled values and another padding value.
+    fn with_corrected_values(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let scale = by.value_scale;
         let samples = if scale.is_none() {
             Arc::clone(&self.samples)
         } else {
-            Arc::new(scaled(&self.samples, scale, memory_budget_bytes())?)
+            Arc::new(rescaled(&self.samples, scale, memory_budget_bytes())?)
         };
-        let volume = Self::sharing(self.name.clone(), self.dims, self.world_from_index, samples)?;
+        let volume = Self::from_shared_samples(self.name.clone(), self.dims, self.world_from_index, samples)?;
         let padding = match by.padding_value {
-            PaddingValue::InFile => self.padding_value.map(|number| scale.value(number)),
+            PaddingValue::InFile => self.padding_value.map(|number| scale.value_from_number(number)),
             PaddingValue::Nothing => None,
             PaddingValue::Value(value) => Some(value),
         };
@@ -119,18 +121,18 @@ impl Volume {
             Some(padding) => volume.with_padding(padding)?,
             None => volume,
         };
-        let hints = if scale.is_none() { self.hints.clone() } else { scaled_hints(&self.hints, scale) };
+        let hints = if scale.is_none() { self.hints.clone() } else { rescaled_metadata(&self.hints, scale) };
         Ok(Self {
             file_dims: self.file_dims,
-            block: self.block,
+            file_grid: self.file_grid,
             remarks: self.remarks.clone(),
-            held: std::sync::Arc::clone(&self.held),
+            contents: std::sync::Arc::clone(&self.contents),
             hints,
             ..volume
         })
     }
 
-    /// Where voxels lie.
+    /// Computes the corrected transform from index space to world space.
     fn corrected_affine(&self, by: &Corrections) -> DAffine3 {
         let Corrections { spacing, unit, flip, axis_order, orientation, padding_value: _, value_scale: _ } =
             by;
@@ -138,26 +140,26 @@ impl Volume {
             || unit.is_some()
             || orientation.is_some_and(|orientation| orientation != Orientation::Unknown)
             || flip.axes().contains(&true)
-            || axis_order.places() != [0, 1, 2];
+            || axis_order.permutation() != [0, 1, 2];
         if !is_moved {
             return self.world_from_index;
         }
-        // Of the voxels in the file, of which a volume may have one for several.
-        let file_from_index = self.block.file_from_index();
+        // Corrections refer to the voxels of the file; a voxel of the volume may stand for a block of them.
+        let file_from_index = self.file_grid.file_from_index();
         let world_from_file = match file_from_index {
             Some(file_from_index) => self.world_from_index * file_from_index.inverse(),
             None => self.world_from_index,
         };
         let axes = world_from_file.matrix3;
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
-        let distances = Distances::of(axes.map(DVec3::length), *spacing, *unit);
+        let distances = CorrectedSpacing::new(axes.map(DVec3::length), *spacing, *unit);
         let directions = match orientation {
-            Some(Orientation::Towards(headings)) => headings.directions(),
+            Some(Orientation::Anatomical(headings)) => headings.directions(),
             _ => axes.map(|axis| axis / axis.length()),
         };
-        let places = axis_order.places();
+        let places = axis_order.permutation();
         let mut columns = [0, 1, 2].map(|axis| directions[places[axis]] * distances.along_axes[axis]);
-        let mut origin = world_from_file.translation * distances.of_origin;
+        let mut origin = world_from_file.translation * distances.origin_scale;
         for (axis, is_flipped) in flip.axes().into_iter().enumerate() {
             if is_flipped {
                 origin += (self.file_dims[axis] as f64 - 1.0) * columns[axis];
@@ -170,12 +172,12 @@ impl Volume {
     }
 }
 
-impl Distances {
-    /// Those of a file, or those that somebody gives instead, in a unit.
-    fn of(in_file: [f64; 3], given: Option<[f64; 3]>, unit: Option<SpacingUnit>) -> Self {
+impl CorrectedSpacing {
+    /// Computes spacings from those of the file, or those given instead, in a unit.
+    fn new(in_file: [f64; 3], given: Option<[f64; 3]>, unit: Option<SpacingUnit>) -> Self {
         let unit_mm = unit.map_or(1.0, SpacingUnit::mm);
-        // Where only the unit was wrong, it was of the origin, too.
+        // If only the unit was wrong, it was wrong for the origin, too.
         let of_origin = if given.is_some() { 1.0 } else { unit_mm };
-        Self { along_axes: given.unwrap_or(in_file).map(|length| length * unit_mm), of_origin }
+        Self { along_axes: given.unwrap_or(in_file).map(|length| length * unit_mm), origin_scale: of_origin }
     }
 }

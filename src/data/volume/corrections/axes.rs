@@ -1,4 +1,4 @@
-//! Which way the axes of a file run: signed permutations, in words.
+//! Axis corrections: flips, permutations and anatomical orientation of a file's axes.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,26 +6,26 @@ use std::str::FromStr;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Axes of the file along which voxels run the other way.
+/// Axes of the file along which the order of voxels is reversed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Flips {
-    /// Along the first axis.
+    /// True if the first axis is reversed.
     pub x: bool,
-    /// Along the second axis.
+    /// True if the second axis is reversed.
     pub y: bool,
-    /// Along the third axis.
+    /// True if the third axis is reversed.
     pub z: bool,
 }
 
 impl Flips {
-    /// One for each axis.
+    /// Returns the flags as an array, one for each axis.
     pub fn axes(self) -> [bool; 3] {
         [self.x, self.y, self.z]
     }
 }
 
-/// Where the first, the second and the third axis of a file run: where the axes of these names would.
+/// Permutation of the axes: the file's first, second and third axis take the directions of the axes with these names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "the names say it")]
@@ -40,11 +40,11 @@ pub enum AxisOrder {
 }
 
 impl AxisOrder {
-    /// All of them.
+    /// All six permutations of the axes.
     pub const ALL: [Self; 6] = [Self::Xyz, Self::Xzy, Self::Yxz, Self::Yzx, Self::Zxy, Self::Zyx];
 
-    /// For each axis of the file the one where it runs.
-    pub fn places(self) -> [usize; 3] {
+    /// Returns for each axis of the file the index of the axis whose direction it takes.
+    pub fn permutation(self) -> [usize; 3] {
         match self {
             Self::Xyz => [0, 1, 2],
             Self::Xzy => [0, 2, 1],
@@ -55,7 +55,7 @@ impl AxisOrder {
         }
     }
 
-    /// The order that undoes this one.
+    /// Returns the inverse permutation.
     #[must_use]
     pub fn inverse(self) -> Self {
         match self {
@@ -65,7 +65,7 @@ impl AxisOrder {
         }
     }
 
-    /// How it is written.
+    /// Returns the name shown to the user.
     pub fn name(self) -> &'static str {
         match self {
             Self::Xyz => "x y z",
@@ -78,33 +78,33 @@ impl AxisOrder {
     }
 }
 
-/// Where the axes of a file run in a body; written as three letters, or `unknown`.
+/// Anatomical orientation of a file's axes; written as three letters, or `unknown`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Orientation {
-    /// There is no body, or nobody knows how it lies.
+    /// There is no body, or its orientation is unknown.
     Unknown,
-    /// Towards these parts of a body.
-    Towards(Headings),
+    /// Anatomical directions of the three axes.
+    Anatomical(AnatomicalAxes),
 }
 
-/// A part of the body for each axis, each of another pair.
+/// Anatomical directions of three axes, no two of the same pair (R/L, A/P, S/I).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Headings([Heading; 3]);
+pub struct AnatomicalAxes([AnatomicalDirection; 3]);
 
-/// A side of a body.
+/// Anatomical direction: a signed axis of right-anterior-superior space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Heading {
-    /// From left to right, from back to front, from feet to head.
+struct AnatomicalDirection {
+    /// Index of the axis: left to right, posterior to anterior, inferior to superior.
     axis: usize,
     is_backwards: bool,
 }
 
-/// For each axis of a body the letters of where it leads, and of where it comes from.
+/// Letters of the positive and the negative direction of each axis of right-anterior-superior space.
 const LETTERS: [[char; 2]; 3] = [['R', 'L'], ['A', 'P'], ['S', 'I']];
 
-impl Heading {
-    fn of_letter(letter: char) -> Option<Self> {
+impl AnatomicalDirection {
+    fn from_letter(letter: char) -> Option<Self> {
         let letter = letter.to_ascii_uppercase();
         let axis = LETTERS.iter().position(|pair| pair.contains(&letter))?;
         Some(Self { axis, is_backwards: letter == LETTERS[axis][1] })
@@ -114,46 +114,48 @@ impl Heading {
         LETTERS[self.axis][usize::from(self.is_backwards)]
     }
 
-    /// In right-anterior-superior space.
+    /// Returns the unit vector in right-anterior-superior space.
     fn direction(self) -> DVec3 {
         if self.is_backwards { -DVec3::AXES[self.axis] } else { DVec3::AXES[self.axis] }
     }
 }
 
-impl Headings {
-    /// Those of three letters, large or small, one of each pair.
-    fn of_letters(text: &str) -> Option<Self> {
-        // More than three are none, however many.
-        let headings: Option<Vec<_>> = text.chars().take(4).map(Heading::of_letter).collect();
-        let headings: [Heading; 3] = headings?.try_into().ok()?;
+impl AnatomicalAxes {
+    /// Parses three letters of any case, one of each pair.
+    fn from_letters(text: &str) -> Option<Self> {
+        // A fourth letter makes the conversion fail; no more need be looked at.
+        let headings: Option<Vec<_>> = text.chars().take(4).map(AnatomicalDirection::from_letter).collect();
+        let headings: [AnatomicalDirection; 3] = headings?.try_into().ok()?;
         let has_all = (0..3).all(|axis| headings.iter().any(|heading| heading.axis == axis));
         has_all.then_some(Self(headings))
     }
 
-    /// The directions of the three axes, in right-anterior-superior space.
+    /// Returns the unit vectors of the three axes, in right-anterior-superior space.
     pub fn directions(self) -> [DVec3; 3] {
-        self.0.map(Heading::direction)
+        self.0.map(AnatomicalDirection::direction)
     }
 
-    /// All ways in which three axes can run in a body: those along its own axes first.
+    /// Iterates over all 48 orientations of three axes, those in the order x, y, z first.
     pub fn all() -> impl Iterator<Item = Self> {
         AxisOrder::ALL.into_iter().flat_map(|order| {
             (0..8).map(move |signs: usize| {
-                let heading = |place: usize| Heading { axis: place, is_backwards: signs >> place & 1 == 1 };
-                Self(order.places().map(heading))
+                let heading =
+                    |place: usize| AnatomicalDirection { axis: place, is_backwards: signs >> place & 1 == 1 };
+                Self(order.permutation().map(heading))
             })
         })
     }
 
-    /// The sides to which three axes run most, each pair of sides once: the one that runs most clearly chooses first.
+    /// Returns the anatomical directions closest to three axes, no pair used twice: the axis best aligned is assigned
+    /// first.
     pub fn nearest(axes: [DVec3; 3]) -> Self {
-        let mut headings = [0, 1, 2].map(|axis| Heading { axis, is_backwards: false });
+        let mut headings = [0, 1, 2].map(|axis| AnatomicalDirection { axis, is_backwards: false });
         let (mut left, mut sides) = (vec![0, 1, 2], vec![0, 1, 2]);
         while !left.is_empty() {
             let pairs = left.iter().flat_map(|&axis| sides.iter().map(move |&side| (axis, side)));
             let share = |(axis, side): &(usize, usize)| axes[*axis].normalize_or_zero()[*side].abs();
             let Some((axis, side)) = pairs.max_by(|a, b| share(a).total_cmp(&share(b))) else { break };
-            headings[axis] = Heading { axis: side, is_backwards: axes[axis][side] < 0.0 };
+            headings[axis] = AnatomicalDirection { axis: side, is_backwards: axes[axis][side] < 0.0 };
             left.retain(|&other| other != axis);
             sides.retain(|&other| other != side);
         }
@@ -162,13 +164,13 @@ impl Headings {
 }
 
 impl Orientation {
-    /// Those of a body that lies in a known way, for lists.
-    pub fn all_towards() -> impl Iterator<Item = Self> {
-        Headings::all().map(Self::Towards)
+    /// Iterates over all known orientations, for lists.
+    pub fn all_anatomical() -> impl Iterator<Item = Self> {
+        AnatomicalAxes::all().map(Self::Anatomical)
     }
 }
 
-impl fmt::Display for Headings {
+impl fmt::Display for AnatomicalAxes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|heading| write!(f, "{}", heading.letter()))
     }
@@ -178,17 +180,17 @@ impl fmt::Display for Orientation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown => f.write_str("unknown"),
-            Self::Towards(headings) => headings.fmt(f),
+            Self::Anatomical(headings) => headings.fmt(f),
         }
     }
 }
 
-impl FromStr for Headings {
+impl FromStr for AnatomicalAxes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        Self::of_letters(text).ok_or_else(|| {
-            let shown = crate::data::plain(text, 40);
+        Self::from_letters(text).ok_or_else(|| {
+            let shown = crate::data::sanitised(text, 40);
             format!("expected one letter of each of R/L, A/P and S/I, as in RAS or LPS; found {shown:?}")
         })
     }
@@ -201,8 +203,8 @@ impl FromStr for Orientation {
         if text.trim().eq_ignore_ascii_case("unknown") {
             return Ok(Self::Unknown);
         }
-        Headings::of_letters(text.trim()).map(Self::Towards).ok_or_else(|| {
-            let shown = crate::data::plain(text, 40);
+        AnatomicalAxes::from_letters(text.trim()).map(Self::Anatomical).ok_or_else(|| {
+            let shown = crate::data::sanitised(text, 40);
             format!(
                 "expected one letter of each of R/L, A/P and S/I, as in RAS or LPS, or unknown; found {shown:?}"
             )

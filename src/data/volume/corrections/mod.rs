@@ -1,76 +1,76 @@
-//! What a user knows better than a file: how far voxels are apart, which way they run, which of their values is none, and
-//! what their numbers mean. It belongs to the file, and not to what a picture looks like.
+//! Corrections of a file's metadata by the user: spacing, orientation, padding value and value scale. They belong to
+//! the file, not to the look.
 
 mod apply;
 mod axes;
-mod scaled;
+mod rescale;
 mod spacing;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::data::volume) use apply::Corrected;
-pub use axes::{AxisOrder, Flips, Headings, Orientation};
+pub(crate) use apply::AppliedCorrections;
+pub use axes::{AnatomicalAxes, AxisOrder, Flips, Orientation};
 pub use spacing::SpacingUnit;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::attempt::{is_usable_spacing, unlike_spacings};
+use crate::data::load_context::{is_usable_spacing, spacing_ratio_error};
 
-/// Slopes of values beyond this, and below its inverse, are mistakes: they would leave 32-bit numbers.
+/// Maximum slope of values; larger ones, or smaller ones than its inverse, would leave the range of 32-bit floats.
 const MAX_SLOPE: f64 = 1e12;
 
-/// Values beyond this leave 32-bit numbers soon, and leave none for a difference.
+/// Maximum intercept: values beyond are close to the limit of 32-bit floats, where differences overflow.
 const MAX_VALUE: f64 = 1e30;
 
-/// How a volume differs from what its file says. The default is not at all.
+/// Corrections of a volume relative to its file. The default corrects nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Corrections {
-    /// Distances between voxels along the three axes of the file, in [`Self::unit`]; `None` for those of the file. On
-    /// the command line also as text: `0.5,0.5,2`, or one number for all three.
-    #[serde(deserialize_with = "spacing::read")]
+    /// Voxel spacings along the three axes of the file, in [`Self::unit`]; `None` for those of the file. On the
+    /// command line also as text: `0.5,0.5,2`, or one number for all three.
+    #[serde(deserialize_with = "spacing::deserialize_spacing")]
     pub spacing: Option<[f64; 3]>,
-    /// The unit of distances, the file's own among them. `None` for what the file says, which of distances that are given
-    /// here is millimetres.
+    /// Unit of spacings, also of the file's own ones. `None` for the unit in the file, or for millimetres if spacings
+    /// are given here.
     pub unit: Option<SpacingUnit>,
-    /// Axes of the file along which voxels run the other way.
+    /// Axes of the file along which the order of voxels is reversed.
     pub flip: Flips,
-    /// Where the three axes of the file run.
+    /// Permutation of the three axes of the file.
     pub axis_order: AxisOrder,
-    /// Where the three axes of the file run in a body, before they are put into another order and flipped.
+    /// Anatomical orientation of the file's axes, applied before they are permuted and flipped.
     pub orientation: Option<Orientation>,
-    /// The value of voxels that hold nothing, among the values as they are after [`Self::value_scale`].
+    /// Value of missing voxels, among the values after [`Self::value_scale`].
     pub padding_value: PaddingValue,
-    /// What the numbers of the file mean.
+    /// Linear scale from numbers of the file to values.
     pub value_scale: ValueScale,
 }
 
-/// Which value stands for nothing; in JSON null, `"none"` or a number.
+/// Padding value of missing voxels; in JSON null, `"new"` or a number.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "WrittenPadding", into = "WrittenPadding")]
 pub enum PaddingValue {
-    /// The one that the file declares, if it does.
+    /// The padding value that the file declares, if any.
     #[default]
     InFile,
-    /// No value does, whatever the file declares.
+    /// No padding value, whatever the file declares.
     Nothing,
-    /// This one.
+    /// Padding value given by the user, in data units.
     Value(f64),
 }
 
-/// How a padding value is written.
+/// Serialised form of a padding value.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number, \"none\", or null for what the file declares")]
 enum WrittenPadding {
     Value(f64),
-    Word(NoPadding),
+    Word(NoPaddingKeyword),
     InFile,
 }
 
-/// The word for no padding at all.
+/// Keyword for no padding at all.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum NoPadding {
+enum NoPaddingKeyword {
     None,
 }
 
@@ -78,7 +78,7 @@ impl From<WrittenPadding> for PaddingValue {
     fn from(written: WrittenPadding) -> Self {
         match written {
             WrittenPadding::Value(value) => Self::Value(value),
-            WrittenPadding::Word(NoPadding::None) => Self::Nothing,
+            WrittenPadding::Word(NoPaddingKeyword::None) => Self::Nothing,
             WrittenPadding::InFile => Self::InFile,
         }
     }
@@ -88,19 +88,19 @@ impl From<PaddingValue> for WrittenPadding {
     fn from(padding: PaddingValue) -> Self {
         match padding {
             PaddingValue::Value(value) => Self::Value(value),
-            PaddingValue::Nothing => Self::Word(NoPadding::None),
+            PaddingValue::Nothing => Self::Word(NoPaddingKeyword::None),
             PaddingValue::InFile => Self::InFile,
         }
     }
 }
 
-/// Values in data units from the numbers of a file: `slope · number + intercept`.
+/// Linear scale of values in data units: `slope · number + intercept`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ValueScale {
-    /// Multiplies the numbers; never 0.
+    /// Factor of the file's numbers; never 0.
     pub slope: f64,
-    /// Is added then.
+    /// Offset that is added after scaling.
     pub intercept: f64,
 }
 
@@ -111,51 +111,51 @@ impl Default for ValueScale {
 }
 
 impl ValueScale {
-    /// Whether values are the numbers of the file.
+    /// Returns true if values are the numbers of the file, unscaled.
     pub fn is_none(self) -> bool {
         self == Self::default()
     }
 
-    /// What a number means.
-    pub fn value(self, number: f64) -> f64 {
+    /// Converts a number of the file to a value.
+    pub fn value_from_number(self, number: f64) -> f64 {
         self.slope * number + self.intercept
     }
 
-    /// The number that means a value.
-    pub fn number(self, value: f64) -> f64 {
+    /// Converts a value back to the number in the file.
+    pub fn number_from_value(self, value: f64) -> f64 {
         (value - self.intercept) / self.slope
     }
 
-    /// What a value of this scale is in another.
-    pub fn in_scale(self, other: Self, value: f64) -> f64 {
-        if self == other { value } else { other.value(self.number(value)) }
+    /// Converts a value of this scale to the value of the same number in another scale.
+    pub fn convert(self, other: Self, value: f64) -> f64 {
+        if self == other { value } else { other.value_from_number(self.number_from_value(value)) }
     }
 }
 
 impl Corrections {
-    /// Whether the file is right in all.
+    /// Returns true if nothing is corrected.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether voxels and their values are those of the file: only where they lie may be another place.
+    /// Returns true if voxels keep their values and only their positions may change.
     pub fn keeps_values(&self) -> bool {
         self.padding_value == PaddingValue::InFile && self.value_scale.is_none()
     }
 
-    /// Whether others correct values in the same way.
-    fn has_values_of(&self, other: &Self) -> bool {
+    /// Returns true if other corrections change values in the same way.
+    fn corrects_values_like(&self, other: &Self) -> bool {
         self.padding_value == other.padding_value && self.value_scale == other.value_scale
     }
 
-    /// Lets go of numbers that cannot be meant.
+    /// Resets numbers that are out of range to their defaults.
     pub fn sanitise(&mut self) {
         let Self { spacing, unit, flip: _, axis_order: _, orientation: _, padding_value, value_scale } = self;
         let unit_mm = unit.map_or(1.0, SpacingUnit::mm);
         let is_usable = |spacing: &[f64; 3]| {
             let spacing_mm = spacing.map(|length| length * unit_mm);
             spacing_mm.iter().all(|&length| is_usable_spacing(length))
-                && unlike_spacings(spacing_mm).is_none()
+                && spacing_ratio_error(spacing_mm).is_none()
         };
         *spacing = spacing.filter(is_usable);
         if let PaddingValue::Value(value) = padding_value
@@ -172,7 +172,7 @@ impl Corrections {
         }
     }
 
-    /// What is corrected, each in a few words.
+    /// Describes each correction in a few words.
     pub fn in_words(&self) -> Vec<String> {
         let Self { spacing, unit, flip, axis_order, orientation, padding_value, value_scale } = self;
         let mut words = Vec::new();

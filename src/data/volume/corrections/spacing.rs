@@ -1,33 +1,33 @@
-//! Distances between voxels as users write them, and their units.
+//! Voxel spacings as the user writes them, and their units.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::data::volume::Volume;
 
-/// The unit of distances between voxels.
+/// Unit of voxel spacings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SpacingUnit {
-    /// Nanometres.
+    /// Nanometres, 1e-6 mm.
     Nm,
-    /// Micrometres.
+    /// Micrometres, 1e-3 mm.
     #[serde(alias = "µm", alias = "μm")]
     Um,
-    /// Millimetres.
+    /// Millimetres, the unit of world space.
     Mm,
-    /// Centimetres.
+    /// Centimetres, 10 mm.
     Cm,
-    /// Metres.
+    /// Metres, 1000 mm.
     M,
-    /// Nobody knows: distances can only be compared with each other.
+    /// Unknown: spacings have only ratios.
     Voxels,
 }
 
 impl SpacingUnit {
-    /// All of them, the shortest first.
+    /// All units, the shortest first, then voxels.
     pub const ALL: [Self; 6] = [Self::Nm, Self::Um, Self::Mm, Self::Cm, Self::M, Self::Voxels];
 
-    /// How many millimetres it is long; 1 where nobody knows.
+    /// Returns the length of the unit in mm; 1 if it is unknown.
     pub fn mm(self) -> f64 {
         match self {
             Self::Nm => 1e-6,
@@ -38,8 +38,8 @@ impl SpacingUnit {
         }
     }
 
-    /// The one in which a length has digits in front of the point: millimetres where they do, and shorter ones where not.
-    pub fn showing(length_mm: f64) -> Self {
+    /// Returns the unit in which a length is at least 1: millimetres if possible, otherwise a shorter one.
+    pub fn suiting_length(length_mm: f64) -> Self {
         match length_mm {
             length if length >= 1.0 => Self::Mm,
             length if length >= 1e-3 => Self::Um,
@@ -47,18 +47,18 @@ impl SpacingUnit {
         }
     }
 
-    /// The one that is so long.
-    fn of_mm(mm: f64) -> Option<Self> {
+    /// Finds the unit of exactly this length in mm.
+    fn from_mm(mm: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| *unit != Self::Voxels && unit.mm().to_bits() == mm.to_bits())
     }
 
-    /// The one in which distances between voxels are said: down to a hundredth of a millimetre there are digits enough
-    /// behind the point.
-    pub fn of_spacing(spacing_mm: [f64; 3]) -> Self {
-        Self::showing(100.0 * spacing_mm.into_iter().fold(0.0, f64::max))
+    /// Returns the unit in which spacings are shown: down to a hundredth of a millimetre, decimals of millimetres
+    /// suffice.
+    pub fn suiting_spacing(spacing_mm: [f64; 3]) -> Self {
+        Self::suiting_length(100.0 * spacing_mm.into_iter().fold(0.0, f64::max))
     }
 
-    /// How it is written behind a number.
+    /// Returns the symbol written after a number.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Nm => "nm",
@@ -71,50 +71,53 @@ impl SpacingUnit {
     }
 }
 
-/// From a ten-thousandth of a length on, its number in a unit has more digits than anybody reads.
-const MOST_UNITS: f64 = 1e4;
+/// Maximum number of units for the object's size at which the file's unit is used; larger numbers have too many
+/// digits.
+const MAX_UNITS_SHOWN: f64 = 1e4;
 
 impl Volume {
-    /// States in which unit its file has lengths, by its millimetres; what is no known unit says nothing.
+    /// Sets the unit in which the file states lengths, given in mm; a length that is no known unit is ignored.
     #[must_use]
-    pub fn said_in_units_of(self, mm: f64) -> Self {
-        Self { length_unit: SpacingUnit::of_mm(mm).unwrap_or(self.length_unit), ..self }
+    pub fn with_length_unit(self, mm: f64) -> Self {
+        Self { length_unit: SpacingUnit::from_mm(mm).unwrap_or(self.length_unit), ..self }
     }
 
-    /// The unit in which lengths as long as the object are said: that of the file, if it has one that suits them.
+    /// Returns the unit in which lengths of the object's size are shown: that of the file, if it suits them.
     pub fn length_unit(&self) -> SpacingUnit {
         let length_mm = self.scene().mm_per_unit;
         match self.length_unit {
             SpacingUnit::Voxels => SpacingUnit::Voxels,
-            unit if (1.0..=MOST_UNITS).contains(&(length_mm / unit.mm())) => unit,
-            _ => SpacingUnit::showing(length_mm),
+            unit if (1.0..=MAX_UNITS_SHOWN).contains(&(length_mm / unit.mm())) => unit,
+            _ => SpacingUnit::suiting_length(length_mm),
         }
     }
 }
 
-/// Three distances, one for all three, or a text of either.
+/// Serialised form: three spacings, one for all axes, or a text of either.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected three numbers, as in 0.5,0.5,2, or one for all axes")]
-enum Written {
+enum WrittenSpacing {
     Three([f64; 3]),
     One(f64),
     Text(String),
 }
 
-/// Reads distances; null for those of the file.
-pub(super) fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 3]>, D::Error> {
-    let Some(written) = Option::<Written>::deserialize(deserializer)? else { return Ok(None) };
+/// Deserialises spacings; null for those of the file.
+pub(super) fn deserialize_spacing<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<[f64; 3]>, D::Error> {
+    let Some(written) = Option::<WrittenSpacing>::deserialize(deserializer)? else { return Ok(None) };
     let parsed = match written {
-        Written::Three(three) => Some(three),
-        Written::One(one) => Some([one; 3]),
-        Written::Text(text) => numbers(&text),
+        WrittenSpacing::Three(three) => Some(three),
+        WrittenSpacing::One(one) => Some([one; 3]),
+        WrittenSpacing::Text(text) => parse_spacing(&text),
     };
     let refused = || serde::de::Error::custom("expected three numbers, as in 0.5,0.5,2, or one for all axes");
     parsed.ok_or_else(refused).map(Some)
 }
 
-/// `0.5,0.5,2` and `0.5x0.5x2`.
-fn numbers(text: &str) -> Option<[f64; 3]> {
+/// Parses `0.5,0.5,2` or `0.5x0.5x2`.
+fn parse_spacing(text: &str) -> Option<[f64; 3]> {
     let parts: Vec<f64> =
         text.split(['x', 'X', '×', ',']).map(|part| part.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
@@ -135,9 +138,9 @@ mod tests {
             ([0.0005, 0.0005, 0.002], SpacingUnit::Um),
             ([3.25e-6; 3], SpacingUnit::Nm),
         ] {
-            assert_eq!(SpacingUnit::of_spacing(spacing), unit, "{spacing:?}");
+            assert_eq!(SpacingUnit::suiting_spacing(spacing), unit, "{spacing:?}");
         }
-        assert_eq!(SpacingUnit::showing(0.5), SpacingUnit::Um);
+        assert_eq!(SpacingUnit::suiting_length(0.5), SpacingUnit::Um);
     }
 
     #[test]
@@ -145,7 +148,7 @@ mod tests {
         let of = |spacing_mm: f64, unit_mm: f64| {
             let samples = Samples::U8((0..64).collect());
             let volume = Volume::with_spacing("t", [4; 3], DVec3::splat(spacing_mm), samples).unwrap();
-            volume.said_in_units_of(unit_mm).length_unit()
+            volume.with_length_unit(unit_mm).length_unit()
         };
         assert_eq!(
             [of(20.0, 10.0), of(20.0, 1e3), of(2e3, 1e3)],

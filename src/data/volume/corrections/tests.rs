@@ -1,13 +1,14 @@
-//! Tests of corrections: what they leave, what they undo, and that they make of a volume what a file would have.
+//! Tests of corrections: what they preserve, that they can be undone, and that they match a file with the corrected
+//! metadata.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::*;
-use crate::data::{Dataset, Hints, Samples, Shown, Volume, VolumeError};
+use crate::data::{Dataset, DensityMapping, Samples, ValueMetadata, Volume, VolumeError};
 
 const DIMS: [usize; 3] = [5, 4, 3];
 
-/// Voxels that all differ, sheared and away from the origin, as some files have it.
+/// Makes a volume whose voxels all differ, with a sheared grid away from the origin, as in some files.
 fn volume() -> Volume {
     let axes =
         DMat3::from_cols(DVec3::new(0.5, 0.1, 0.0), DVec3::new(-0.2, 0.7, 0.1), DVec3::new(0.0, 0.3, -2.0));
@@ -26,7 +27,7 @@ fn with(change: impl FnOnce(&mut Corrections)) -> Corrections {
     corrections
 }
 
-/// One of each kind.
+/// Returns one example of each kind of correction.
 fn all() -> Vec<Corrections> {
     vec![
         with(|by| by.spacing = Some([0.25, 1.5, 3.0])),
@@ -43,7 +44,7 @@ fn all() -> Vec<Corrections> {
     ]
 }
 
-/// Where the corners of a grid lie.
+/// Returns the world positions of the corner voxels of a grid.
 fn corners(volume: &Volume) -> Vec<DVec3> {
     let last = DVec3::from(volume.dims().map(|n| n as f64 - 1.0));
     let corner = |at: usize| DVec3::new((at & 1) as f64, (at >> 1 & 1) as f64, (at >> 2) as f64) * last;
@@ -51,7 +52,7 @@ fn corners(volume: &Volume) -> Vec<DVec3> {
 }
 
 #[test]
-fn none_changes_nothing_and_whatever_was_corrected_comes_back() {
+fn default_corrections_restore_the_opened_volume() {
     let opened = volume().with_remarks(vec!["told".to_owned()]);
     for by in all() {
         let corrected = opened.corrected(&by).unwrap();
@@ -69,7 +70,7 @@ fn none_changes_nothing_and_whatever_was_corrected_comes_back() {
 }
 
 #[test]
-fn corrections_are_of_the_file_and_not_of_what_was_corrected_before() {
+fn corrections_replace_earlier_ones() {
     let opened = volume();
     for first in all() {
         for second in all() {
@@ -83,7 +84,7 @@ fn corrections_are_of_the_file_and_not_of_what_was_corrected_before() {
 }
 
 #[test]
-fn only_other_values_take_memory() {
+fn voxels_are_shared_unless_values_change() {
     let opened = volume();
     for by in all() {
         let corrected = opened.corrected(&by).unwrap();
@@ -94,9 +95,9 @@ fn only_other_values_take_memory() {
     }
 }
 
-/// To the last bit, so that pictures are the same.
+/// Tests for exact equality, so that pictures are identical.
 #[test]
-fn distances_are_those_of_a_file_that_says_so() {
+fn corrected_spacing_equals_that_of_a_file() {
     let said = spaced([0.1, 0.7, 3.0]);
     for spacing in [[0.5, 0.5, 2.0], [1.0 / 3.0, 0.1, 7.3], [1e-6, 3e-6, 2e-6]] {
         let corrected = said.corrected(&with(|by| by.spacing = Some(spacing))).unwrap();
@@ -127,7 +128,7 @@ fn units_make_lengths_of_numbers() {
 }
 
 #[test]
-fn what_is_flipped_lies_in_the_same_place_the_other_way_round() {
+fn flips_mirror_within_the_same_extent() {
     let opened = volume();
     let flipped = opened.corrected(&with(|by| by.flip.y = true)).unwrap();
     assert_eq!(opened.value(1, 0, 2), flipped.value(1, 0, 2), "voxels stay where they are in memory");
@@ -137,7 +138,7 @@ fn what_is_flipped_lies_in_the_same_place_the_other_way_round() {
         let apart = after.transform_point3(DVec3::new(x, y, z)) - before.transform_point3(mirrored);
         assert!(apart.length() < 1e-12);
     }
-    // Twice is not at all: the same again on a file that lies as the flipped one does.
+    // Flipping twice restores the geometry: tested on a file that lies as the flipped volume does.
     let file = Volume::new("t", DIMS, after, opened.samples().clone()).unwrap();
     let twice = file.corrected(&with(|by| by.flip.y = true)).unwrap().world_from_index();
     assert!(twice.abs_diff_eq(before, 1e-12), "{twice:?}");
@@ -148,12 +149,12 @@ fn orders_of_axes_are_undone_by_their_inverse() {
     for order in AxisOrder::ALL {
         let opened = volume();
         let turned = opened.corrected(&with(|by| by.axis_order = order)).unwrap();
-        // Distances belong to the axes of the file.
+        // Spacings belong to the axes of the file.
         assert!((turned.spacing_mm() - opened.spacing_mm()).length() < 1e-12);
         let file = Volume::new("t", DIMS, turned.world_from_index(), opened.samples().clone()).unwrap();
         let back = file.corrected(&with(|by| by.axis_order = order.inverse())).unwrap();
         assert!(back.world_from_index().abs_diff_eq(opened.world_from_index(), 1e-12), "{order:?}");
-        let places = order.places().map(|place| order.inverse().places()[place]);
+        let places = order.permutation().map(|place| order.inverse().permutation()[place]);
         assert_eq!(places, [0, 1, 2], "{order:?}");
         let json = serde_json::to_value(order).unwrap();
         assert_eq!(json.as_str().unwrap(), order.name().replace(' ', ""));
@@ -167,17 +168,17 @@ fn axes_run_where_the_orientation_says() {
     let axes = corrected.world_from_index().matrix3;
     assert_eq!(axes, DMat3::from_cols(DVec3::Y * -0.5, DVec3::Z, DVec3::X * -2.0));
     assert!(corrected.is_anatomical() && !spaced([1.0; 3]).is_anatomical());
-    let known = volume().with_anatomy(true);
+    let known = volume().with_anatomical_axes(true);
     let unknown = known.corrected(&with(|by| by.orientation = Some(Orientation::Unknown))).unwrap();
     assert!(!unknown.is_anatomical());
     assert_eq!(unknown.world_from_index(), known.world_from_index());
-    let codes: std::collections::BTreeSet<_> = Orientation::all_towards().map(String::from).collect();
+    let codes: std::collections::BTreeSet<_> = Orientation::all_anatomical().map(String::from).collect();
     assert_eq!(codes.len(), 48);
     for code in codes {
         let orientation: Orientation = code.parse().unwrap();
         assert_eq!(orientation.to_string(), code);
-        let Orientation::Towards(headings) = orientation else { panic!("{code}") };
-        assert_eq!(Headings::nearest(headings.directions()), headings);
+        let Orientation::Anatomical(headings) = orientation else { panic!("{code}") };
+        assert_eq!(AnatomicalAxes::nearest(headings.directions()), headings);
     }
     for bad in ["", "RA", "RAR", "RAX", "RLS", "RASI", "above"] {
         assert!(bad.parse::<Orientation>().unwrap_err().contains("RAS"), "{bad}");
@@ -189,8 +190,8 @@ fn axes_run_where_the_orientation_says() {
 fn means_of_blocks_are_corrected_as_their_voxels_are() {
     let opened = volume();
     for by in all().into_iter().filter(Corrections::keeps_values) {
-        let first = opened.corrected(&by).unwrap().reduced([2, 2, 2]).unwrap();
-        let last = opened.clone().reduced([2, 2, 2]).unwrap().corrected(&by).unwrap();
+        let first = opened.corrected(&by).unwrap().block_averaged([2, 2, 2]).unwrap();
+        let last = opened.clone().block_averaged([2, 2, 2]).unwrap().corrected(&by).unwrap();
         for (a, b) in corners(&first).into_iter().zip(corners(&last)) {
             assert!((a - b).length() < 1e-9 * first.scene().mm_per_unit.max(1.0), "{by:?}: {a} {b}");
         }
@@ -200,9 +201,9 @@ fn means_of_blocks_are_corrected_as_their_voxels_are() {
 }
 
 #[test]
-fn padding_is_what_somebody_says() {
+fn padding_values_are_corrected() {
     let declared = volume().with_padding(-90.0).unwrap();
-    assert_eq!(declared.missing().map(super::super::Missing::count), Some(1));
+    assert_eq!(declared.missing().map(super::super::MissingVoxels::count), Some(1));
     let padded = volume().corrected(&with(|by| by.padding_value = PaddingValue::Value(-90.0))).unwrap();
     assert_eq!((padded.ranges(), padded.padding_value()), (declared.ranges(), Some(-90.0)));
     assert_eq!(padded.missing(), declared.missing());
@@ -214,11 +215,11 @@ fn padding_is_what_somebody_says() {
 }
 
 #[test]
-fn numbers_mean_what_somebody_says_in_a_type_that_holds_them() {
-    let mut hints = Hints::default();
+fn value_scales_choose_a_type_that_fits() {
+    let mut hints = ValueMetadata::default();
     hints.set_window(10.0, 20.0);
     hints.labels.insert(3, "three", None);
-    let opened = spaced([1.0; 3]).with_hints(hints).with_padding(5.0).unwrap();
+    let opened = spaced([1.0; 3]).with_metadata(hints).with_padding(5.0).unwrap();
     for (slope, intercept, kind) in [
         (1.0, 100.0, "uint8"),
         (-1.0, 0.0, "int8"),
@@ -231,14 +232,17 @@ fn numbers_mean_what_somebody_says_in_a_type_that_holds_them() {
         let corrected = opened.corrected(&with(|by| by.value_scale = scale)).unwrap();
         assert_eq!(corrected.samples().voxel_type().name(), kind, "{scale:?}");
         for voxel in [0, 5, 7, 59] {
-            let (value, wanted) = (corrected.samples().value(voxel), scale.value(voxel as f64));
+            let (value, wanted) = (corrected.samples().value(voxel), scale.value_from_number(voxel as f64));
             assert!((value - wanted).abs() <= 1e-6 * wanted.abs(), "{value} {wanted}");
         }
-        assert_eq!(corrected.padding_value().map(|value| value as f32), Some(scale.value(5.0) as f32));
+        assert_eq!(
+            corrected.padding_value().map(|value| value as f32),
+            Some(scale.value_from_number(5.0) as f32)
+        );
         assert!(corrected.missing().is_some_and(|missing| missing.count() == 1 && missing.contains(5)));
-        let [low, high] = corrected.hints().window.unwrap();
+        let [low, high] = corrected.metadata().window.unwrap();
         assert!(low < high);
-        assert_eq!(scale.number(scale.value(3.25)), 3.25);
+        assert_eq!(scale.number_from_value(scale.value_from_number(3.25)), 3.25);
     }
     let wide = Samples::F64(vec![-1e300, 1e300]);
     let wide = Volume::with_spacing("t", [2, 1, 1], DVec3::ONE, wide).unwrap();
@@ -247,23 +251,28 @@ fn numbers_mean_what_somebody_says_in_a_type_that_holds_them() {
 }
 
 #[test]
-fn bounds_and_histogram_are_found_again_where_values_are_others() {
-    let opened = Dataset::new(volume()).showing(Shown::Range((-50.0, 50.0).into()));
+fn bounds_and_histogram_follow_corrected_values() {
+    let opened = Dataset::new(volume()).with_density_mapping(DensityMapping::Range((-50.0, 50.0).into()));
     for by in all() {
         let corrected = opened.corrected(&by).unwrap();
-        let afresh =
-            Dataset::new(opened.volume().corrected(&by).unwrap().showing(corrected.volume().shown()));
+        let afresh = Dataset::new(
+            opened
+                .volume()
+                .corrected(&by)
+                .unwrap()
+                .with_density_mapping(corrected.volume().density_mapping()),
+        );
         let counts = |dataset: &Dataset| format!("{:?}", dataset.histogram());
         assert_eq!(counts(&corrected), counts(&afresh), "{by:?}");
         if by.keeps_values() {
             assert!(std::sync::Arc::ptr_eq(opened.bricks(), corrected.bricks()));
-            assert_eq!(corrected.volume().shown(), opened.volume().shown());
+            assert_eq!(corrected.volume().density_mapping(), opened.volume().density_mapping());
         }
     }
 }
 
 #[test]
-fn corrections_are_read_as_they_were_written_and_as_people_write_them() {
+fn corrections_round_trip_and_accept_text() {
     for by in all() {
         let text = serde_json::to_string(&by).unwrap();
         assert_eq!(serde_json::from_str::<Corrections>(&text).unwrap(), by, "{text}");
@@ -290,7 +299,7 @@ fn corrections_are_read_as_they_were_written_and_as_people_write_them() {
 }
 
 #[test]
-fn numbers_that_cannot_be_meant_are_let_go() {
+fn unusable_numbers_are_reset() {
     let sane = |change: fn(&mut Corrections)| {
         let mut by = with(change);
         by.sanitise();
@@ -313,7 +322,7 @@ fn numbers_that_cannot_be_meant_are_let_go() {
         by.sanitise();
         assert_eq!(by, before);
     }
-    // A unit may make of usable numbers what is none.
+    // A unit may turn usable numbers into unusable ones.
     let far = |by: &mut Corrections| (by.spacing, by.unit) = (Some([1e8; 3]), Some(SpacingUnit::M));
     assert_eq!(sane(far).spacing, None);
 }

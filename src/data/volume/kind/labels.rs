@@ -1,76 +1,79 @@
-//! Masks and label maps: few values, each of which fills regions.
+//! Detection of masks and label maps: few distinct values, each of which fills regions.
 
-use super::inverted::{FACES, MOST_OF_OBJECT};
-use super::sampled::{Sampled, distinct_of_all};
-use super::{DataKind, KindFound};
+use super::dark_on_bright::{MAX_OBJECT_SHARE, MIN_BACKGROUND_FACES};
+use super::sampled::{SampledValues, distinct_values_of_all_voxels};
+use super::{DataKind, DetectedKind};
 use crate::data::{MAX_LABELS, Volume};
 
-/// Share of neighbours, both of them of some label, that have the same one, at least. Label maps have 0.88 and more,
-/// the scalar volume that comes nearest 0.76.
-const LEAST_EQUAL: f64 = 0.85;
+/// Minimum share of equal pairs among pairs of labelled neighbours. Label maps have 0.88 and more, the closest scalar
+/// volume has 0.76.
+const MIN_EQUAL_PAIRS: f64 = 0.85;
 
-/// The same for the label in the middle of all, at least: the smallest may be specks. Values that only occur where an
-/// object ends, as between a thing and air, have hardly any neighbours like them; of a label that fills regions most are.
-const LEAST_EQUAL_OF_ONE: f64 = 0.5;
+/// Minimum share of equal pairs for the median label: the smallest labels may be specks. Values that occur only at
+/// borders of an object, as between material and air, have hardly any equal neighbours; labels that fill regions have
+/// mostly equal ones.
+const MIN_EQUAL_PAIRS_OF_MEDIAN: f64 = 0.5;
 
-/// Share of unequal neighbours that are not next to each other in the order of all values, at least. Along smooth
-/// fields of few values it is next to nothing, in label maps 0.84 and more: well apart from both.
-const LEAST_JUMPS: f64 = 0.3;
+/// Minimum share of unequal neighbours that are not adjacent in the order of all values. Along smooth fields of few
+/// values it is close to 0, in label maps 0.84 and more: a threshold well apart from both.
+const MIN_JUMPS: f64 = 0.3;
 
-/// From so many values on there are jumps in label maps: of three labels around each other there are none. Those count
-/// from one, or leave out one or two; other numbers, such as 0, 90 and 220, are of materials.
-const VALUES_WITH_JUMPS: usize = 5;
+/// Minimum number of values at which label maps must have such jumps: three nested labels have none. Fewer labels are
+/// numbered from 1 with at most one or two gaps; other numbers, such as 0, 90 and 220, denote materials.
+const MIN_VALUES_FOR_JUMPS: usize = 5;
 
-/// Values that only labels have are whole, and not too large for a number that counts things.
+/// Maximum number of a label: labels are integers no larger than counts of objects.
 const LARGEST_LABEL: f64 = (1u64 << 32) as f64;
 
-/// How many labels a volume has, without the lowest value, which is what is around them.
-pub(super) fn count(volume: &Volume) -> usize {
-    let distinct = distinct_of_all(volume, MAX_LABELS + 1).map_or(MAX_LABELS + 1, |all| all.len());
-    // Everything is labelled where the lowest value is above zero.
+/// Counts the labels of a volume, without the lowest value, which is the background.
+pub(super) fn count_labels(volume: &Volume) -> usize {
+    let distinct =
+        distinct_values_of_all_voxels(volume, MAX_LABELS + 1).map_or(MAX_LABELS + 1, |all| all.len());
+    // Everything is labelled if the lowest value is above zero.
     distinct.saturating_sub(usize::from(volume.value_range().low <= 0.0))
 }
 
-/// Two values, one of which is not all around.
-pub(super) fn mask(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
-    // Most volumes have more among the first few voxels already.
-    sampled.distinct(2)?;
-    let all = distinct_of_all(volume, 2)?;
+/// Detects masks: two values, of which the higher is not the background.
+pub(super) fn detect_mask(volume: &Volume, sampled: &SampledValues<'_>) -> Option<DetectedKind> {
+    // Early exit: most volumes have more values among the sampled voxels already.
+    sampled.distinct_values(2)?;
+    let all = distinct_values_of_all_voxels(volume, 2)?;
     let [low, high] = all[..] else { return None };
-    let is_around =
-        |value: f64| sampled.faces().iter().filter(|face| is_mostly(face, value)).count() >= FACES;
-    // What surrounds an object of which there is more is its border.
-    if is_around(high) && sampled.share_of(low) < 0.5 {
-        return Some(KindFound::new(
+    let is_around = |value: f64| {
+        sampled.faces().iter().filter(|face| is_nearly_uniform(face, value)).count() >= MIN_BACKGROUND_FACES
+    };
+    // If the background is also the larger part, the object is the lower value.
+    if is_around(high) && sampled.share_equal_to(low) < 0.5 {
+        return Some(DetectedKind::new(
             DataKind::DarkOnBright,
             format!("the lower of two values is surrounded by the higher, {high}"),
         ));
     }
-    Some(KindFound::new(DataKind::Mask, format!("there are two values, {low} and {high}")))
+    Some(DetectedKind::new(DataKind::Mask, format!("there are two values, {low} and {high}")))
 }
 
-/// Whether a face shows one value, but for the share that may be of an object.
-fn is_mostly(face: &[f64], value: f64) -> bool {
+/// Returns true if a face shows one value, apart from the share that may belong to an object.
+fn is_nearly_uniform(face: &[f64], value: f64) -> bool {
     let equal = face.iter().filter(|&&other| other == value).count();
-    !face.is_empty() && equal as f64 >= (1.0 - MOST_OF_OBJECT) * face.len() as f64
+    !face.is_empty() && equal as f64 >= (1.0 - MAX_OBJECT_SHARE) * face.len() as f64
 }
 
-/// Neighbours, counted.
+/// Statistics of pairs of neighbouring voxels.
 #[derive(Default)]
-struct Pairs {
-    /// For each value but the lowest: pairs of it with any other but the lowest, and with itself.
-    of_value: Vec<Pair>,
+struct NeighbourStatistics {
+    /// Counts for each value except the lowest: all pairs with values other than the lowest, and equal pairs.
+    of_value: Vec<LabelPairCounts>,
     unequal: f64,
     jumps: f64,
 }
 
 #[derive(Default, Clone, Copy)]
-struct Pair {
+struct LabelPairCounts {
     all: f64,
     equal: f64,
 }
 
-impl Pairs {
+impl NeighbourStatistics {
     fn add(mut self, other: Self) -> Self {
         if self.of_value.is_empty() {
             return other;
@@ -85,18 +88,18 @@ impl Pairs {
     }
 }
 
-/// Whole numbers that fill regions and end abruptly.
-pub(super) fn label_map(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFound> {
-    let distinct = sampled.distinct(MAX_LABELS)?;
+/// Detects label maps: integers that fill regions and end abruptly.
+pub(super) fn detect_label_map(volume: &Volume, sampled: &SampledValues<'_>) -> Option<DetectedKind> {
+    let distinct = sampled.distinct_values(MAX_LABELS)?;
     if distinct.len() < 2 || distinct.iter().any(|value| value.fract() != 0.0 || value.abs() > LARGEST_LABEL)
     {
         return None;
     }
     let rank = |value: f64| distinct.partition_point(|&other| other < value);
-    let pairs = sampled.pairs(
-        |pairs: &mut Pairs, one, other| {
+    let pairs = sampled.fold_neighbour_pairs(
+        |pairs: &mut NeighbourStatistics, one, other| {
             if pairs.of_value.is_empty() {
-                pairs.of_value = vec![Pair::default(); distinct.len()];
+                pairs.of_value = vec![LabelPairCounts::default(); distinct.len()];
             }
             if one == other {
                 if one > distinct[0] {
@@ -115,25 +118,25 @@ pub(super) fn label_map(volume: &Volume, sampled: &Sampled<'_>) -> Option<KindFo
                 }
             }
         },
-        Pairs::add,
+        NeighbourStatistics::add,
     );
     let mut shares: Vec<f64> =
         pairs.of_value.iter().filter(|pair| pair.all > 0.0).map(|pair| pair.equal / pair.all).collect();
     shares.sort_by(f64::total_cmp);
     let typical = shares.get(shares.len() / 2).copied()?;
-    let sum = |part: fn(&Pair) -> f64| pairs.of_value.iter().map(part).sum::<f64>();
+    let sum = |part: fn(&LabelPairCounts) -> f64| pairs.of_value.iter().map(part).sum::<f64>();
     let equal = sum(|pair| pair.equal) / sum(|pair| pair.all);
     let jumps = pairs.jumps / pairs.unequal.max(1.0);
     let span = distinct[distinct.len() - 1] - distinct[0];
-    let are_counted = distinct.len() < VALUES_WITH_JUMPS && span <= 2.0 * distinct.len() as f64;
-    let is_abrupt = are_counted || jumps >= LEAST_JUMPS;
-    (equal >= LEAST_EQUAL && typical >= LEAST_EQUAL_OF_ONE && is_abrupt).then(|| {
+    let are_counted = distinct.len() < MIN_VALUES_FOR_JUMPS && span <= 2.0 * distinct.len() as f64;
+    let is_abrupt = are_counted || jumps >= MIN_JUMPS;
+    (equal >= MIN_EQUAL_PAIRS && typical >= MIN_EQUAL_PAIRS_OF_MEDIAN && is_abrupt).then(|| {
         let why = format!(
             "{} whole numbers fill regions: {:.0} % of neighbours are equal, and {:.0} % of the others far apart",
             distinct.len(),
             100.0 * equal,
             100.0 * jumps
         );
-        KindFound::new(DataKind::LabelMap { count: count(volume) }, why)
+        DetectedKind::new(DataKind::LabelMap { count: count_labels(volume) }, why)
     })
 }

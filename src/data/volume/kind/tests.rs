@@ -1,14 +1,14 @@
-//! Kinds of made-up data: some of each, and what only looks like it.
+//! Tests of the detection of kinds on synthetic data: examples of each kind, and data that only resembles it.
 
 use glam::DVec3;
 
 use super::{DataKind, KindName};
 use crate::data::synthetic::builtin;
-use crate::data::{Hints, Meaning, Modality, Samples, Volume};
+use crate::data::{Modality, Samples, ValueMeaning, ValueMetadata, Volume};
 
 const N: usize = 40;
 
-/// Even noise from −1 to 1 that is the same for the same place and seed.
+/// Returns uniform noise from −1 to 1, deterministic for a place and seed.
 fn noise(at: usize, seed: u64) -> f64 {
     let mut state =
         (at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ seed.wrapping_mul(0xd1b5_4a32_d192_ed03);
@@ -18,12 +18,12 @@ fn noise(at: usize, seed: u64) -> f64 {
     (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Nearly normal noise of deviation 1.
+/// Returns approximately normal noise with a standard deviation of 1.
 fn bell(at: usize, seed: u64) -> f64 {
     (0..6).map(|i| noise(at, seed * 16 + i)).sum::<f64>() / 2f64.sqrt()
 }
 
-/// Values by the place relative to the middle, in units of half the edge, and by the index.
+/// Makes values from positions relative to the middle, in units of half the edge, and from voxel indices.
 fn values(value: impl Fn(DVec3, usize) -> f64) -> Vec<f64> {
     let middle = (N - 1) as f64 / 2.0;
     (0..N * N * N)
@@ -42,7 +42,7 @@ fn kind(values: &[f64]) -> KindName {
     volume_of(Samples::F64(values.to_vec())).kind().kind.name()
 }
 
-/// One of twelve places, by which is nearest; 0 outside a ball.
+/// Returns the number of the nearest of `count` seeds (a Voronoi cell), from 1; 0 outside a ball.
 fn regions(p: DVec3, count: u64) -> f64 {
     if p.length() > 0.8 {
         return 0.0;
@@ -56,7 +56,7 @@ fn bump(p: DVec3, at: DVec3, width: f64) -> f64 {
     (-(p - at).length_squared() / (2.0 * width * width)).exp()
 }
 
-/// A trunk with lungs, ribs and a spine, in Hounsfield units.
+/// Returns Hounsfield units of a trunk with lungs, ribs and a spine.
 fn chest(p: DVec3, at: usize) -> f64 {
     let disk = |x: f64, y: f64, rx: f64, ry: f64| ((p.x - x) / rx).powi(2) + ((p.y - y) / ry).powi(2) < 1.0;
     let base = if disk(0.0, 0.5, 0.15, 0.12)
@@ -86,9 +86,9 @@ fn label_maps() -> Vec<Vec<f64>> {
     vec![
         values(|p, _| regions(p, 12)),
         values(|p, _| 1000.0 * regions(p, 7) + if regions(p, 7) > 3.0 { 17.0 } else { 0.0 }),
-        // Three around each other.
+        // Three nested labels.
         values(|p, _| (3.0 - (p.length() * 4.0).floor()).max(0.0)),
-        // Small ones, far apart.
+        // Small labels, far apart.
         values(|p, _| {
             if (p * 5.0).fract().abs().max_element() < 0.6 {
                 ((p * 5.0).trunc().dot(DVec3::new(1.0, 7.0, 49.0)) + 300.0).max(0.0)
@@ -111,7 +111,7 @@ fn signed_fields() -> Vec<Vec<f64>> {
 fn hounsfield() -> Vec<Vec<f64>> {
     vec![
         values(chest),
-        // What the scanner does not reach.
+        // Padding outside the scanner's field of view.
         values(|p, at| if p.truncate().length() > 0.95 { -3024.0 } else { chest(p, at) }),
         values(|p, at| {
             let base = if p.length() > 0.7 {
@@ -138,7 +138,7 @@ fn scalars() -> Vec<Vec<f64>> {
     let edge = |p: DVec3| ((0.6 - p.length()) * 12.0).clamp(0.0, 1.0);
     vec![
         values(|p, _| 200.0 * edge(p)),
-        // A CT of metal in eight bits: two materials, edges between them, and little else.
+        // A CT of metal in eight bits: two materials with edges between them, and little else.
         values(|p, _| (200.0 * edge(p)).round()),
         // A core of one material in another, without edges.
         values(|p, _| {
@@ -152,29 +152,29 @@ fn scalars() -> Vec<Vec<f64>> {
         }),
         // A smooth field of eight values.
         values(|p, _| (8.0 * bump(p, DVec3::ZERO, 0.5)).floor()),
-        // Few values, and noise.
+        // Few values, with noise.
         values(|p, at| (4.0 * edge(p) + 1.0 + 0.5 * bell(at, 4)).round()),
         // A head whose noise reaches below zero.
         values(|p, at| 100.0 * edge(p) + 30.0 * bell(at, 6)),
-        // Positive noise alone, and all of it negative.
+        // Noise alone, positive and negative.
         values(|_, at| 50.0 + 50.0 * noise(at, 7)),
         values(|_, at| -500.0 + 50.0 * bell(at, 7)),
-        // A slope, and one of the range of Hounsfield units.
+        // A gradient, and noise over the range of Hounsfield units.
         values(|p, _| p.x + 2.0),
         values(|_, at| (1000.0 + 2000.0 * noise(at, 9)).round()),
         // Tissue that fills the volume, with brighter parts.
         values(|p, at| 100.0 + 20.0 * bell(at, 9) + 60.0 * bump(p, DVec3::X * 0.2, 0.3)),
-        // A scan of twelve bits whose tissue lies at a thousand.
+        // A scan of twelve bits whose tissue is at a thousand.
         values(|p, at| {
             if p.length() < 0.7 { 1024.0 + 40.0 * bell(at, 1) } else { (5.0 * bell(at, 2)).abs() }.round()
         }),
-        // The padding of a scan that knows no negative values.
+        // A scan without negative values, with padding.
         values(
             |p, at| {
                 if p.length() < 0.9 { (80.0 * edge(p) + 5.0 * bell(at, 1).abs()).round() } else { -32768.0 }
             },
         ),
-        // A dense thing in air whose value is as far below zero.
+        // A dense object in air whose value is as far below zero.
         values(|p, at| if p.length() < 0.6 { 1200.0 } else { -1000.0 } + 5.0 * bell(at, 3)),
         vec![7.0; N * N * N],
     ]
@@ -184,7 +184,7 @@ fn scalars() -> Vec<Vec<f64>> {
 fn assert_all(fields: &[Vec<f64>], name: KindName) {
     for (index, field) in fields.iter().enumerate() {
         let volume = volume_of(Samples::F64(field.clone()));
-        assert_eq!(volume.kind().kind.name(), name, "{index}: {}", volume.kind().why);
+        assert_eq!(volume.kind().kind.name(), name, "{index}: {}", volume.kind().reason);
     }
 }
 
@@ -249,10 +249,10 @@ fn kinds_do_not_depend_on_the_number_type() {
 }
 
 #[test]
-fn single_values_and_missing_ones_change_no_kind() {
+fn outliers_and_missing_voxels_change_no_kind() {
     for field in all_fields() {
         let found = kind(&field);
-        // Of two values it makes three.
+        // A mask with one more value is no mask.
         let of_few = volume_of(Samples::F64(field.clone())).value_range();
         let is_of_two = field.iter().all(|value| [of_few.low, of_few.high].contains(value));
         if !is_of_two && found != KindName::LabelMap {
@@ -269,20 +269,20 @@ fn single_values_and_missing_ones_change_no_kind() {
 }
 
 #[test]
-fn files_know_better() {
-    let with = |field: &[f64], say: &dyn Fn(&mut Hints)| {
-        let mut hints = Hints::default();
+fn file_metadata_overrides_detection() {
+    let with = |field: &[f64], say: &dyn Fn(&mut ValueMetadata)| {
+        let mut hints = ValueMetadata::default();
         say(&mut hints);
-        volume_of(Samples::F64(field.to_vec())).with_hints(hints).kind().kind
+        volume_of(Samples::F64(field.to_vec())).with_metadata(hints).kind().kind
     };
     let ball = &scalars()[0];
-    let labels = with(ball, &|hints| hints.meaning = Meaning::Labels);
+    let labels = with(ball, &|hints| hints.meaning = ValueMeaning::Labels);
     assert!(matches!(labels, DataKind::LabelMap { .. }));
     let hounsfield_units = with(ball, &|hints| hints.set_unit("HU"));
     assert_eq!(hounsfield_units, DataKind::HounsfieldCt { water: 0.0 });
     let lobes = &signed_fields()[1];
-    assert_eq!(with(lobes, &|hints| hints.meaning = Meaning::PositiveDensity), DataKind::Scalar);
-    // Twelve bits without a sign: CT where the file says so.
+    assert_eq!(with(lobes, &|hints| hints.meaning = ValueMeaning::PositiveDensity), DataKind::Scalar);
+    // Twelve bits without a sign: CT only if the file says so.
     let head = &scalars()[11];
     let of_ct = with(head, &|hints| hints.modality = Modality::Ct);
     assert_eq!(of_ct, DataKind::HounsfieldCt { water: 1024.0 });
@@ -316,16 +316,16 @@ fn built_in_volumes_are_what_they_are() {
         ("marschner-lobb", 48, KindName::Scalar),
     ] {
         let volume = builtin(name, Some(n)).unwrap();
-        assert_eq!(volume.kind().kind.name(), kind, "{name} {n}: {}", volume.kind().why);
+        assert_eq!(volume.kind().kind.name(), kind, "{name} {n}: {}", volume.kind().reason);
     }
 }
 
 #[test]
-fn declared_padding_is_no_value_no_neighbour_and_no_face() {
+fn declared_padding_is_ignored() {
     let with_padding = |values: Vec<f64>, padding: f64| {
         volume_of(Samples::F64(values)).with_padding(padding).unwrap().kind().kind
     };
-    // Here and there in a label map, whose neighbours would be equal in part only.
+    // Padding scattered over a label map, so that only part of its neighbours would be equal.
     let here_and_there = |at: usize| noise(at, 9) > 0.2;
     let labels = values(|p, at| if here_and_there(at) { 77.0 } else { regions(p, 12) });
     let mut numbers: Vec<u8> = values(|p, _| regions(p, 12)).into_iter().map(|number| number as u8).collect();
@@ -342,7 +342,7 @@ fn declared_padding_is_no_value_no_neighbour_and_no_face() {
         if p.truncate().abs().min_element() > 0.7 { 0.0 } else { field + 10.0 * noise(at, 4) }
     });
     assert_eq!(with_padding(dark.clone(), 0.0), DataKind::DarkOnBright);
-    // A face that holds nothing is around nothing.
+    // A face of only padding shows no background.
     let hollow =
         values(|p, _| if p.abs().max_element() > 0.9 { -5.0 } else { f64::from(u8::from(p.length() > 0.3)) });
     assert_eq!(with_padding(hollow, -5.0), DataKind::Mask);

@@ -1,4 +1,5 @@
-//! What is written is read back: every format, number type and orientation; and what is refused.
+//! Round-trip tests of exported volumes: every format, number type and orientation; and conversions that are
+//! rejected.
 
 mod numbers;
 mod round_trips;
@@ -9,34 +10,38 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::*;
 use crate::data::load::{LoadControl, LoadOptions, load};
-use crate::data::{Hints, Meaning, Modality, Samples};
+use crate::data::{Modality, Samples, ValueMeaning, ValueMetadata};
 
-/// Voxels of the volumes of these tests: all unlike, so that no axis is mistaken for another.
+/// Dimensions of the test volumes: all different, so that no axis can be mistaken for another.
 const DIMS: [usize; 3] = [5, 4, 3];
 
-/// A file in a folder of its own.
-struct Written {
+/// Exported file in a temporary folder.
+struct ExportedFile {
     _folder: tempfile::TempDir,
     path: PathBuf,
 }
 
-/// Writes a volume under some ending.
-fn written(format: VolumeFormat, volume: &Outgoing<'_>, is_compressed: bool) -> Written {
+/// Writes a volume in a format to a temporary folder.
+fn export_to_temporary_file(
+    format: VolumeFormat,
+    volume: &ExportVolume<'_>,
+    is_compressed: bool,
+) -> ExportedFile {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scan").with_extension(format.endings()[0]);
+    let path = folder.path().join("scan").with_extension(format.extensions()[0]);
     write_volume(&path, format, volume, is_compressed).unwrap();
-    Written { _folder: folder, path }
+    ExportedFile { _folder: folder, path }
 }
 
-/// What a file holds.
-fn read(written: &Written) -> Volume {
+/// Reads a file that was exported.
+fn read_back(written: &ExportedFile) -> Volume {
     load(&written.path, &LoadOptions::default(), &LoadControl::new()).unwrap()
 }
 
-/// Numbers of every type, the lowest and the highest among them.
+/// Returns samples of a number type, including its lowest and highest number.
 fn samples(voxel_type: VoxelType) -> Samples {
     let count = DIMS.iter().product::<usize>();
-    // Numbers without a pattern that an exchange of axes would keep.
+    // Values without a pattern that a permutation of axes would preserve.
     let mixed = |at: usize| (at as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 16;
     macro_rules! whole {
         ($variant:ident, $number:ty) => {{
@@ -66,8 +71,8 @@ fn samples(voxel_type: VoxelType) -> Samples {
     }
 }
 
-/// A grid that lies askew, mirrored, and far from the origin.
-fn askew() -> DAffine3 {
+/// Returns the affine of an oblique, mirrored grid far from the origin.
+fn oblique_affine() -> DAffine3 {
     let turn = DMat3::from_axis_angle(DVec3::new(0.3, -0.9, 0.4).normalize(), 0.7);
     let matrix3 = turn * DMat3::from_diagonal(DVec3::new(0.488_281_25, 0.7, -2.5));
     DAffine3 { matrix3, translation: DVec3::new(-123.456, 78.9, 1012.3) }
@@ -77,14 +82,15 @@ fn volume(samples: Samples, world_from_index: DAffine3) -> Volume {
     Volume::new("scan", DIMS, world_from_index, samples).unwrap()
 }
 
-/// Bytes of all voxels in their order, the lowest of each first.
+/// Returns the bytes of all voxels in order, little-endian.
 fn bytes(volume: &Volume) -> Vec<u8> {
     let mut bytes = Vec::new();
-    Outgoing::of(volume).write_voxels(&mut bytes).unwrap();
+    ExportVolume::new(volume).write_voxels(&mut bytes).unwrap();
     bytes
 }
 
-/// Where two volumes differ: in their grid, their numbers, their voxels, or in their place by more than some part of it.
+/// Describes the first difference of two volumes: in grid, number type, voxels, or geometry beyond a relative
+/// tolerance.
 fn difference(found: &Volume, wanted: &Volume, tolerance: f64) -> Option<String> {
     let kind = |volume: &Volume| volume.samples().voxel_type().name();
     if (found.dims(), kind(found)) != (wanted.dims(), kind(wanted)) {
@@ -96,7 +102,7 @@ fn difference(found: &Volume, wanted: &Volume, tolerance: f64) -> Option<String>
     }
     let numbers = |volume: &Volume| volume.world_from_index().to_cols_array();
     let (a, b) = (numbers(found), numbers(wanted));
-    // Of an axis, or of the origin, the longest of its parts counts.
+    // Relative to the longest component of the axis or origin.
     let length =
         |at: usize| b[at / 3 * 3..at / 3 * 3 + 3].iter().fold(1.0f64, |most, part| most.max(part.abs()));
     let far = (0..12).find(|&at| (a[at] - b[at]).abs() > tolerance * length(at))?;

@@ -1,42 +1,42 @@
-//! What the steps of a light pass record.
+//! Recording of the light pass: march, back-projection, ray casting, averaging and merging of colours.
 
 use crate::gpu::GpuError;
-use crate::gpu::frame::job::Job;
-use crate::gpu::frame::light_build::{BuildView, CurrentView, LightBuild};
+use crate::gpu::frame::light_fill::{LightFill, LightFillView, MarchState};
+use crate::gpu::frame::render_job::RenderJob;
 use crate::gpu::frame::step::{LightStep, RaycastStep};
-use crate::gpu::light::backproject::{Schedule, backproject};
-use crate::gpu::light::floor_shadow::ViewOfPoint;
-use crate::gpu::light::march::{Sheets, march, march_uniform};
+use crate::gpu::light::backproject::{ChunkSchedule, backproject};
+use crate::gpu::light::floor_shadow::PointView;
+use crate::gpu::light::march::{LightSheets, march, march_uniform};
 use crate::gpu::light::raycast::raycast;
-use crate::gpu::scatter::light::LightScatter;
-use crate::gpu::volume::Gpu;
-use crate::gpu::volume::transfer_tables::EVERYWHERE;
+use crate::gpu::scatter::light::LightScatterer;
+use crate::gpu::volume::VolumeContext;
+use crate::gpu::volume::transfer_tables::UNLIMITED_REACH;
 
-impl Job<'_> {
-    /// Sets up the march through one view of a light.
+impl RenderJob<'_> {
+    /// Prepares the march through one view of a light.
     fn begin_view(
         &mut self,
-        build: &LightBuild,
+        build: &LightFill,
         (view, color): (usize, Option<usize>),
-    ) -> Result<CurrentView, GpuError> {
+    ) -> Result<MarchState, GpuError> {
         let settings = &self.request.settings;
-        let BuildView { point, geometry, chunk } = &build.views[view];
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let light = build.filled(*point, color, &loaded.lights[build.slot].value);
+        let LightFillView { point, geometry, chunk } = &build.views[view];
+        let loaded = &self.loaded.product;
+        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let light = build.target_volume(*point, color, &loaded.lights[build.cache_index].product);
         let skips = self.options.empty_space_skipping;
-        let reach = if skips { i32::from(build.reach) } else { EVERYWHERE };
-        let mut sheets = Sheets::new(self.tools, geometry, *chunk, reach)?;
+        let reach = if skips { i32::from(build.reach) } else { UNLIMITED_REACH };
+        let mut sheets = LightSheets::new(self.tools, geometry, *chunk, reach)?;
         sheets.min_transmittance = self.options.min_transmittance;
-        // A volume as pictures have it serves them, too.
-        sheets.preview = self.options.preview && build.is_coarse;
+        // A volume at full resolution also serves pictures, so it is filled with the full reach.
+        sheets.is_preview = self.options.preview && build.is_coarse;
         let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes();
         bytes += sheets.ring.bytes() + build.bytes();
         let scatter = match &self.scattering {
             Some(scattering) if build.scatters => {
-                let read = build.read.as_ref().filter(|_| skips);
+                let read = build.back_projected_bricks.as_ref().filter(|_| skips);
                 let of_light = (settings, light);
-                let fresh = LightScatter::new(
+                let fresh = LightScatterer::new(
                     gpu,
                     scattering,
                     (tables, color),
@@ -52,45 +52,45 @@ impl Job<'_> {
         };
         let scene = &gpu.volume.scene;
         // Scattered sheets are not marched in tiles.
-        let beyond = if build.scatters || sheets.reach == EVERYWHERE {
-            EVERYWHERE
+        let read_reach = if build.scatters || sheets.reach == UNLIMITED_REACH {
+            UNLIMITED_REACH
         } else {
             i32::from(build.reverse_reach)
         };
-        let has_floor = loaded.lights[build.slot].value.floor.is_some();
-        let schedule = Schedule::new(scene, geometry, light, sheets.chunk, (beyond, has_floor));
+        let has_floor = loaded.lights[build.cache_index].product.floor.is_some();
+        let schedule = ChunkSchedule::new(scene, geometry, light, sheets.chunk, (read_reach, has_floor));
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
-        Ok(CurrentView { sheets, schedule, scatter })
+        Ok(MarchState { sheets, schedule, scatter })
     }
 
-    /// Notes that the filling of a light volume begins.
-    fn begin_light(&mut self, build: &LightBuild) {
-        self.report.runs.light_volumes += 1;
-        self.fills[build.index] += 1;
-        self.loaded.value.lights[build.slot].value.begin();
+    /// Records the start of filling a light volume in the report and the counters.
+    fn begin_light(&mut self, build: &LightFill) {
+        self.report.step_counts.light_volumes += 1;
+        self.fill_counts[build.light_index] += 1;
+        self.loaded.product.lights[build.cache_index].product.begin_filling();
     }
 
-    /// Records a step of one half of a light pass.
+    /// Records a step of the march or of the back-projection (`half`).
     pub(super) fn encode_light(
         &mut self,
         step: &LightStep,
-        half: fn(&mut Self, &mut LightBuild, &LightStep, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
+        half: fn(&mut Self, &mut LightFill, &LightStep, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        // Taken out meanwhile: a half changes its build and the job.
-        let mut builds = std::mem::take(&mut self.builds);
+        // Moved out of the job while `half` borrows both the build and the job.
+        let mut builds = std::mem::take(&mut self.light_fills);
         let result = half(self, &mut builds[step.build], step, encoder);
-        self.builds = builds;
+        self.light_fills = builds;
         result
     }
 
-    /// The view that is being marched, set up when its first step comes.
+    /// Takes the view that is being marched, prepared at its first step.
     fn take_view(
         &mut self,
-        build: &mut LightBuild,
+        build: &mut LightFill,
         view: (usize, Option<usize>),
-    ) -> Result<CurrentView, GpuError> {
-        match build.current.take() {
+    ) -> Result<MarchState, GpuError> {
+        match build.march_state.take() {
             Some(current) => Ok(current),
             None => self.begin_view(build, view),
         }
@@ -99,52 +99,52 @@ impl Job<'_> {
     /// Marches the light of a view through a chunk of slabs.
     pub(super) fn march_view(
         &mut self,
-        build: &mut LightBuild,
+        build: &mut LightFill,
         &LightStep { color, view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let is_first = color.unwrap_or(0) == 0 && view == 0 && begin == 0 && part.is_first();
         if is_first {
-            let loaded = &self.loaded.value;
-            let gpu = Gpu::new(self.tools, &loaded.volume);
-            loaded.lights[build.slot].value.clear_margin(gpu, &build.margin, encoder)?;
+            let loaded = &self.loaded.product;
+            let gpu = VolumeContext::new(self.tools, &loaded.volume);
+            loaded.lights[build.cache_index].product.clear_margin(gpu, &build.margin, encoder)?;
             self.begin_light(build);
         }
         let current = self.take_view(build, (view, color))?;
-        let CurrentView { sheets, schedule, scatter } = build.current.insert(current);
-        let BuildView { point, geometry, chunk } = &build.views[view];
+        let MarchState { sheets, schedule, scatter } = build.march_state.insert(current);
+        let LightFillView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let lamp = (&build.points[*point], &self.request.settings);
+        let loaded = &self.loaded.product;
+        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let light_and_settings = (&build.points[*point], &self.request.settings);
         if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
-            let table = &tables.met(color).buffer;
-            scatter.march(gpu, scattering, table, lamp, geometry, sheets, slabs, encoder)
+            let table = &tables.lighting_of_color(color).buffer;
+            scatter.march(gpu, scattering, table, light_and_settings, geometry, sheets, slabs, encoder)
         } else {
             let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
-            march(gpu, (tables, color), lamp, geometry, sheets, slabs, tiles, encoder)
+            march(gpu, (tables, color), light_and_settings, geometry, sheets, slabs, tiles, encoder)
         }
     }
 
-    /// Brings a chunk of a view's sheets back into the grid.
+    /// Back-projects a chunk of a view's sheets into the grid.
     pub(super) fn backproject_view(
         &mut self,
-        build: &mut LightBuild,
+        build: &mut LightFill,
         &LightStep { color, view, begin, part, .. }: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let current = self.take_view(build, (view, color))?;
         let shadows = &self.request.settings.shadows;
-        let BuildView { point, geometry, chunk } = &build.views[view];
+        let LightFillView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
         let ends_view = slabs.end == geometry.frame.slab_count && part.is_last();
-        let loaded = &self.loaded.value;
-        let gpu = Gpu::new(self.tools, &loaded.volume);
-        let whole = &loaded.lights[build.slot].value;
-        let light = build.filled(*point, color, whole);
-        let CurrentView { sheets, schedule, scatter } = &current;
+        let loaded = &self.loaded.product;
+        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let light_volume = &loaded.lights[build.cache_index].product;
+        let light = build.target_volume(*point, color, light_volume);
+        let MarchState { sheets, schedule, scatter } = &current;
         match scatter {
-            // The first sheet that touches a voxel needs no sums.
+            // With first touch a voxel takes one deposit, so neither sums nor weights are needed.
             Some(scatter) if !shadows.first_touch => {
                 scatter.splat_back(gpu, sheets, slabs, encoder)?;
                 if ends_view {
@@ -153,52 +153,61 @@ impl Job<'_> {
             }
             _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, part, encoder)?,
         }
-        if let Some(floor) = whole.floor.as_ref().filter(|_| ends_view) {
-            let of = ViewOfPoint {
+        if let Some(floor) = light_volume.floor.as_ref().filter(|_| ends_view) {
+            let point_view = PointView {
                 point: &build.points[*point],
                 geometry,
                 index: view,
                 count: build.views.len(),
                 points: build.points.len(),
             };
-            let cut = self.request.settings.cuts.shading().region(&gpu.volume.scene);
-            let marched = march_uniform(of.point, &cut, geometry, sheets, 0..geometry.frame.slab_count);
-            floor.add(gpu, of, (marched, sheets), encoder)?;
+            let cut = self.request.settings.cuts.shadowing_part().region(&gpu.volume.scene);
+            let marched =
+                march_uniform(point_view.point, &cut, geometry, sheets, 0..geometry.frame.slab_count);
+            floor.add_view(gpu, point_view, (marched, sheets), encoder)?;
         }
         if ends_view {
-            self.tools.pool.leave_ring(current.sheets.ring);
+            self.tools.pool.put_ring(current.sheets.ring);
         } else {
-            build.current = Some(current);
+            build.march_state = Some(current);
         }
         Ok(())
     }
 
-    /// Records the rays from some bricks.
+    /// Records the rays to a light from some bricks.
     pub(super) fn encode_raycast(
         &mut self,
         RaycastStep { build: at, color, point, bricks }: &RaycastStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let build = &self.builds[*at];
-        let loaded = &self.loaded.value;
-        let (gpu, tables) = (Gpu::new(self.tools, &loaded.volume), &loaded.tables.value);
-        let whole = &loaded.lights[build.slot].value;
+        let build = &self.light_fills[*at];
+        let loaded = &self.loaded.product;
+        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let whole = &loaded.lights[build.cache_index].product;
         let is_first = color.unwrap_or(0) == 0 && *point == 0 && bricks.start == 0;
         if is_first {
             whole.clear_margin(gpu, &build.margin, encoder)?;
         }
-        let lamp = (&build.points[*point], &self.request.settings);
-        let target = build.filled(*point, *color, whole);
-        raycast(gpu, (tables, *color), lamp, &self.options, target, &build.bricks[bricks.clone()], encoder)?;
+        let scene_light = (&build.points[*point], &self.request.settings);
+        let target = build.target_volume(*point, *color, whole);
+        raycast(
+            gpu,
+            (tables, *color),
+            scene_light,
+            &self.options,
+            target,
+            &build.bricks[bricks.clone()],
+            encoder,
+        )?;
         if is_first {
-            let builds = std::mem::take(&mut self.builds);
+            let builds = std::mem::take(&mut self.light_fills);
             self.begin_light(&builds[*at]);
-            self.builds = builds;
+            self.light_fills = builds;
         }
         Ok(())
     }
 
-    /// Records that the volumes of the last points of a light join those before.
+    /// Records the averaging of the latest batch of an area light's points.
     pub(super) fn encode_average(
         &self,
         at: usize,
@@ -206,24 +215,24 @@ impl Job<'_> {
         point: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let build = &self.builds[at];
+        let build = &self.light_fills[at];
         let Some(average) = &build.average else { return Ok(()) };
-        let loaded = &self.loaded.value;
-        let whole = &loaded.lights[build.slot].value;
-        let gpu = Gpu::new(self.tools, &loaded.volume);
-        average.add(gpu, build.of_color(color, whole), point, &build.bricks, encoder)
+        let loaded = &self.loaded.product;
+        let whole = &loaded.lights[build.cache_index].product;
+        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        average.add_batch(gpu, build.color_volume(color, whole), point, &build.bricks, encoder)
     }
 
-    /// Records that the volumes of a light's colours become one.
+    /// Records the merging of the volumes of red, green and blue light.
     pub(super) fn encode_colors(
         &self,
         at: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let build = &self.builds[at];
+        let build = &self.light_fills[at];
         let Some(colors) = &build.colors else { return Ok(()) };
-        let loaded = &self.loaded.value;
-        let gpu = Gpu::new(self.tools, &loaded.volume);
-        colors.join(gpu, &loaded.lights[build.slot].value, &build.bricks, encoder)
+        let loaded = &self.loaded.product;
+        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        colors.merge(gpu, &loaded.lights[build.cache_index].product, &build.bricks, encoder)
     }
 }

@@ -1,50 +1,55 @@
-//! What the shaders of the light pass bind.
+//! Bind-group layouts of the shaders for light volumes.
 
-use super::{EYE, LIGHTS, Layouts, PYRAMID, TABLE, VOLUME};
-use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
+use super::{EYE, LIGHTS, PYRAMID, ShaderLayouts, TABLE, VOLUME};
+use crate::gpu::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::gpu::pipelines::uniforms;
 
-/// Shaders in `shaders/light`.
-pub(super) const LAYOUTS: Layouts = &[
+/// Layouts of the shaders in `shaders/light`.
+pub(super) const LAYOUTS: ShaderLayouts = &[
     (
         "light/average.wgsl",
         &[&[
-            Slot::uniform::<uniforms::Average>(0, "bound_average"),
-            Slot::list(1, "bricks", 16, Access::Read),
-            Slot::loaded(2, "point_0", Shape::Volume),
-            Slot::loaded(3, "point_1", Shape::Volume),
-            Slot::loaded(4, "point_2", Shape::Volume),
-            Slot::loaded(5, "point_3", Shape::Volume),
-            Slot::loaded(6, "before", Shape::Volume),
-            Slot::target(7, "after", Shape::Volume, Format::Of(wgpu::TextureFormat::R32Float)),
-            Slot::target(8, "attenuation", Shape::Volume, Format::Target),
+            BindingSlot::uniform::<uniforms::AverageUniform>(0, "bound_average"),
+            BindingSlot::storage(1, "bricks", 16, BufferAccess::Read),
+            BindingSlot::loaded_texture(2, "point_0", TextureShape::D3),
+            BindingSlot::loaded_texture(3, "point_1", TextureShape::D3),
+            BindingSlot::loaded_texture(4, "point_2", TextureShape::D3),
+            BindingSlot::loaded_texture(5, "point_3", TextureShape::D3),
+            BindingSlot::loaded_texture(6, "before", TextureShape::D3),
+            BindingSlot::storage_texture(
+                7,
+                "after",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::R32Float),
+            ),
+            BindingSlot::storage_texture(8, "attenuation", TextureShape::D3, StorageFormat::Target),
         ]],
     ),
     (
         "light/backproject.wgsl",
         &[&[
-            Slot::uniform::<uniforms::Backprojection>(0, "bound_view"),
-            Slot::list(1, "bricks", 16, Access::Read),
-            Slot::sampled(2, "ring", Shape::Sheets),
-            Slot::sampler(3, "ring_sampler"),
-            Slot::target(4, "attenuation", Shape::Volume, Format::Target),
+            BindingSlot::uniform::<uniforms::BackprojectionUniform>(0, "bound_view"),
+            BindingSlot::storage(1, "bricks", 16, BufferAccess::Read),
+            BindingSlot::sampled_texture(2, "ring", TextureShape::D2Array),
+            BindingSlot::bind_sampler(3, "ring_sampler"),
+            BindingSlot::storage_texture(4, "attenuation", TextureShape::D3, StorageFormat::Target),
         ]],
     ),
     (
         "light/clear_margin.wgsl",
         &[&[
-            Slot::list(0, "bricks", 16, Access::Read),
-            Slot::target(1, "attenuation", Shape::Volume, Format::Target),
+            BindingSlot::storage(0, "bricks", 16, BufferAccess::Read),
+            BindingSlot::storage_texture(1, "attenuation", TextureShape::D3, StorageFormat::Target),
         ]],
     ),
     (
         "light/colors.wgsl",
         &[&[
-            Slot::list(0, "bricks", 16, Access::Read),
-            Slot::loaded(1, "red", Shape::Volume),
-            Slot::loaded(2, "green", Shape::Volume),
-            Slot::loaded(3, "blue", Shape::Volume),
-            Slot::target(4, "attenuation", Shape::Volume, Format::Target),
+            BindingSlot::storage(0, "bricks", 16, BufferAccess::Read),
+            BindingSlot::loaded_texture(1, "red", TextureShape::D3),
+            BindingSlot::loaded_texture(2, "green", TextureShape::D3),
+            BindingSlot::loaded_texture(3, "blue", TextureShape::D3),
+            BindingSlot::storage_texture(4, "attenuation", TextureShape::D3, StorageFormat::Target),
         ]],
     ),
     (
@@ -53,9 +58,14 @@ pub(super) const LAYOUTS: Layouts = &[
             &[
                 EYE,
                 TABLE,
-                Slot::uniform::<uniforms::Combine>(2, "bound_combine"),
-                Slot::list(3, "bricks", 16, Access::Read),
-                Slot::target(4, "combined", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+                BindingSlot::uniform::<uniforms::CombineUniform>(2, "bound_combine"),
+                BindingSlot::storage(3, "bricks", 16, BufferAccess::Read),
+                BindingSlot::storage_texture(
+                    4,
+                    "combined",
+                    TextureShape::D3,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+                ),
             ],
             PYRAMID,
             LIGHTS,
@@ -64,23 +74,23 @@ pub(super) const LAYOUTS: Layouts = &[
     (
         "light/floor_shadow.wgsl",
         &[&[
-            Slot::uniform::<uniforms::March>(0, "bound_march"),
-            Slot::uniform::<uniforms::FloorShadow>(1, "bound_floor_map"),
-            Slot::list(2, "sums", 4, Access::ReadWrite),
-            Slot::list(3, "transmittance", 4, Access::ReadWrite),
-            Slot::target(5, "shadow", Shape::Volume, Format::Storage),
+            BindingSlot::uniform::<uniforms::MarchUniform>(0, "bound_march"),
+            BindingSlot::uniform::<uniforms::FloorShadowUniform>(1, "bound_floor_map"),
+            BindingSlot::storage(2, "sums", 4, BufferAccess::ReadWrite),
+            BindingSlot::storage(3, "transmittance", 4, BufferAccess::ReadWrite),
+            BindingSlot::storage_texture(5, "shadow", TextureShape::D3, StorageFormat::Storage),
         ]],
     ),
     (
         "light/march.wgsl",
         &[
             &[
-                Slot::uniform::<uniforms::March>(0, "bound_march"),
+                BindingSlot::uniform::<uniforms::MarchUniform>(0, "bound_march"),
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::list(3, "transmittance", 4, Access::ReadWrite),
-                Slot::target(4, "ring", Shape::Sheets, Format::Ring),
-                Slot::list(5, "tiles", 4, Access::Read),
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::storage(3, "transmittance", 4, BufferAccess::ReadWrite),
+                BindingSlot::storage_texture(4, "ring", TextureShape::D2Array, StorageFormat::Ring),
+                BindingSlot::storage(5, "tiles", 4, BufferAccess::Read),
             ],
             VOLUME,
         ],
@@ -89,11 +99,11 @@ pub(super) const LAYOUTS: Layouts = &[
         "light/raycast.wgsl",
         &[
             &[
-                Slot::uniform::<uniforms::Raycast>(0, "bound_raycast"),
+                BindingSlot::uniform::<uniforms::RaycastUniform>(0, "bound_raycast"),
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::list(3, "bricks", 16, Access::Read),
-                Slot::target(4, "attenuation", Shape::Volume, Format::Target),
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::storage(3, "bricks", 16, BufferAccess::Read),
+                BindingSlot::storage_texture(4, "attenuation", TextureShape::D3, StorageFormat::Target),
             ],
             VOLUME,
         ],

@@ -1,44 +1,46 @@
-//! What every shader binds, by the names that it gives its bindings: group by group, with their numbers, kinds and
-//! sizes. Compared with the shaders themselves by a test (`tests/shaders/bindings.rs`).
+//! Bind-group layouts of all compute shaders, by the names of the bindings in WGSL: numbers, kinds and sizes, group
+//! by group. A test compares them with the shaders (`tests/shaders/bindings.rs`).
 
-mod bounces;
 mod light;
+mod scattered_light;
 mod sky;
 
-use super::binding::{Access, Format, Shape, Slot};
+use super::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use super::uniforms;
 
-/// A lookup table: [`crate::model::LUT_SIZE`] times seventeen floats, of which four are an entry, one its side, eleven
-/// the largest extinctions of runs, and one the integral of extinction up to it.
+/// Size of a lookup table in bytes: [`crate::model::LUT_SIZE`] times seventeen floats.
+///
+/// Four are the entry, one its side, eleven the maximum extinctions of runs, and one the integral of extinction up to
+/// it.
 const TABLE_BYTES: u64 = crate::model::LUT_SIZE as u64 * 17 * 4;
 
-/// Pairs of floats in a table of footprints, as `scatter/footprint.wgsl` declares it.
+/// Size of a footprint table in bytes: 512 pairs of floats, as `scatter/footprint.wgsl` declares it.
 const FOOTPRINT_TABLE_BYTES: u64 = 512 * 8;
 
-const GRID: Slot = Slot::uniform::<uniforms::Grid>(0, "bound_grid");
-const PYRAMID_TEXTURE: Slot = Slot::sampled(2, "pyramid_texture", Shape::Volume);
-const CLAMPED: Slot = Slot::sampler(3, "clamped");
-const NEAREST: Slot = Slot::sampler(4, "nearest");
-const PRESENCE_TEXTURE: Slot = Slot::sampled(9, "presence_texture", Shape::Volume);
+const GRID: BindingSlot = BindingSlot::uniform::<uniforms::GridUniform>(0, "bound_grid");
+const PYRAMID_TEXTURE: BindingSlot = BindingSlot::sampled_texture(2, "pyramid_texture", TextureShape::D3);
+const CLAMPED: BindingSlot = BindingSlot::bind_sampler(3, "clamped");
+const NEAREST: BindingSlot = BindingSlot::bind_sampler(4, "nearest");
+const PRESENCE_TEXTURE: BindingSlot = BindingSlot::sampled_texture(9, "presence_texture", TextureShape::D3);
 
-const LIGHTING_PYRAMID: Slot = Slot::sampled(10, "lighting_pyramid", Shape::Volume);
+const LIGHTING_PYRAMID: BindingSlot = BindingSlot::sampled_texture(10, "lighting_pyramid", TextureShape::D3);
 
-/// Density, with a pyramid for kernels that perspective stretches.
-const VOLUME: &[Slot] = &[
+/// Density texture, with the pyramid for kernels that perspective stretches.
+const VOLUME: &[BindingSlot] = &[
     GRID,
-    Slot::sampled(1, "density_texture", Shape::Volume),
+    BindingSlot::sampled_texture(1, "density_texture", TextureShape::D3),
     PYRAMID_TEXTURE,
     CLAMPED,
     NEAREST,
     PRESENCE_TEXTURE,
 ];
 
-/// The same, with what rays nearby see of it.
-const VOLUME_AND_LIGHTING: &[Slot] =
+/// Density and pyramid as in [`VOLUME`], with the pyramid that near-field rays read.
+const VOLUME_AND_LIGHTING: &[BindingSlot] =
     &[VOLUME[0], VOLUME[1], VOLUME[2], VOLUME[3], VOLUME[4], VOLUME[5], LIGHTING_PYRAMID];
 
-/// The pyramid alone.
-const PYRAMID: &[Slot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
+/// Pyramid without the density texture.
+const PYRAMID: &[BindingSlot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
 
 /// Names of the light volumes, in the order of their lights.
 pub(crate) const ATTENUATION: [&str; 8] = [
@@ -52,20 +54,20 @@ pub(crate) const ATTENUATION: [&str; 8] = [
     "attenuation_7",
 ];
 
-/// The light volumes.
-const LIGHTS: &[Slot] = &[
-    Slot::sampled(0, ATTENUATION[0], Shape::Volume),
-    Slot::sampled(1, ATTENUATION[1], Shape::Volume),
-    Slot::sampled(2, ATTENUATION[2], Shape::Volume),
-    Slot::sampled(3, ATTENUATION[3], Shape::Volume),
-    Slot::sampled(4, ATTENUATION[4], Shape::Volume),
-    Slot::sampled(5, ATTENUATION[5], Shape::Volume),
-    Slot::sampled(6, ATTENUATION[6], Shape::Volume),
-    Slot::sampled(7, ATTENUATION[7], Shape::Volume),
+/// Attenuation volumes of up to eight lights.
+const LIGHTS: &[BindingSlot] = &[
+    BindingSlot::sampled_texture(0, ATTENUATION[0], TextureShape::D3),
+    BindingSlot::sampled_texture(1, ATTENUATION[1], TextureShape::D3),
+    BindingSlot::sampled_texture(2, ATTENUATION[2], TextureShape::D3),
+    BindingSlot::sampled_texture(3, ATTENUATION[3], TextureShape::D3),
+    BindingSlot::sampled_texture(4, ATTENUATION[4], TextureShape::D3),
+    BindingSlot::sampled_texture(5, ATTENUATION[5], TextureShape::D3),
+    BindingSlot::sampled_texture(6, ATTENUATION[6], TextureShape::D3),
+    BindingSlot::sampled_texture(7, ATTENUATION[7], TextureShape::D3),
 ];
 
-/// The same, and the volumes of what is open of the sky and of bounced light.
-const LIGHTS_AND_AROUND: &[Slot] = &[
+/// Attenuation volumes as in [`LIGHTS`], with the volumes of sky visibility and scattered light.
+const LIGHTS_AND_AMBIENT: &[BindingSlot] = &[
     LIGHTS[0],
     LIGHTS[1],
     LIGHTS[2],
@@ -74,65 +76,72 @@ const LIGHTS_AND_AROUND: &[Slot] = &[
     LIGHTS[5],
     LIGHTS[6],
     LIGHTS[7],
-    Slot::sampled(8, "sky_texture", Shape::Volume),
-    Slot::sampled(9, "bounced_texture", Shape::Volume),
+    BindingSlot::sampled_texture(8, "sky_texture", TextureShape::D3),
+    BindingSlot::sampled_texture(9, "bounced_texture", TextureShape::D3),
 ];
 
-/// A level of the pyramid in the making.
-const RESAMPLE: &[Slot] = &[
-    Slot::sampled(0, "source", Shape::Volume),
-    Slot::sampler(1, "clamped"),
-    Slot::target(2, "level", Shape::Volume, Format::Storage),
-    Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-    Slot::list(5, "bricks", 4, Access::Read),
+/// Bindings of the passes that resample a pyramid level.
+const RESAMPLE: &[BindingSlot] = &[
+    BindingSlot::sampled_texture(0, "source", TextureShape::D3),
+    BindingSlot::bind_sampler(1, "clamped"),
+    BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Storage),
+    BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+    BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
 ];
 
-/// A table, and what the eye and its lights are.
-const EYE: Slot = Slot::uniform::<uniforms::Eye>(0, "bound_eye");
-const TABLE: Slot = Slot::list(1, "table", TABLE_BYTES, Access::Read);
-const LIGHTING_TABLE: Slot = Slot::list(4, "lighting_table", TABLE_BYTES, Access::Read);
-const GRADIENTS: Slot = Slot::sampled(6, "gradients", Shape::Volume);
-const SCATTER: Slot = Slot::uniform::<uniforms::Scatter>(5, "bound_scatter");
-const SHEETS: Slot = Slot::list(6, "sheets", 4, Access::ReadWrite);
-const FOOTPRINT_TABLE: Slot = Slot::list(7, "footprint_table", FOOTPRINT_TABLE_BYTES, Access::Read);
-const RAYS: Slot = Slot::list(8, "rays", 16, Access::ReadWrite);
+/// Uniform of the eye and its lights.
+const EYE: BindingSlot = BindingSlot::uniform::<uniforms::EyeUniform>(0, "bound_eye");
+const TABLE: BindingSlot = BindingSlot::storage(1, "table", TABLE_BYTES, BufferAccess::Read);
+const LIGHTING_TABLE: BindingSlot =
+    BindingSlot::storage(4, "lighting_table", TABLE_BYTES, BufferAccess::Read);
+const GRADIENTS: BindingSlot = BindingSlot::sampled_texture(6, "gradients", TextureShape::D3);
+const SCATTER: BindingSlot = BindingSlot::uniform::<uniforms::ScatterSlabUniform>(5, "bound_scatter");
+const SHEETS: BindingSlot = BindingSlot::storage(6, "sheets", 4, BufferAccess::ReadWrite);
+const FOOTPRINT_TABLE: BindingSlot =
+    BindingSlot::storage(7, "footprint_table", FOOTPRINT_TABLE_BYTES, BufferAccess::Read);
+const RAYS: BindingSlot = BindingSlot::storage(8, "rays", 16, BufferAccess::ReadWrite);
 
-/// What display passes read; `shown` is what they write.
-const fn display(shown: Format) -> [Slot; 4] {
+/// Bindings of the display passes, which write `shown` with this format.
+const fn display_slots(shown: StorageFormat) -> [BindingSlot; 4] {
     [
-        Slot::uniform::<uniforms::Display>(0, "bound_display"),
-        Slot::loaded(1, "picture", Shape::Picture),
-        Slot::target(2, "shown", Shape::Picture, shown),
-        Slot::loaded(3, "floor_light", Shape::Picture),
+        BindingSlot::uniform::<uniforms::DisplayUniform>(0, "bound_display"),
+        BindingSlot::loaded_texture(1, "picture", TextureShape::D2),
+        BindingSlot::storage_texture(2, "shown", TextureShape::D2, shown),
+        BindingSlot::loaded_texture(3, "floor_light", TextureShape::D2),
     ]
 }
 
-const DISPLAY: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba8Unorm));
-const DISPLAY_DEEP: &[Slot] = &display(Format::Of(wgpu::TextureFormat::Rgba32Float));
+const DISPLAY: &[BindingSlot] = &display_slots(StorageFormat::Fixed(wgpu::TextureFormat::Rgba8Unorm));
+const DISPLAY_DEEP: &[BindingSlot] = &display_slots(StorageFormat::Fixed(wgpu::TextureFormat::Rgba32Float));
 
-/// The groups of a shader.
-pub(crate) type Groups = &'static [&'static [Slot]];
+/// Bind groups of a shader.
+pub(crate) type GroupLayouts = &'static [&'static [BindingSlot]];
 
-/// Shaders, and what each binds.
-pub(crate) type Layouts = &'static [(&'static str, Groups)];
+/// Shaders with the bind groups of each.
+pub(crate) type ShaderLayouts = &'static [(&'static str, GroupLayouts)];
 
-/// Every compute shader, and what it binds.
-pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, Groups)> {
-    [OTHERS, bounces::LAYOUTS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
+/// Returns every compute shader with its bind groups.
+pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, GroupLayouts)> {
+    [COMMON_LAYOUTS, scattered_light::LAYOUTS, light::LAYOUTS, sky::LAYOUTS].into_iter().flatten()
 }
 
-/// All but those of light, sky and bounces.
-const OTHERS: Layouts = &[
+/// Layouts of all shaders but those of light, sky and scattered light.
+const COMMON_LAYOUTS: ShaderLayouts = &[
     (
         "eye/floor.wgsl",
         &[
             &[
-                Slot::uniform::<uniforms::Floor>(0, "bound_floor_disc"),
+                BindingSlot::uniform::<uniforms::FloorUniform>(0, "bound_floor_disc"),
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::loaded(3, "picture", Shape::Picture),
-                Slot::target(4, "floor_light", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-                Slot::sampled(5, "sky_map", Shape::Volume),
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::loaded_texture(3, "picture", TextureShape::D2),
+                BindingSlot::storage_texture(
+                    4,
+                    "floor_light",
+                    TextureShape::D2,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+                ),
+                BindingSlot::sampled_texture(5, "sky_map", TextureShape::D3),
             ],
             VOLUME,
             LIGHTS,
@@ -144,14 +153,19 @@ const OTHERS: Layouts = &[
             &[
                 EYE,
                 TABLE,
-                Slot::sampled(2, "distances", Shape::Volume),
-                Slot::target(3, "picture", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba32Float)),
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::storage_texture(
+                    3,
+                    "picture",
+                    TextureShape::D2,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba32Float),
+                ),
                 LIGHTING_TABLE,
-                Slot::sampled(5, "light_distances", Shape::Volume),
+                BindingSlot::sampled_texture(5, "light_distances", TextureShape::D3),
                 GRADIENTS,
             ],
             VOLUME_AND_LIGHTING,
-            LIGHTS_AND_AROUND,
+            LIGHTS_AND_AMBIENT,
         ],
     ),
     ("output/display.wgsl", &[DISPLAY]),
@@ -159,9 +173,15 @@ const OTHERS: Layouts = &[
     (
         "scatter/eye.wgsl",
         &[
-            &[EYE, TABLE, Slot::integers(2, "distances", Shape::Volume), LIGHTING_TABLE, GRADIENTS],
+            &[
+                EYE,
+                TABLE,
+                BindingSlot::uint_texture(2, "distances", TextureShape::D3),
+                LIGHTING_TABLE,
+                GRADIENTS,
+            ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE, LIGHTING_PYRAMID],
-            LIGHTS_AND_AROUND,
+            LIGHTS_AND_AMBIENT,
         ],
     ),
     (
@@ -170,26 +190,26 @@ const OTHERS: Layouts = &[
             &[
                 EYE,
                 TABLE,
-                Slot::list(3, "first_words", 4, Access::Read),
-                Slot::list(4, "bricks", 8, Access::Read),
-                Slot::list(5, "splats", 4, Access::ReadWrite),
-                Slot::list(6, "voxels", 4, Access::Read),
+                BindingSlot::storage(3, "first_words", 4, BufferAccess::Read),
+                BindingSlot::storage(4, "bricks", 8, BufferAccess::Read),
+                BindingSlot::storage(5, "splats", 4, BufferAccess::ReadWrite),
+                BindingSlot::storage(6, "voxels", 4, BufferAccess::Read),
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
-            LIGHTS_AND_AROUND,
-            &[Slot::uniform::<uniforms::Phase>(0, "bound_phase")],
+            LIGHTS_AND_AMBIENT,
+            &[BindingSlot::uniform::<uniforms::FootprintPhaseUniform>(0, "bound_phase")],
         ],
     ),
     (
         "scatter/light.wgsl",
         &[
             &[
-                Slot::uniform::<uniforms::March>(0, "bound_march"),
+                BindingSlot::uniform::<uniforms::MarchUniform>(0, "bound_march"),
                 TABLE,
-                Slot::integers(2, "distances", Shape::Volume),
-                Slot::list(3, "transmittance", 4, Access::ReadWrite),
-                Slot::target(4, "ring", Shape::Sheets, Format::Ring),
-                Slot::list(5, "deposits", 16, Access::ReadWrite),
+                BindingSlot::uint_texture(2, "distances", TextureShape::D3),
+                BindingSlot::storage(3, "transmittance", 4, BufferAccess::ReadWrite),
+                BindingSlot::storage_texture(4, "ring", TextureShape::D2Array, StorageFormat::Ring),
+                BindingSlot::storage(5, "deposits", 16, BufferAccess::ReadWrite),
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
         ],
@@ -198,10 +218,10 @@ const OTHERS: Layouts = &[
         "scatter/normalise.wgsl",
         &[
             &[
-                Slot::list(0, "bricks", 16, Access::Read),
-                Slot::list(1, "light", 4, Access::Read),
-                Slot::list(2, "weights", 4, Access::Read),
-                Slot::target(3, "attenuation", Shape::Volume, Format::Target),
+                BindingSlot::storage(0, "bricks", 16, BufferAccess::Read),
+                BindingSlot::storage(1, "light", 4, BufferAccess::Read),
+                BindingSlot::storage(2, "weights", 4, BufferAccess::Read),
+                BindingSlot::storage_texture(3, "attenuation", TextureShape::D3, StorageFormat::Target),
             ],
             &[SCATTER],
         ],
@@ -210,8 +230,13 @@ const OTHERS: Layouts = &[
         "scatter/resolve.wgsl",
         &[
             &[
-                Slot::list(0, "rays", 16, Access::Read),
-                Slot::target(1, "picture", Shape::Picture, Format::Of(wgpu::TextureFormat::Rgba32Float)),
+                BindingSlot::storage(0, "rays", 16, BufferAccess::Read),
+                BindingSlot::storage_texture(
+                    1,
+                    "picture",
+                    TextureShape::D2,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba32Float),
+                ),
             ],
             &[SCATTER],
         ],
@@ -220,10 +245,10 @@ const OTHERS: Layouts = &[
         "scatter/reverse.wgsl",
         &[
             &[
-                Slot::integers(0, "distances", Shape::Volume),
-                Slot::loaded(1, "ring", Shape::Sheets),
-                Slot::list(2, "light", 4, Access::ReadWrite),
-                Slot::list(3, "weights", 4, Access::ReadWrite),
+                BindingSlot::uint_texture(0, "distances", TextureShape::D3),
+                BindingSlot::loaded_texture(1, "ring", TextureShape::D2Array),
+                BindingSlot::storage(2, "light", 4, BufferAccess::ReadWrite),
+                BindingSlot::storage(3, "weights", 4, BufferAccess::ReadWrite),
             ],
             &[SCATTER, FOOTPRINT_TABLE],
         ],
@@ -232,10 +257,10 @@ const OTHERS: Layouts = &[
         "scatter/splat.wgsl",
         &[
             &[
-                Slot::list(0, "bricks", 8, Access::Read),
+                BindingSlot::storage(0, "bricks", 8, BufferAccess::Read),
                 TABLE,
-                Slot::list(2, "splats", 4, Access::ReadWrite),
-                Slot::list(6, "voxels", 4, Access::Read),
+                BindingSlot::storage(2, "splats", 4, BufferAccess::ReadWrite),
+                BindingSlot::storage(6, "voxels", 4, BufferAccess::Read),
             ],
             &[SCATTER, SHEETS, FOOTPRINT_TABLE],
         ],
@@ -244,66 +269,82 @@ const OTHERS: Layouts = &[
     (
         "volume/downsample_materials.wgsl",
         &[&[
-            Slot::sampled(0, "source", Shape::Volume),
-            Slot::sampler(1, "clamped"),
-            Slot::target(2, "level", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-            Slot::list(5, "bricks", 4, Access::Read),
+            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
+            BindingSlot::bind_sampler(1, "clamped"),
+            BindingSlot::storage_texture(
+                2,
+                "level",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
+            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
     (
         "volume/downsample_present.wgsl",
         &[&[
-            Slot::sampled(0, "source", Shape::Volume),
-            Slot::sampler(1, "clamped"),
-            Slot::target(2, "level", Shape::Volume, Format::Pair),
-            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-            Slot::list(5, "bricks", 4, Access::Read),
+            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
+            BindingSlot::bind_sampler(1, "clamped"),
+            BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Pair),
+            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
     (
         "volume/gradients.wgsl",
         &[&[
-            Slot::loaded(0, "source", Shape::Volume),
-            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-            Slot::target(4, "gradients", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-            Slot::list(5, "bricks", 4, Access::Read),
+            BindingSlot::loaded_texture(0, "source", TextureShape::D3),
+            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            BindingSlot::storage_texture(
+                4,
+                "gradients",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
+            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
     (
         "volume/materials.wgsl",
         &[&[
-            Slot::loaded(0, "source", Shape::Volume),
+            BindingSlot::loaded_texture(0, "source", TextureShape::D3),
             TABLE,
-            Slot::target(2, "level", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-            Slot::loaded(4, "presence_level", Shape::Volume),
-            Slot::list(5, "bricks", 4, Access::Read),
+            BindingSlot::storage_texture(
+                2,
+                "level",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
+            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            BindingSlot::loaded_texture(4, "presence_level", TextureShape::D3),
+            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
     ("volume/prefilter.wgsl", &[RESAMPLE]),
     (
         "volume/prefilter_present.wgsl",
         &[&[
-            Slot::sampled(0, "source", Shape::Volume),
-            Slot::sampler(1, "clamped"),
-            Slot::target(2, "level", Shape::Volume, Format::Pair),
-            Slot::uniform::<uniforms::Resample>(3, "bound_resample"),
-            Slot::loaded(4, "presence_level", Shape::Volume),
-            Slot::list(5, "bricks", 4, Access::Read),
+            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
+            BindingSlot::bind_sampler(1, "clamped"),
+            BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Pair),
+            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            BindingSlot::loaded_texture(4, "presence_level", TextureShape::D3),
+            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
 ];
 
 #[cfg(feature = "testing")]
-/// What a compute shader binds: its name, and for each group the name and the entry of each binding.
+/// Bindings of a compute shader: its name, and for each group the name and the layout entry of each binding.
 pub type ShaderBindings = (&'static str, Vec<Vec<(&'static str, wgpu::BindGroupLayoutEntry)>>);
 
-/// The bindings of every compute shader, where single channels are stored in `storage`, for targets of
-/// `target`: for whoever compares them with the shaders.
+/// Returns the bindings of every compute shader. `storage` is the single-channel storage format, `target` the format
+/// of target textures. A test compares them with the shaders.
 #[cfg(feature = "testing")]
 pub fn shader_bindings(storage: wgpu::TextureFormat, target: wgpu::TextureFormat) -> Vec<ShaderBindings> {
-    let group =
-        |slots: &&'static [Slot]| slots.iter().map(|slot| (slot.name, slot.entry(storage, target))).collect();
+    let group = |slots: &&'static [BindingSlot]| {
+        slots.iter().map(|slot| (slot.name, slot.entry(storage, target))).collect()
+    };
     layouts().map(|(shader, groups)| (*shader, groups.iter().map(group).collect())).collect()
 }

@@ -1,30 +1,30 @@
-//! What the shaders of a sky bind.
+//! Bind-group layouts of the shaders for sky visibility.
 
-use super::{CLAMPED, GRID, Layouts, PYRAMID_TEXTURE, TABLE};
-use crate::gpu::pipelines::binding::{Access, Format, Shape, Slot};
+use super::{CLAMPED, GRID, PYRAMID_TEXTURE, ShaderLayouts, TABLE};
+use crate::gpu::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::gpu::pipelines::uniforms;
 
-/// Rays through blocks.
-pub(super) const SWEEP: Slot = Slot::uniform::<uniforms::Sweep>(0, "bound_sweep");
+/// Uniform of a batch of rays through blocks.
+pub(super) const SWEEP: BindingSlot = BindingSlot::uniform::<uniforms::SweepUniform>(0, "bound_sweep");
 
-/// Where they are followed.
-pub(super) const TILES: Slot = Slot::list(4, "tiles", 4, Access::Read);
+/// List of the tiles in which rays are followed.
+pub(super) const TILES: BindingSlot = BindingSlot::storage(4, "tiles", 4, BufferAccess::Read);
 
-/// Blocks in which something is met.
-pub(super) const CELLS: Slot = Slot::list(2, "cells", 4, Access::Read);
+/// List of the cells of blocks in which something may attenuate light.
+pub(super) const CELLS: BindingSlot = BindingSlot::storage(2, "cells", 4, BufferAccess::Read);
 
-const FLOOR_PLACE: Slot = Slot::uniform::<uniforms::FloorMap>(5, "bound_map");
+const FLOOR_PLACE: BindingSlot = BindingSlot::uniform::<uniforms::FloorSkyMapUniform>(5, "bound_map");
 
-/// Shaders in `shaders/sky`.
-pub(super) const LAYOUTS: Layouts = &[
+/// Layouts of the shaders in `shaders/sky`.
+pub(super) const LAYOUTS: ShaderLayouts = &[
     (
         "sky/blocks.wgsl",
         &[
             &[
-                Slot::uniform::<uniforms::Blocks>(0, "bound_blocks"),
+                BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
                 TABLE,
                 CELLS,
-                Slot::target(3, "extinction", Shape::Volume, Format::Storage),
+                BindingSlot::storage_texture(3, "extinction", TextureShape::D3, StorageFormat::Storage),
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED],
         ],
@@ -32,18 +32,28 @@ pub(super) const LAYOUTS: Layouts = &[
     (
         "sky/clear_margin.wgsl",
         &[&[
-            Slot::list(0, "cells", 4, Access::Read),
-            Slot::target(1, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            BindingSlot::storage(0, "cells", 4, BufferAccess::Read),
+            BindingSlot::storage_texture(
+                1,
+                "moments",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
         ]],
     ),
     (
         "sky/floor_map.wgsl",
         &[&[
             SWEEP,
-            Slot::sampled(1, "left", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::list(3, "sums", 16, Access::ReadWrite),
-            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
+            BindingSlot::sampled_texture(1, "left", TextureShape::D3),
+            BindingSlot::bind_sampler(2, "clamped"),
+            BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite),
+            BindingSlot::storage_texture(
+                4,
+                "moments",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
             FLOOR_PLACE,
         ]],
     ),
@@ -51,9 +61,9 @@ pub(super) const LAYOUTS: Layouts = &[
         "sky/floor_sweep.wgsl",
         &[&[
             SWEEP,
-            Slot::sampled(1, "extinction", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::target(3, "left", Shape::Volume, Format::Storage),
+            BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
+            BindingSlot::bind_sampler(2, "clamped"),
+            BindingSlot::storage_texture(3, "left", TextureShape::D3, StorageFormat::Storage),
             TILES,
             FLOOR_PLACE,
         ]],
@@ -62,20 +72,25 @@ pub(super) const LAYOUTS: Layouts = &[
         "sky/moments.wgsl",
         &[&[
             SWEEP,
-            Slot::sampled(1, "sheets", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::list(3, "sums", 16, Access::ReadWrite),
-            Slot::target(4, "moments", Shape::Volume, Format::Of(wgpu::TextureFormat::Rgba16Float)),
-            Slot::list(5, "cells", 4, Access::Read),
+            BindingSlot::sampled_texture(1, "sheets", TextureShape::D3),
+            BindingSlot::bind_sampler(2, "clamped"),
+            BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite),
+            BindingSlot::storage_texture(
+                4,
+                "moments",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
+            BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
         ]],
     ),
     (
         "sky/sweep.wgsl",
         &[&[
             SWEEP,
-            Slot::sampled(1, "extinction", Shape::Volume),
-            Slot::sampler(2, "clamped"),
-            Slot::target(3, "sheets", Shape::Volume, Format::Storage),
+            BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
+            BindingSlot::bind_sampler(2, "clamped"),
+            BindingSlot::storage_texture(3, "sheets", TextureShape::D3, StorageFormat::Storage),
             TILES,
         ]],
     ),

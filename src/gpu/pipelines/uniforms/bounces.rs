@@ -1,36 +1,36 @@
-//! What shaders of scattered light mirror.
+//! Uniforms of the shaders for scattered light.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Light, Space};
+use super::{LightUniform, SpaceUniform};
 
-/// `shading/bounces.wgsl`.
+/// Look-up of scattered light, as declared in `shading/bounces.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Bounces {
+pub struct ScatteredLightUniform {
     pub lookup: [f32; 3],
-    pub ahead: f32,
+    pub lookup_distance: f32,
     pub share: f32,
     pub pad0: f32,
     pub pad1: f32,
     pub pad2: f32,
 }
 
-/// `bounces/bounce.wgsl`.
+/// Parameters of passes over blocks of scattered light, as declared in `bounces/bounce.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Bounce {
+pub struct BounceUniform {
     pub dims: [u32; 3],
     pub share: f32,
     pub color: [f32; 3],
-    pub least: f32,
+    pub min_extinction: f32,
 }
 
-/// `bounces/first.wgsl`.
+/// Scene of the single-scattering pass, as declared in `bounces/first.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct First {
-    pub space: Space,
+pub struct SingleScatteringUniform {
+    pub space: SpaceUniform,
     pub block_scale: [f32; 3],
     pub voxel_step: f32,
     pub count: u32,
@@ -41,5 +41,5 @@ pub struct First {
     pub end: u32,
     pub pad0: f32,
     pub has_sky: f32,
-    pub lights: [Light; crate::model::MAX_LIGHTS],
+    pub lights: [LightUniform; crate::model::MAX_LIGHTS],
 }

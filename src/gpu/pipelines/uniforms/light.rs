@@ -1,22 +1,22 @@
-//! What shaders of lights mirror.
+//! Uniforms of the shaders for lights and light volumes.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Cut, Space};
+use super::{CutUniform, SpaceUniform};
 
-/// `shading/lights.wgsl`.
+/// Light source, as declared in `shading/lights.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Light {
-    pub place: [f32; 3],
+pub struct LightUniform {
+    pub position_or_direction: [f32; 3],
     pub perspective: f32,
     pub color: [f32; 3],
     pub extinction_scale: f32,
     pub lookup: [f32; 3],
-    pub hood_inner: f32,
-    pub hood_axis: [f32; 3],
-    pub hood_outer: f32,
-    pub near_ahead: f32,
+    pub cone_cos_inner: f32,
+    pub cone_axis: [f32; 3],
+    pub cone_cos_outer: f32,
+    pub last_step_extension: f32,
     pub points: u32,
     pub shape: u32,
     pub near_steps: u32,
@@ -28,10 +28,10 @@ pub struct Light {
     pub pad1: f32,
 }
 
-/// `shading/lights.wgsl`.
+/// Shading and shadow parameters, as declared in `shading/lights.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Shading {
+pub struct ShadingUniform {
     pub emission: f32,
     pub ambient: f32,
     pub diffuse: f32,
@@ -43,32 +43,32 @@ pub struct Shading {
     pub gain: f32,
     pub bias: f32,
     pub ray_step: f32,
-    pub dark_depth: f32,
+    pub max_optical_depth: f32,
     pub anisotropy: f32,
     pub pad0: f32,
     pub pad1: f32,
     pub pad2: f32,
 }
 
-/// `light/raycast.wgsl`.
+/// Parameters of casting rays from light voxels, as declared in `light/raycast.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Raycast {
-    pub light: Light,
-    pub space: Space,
+pub struct RaycastUniform {
+    pub light: LightUniform,
+    pub space: SpaceUniform,
     pub dims: [u32; 3],
     pub bricks: u32,
     pub voxel_step: f32,
     pub ray_step: f32,
-    pub dark: f32,
+    pub max_optical_depth: f32,
     pub pad0: u32,
-    pub shading_cut: Cut,
+    pub shading_cut: CutUniform,
 }
 
-/// `light/average.wgsl`.
+/// Parameters of averaging an area light's points, as declared in `light/average.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Average {
+pub struct AverageUniform {
     pub dims: [u32; 3],
     pub bricks: u32,
     pub share: f32,
@@ -77,10 +77,10 @@ pub struct Average {
     pub pad2: u32,
 }
 
-/// `light/floor_shadow.wgsl`.
+/// Parameters of a floor shadow map, as declared in `light/floor_shadow.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct FloorShadow {
+pub struct FloorShadowUniform {
     pub origin: [f32; 3],
     pub size: u32,
     pub along_x: [f32; 3],

@@ -1,5 +1,5 @@
-//! Every struct that a shader mirrors, field by field. `tests/shaders/structs.rs` compares names, offsets
-//! and sizes with what the shaders declare.
+//! Uniform structs, mirrored field by field in WGSL. `tests/shaders/structs.rs` compares names, offsets and sizes
+//! with the declarations in the shaders.
 
 #![cfg_attr(
     feature = "testing",
@@ -10,14 +10,16 @@ mod bounces;
 mod light;
 mod sky;
 
-pub use self::bounces::{Bounce, Bounces, First};
-pub use self::light::{Average, FloorShadow, Light, Raycast, Shading};
-pub use self::sky::{Blocks, FloorMap, MAX_SKY_RAYS, Sky, SkyRays, Sweep};
+pub use self::bounces::{BounceUniform, ScatteredLightUniform, SingleScatteringUniform};
+pub use self::light::{AverageUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform};
+pub use self::sky::{
+    BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyUniform, SweepRaysUniform, SweepUniform,
+};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::math::{Region, SceneSpace};
+use crate::math::{ClipRegion, SceneSpace};
 use crate::plan::SheetFrame as Frame;
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -28,7 +30,7 @@ fn vec2(v: DVec2) -> [f32; 2] {
     v.as_vec2().into()
 }
 
-/// The three rows of an affine map, the translation in w.
+/// Returns the three rows of an affine map, with the translation in w.
 pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
     let transposed = map.matrix3.transpose();
     let row = |linear: DVec3, offset: f64| [linear.x as f32, linear.y as f32, linear.z as f32, offset as f32];
@@ -39,10 +41,10 @@ pub(crate) fn rows(map: &DAffine3) -> [[f32; 4]; 3] {
     ]
 }
 
-/// `sheets/sheet_frame.wgsl`.
+/// Rays and slabs of a stack of sheets, as declared in `sheets/sheet_frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct SheetFrame {
+pub struct SheetFrameUniform {
     pub origin: [f32; 3],
     pub first_depth: f32,
     pub origin_di: [f32; 3],
@@ -61,7 +63,7 @@ pub struct SheetFrame {
     pub size: [u32; 2],
 }
 
-impl SheetFrame {
+impl SheetFrameUniform {
     pub fn new(frame: &Frame) -> Self {
         Self {
             origin: vec3(frame.origin.base),
@@ -84,10 +86,10 @@ impl SheetFrame {
     }
 }
 
-/// `density/cut.wgsl`.
+/// Crop box and clip plane, as declared in `density/cut.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Cut {
+pub struct CutUniform {
     pub low: [f32; 3],
     pub pad0: f32,
     pub high: [f32; 3],
@@ -95,14 +97,18 @@ pub struct Cut {
     pub plane: [f32; 4],
 }
 
-impl Cut {
-    /// Where nothing is cut, faces are so many voxels away: far from every volume, and far from overflow.
-    const AWAY: f64 = 1e9;
+impl CutUniform {
+    /// Distance, in voxels, of the faces and the plane where nothing is cut: far outside every volume, and far from
+    /// overflow.
+    const UNBOUNDED_VOXELS: f64 = 1e9;
 
-    pub fn new(region: &Region) -> Self {
-        let near = |v: DVec3| vec3(v.clamp(DVec3::splat(-Self::AWAY), DVec3::splat(Self::AWAY)));
-        let plane =
-            region.plane.map_or(DVec3::ZERO.extend(Self::AWAY), |half| half.normal.extend(half.offset));
+    pub fn new(region: &ClipRegion) -> Self {
+        let near = |v: DVec3| {
+            vec3(v.clamp(DVec3::splat(-Self::UNBOUNDED_VOXELS), DVec3::splat(Self::UNBOUNDED_VOXELS)))
+        };
+        let plane = region
+            .plane
+            .map_or(DVec3::ZERO.extend(Self::UNBOUNDED_VOXELS), |half| half.normal.extend(half.offset));
         Self {
             low: near(region.low),
             pad0: 0.0,
@@ -113,10 +119,10 @@ impl Cut {
     }
 }
 
-/// `density/volume.wgsl`.
+/// Voxel grid and texture scales, as declared in `density/volume.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Grid {
+pub struct GridUniform {
     pub dims: [f32; 3],
     pub dilation: i32,
     pub density_scale: [f32; 3],
@@ -127,25 +133,25 @@ pub struct Grid {
     pub pad2: f32,
 }
 
-/// `volume/resample.wgsl`.
+/// Parameters of filling a pyramid level, as declared in `volume/levels.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Resample {
+pub struct PyramidLevelUniform {
     pub bricks: u32,
     pub spacing: f32,
     pub pad0: u32,
     pub pad1: u32,
 }
 
-/// `scatter/slab.wgsl`.
+/// Parameters of a slab of the scattering engine, as declared in `scatter/slab.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Scatter {
-    pub frame: SheetFrame,
+pub struct ScatterSlabUniform {
+    pub frame: SheetFrameUniform,
     pub sheets_from_index_x: [f32; 4],
     pub sheets_from_index_y: [f32; 4],
     pub sheets_from_index_z: [f32; 4],
-    pub half: [f32; 3],
+    pub half_extents: [f32; 3],
     pub stretch: f32,
     pub dims: [f32; 3],
     pub k: u32,
@@ -168,10 +174,10 @@ pub struct Scatter {
     pub pad2: f32,
 }
 
-/// `scatter/footprints.wgsl`.
+/// Phase of compositing footprints, as declared in `scatter/footprints.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Phase {
+pub struct FootprintPhaseUniform {
     pub u: u32,
     pub v: u32,
     pub brick_u: u32,
@@ -182,29 +188,29 @@ pub struct Phase {
     pub pad2: u32,
 }
 
-/// `sheets/march.wgsl`.
+/// Parameters of marching light through slabs, as declared in `sheets/march.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct March {
-    pub frame: SheetFrame,
+pub struct MarchUniform {
+    pub frame: SheetFrameUniform,
     pub begin: u32,
     pub end: u32,
     pub layers: u32,
     pub tiles: u32,
     pub extinction_scale: f32,
-    pub hood_inner: f32,
-    pub hood_outer: f32,
+    pub cone_cos_inner: f32,
+    pub cone_cos_outer: f32,
     pub reach: i32,
-    pub hood_axis: [f32; 3],
-    pub dark: f32,
-    pub shading_cut: Cut,
+    pub cone_axis: [f32; 3],
+    pub min_transmittance: f32,
+    pub shading_cut: CutUniform,
 }
 
-/// `light/backproject.wgsl`.
+/// Parameters of the back-projection, as declared in `light/backproject.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Backprojection {
-    pub frame: SheetFrame,
+pub struct BackprojectionUniform {
+    pub frame: SheetFrameUniform,
     pub light_from_index_x: [f32; 4],
     pub light_from_index_y: [f32; 4],
     pub light_from_index_z: [f32; 4],
@@ -222,10 +228,10 @@ pub struct Backprojection {
     pub pad1: f32,
 }
 
-/// `light/combine.wgsl`.
+/// Parameters of combining lights, as declared in `light/combine.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Combine {
+pub struct CombineUniform {
     pub dims: [u32; 3],
     pub bricks: u32,
     pub voxel_step: f32,
@@ -234,10 +240,10 @@ pub struct Combine {
     pub pad2: f32,
 }
 
-/// `common/space.wgsl`.
+/// Transforms between index and scene space, as declared in `common/space.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Space {
+pub struct SpaceUniform {
     pub scene_from_index_x: [f32; 4],
     pub scene_from_index_y: [f32; 4],
     pub scene_from_index_z: [f32; 4],
@@ -246,7 +252,7 @@ pub struct Space {
     pub index_from_scene_z: [f32; 4],
 }
 
-impl Space {
+impl SpaceUniform {
     pub fn new(scene: &SceneSpace) -> Self {
         let [scene_from_index_x, scene_from_index_y, scene_from_index_z] = rows(&scene.scene_from_index);
         let [index_from_scene_x, index_from_scene_y, index_from_scene_z] = rows(&scene.index_from_scene);
@@ -261,63 +267,63 @@ impl Space {
     }
 }
 
-/// `shading/shade.wgsl`.
+/// Parameters of the eye pass, as declared in `shading/shade.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Eye {
-    pub frame: SheetFrame,
-    pub shading: Shading,
-    pub space: Space,
+pub struct EyeUniform {
+    pub frame: SheetFrameUniform,
+    pub shading: ShadingUniform,
+    pub space: SpaceUniform,
     pub eye: [f32; 4],
     pub first_row: u32,
     pub end_row: u32,
     pub dilation: i32,
-    pub dark: f32,
+    pub min_transmittance: f32,
     pub gradient_pixels: i32,
     pub gradient_slabs: i32,
     pub runs: u32,
-    pub near_edge: f32,
+    pub voxel_edge: f32,
     pub combined_lookup: [f32; 3],
     pub pad0: f32,
-    pub seen: Cut,
-    pub faces: Cut,
-    pub shading_cut: Cut,
-    pub sky: Sky,
-    pub bounces: Bounces,
-    pub lights: [Light; crate::model::MAX_LIGHTS],
+    pub visible_cut: CutUniform,
+    pub face_cut: CutUniform,
+    pub shading_cut: CutUniform,
+    pub sky: SkyUniform,
+    pub scattered_light: ScatteredLightUniform,
+    pub lights: [LightUniform; crate::model::MAX_LIGHTS],
 }
 
-/// `eye/floor.wgsl`.
+/// Parameters of the floor pass, as declared in `eye/floor.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Floor {
-    pub frame: SheetFrame,
-    pub space: Space,
-    pub shading: Shading,
-    pub shading_cut: Cut,
+pub struct FloorUniform {
+    pub frame: SheetFrameUniform,
+    pub space: SpaceUniform,
+    pub shading: ShadingUniform,
+    pub shading_cut: CutUniform,
     pub plane: [f32; 4],
     pub up: [f32; 3],
     pub height: f32,
     pub color: [f32; 3],
     pub opacity: f32,
     pub radius: f32,
-    pub fade: f32,
-    pub light_share: f32,
+    pub fade_width: f32,
+    pub inverse_balance: f32,
     pub shadow_only: f32,
     pub first_row: u32,
     pub end_row: u32,
     pub runs: u32,
     pub pad0: u32,
-    pub sky: Sky,
+    pub sky: SkyUniform,
     pub map_x: [f32; 4],
     pub map_y: [f32; 4],
-    pub lights: [Light; crate::model::MAX_LIGHTS],
+    pub lights: [LightUniform; crate::model::MAX_LIGHTS],
 }
 
-/// `output/tone_map.wgsl`.
+/// Parameters of the display pass, as declared in `output/tone_map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Display {
+pub struct DisplayUniform {
     pub top: [f32; 4],
     pub bottom: [f32; 4],
     pub transparent: u32,

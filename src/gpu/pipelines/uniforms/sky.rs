@@ -1,48 +1,48 @@
-//! What shaders of a sky mirror.
+//! Uniforms of the shaders for sky visibility.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::Cut;
+use super::CutUniform;
 
-/// Most directions of a batch, as `sky/rays.wgsl` has it.
-pub const MAX_SKY_RAYS: usize = 8;
+/// Maximum number of directions in a batch, as in `sky/rays.wgsl`.
+pub const MAX_BATCH_DIRECTIONS: usize = 8;
 
-/// `shading/sky_light.wgsl`.
+/// Radiance and look-up of the sky, as declared in `shading/sky.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Sky {
+pub struct SkyUniform {
     pub red: [f32; 4],
     pub green: [f32; 4],
     pub blue: [f32; 4],
     pub lookup: [f32; 3],
-    pub ahead: f32,
+    pub lookup_distance: f32,
 }
 
-/// `sky/places.wgsl`.
+/// Blocks of averaged extinction, as declared in `sky/places.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Blocks {
+pub struct BlocksUniform {
     pub dims: [u32; 3],
     pub voxel_step: f32,
     pub level: f32,
     pub offset: f32,
     pub edge: f32,
     pub albedo: f32,
-    pub shading_cut: Cut,
+    pub shading_cut: CutUniform,
 }
 
-/// `sky/rays.wgsl`.
+/// Parallel rays of one direction, as declared in `sky/rays.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct SkyRays {
-    pub towards: [f32; 3],
+pub struct SweepRaysUniform {
+    pub direction_to_light: [f32; 3],
     pub step: f32,
     pub drift: [f32; 2],
     pub first: [f32; 2],
     pub size: [u32; 2],
     pub axis: u32,
-    pub rises: u32,
-    pub arriving: [f32; 3],
+    pub is_ascending: u32,
+    pub incoming_radiance: [f32; 3],
     pub layer: u32,
     pub weight: f32,
     pub first_tile: u32,
@@ -50,23 +50,23 @@ pub struct SkyRays {
     pub pad1: f32,
 }
 
-/// `sky/rays.wgsl`.
+/// Batch of directions of a sweep, as declared in `sky/rays.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Sweep {
+pub struct SweepUniform {
     pub dims: [u32; 3],
     pub share: f32,
     pub block_scale: [f32; 3],
     pub has_sums: f32,
     pub sheet_scale: [f32; 3],
     pub pad0: f32,
-    pub rays: [SkyRays; MAX_SKY_RAYS],
+    pub rays: [SweepRaysUniform; MAX_BATCH_DIRECTIONS],
 }
 
-/// `sky/floor_place.wgsl`.
+/// Position of the floor's sky map, as declared in `sky/floor_place.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct FloorMap {
+pub struct FloorSkyMapUniform {
     pub origin: [f32; 3],
     pub share: f32,
     pub along_x: [f32; 3],

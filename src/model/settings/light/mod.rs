@@ -1,112 +1,111 @@
-//! Lights, in scene space.
+//! Light sources: settings of a light, and lights resolved into scene space.
 
-pub(in crate::model) mod area;
-pub(in crate::model) mod risen;
-pub(in crate::model) mod scattering;
-pub(in crate::model) mod sky;
-pub(in crate::model) mod surroundings;
+pub(crate) mod area_light;
+pub(crate) mod environment_map;
+pub(crate) mod horizon_clipping;
+pub(crate) mod scattering;
+pub(crate) mod sky;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use self::area::{LightArea, LightShape};
+use self::area_light::{LightArea, LightShape};
 use crate::model::Camera;
 
-/// As many lights as a picture can have; each has its own attenuation volume.
+/// Largest number of lights; each has its own attenuation volume.
 pub const MAX_LIGHTS: usize = 8;
 
-/// Most characters of a name: more than any list or label shows.
-pub const MAX_NAME: usize = 200;
+/// Largest number of characters in a name: more than any list or label shows.
+pub const MAX_NAME_CHARS: usize = 200;
 
-/// How a light's rays run.
+/// Light geometry: parallel rays or rays from a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LightKind {
-    /// From infinitely far away, along the line from `position` to the middle of the volume.
+pub enum LightGeometry {
+    /// Parallel rays from infinitely far away, along the line from `position` to the centre of the volume.
     Parallel,
-    /// From the point `position`, in all directions.
+    /// Rays in all directions from the point `position`.
     Perspective,
 }
 
-/// What a light's position refers to.
+/// Coordinate frame of a light's position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightLock {
-    /// The scene: the light stays where it is when the camera turns.
+    /// Scene space: the light stays in place when the camera moves.
     Scene,
-    /// The camera's axes (right, up, back) around the origin: the light turns with it. At
-    /// `[0, 0, z]` it is a headlight.
+    /// Camera axes (right, up, back) around the origin: the light turns with the camera. At `[0, 0, z]` it is a
+    /// headlight.
     Camera,
 }
 
-/// A lampshade: a perspective light shines only within a cone around the line to the origin (P §1,
-/// "with or without hood").
+/// Spotlight cone of a perspective light around the line to the origin (P §1, "with or without hood").
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Hood {
-    /// Whether there is one.
+pub struct Spotlight {
+    /// Limits the light to the cone.
     pub on: bool,
-    /// From the axis to where nothing is left of the light, in degrees.
+    /// Half the opening angle in degrees: from the axis to where no light is left.
     pub half_angle_deg: f64,
-    /// The outer part of that in which the light fades, in degrees.
+    /// Angular width in degrees of the outer part of the cone in which the light fades.
     pub rim_deg: f64,
 }
 
-impl Default for Hood {
+impl Default for Spotlight {
     fn default() -> Self {
         Self { on: false, half_angle_deg: 25.0, rim_deg: 5.0 }
     }
 }
 
-/// One light.
+/// Light source with its position, colour, shape and shadow settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Light {
-    /// What the user calls it.
+pub struct LightSettings {
+    /// Name given by the user.
     pub name: String,
-    /// Parallel or perspective.
-    pub kind: LightKind,
-    /// In scene units. A parallel light uses only its direction as seen from the origin, so that
-    /// switching the kind back and forth loses nothing.
+    /// Light geometry: parallel or perspective.
+    pub kind: LightGeometry,
+    /// Position in scene units. A parallel light uses only its direction as seen from the origin, so that switching
+    /// the kind back and forth loses nothing.
     pub position: [f64; 3],
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     pub color: [f32; 3],
-    /// Multiplies the colour in linear light.
+    /// Factor for the colour in linear light.
     pub intensity: f64,
-    /// Whether it shines.
+    /// Switches the light on.
     pub on: bool,
-    /// Whether what it meets attenuates it; a fill light does without.
+    /// Attenuates the light by material; fill lights do without.
     pub casts_shadows: bool,
-    /// What `position` refers to.
+    /// Coordinate frame of `position`.
     pub lock: LightLock,
-    /// Only for perspective lights.
-    pub hood: Hood,
-    /// Multiplies the extinction that this light meets.
+    /// Spotlight cone, only for perspective lights.
+    pub hood: Spotlight,
+    /// Factor for the extinction of material for this light.
     pub density_scale: f64,
-    /// What shines of it. Anything but a point has penumbrae.
+    /// Shape of the emitting surface. Anything but a point has penumbrae.
     pub shape: LightShape,
     /// Width of a perspective light, in scene units.
     pub size: f64,
-    /// Width of a parallel light as it is seen from the volume, in degrees: the sun has half of one.
+    /// Angular width in degrees of a parallel light as seen from the volume: the sun has half a degree.
     pub angle_deg: f64,
-    /// Width by height of a rectangle.
+    /// Aspect ratio of a rectangle, width by height.
     pub aspect: f64,
-    /// How far a rectangle is turned counterclockwise, as seen from the volume.
+    /// Rotation of a rectangle in degrees, counterclockwise as seen from the volume.
     pub turn_deg: f64,
 }
 
-impl Default for Light {
+impl Default for LightSettings {
     fn default() -> Self {
         Self {
             name: "Light".to_owned(),
-            kind: LightKind::Parallel,
+            kind: LightGeometry::Parallel,
             position: [2.0, -2.0, 2.5],
             color: [1.0; 3],
             intensity: 1.0,
             on: true,
             casts_shadows: true,
             lock: LightLock::Scene,
-            hood: Hood::default(),
+            hood: Spotlight::default(),
             density_scale: 1.0,
             shape: LightShape::Point,
             size: 1.0,
@@ -118,54 +117,54 @@ impl Default for Light {
     }
 }
 
-/// The cone of a hood.
+/// Cone of a spotlight, in cosines.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cone {
-    /// From the light to the middle of what it shines at; a unit vector in scene space.
+pub struct SpotlightCone {
+    /// Unit vector in scene space from the light along the axis of the cone.
     pub axis: DVec3,
-    /// Cosine of the angle from the axis up to which the light shines fully.
+    /// Cosine of the angle from the axis up to which the light has its full intensity.
     pub cos_inner: f64,
-    /// Cosine of the angle from the axis from which on it does not shine.
+    /// Cosine of the angle from the axis beyond which there is no light.
     pub cos_outer: f64,
 }
 
-impl Cone {
-    /// Shines everywhere: −1, the smallest cosine, lies beyond the rim.
-    const OPEN: Self = Self { axis: DVec3::NEG_Z, cos_inner: -2.0, cos_outer: -3.0 };
+impl SpotlightCone {
+    /// Cone without a limit: −1, the smallest cosine, lies within full intensity.
+    const UNLIMITED: Self = Self { axis: DVec3::NEG_Z, cos_inner: -2.0, cos_outer: -3.0 };
 
-    /// The share that passes at a cosine of the angle to the axis: 3t² − 2t³ across the rim.
-    pub fn share(&self, cosine: f64) -> f64 {
+    /// Returns the share of light at a cosine of the angle to the axis: 3t² − 2t³ across the rim.
+    pub fn attenuation(&self, cosine: f64) -> f64 {
         let t = ((cosine - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
 }
 
-/// A light as every pass sees it: resolved into scene space, whatever it is locked to, and without a name.
+/// Light for rendering: resolved into scene space, whatever it is locked to, and without a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLight {
-    /// How its light travels.
-    pub kind: LightKind,
-    /// In scene space: where a perspective light is, and a point in the direction of a parallel one.
+    /// Light geometry: parallel or perspective.
+    pub kind: LightGeometry,
+    /// Position in scene space of a perspective light; for a parallel light, any point in its direction.
     pub position: [f64; 3],
-    /// sRGB, 0 … 1.
+    /// Colour as sRGB, 0 … 1.
     pub color: [f32; 3],
-    /// Multiplies its colour.
+    /// Factor for the colour in linear light.
     pub intensity: f64,
-    /// Whether it shines.
+    /// True if the light is switched on.
     pub on: bool,
-    /// Whether material attenuates it.
+    /// True if material attenuates the light.
     pub casts_shadows: bool,
-    /// Narrows a perspective light to a cone.
-    pub hood: Hood,
-    /// Multiplies the extinction that it meets.
+    /// Spotlight cone of a perspective light.
+    pub hood: Spotlight,
+    /// Factor for the extinction of material for this light.
     pub density_scale: f64,
-    /// How large it is; `None` of a point.
+    /// Extent of an area light; `None` for a point.
     pub area: Option<LightArea>,
 }
 
-impl Light {
-    /// The light where it stands in the scene, for the given camera.
-    pub fn in_scene(&self, camera: &Camera) -> SceneLight {
+impl LightSettings {
+    /// Resolves the light into scene space, for the given camera.
+    pub fn resolve(&self, camera: &Camera) -> SceneLight {
         let Self {
             name: _,
             kind,
@@ -206,11 +205,11 @@ impl Light {
         }
     }
 
-    /// Half its width and half its height: in scene units, of a parallel light as tangents.
+    /// Returns half the width and half the height: in scene units, or as tangents for a parallel light.
     fn half_extent(&self) -> DVec2 {
         let half = match self.kind {
-            LightKind::Parallel => (0.5 * self.angle_deg).to_radians().tan(),
-            LightKind::Perspective => 0.5 * self.size,
+            LightGeometry::Parallel => (0.5 * self.angle_deg).to_radians().tan(),
+            LightGeometry::Perspective => 0.5 * self.size,
         };
         match self.shape {
             LightShape::Rectangle => DVec2::new(half, half / self.aspect),
@@ -218,9 +217,9 @@ impl Light {
         }
     }
 
-    /// Changes what the position refers to and leaves the light where it is.
+    /// Changes the coordinate frame of the position without moving the light.
     pub fn set_lock(&mut self, lock: LightLock, camera: &Camera) {
-        let place = self.in_scene(camera).position;
+        let place = self.resolve(camera).position;
         self.lock = lock;
         self.set_scene_position(place.into(), camera);
     }
@@ -233,7 +232,7 @@ impl Light {
         };
     }
 
-    /// Whether shadows of this light need an attenuation volume, or rays.
+    /// Returns true if shadows of this light need an attenuation volume, or rays.
     pub fn needs_volume(&self) -> bool {
         self.on && self.casts_shadows && self.intensity > 0.0
     }
@@ -241,29 +240,29 @@ impl Light {
 
 impl Default for SceneLight {
     fn default() -> Self {
-        Light::default().in_scene(&Camera::default())
+        LightSettings::default().resolve(&Camera::default())
     }
 }
 
 impl SceneLight {
-    /// The cone in which the light shines; open for parallel lights and without a hood.
-    pub fn cone(&self) -> Cone {
-        let Hood { on, half_angle_deg, rim_deg } = self.hood;
-        if !on || self.kind == LightKind::Parallel {
-            return Cone::OPEN;
+    /// Returns the spotlight cone; unlimited for parallel lights and without a hood.
+    pub fn cone(&self) -> SpotlightCone {
+        let Spotlight { on, half_angle_deg, rim_deg } = self.hood;
+        if !on || self.kind == LightGeometry::Parallel {
+            return SpotlightCone::UNLIMITED;
         }
         let cos_outer = half_angle_deg.to_radians().cos();
         let cos_inner = (half_angle_deg - rim_deg).max(0.0).to_radians().cos();
-        // No rim at all would divide by zero; a millionth is sharper than any pixel.
-        Cone { axis: -self.direction(), cos_inner: cos_inner.max(cos_outer + 1e-6), cos_outer }
+        // A rim of zero width would divide by zero; a millionth is sharper than any pixel.
+        SpotlightCone { axis: -self.direction(), cos_inner: cos_inner.max(cos_outer + 1e-6), cos_outer }
     }
 
-    /// Unit vector from the origin towards a parallel light.
+    /// Returns the unit vector from the origin towards the light.
     pub fn direction(&self) -> DVec3 {
         DVec3::from(self.position).normalize_or(DVec3::Z)
     }
 
-    /// Whether this light needs an attenuation volume now.
+    /// Returns true if the light needs an attenuation volume now.
     pub fn needs_volume(&self) -> bool {
         self.on && self.casts_shadows && self.intensity > 0.0
     }

@@ -1,47 +1,52 @@
-//! Light that bounces inside the volume: what material scatters lights what is around it.
+//! Multiple scattering: light that bounces inside the volume and illuminates nearby material.
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::Resolution;
+use crate::model::LightVolumeResolution;
 
-/// Most bounces that are followed; what further ones would bring is told from two of them, where there are three or more.
+/// Largest number of simulated bounces; with three or more, the rest of the series is extrapolated geometrically from
+/// the last two.
 pub const MAX_BOUNCES: u32 = 12;
 
-/// How much further than straight on light may be scattered, or back: beyond it matter is a mirror, or is not there.
+/// Largest magnitude of the phase function's anisotropy: beyond it a material acts as a mirror, or is not visible at
+/// all.
 pub const MAX_ANISOTROPY: f64 = 0.9;
 
-/// Light that material scatters, until it is absorbed or leaves: wax, skin and clouds glow from within.
+/// Multiple scattering of light until it is absorbed or leaves: wax, skin and clouds glow from within.
 ///
-/// It is scattered in all directions and in the colours of the transfer function, which bleed onto what is near. What lights the eye sees without a bounce is as fine as ever; what has bounced is found in blocks of voxels, and kept.
+/// Light is scattered in all directions and in the colours of the transfer function, which bleed onto nearby
+/// material. The light that the eye sees without a bounce has full detail; bounced light is computed in blocks of
+/// voxels, and cached.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Scattering {
-    /// How many bounces are followed, at most [`MAX_BOUNCES`]; none: no light bounces.
+pub struct ScatteringSettings {
+    /// Number of simulated bounces, at most [`MAX_BOUNCES`]; 0 disables scattering.
     pub bounces: u32,
-    /// What of light that is met is scattered, times the colour: the rest is absorbed.
+    /// Scattering albedo: share of interacting light that is scattered, times the colour; the rest is absorbed.
     pub albedo: f64,
-    /// What of bounced light is shown.
+    /// Factor for the displayed bounced light.
     pub strength: f64,
-    /// Where light of matter that is no surface goes on its first bounce, the one that the eye sees as fine as ever: the mean
-    /// cosine of the angle, 0 evenly, towards 1 forward as in clouds, towards −1 back. Henyey and Greenstein's phase function.
+    /// Anisotropy of the Henyey–Greenstein phase function for the first bounce in material that is not a surface,
+    /// which is the one with full detail: the mean cosine of the scattering angle, 0 even, towards 1 forward as in
+    /// clouds, towards −1 backward.
     pub anisotropy: f64,
-    /// Multiplies the extinction that bouncing light meets: less lets it in deeper.
+    /// Factor for the extinction of bounced light: a lower one lets it in deeper.
     pub density_scale: f64,
-    /// In how many directions light is followed on its last bounce, the one that is seen.
+    /// Number of directions of the last bounce, which is the visible one.
     pub directions: u32,
-    /// How finely.
-    pub resolution: Resolution,
+    /// Resolution of the volume of bounced light.
+    pub resolution: LightVolumeResolution,
 }
 
-impl Scattering {
-    /// In how many directions light is followed on all bounces but the last, of which there are `directions`: what they leave
-    /// uneven, the last evens out.
-    pub fn directions_of_a_bounce(directions: u32) -> u32 {
+impl ScatteringSettings {
+    /// Returns the number of directions of all bounces but the last, which has `directions`: the last bounce evens
+    /// out their irregularities.
+    pub fn inner_bounce_directions(directions: u32) -> u32 {
         (directions / 4).clamp(6, 14)
     }
 }
 
-impl Default for Scattering {
+impl Default for ScatteringSettings {
     fn default() -> Self {
         Self {
             bounces: 0,
@@ -50,7 +55,7 @@ impl Default for Scattering {
             anisotropy: 0.0,
             density_scale: 1.0,
             directions: 64,
-            resolution: Resolution::Quarter,
+            resolution: LightVolumeResolution::Quarter,
         }
     }
 }

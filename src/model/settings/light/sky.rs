@@ -1,39 +1,42 @@
-//! Light that comes from all around: a sky, attenuated by the material on its way.
+//! Sky light: ambient light from all directions, attenuated by the material.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Resolution, SceneAxis, linear_from_srgb};
+use crate::model::{LightVolumeResolution, SceneAxis, linear_from_srgb};
 
-/// What the sky looks like.
+/// Radiance model of the sky.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyMode {
-    /// There is none: a flat ambient term stands for it.
+    /// No sky: a flat ambient term replaces it.
     Off,
-    /// White from everywhere: what is known as ambient occlusion.
+    /// White from all directions: known as ambient occlusion.
     White,
-    /// Three colours: above, at the horizon and below.
+    /// Gradient of three colours: above, at the horizon and below.
     Gradient,
-    /// What a picture of surroundings has, as far as it is linear in the direction.
+    /// Environment map, approximated linearly in the direction.
     Picture,
 }
 
-/// Directions that the sky's light is taken from: fewer are patchy, more look no better.
+/// Number of directions for the sky's light: fewer look patchy, more look no better.
 pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=64;
 
-/// How far in front of a surface openness to the sky is looked up, in blocks of its volume: what lies nearer is the
-/// surface itself, which the blocks blur.
-pub const SKY_AHEAD: f64 = 0.75;
+/// Distance in front of a surface at which sky visibility is looked up, in blocks of its volume: nearer material is
+/// the surface itself, which the blocks blur.
+pub const SKY_LOOKUP_DISTANCE: f64 = 0.75;
 
-/// Light from all around. What is stored of it is how open each place is ([`crate::plan::SkyKey`]), so that colours,
-/// brightness and turn of the sky cost a picture and no more, unless its light bounces.
+/// Ambient light from all directions.
+///
+/// Only sky visibility is cached ([`crate::plan::SkyKey`]), so that changing
+/// colours, brightness and rotation of the sky costs one image and no more, unless its light bounces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Sky {
-    /// What it looks like.
+pub struct SkySettings {
+    /// Radiance model of the sky.
     pub mode: SkyMode,
-    /// What of it an open surface gives back of its colour: 1 is white paper under a white sky.
+    /// Intensity as the fraction of its colour that an unoccluded surface reflects: 1 is white paper under a white
+    /// sky.
     pub intensity: f64,
     /// Colour above, sRGB, 0 … 1.
     pub zenith: [f32; 3],
@@ -41,90 +44,92 @@ pub struct Sky {
     pub horizon: [f32; 3],
     /// Colour from below, sRGB, 0 … 1.
     pub ground: [f32; 3],
-    /// What is kept of a picture of surroundings.
-    pub picture: SkyPicture,
-    /// How far the zenith leans from the vertical, in degrees: 90 is a wall of light, a large window.
+    /// Linear approximation of an environment map.
+    pub picture: EnvironmentLight,
+    /// Tilt of the zenith from the vertical, in degrees: 90 is a wall of light, a large window.
     pub tilt_deg: f64,
-    /// To which side it leans, about the vertical, counted as a camera's azimuth; surroundings turn with it.
+    /// Direction of the tilt about the vertical, in degrees, counted as a camera's azimuth; environment maps turn
+    /// with it.
     pub turn_deg: f64,
-    /// Multiplies the extinction that its light meets.
+    /// Factor for the extinction of material for sky light.
     pub density_scale: f64,
-    /// From how many directions light is followed.
+    /// Number of directions for sky visibility.
     pub directions: u32,
-    /// How finely.
-    pub resolution: Resolution,
+    /// Resolution of the sky visibility volume.
+    pub resolution: LightVolumeResolution,
 }
 
-impl Default for Sky {
+impl Default for SkySettings {
     fn default() -> Self {
         Self {
             mode: SkyMode::Off,
             intensity: 0.5,
-            // A clear day, held back: the object has colours of its own.
+            // A clear day with muted colours, because the object has colours of its own.
             zenith: [0.80, 0.89, 1.0],
             horizon: [0.95, 0.96, 1.0],
             ground: [0.52, 0.47, 0.42],
-            picture: SkyPicture::default(),
+            picture: EnvironmentLight::default(),
             tilt_deg: 0.0,
             turn_deg: 0.0,
             density_scale: 1.0,
             directions: 64,
-            resolution: Resolution::Half,
+            resolution: LightVolumeResolution::Half,
         }
     }
 }
 
-/// What is kept of a picture of surroundings, so that no file is needed to draw it again. White until one has been read.
+/// Linear approximation of an environment map, which suffices to render again without the file. White until one has
+/// been read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct SkyPicture {
-    /// The name of the file.
+pub struct EnvironmentLight {
+    /// Name of the environment map's file.
     pub name: String,
     /// Mean radiance, linear RGB.
     pub mean: [f64; 3],
-    /// Of red, green and blue light towards where it is brighter, in a space whose z axis points up and whose x axis to the
-    /// middle of the picture: radiance is `mean` + `slope` · ω.
+    /// Gradients of red, green and blue radiance over directions, in a space whose z axis points up and whose x axis
+    /// points to the middle of the map: radiance is `mean` + `slope` · ω.
     pub slope: [[f64; 3]; 3],
 }
 
-impl Default for SkyPicture {
+impl Default for EnvironmentLight {
     fn default() -> Self {
         Self { name: String::new(), mean: [1.0; 3], slope: [[0.0; 3]; 3] }
     }
 }
 
-/// Most that a component of surroundings may be: of a mean luminance of 1 blue light alone has 14.
-pub const MAX_PICTURE_RADIANCE: f64 = 100.0;
+/// Largest component of an environment map's radiance: with a mean luminance of 1, pure blue light has 14.
+pub const MAX_ENVIRONMENT_RADIANCE: f64 = 100.0;
 
-/// Radiance that is linear in the direction, for each colour: L(ω) = `mean` + `slope` · ω, in units in which an open
-/// white surface under a sky of 1 is 1.
+/// Radiance that is linear in the direction, for each colour: L(ω) = `mean` + `slope` · ω, in units in which an
+/// unoccluded white surface under a sky of 1 is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkyRadiance {
-    /// Of all directions, linear RGB.
+    /// Mean over all directions, linear RGB.
     pub mean: [f64; 3],
-    /// For each colour, towards where it is brighter, in scene space.
+    /// Gradient of each colour over directions, in scene space.
     pub slope: [DVec3; 3],
 }
 
-impl Sky {
-    /// Whether there is one.
+impl SkySettings {
+    /// Returns true if there is a sky.
     pub fn is_on(&self) -> bool {
         self.mode != SkyMode::Off
     }
 
-    /// Towards the zenith, in a scene of which an axis points up.
+    /// Returns the direction of the zenith in scene space, for a given up axis.
     pub fn zenith_direction(&self, up: SceneAxis) -> DVec3 {
         self.scene_from_sky(up) * DVec3::Z
     }
 
-    /// The sky, whose z axis points to its zenith, in a scene of which an axis points up: it leans towards its x axis, and
-    /// then turns about the vertical.
+    /// Returns the rotation from sky space, whose z axis points to the zenith, to scene space, for a given up axis: a
+    /// tilt towards the sky's x axis, then a turn about the vertical.
     pub fn scene_from_sky(&self, up: SceneAxis) -> DMat3 {
         let (tilt, turn) = (self.tilt_deg.to_radians(), self.turn_deg.to_radians());
         up.scene_from_upright() * DMat3::from_rotation_z(turn) * DMat3::from_rotation_y(tilt)
     }
 
-    /// The sky as far as it is linear in the direction; `None` where there is none.
+    /// Returns the linear approximation of the sky's radiance; `None` without a sky.
     ///
     /// Colours that change evenly with the height z = −1 … 1 from ground to horizon and from there to the zenith have
     /// the mean (zenith + 2 horizon + ground) / 4, and of all functions linear in z the nearest has the slope
@@ -143,7 +148,7 @@ impl Sky {
                 })
             }
             SkyMode::Picture => {
-                let SkyPicture { name: _, mean, slope } = &self.picture;
+                let EnvironmentLight { name: _, mean, slope } = &self.picture;
                 let scene_from_sky = self.scene_from_sky(up) * self.intensity;
                 Some(SkyRadiance {
                     mean: mean.map(|c| c * self.intensity),
@@ -160,19 +165,19 @@ mod tests {
 
     #[test]
     fn a_gradient_is_as_bright_as_its_colours_on_the_mean() {
-        let sky = Sky {
+        let sky = SkySettings {
             mode: SkyMode::Gradient,
             intensity: 2.0,
             zenith: [1.0; 3],
             horizon: [0.5; 3],
             ground: [0.0; 3],
-            ..Sky::default()
+            ..SkySettings::default()
         };
         let radiance = sky.radiance(SceneAxis::PlusY).expect("a sky");
         let horizon = 2.0 * linear_from_srgb(0.5);
         assert!((radiance.mean[1] - (2.0 + 2.0 * horizon) / 4.0).abs() < 1e-12, "{radiance:?}");
         assert!((radiance.slope[2] - DVec3::Y).length() < 1e-12, "{radiance:?}");
-        // By quadrature over heights.
+        // Numerical quadrature over heights.
         let at = |z: f64| if z > 0.0 { horizon + (2.0 - horizon) * z } else { horizon + horizon * z };
         let n = 10_000;
         let heights = (0..n).map(|i| (2.0 * (f64::from(i) + 0.5) / f64::from(n)) - 1.0);
@@ -183,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_zenith_leans_to_where_it_is_turned() {
-        let sky = |tilt_deg, turn_deg| Sky { tilt_deg, turn_deg, ..Sky::default() };
+        let sky = |tilt_deg, turn_deg| SkySettings { tilt_deg, turn_deg, ..SkySettings::default() };
         let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} {b}");
         near(sky(0.0, 70.0).zenith_direction(SceneAxis::PlusZ), DVec3::Z);
         near(sky(90.0, 0.0).zenith_direction(SceneAxis::PlusZ), DVec3::X);
@@ -193,12 +198,19 @@ mod tests {
 
     #[test]
     fn surroundings_turn_about_the_vertical() {
-        let picture = SkyPicture { slope: [[1.0, 0.0, 0.5], [0.0; 3], [0.0; 3]], ..SkyPicture::default() };
-        let sky = Sky { mode: SkyMode::Picture, intensity: 2.0, turn_deg: 90.0, picture, ..Sky::default() };
+        let picture =
+            EnvironmentLight { slope: [[1.0, 0.0, 0.5], [0.0; 3], [0.0; 3]], ..EnvironmentLight::default() };
+        let sky = SkySettings {
+            mode: SkyMode::Picture,
+            intensity: 2.0,
+            turn_deg: 90.0,
+            picture,
+            ..SkySettings::default()
+        };
         let radiance = sky.radiance(SceneAxis::PlusZ).expect("a sky");
         assert_eq!(radiance.mean, [2.0; 3]);
         assert!((radiance.slope[0] - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12, "{radiance:?}");
-        let leaning = Sky { tilt_deg: 90.0, turn_deg: 0.0, ..sky };
+        let leaning = SkySettings { tilt_deg: 90.0, turn_deg: 0.0, ..sky };
         let slope = leaning.radiance(SceneAxis::PlusZ).expect("a sky").slope[0];
         assert!((slope - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-12, "{slope}");
     }

@@ -1,7 +1,7 @@
-//! What moves with lights, and what their volumes are made from.
+//! Tests of changes to lights, and of the keys of their volumes.
 
-use super::{Effect, effect, effect_of, keys, request};
-use crate::model::{LightLock, LightShape, Resolution, SkyMode};
+use super::{ChangeEffect, effect, effect_of, keys, request};
+use crate::model::{LightLock, LightShape, LightVolumeResolution, SkyMode};
 use crate::plan::LightKey;
 
 #[test]
@@ -10,59 +10,62 @@ fn the_size_of_a_light_is_part_of_its_volume_alone() {
     before.settings.lights[1].shape = LightShape::Disc;
     before.settings.lights[2].shape = LightShape::Rectangle;
     for (path, value, expected) in [
-        ("lights.1.angle_deg", "5", Effect::OneLight),
-        // The size of one is an angle, that of the other a length.
-        ("lights.1.size", "0.5", Effect::Nothing),
-        ("lights.2.size", "0.5", Effect::OneLight),
-        ("lights.2.angle_deg", "5", Effect::Nothing),
-        ("lights.1.aspect", "2", Effect::Nothing),
-        ("lights.2.aspect", "2", Effect::OneLight),
-        ("lights.2.turn_deg", "20", Effect::OneLight),
-        ("lights.1.color", "[1,0,0]", Effect::Eye),
-        ("lights.1.intensity", "2", Effect::Eye),
-        ("shadows.area.samples", "16", Effect::AllLights),
-        ("shadows.area.resolution", "full", Effect::AllLights),
-        // It is coarser already.
-        ("shadows.resolution", "half", Effect::OneLight),
+        ("lights.1.angle_deg", "5", ChangeEffect::OneLight),
+        // The size of the disc is an angle, that of the rectangle a length.
+        ("lights.1.size", "0.5", ChangeEffect::Nothing),
+        ("lights.2.size", "0.5", ChangeEffect::OneLight),
+        ("lights.2.angle_deg", "5", ChangeEffect::Nothing),
+        ("lights.1.aspect", "2", ChangeEffect::Nothing),
+        ("lights.2.aspect", "2", ChangeEffect::OneLight),
+        ("lights.2.turn_deg", "20", ChangeEffect::OneLight),
+        ("lights.1.color", "[1,0,0]", ChangeEffect::Eye),
+        ("lights.1.intensity", "2", ChangeEffect::Eye),
+        ("shadows.area.samples", "16", ChangeEffect::AllLights),
+        ("shadows.area.resolution", "full", ChangeEffect::AllLights),
+        // The area light is coarser already.
+        ("shadows.resolution", "half", ChangeEffect::OneLight),
     ] {
         assert_eq!(effect_of(&before, path, value), expected, "{path} = {value}");
     }
-    let key = LightKey::of(&before, 1).expect("it casts shadows");
-    assert_eq!((key.samples(), key.resolution()), (64, Resolution::Half));
-    let coarse = key.coarse(Resolution::Quarter);
-    assert_eq!((coarse.samples(), coarse.resolution()), (16, Resolution::Quarter));
+    let key = LightKey::new(&before, 1).expect("it casts shadows");
+    assert_eq!((key.samples(), key.resolution()), (64, LightVolumeResolution::Half));
+    let coarse = key.for_preview(LightVolumeResolution::Quarter);
+    assert_eq!((coarse.samples(), coarse.resolution()), (16, LightVolumeResolution::Quarter));
     // A preview is never finer than the picture.
-    let point = LightKey::of(&before, 0).expect("it casts shadows");
-    assert_eq!((point.samples(), point.coarse(Resolution::Half).resolution()), (1, Resolution::Half));
-    before.settings.shadows.resolution = Resolution::Quarter;
-    let key = LightKey::of(&before, 1).expect("it casts shadows");
-    assert_eq!(key.coarse(Resolution::Half).resolution(), Resolution::Quarter);
+    let point = LightKey::new(&before, 0).expect("it casts shadows");
+    assert_eq!(
+        (point.samples(), point.for_preview(LightVolumeResolution::Half).resolution()),
+        (1, LightVolumeResolution::Half)
+    );
+    before.settings.shadows.resolution = LightVolumeResolution::Quarter;
+    let key = LightKey::new(&before, 1).expect("it casts shadows");
+    assert_eq!(key.for_preview(LightVolumeResolution::Half).resolution(), LightVolumeResolution::Quarter);
 }
 
 #[test]
 fn a_light_that_is_off_may_move() {
     let mut before = request();
     before.settings.lights[1].on = false;
-    assert_eq!(effect_of(&before, "lights.1.position", "[5,0,0]"), Effect::Nothing);
-    assert_eq!(effect_of(&before, "lights.1.on", "true"), Effect::OneLight);
+    assert_eq!(effect_of(&before, "lights.1.position", "[5,0,0]"), ChangeEffect::Nothing);
+    assert_eq!(effect_of(&before, "lights.1.on", "true"), ChangeEffect::OneLight);
 }
 
 #[test]
 fn a_light_that_is_locked_to_the_camera_turns_with_it() {
     let mut before = request();
     before.settings.lights[1].lock = LightLock::Camera;
-    assert_eq!(effect_of(&before, "camera.azimuth_deg", "10"), Effect::OneLight);
+    assert_eq!(effect_of(&before, "camera.azimuth_deg", "10"), ChangeEffect::OneLight);
 }
 
 #[test]
 fn removing_a_light_rebuilds_nothing() {
     let mut next = request();
     next.settings.lights.remove(0);
-    assert_eq!(effect(&keys(&request()), &keys(&next)), Effect::Eye);
+    assert_eq!(effect(&keys(&request()), &keys(&next)), ChangeEffect::Eye);
 }
 
 #[test]
-fn without_bounces_lights_and_sky_have_colours_for_nothing() {
+fn light_colours_only_rebuild_bounced_light() {
     for (path, value) in [
         ("lights.1.color", "[1,0,0]"),
         ("lights.1.intensity", "2"),
@@ -71,10 +74,10 @@ fn without_bounces_lights_and_sky_have_colours_for_nothing() {
         ("sky.intensity", "0.1"),
         ("scattering.anisotropy", "0.5"),
     ] {
-        assert_eq!(effect_of(&request(), path, value), Effect::Eye, "{path}");
+        assert_eq!(effect_of(&request(), path, value), ChangeEffect::Eye, "{path}");
     }
-    assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), Effect::Nothing);
-    assert_eq!(effect_of(&request(), "scattering.bounces", "2"), Effect::Bounces);
+    assert_eq!(effect_of(&request(), "scattering.albedo", "0.5"), ChangeEffect::Nothing);
+    assert_eq!(effect_of(&request(), "scattering.bounces", "2"), ChangeEffect::Bounces);
 }
 
 #[test]
@@ -82,17 +85,17 @@ fn colours_of_what_light_meets_count_where_shadows_are_coloured() {
     let mut before = request();
     before.settings.sky.mode = SkyMode::Off;
     before.settings.shadows.transmission = 0.5;
-    assert_eq!(effect_of(&before, "transfer.points.0.color", "[1,0,0]"), Effect::AllLights);
-    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), Effect::AllLights);
-    assert_eq!(effect_of(&before, "lighting.curve.points", "[]"), Effect::Nothing);
+    assert_eq!(effect_of(&before, "transfer.points.0.color", "[1,0,0]"), ChangeEffect::AllLights);
+    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), ChangeEffect::AllLights);
+    assert_eq!(effect_of(&before, "lighting.curve.points", "[]"), ChangeEffect::Nothing);
     before.settings.lighting.linked = false;
     before.settings.lighting.curve = before.settings.transfer.clone();
-    // The eye's are no longer those that light meets.
-    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::AllLights);
-    // Rays to lights meet them in the eye pass itself.
+    // The eye's colours no longer apply to light.
+    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), ChangeEffect::AllLights);
+    // Shadow rays use the colours in the eye pass itself.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Direct;
-    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), Effect::Eye);
-    // And without any there are none.
+    assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), ChangeEffect::Eye);
+    // Without shadows, the colours have no effect.
     before.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Off;
-    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), Effect::Nothing);
+    assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), ChangeEffect::Nothing);
 }

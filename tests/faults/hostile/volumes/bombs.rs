@@ -1,4 +1,4 @@
-//! What unpacks to far more than was said, and what is nested without end.
+//! Decompression bombs, which expand to far more than stated, and endless nesting.
 
 use std::io::Write as _;
 
@@ -6,28 +6,28 @@ use bzip2::write::BzEncoder;
 use flate2::Compression;
 use flate2::write::{DeflateEncoder, ZlibEncoder};
 
-use super::Maker;
-use super::words::find;
-use crate::samples::{gzip, kept};
+use super::BrokenVolumeMaker;
+use super::text_headers::find_bytes;
+use crate::samples::{gzip, stored_samples};
 
-/// Mebibytes that bombs unpack to.
-const LARGE: usize = 48;
+/// Size in MiB to which bombs expand.
+const BOMB_MEBIBYTES: usize = 48;
 
-/// How deep nesting goes.
-const DEEP: usize = 100_000;
+/// Depth of nesting, in elements.
+const NESTING_DEPTH: usize = 100_000;
 
-pub(super) fn add(made: &mut Maker) {
-    let zeros = vec![0u8; LARGE << 20];
+pub(super) fn add_bombs(made: &mut BrokenVolumeMaker) {
+    let zeros = vec![0u8; BOMB_MEBIBYTES << 20];
     let (small, packed) = ([7u8; 64], gzip(&zeros));
-    of_text(made, &zeros, &packed);
-    let kept = kept();
+    add_text_header_bombs(made, &zeros, &packed);
+    let kept = stored_samples();
     let of = |name: &str| kept.iter().find(|(kept, _)| *kept == name).expect("it is kept").1.clone();
-    // Packed as a whole.
+    // Compressed as a whole.
     for (name, start) in [("plain.nii", 352), ("density.mrc", 1024), ("array.npy", 128), ("packed.pvm", 0)] {
         let bytes = of(name);
         let bomb = [&bytes[..start], zeros.as_slice()].concat();
         made.add("packed zeros behind a header", &format!("{name}.gz"), &gzip(&bomb));
-        // A header that says that all of it, or much more, is voxels.
+        // A header that claims that all of it, or much more, is voxels.
         let mut large = bomb;
         match name {
             "plain.nii" => large[42..48].copy_from_slice(&[0, 4, 0, 4, 0, 4]),
@@ -39,15 +39,15 @@ pub(super) fn add(made: &mut Maker) {
     made.add("packed zeros", "8x8x8_uint8.raw.gz", &packed);
     made.add("packed zeros, and more are said", "2048x2048x2048_uint8.raw.gz", &packed);
     made.add("packed twice", "volume.nii.gz", &gzip(&packed));
-    deflated_dicom(made, &of("deflated.dcm"), &zeros);
-    nested_dicom(made, &of("frames.dcm"));
-    nested_xml(made);
-    archive(made, &zeros);
-    endless(made, &small);
+    add_deflated_dicom(made, &of("deflated.dcm"), &zeros);
+    add_nested_dicom(made, &of("frames.dcm"));
+    add_nested_xml(made);
+    add_npz_bombs(made, &zeros);
+    add_endless_headers(made, &small);
 }
 
-/// Headers of text before packed numbers.
-fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
+/// Adds text headers before compressed voxels.
+fn add_text_header_bombs(made: &mut BrokenVolumeMaker, zeros: &[u8], packed: &[u8]) {
     let mut bzip2 = BzEncoder::new(Vec::new(), bzip2::Compression::best());
     bzip2.write_all(zeros).expect("it is in memory");
     let bzip2 = bzip2.finish().expect("it is in memory");
@@ -68,7 +68,7 @@ fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
         );
         made.add(format!("zlib of {sizes}"), "bomb.mha", &[header.as_bytes(), &zlib].concat());
         let last: Vec<u64> = sizes.split(' ').map(|n| n.parse::<u64>().expect("a number") - 1).collect();
-        // One block: how many, how long each, how long the last, how long it is packed.
+        // One block: number of blocks, size of each, size of the last, compressed size.
         let counts = [1u32, u32::MAX, 0, zlib.len() as u32].map(u32::to_le_bytes).concat();
         let header = format!(
             "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" \
@@ -78,15 +78,15 @@ fn of_text(made: &mut Maker, zeros: &[u8], packed: &[u8]) {
             last[0], last[1], last[2]
         );
         made.add(format!("zlib of {sizes}"), "bomb.vti", &[header.as_bytes(), &counts, &zlib].concat());
-        // Very many blocks of nothing.
+        // Very many empty blocks.
         let counts = [u32::MAX, 1, 1].map(u32::to_le_bytes).concat();
         made.add(format!("blocks of {sizes}"), "blocks.vti", &[header.as_bytes(), &counts, &zlib].concat());
     }
 }
 
-/// The data set, or its pixels, unpack to much.
-fn deflated_dicom(made: &mut Maker, bytes: &[u8], zeros: &[u8]) {
-    // The data set begins behind the group of the file, of which the length stands in its first element.
+/// Adds DICOM files whose data set, or whose pixels, expand to much.
+fn add_deflated_dicom(made: &mut BrokenVolumeMaker, bytes: &[u8], zeros: &[u8]) {
+    // The data set begins after the file's meta group, whose length is in its first element.
     let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
     let start = &bytes[..144 + length];
     let deflated = |data: &[u8]| {
@@ -101,15 +101,15 @@ fn deflated_dicom(made: &mut Maker, bytes: &[u8], zeros: &[u8]) {
     made.add("a long text", "bomb.dcm", &[start, &deflated(&[element.as_slice(), zeros].concat())].concat());
 }
 
-/// Sequences in sequences.
-fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
+/// Adds DICOM files with sequences nested in sequences.
+fn add_nested_dicom(made: &mut BrokenVolumeMaker, bytes: &[u8]) {
     let length = u32::from_le_bytes(bytes[140..144].try_into().expect("four bytes")) as usize;
     let start = &bytes[..144 + length];
     let endless = [0xff; 4];
     let sequence =
         [&[0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0][..], &endless, &[0xfe, 0xff, 0, 0xe0], &endless].concat();
-    made.add("sequences in sequences", "deep.dcm", &[start, &sequence.repeat(DEEP)].concat());
-    // With lengths that each hold the next.
+    made.add("sequences in sequences", "deep.dcm", &[start, &sequence.repeat(NESTING_DEPTH)].concat());
+    // With lengths that each enclose the next.
     let mut nested = Vec::new();
     for depth in (0..2000u32).rev() {
         let inner = 20 * (1999 - depth);
@@ -125,16 +125,16 @@ fn nested_dicom(made: &mut Maker, bytes: &[u8]) {
         );
     }
     made.add("sequences of lying lengths", "deep.dcm", &[start, &nested].concat());
-    let items = [0xfe, 0xff, 0, 0xe0, 0, 0, 0, 0].repeat(DEEP);
+    let items = [0xfe, 0xff, 0, 0xe0, 0, 0, 0, 0].repeat(NESTING_DEPTH);
     let many = [&[0x08, 0, 0x40, 0x11, b'S', b'Q', 0, 0][..], &endless, &items].concat();
     made.add("a sequence of very many items", "wide.dcm", &[start, &many].concat());
 }
 
-/// Elements in elements, entities of entities, and files that the text names.
-fn nested_xml(made: &mut Maker) {
-    let kept = kept();
+/// Adds XML files with nested elements, recursive entities, and external files.
+fn add_nested_xml(made: &mut BrokenVolumeMaker) {
+    let kept = stored_samples();
     let ome = &kept.iter().find(|(name, _)| *name == "ome.tif").expect("it is kept").1;
-    let deep = "<a>".repeat(DEEP);
+    let deep = "<a>".repeat(NESTING_DEPTH);
     let laugh = |at: usize| format!("<!ENTITY l{at} \"{}\">", format!("&l{};", at - 1).repeat(10));
     let laughs = (1..10).map(laugh).collect::<Vec<_>>().concat();
     let doctypes = [
@@ -154,7 +154,7 @@ fn nested_xml(made: &mut Maker) {
     {
         made.add("elements in elements", name, text.as_bytes());
     }
-    let attributes = (0..DEEP).map(|at| format!(" a{at}=\"1\"")).collect::<Vec<_>>().concat();
+    let attributes = (0..NESTING_DEPTH).map(|at| format!(" a{at}=\"1\"")).collect::<Vec<_>>().concat();
     for (name, text) in [
         ("odd.vti", image(&format!("<Piece{attributes}/>"))),
         ("odd.ivf", described(&format!("<b{attributes}/>"))),
@@ -172,27 +172,27 @@ fn nested_xml(made: &mut Maker) {
                 format!("{doctype}{inner}").as_bytes(),
             );
         }
-        // The description of the first page, in its own length.
-        let start = find(ome, b"<?xml").or_else(|| find(ome, b"<OME")).expect("it is OME");
+        // The description of the first page, within its original length.
+        let start = find_bytes(ome, b"<?xml").or_else(|| find_bytes(ome, b"<OME")).expect("it is OME");
         let mut changed = ome.clone();
         let text = format!("{doctype}<OME>&l9;&e;</OME>");
         let end = (start + text.len()).min(changed.len());
         changed[start..end].copy_from_slice(&text.as_bytes()[..end - start]);
         made.add("a description with entities", "odd.ome.tif", &changed);
     }
-    made.add("a dictionary in dictionaries", "odd.npy", &npy(&"{'a':".repeat(10_000)));
-    made.add("lists in lists", "odd.npy", &npy(&"(".repeat(60_000)));
+    made.add("a dictionary in dictionaries", "odd.npy", &npy_file(&"{'a':".repeat(10_000)));
+    made.add("lists in lists", "odd.npy", &npy_file(&"(".repeat(60_000)));
 }
 
-/// A file of `NumPy` with a header.
-fn npy(header: &str) -> Vec<u8> {
+/// NumPy file with a header.
+fn npy_file(header: &str) -> Vec<u8> {
     [&b"\x93NUMPY\x01\x00"[..], &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat()
 }
 
-/// An archive of one array, which is much longer, or much shorter, than its header says.
-fn archive(made: &mut Maker, zeros: &[u8]) {
+/// Adds archives of one array that is much longer, or much shorter, than its header says.
+fn add_npz_bombs(made: &mut BrokenVolumeMaker, zeros: &[u8]) {
     for shape in ["(4, 4, 4)", "(512, 512, 512)", "(4096, 4096, 4096)"] {
-        let header = npy(&format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n"));
+        let header = npy_file(&format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n"));
         let content = [header.as_slice(), zeros].concat();
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(&content).expect("it is in memory");
@@ -216,12 +216,12 @@ fn archive(made: &mut Maker, zeros: &[u8]) {
     }
 }
 
-/// Lists and numbers that do not end.
-fn endless(made: &mut Maker, data: &[u8]) {
-    let fields = "key:=value\n".repeat(DEEP);
+/// Adds lists and numbers that do not end.
+fn add_endless_headers(made: &mut BrokenVolumeMaker, data: &[u8]) {
+    let fields = "key:=value\n".repeat(NESTING_DEPTH);
     let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n{fields}\n");
     made.add("keys without end", "wide.nrrd", &[header.as_bytes(), data].concat());
-    let names = "listed.raw\n".repeat(DEEP);
+    let names = "listed.raw\n".repeat(NESTING_DEPTH);
     let header = "NDims = 3\nDimSize = 4 4 100000\nElementType = MET_UCHAR\nElementDataFile = LIST\n";
     made.add("files without end", "wide.mhd", format!("{header}{names}").as_bytes());
     let header = format!(

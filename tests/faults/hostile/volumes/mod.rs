@@ -1,15 +1,15 @@
-//! Odd and broken files of volumes in every format, made here and not kept: headers that lie, files that are cut, paths
-//! that lead out of the folder, what unpacks to more than was said, what is nested without end.
+//! Odd and broken volume files in every format, generated here: false headers, truncated files, paths that lead out
+//! of the folder, decompression bombs, endless nesting.
 //!
-//! Each is read in this process, which sees panics, time and memory; some of them, and in the long run all, by the
-//! program as well, of which it is seen what it opens.
+//! Each is read in this process, which observes panics, time and memory; some of them, and in the long run all, by
+//! the program as well, whose file accesses are traced.
 
+mod binary_headers;
 mod bombs;
-mod cuts;
-mod numbers;
-mod parts;
-mod places;
-mod words;
+mod external_paths;
+mod packed_parts;
+mod text_headers;
+mod truncations;
 
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -17,104 +17,104 @@ use std::time::{Duration, Instant};
 
 use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
 
-use super::FORBIDDEN;
-use super::runner::{Trace, watch};
+use super::FORBIDDEN_FOLDER;
+use super::runner::{FileTrace, run_traced};
 
-/// Longest that a small file may take.
-const PROMPT: Duration = Duration::from_secs(10);
+/// Longest time for a small file.
+const READ_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// What a file that is refused may need beyond four times its own length.
-const MOST_BYTES: u64 = 64 << 20;
+/// Memory that a refused file may need beyond four times its own length, in bytes.
+const MAX_EXTRA_BYTES: u64 = 64 << 20;
 
-/// Fewest files of this kind.
-const LEAST: usize = 400;
+/// Smallest number of files of this kind.
+const MIN_CASES: usize = 400;
 
-/// A file to be opened.
-struct Case {
-    /// What is wrong with it.
-    what: String,
+/// Test file, to be opened.
+struct BrokenVolume {
+    /// Description of the fault.
+    fault: String,
     path: PathBuf,
-    /// It leads to another folder, and may not be opened.
+    /// True if it leads to another folder, and must not be opened.
     is_forbidden: bool,
 }
 
-/// Makes files, each in a folder of its own.
-struct Maker {
+/// Writer of test files, each in a folder of its own.
+struct BrokenVolumeMaker {
     folder: PathBuf,
-    cases: Vec<Case>,
+    cases: Vec<BrokenVolume>,
 }
 
-impl Maker {
-    /// Adds a file.
+impl BrokenVolumeMaker {
+    /// Writes a file, and adds it to the cases.
     fn add(&mut self, what: impl Into<String>, name: &str, bytes: &[u8]) {
         let folder = self.folder.join(format!("{:04}", self.cases.len()));
         std::fs::create_dir(&folder).expect("a folder");
-        // What headers and descriptions are of.
+        // Data files of headers and descriptions.
         for (beside, length) in [("described.raw", 24), ("listed.raw", 120)] {
             std::fs::write(folder.join(beside), vec![7; length]).expect("room");
         }
         let path = folder.join(name);
         std::fs::write(&path, bytes).expect("room");
-        self.cases.push(Case { what: what.into(), path, is_forbidden: false });
+        self.cases.push(BrokenVolume { fault: what.into(), path, is_forbidden: false });
     }
 }
 
-fn all(root: &Path) -> Vec<Case> {
-    let mut made = Maker { folder: root.to_owned(), cases: Vec::new() };
-    cuts::add(&mut made);
-    words::add(&mut made);
-    numbers::add(&mut made);
-    bombs::add(&mut made);
-    parts::add(&mut made);
-    places::add(&mut made, &root.join(FORBIDDEN));
+fn all_broken_volumes(root: &Path) -> Vec<BrokenVolume> {
+    let mut made = BrokenVolumeMaker { folder: root.to_owned(), cases: Vec::new() };
+    truncations::add_truncations(&mut made);
+    text_headers::add_text_headers(&mut made);
+    binary_headers::add_binary_headers(&mut made);
+    bombs::add_bombs(&mut made);
+    packed_parts::add_packed_parts(&mut made);
+    external_paths::add_external_paths(&mut made, &root.join(FORBIDDEN_FOLDER));
     made.cases
 }
 
-/// With a place for the files, and one from which nothing may be opened.
-fn with_all(check: impl FnOnce(&[Case])) {
+/// Runs a check on all files, beside a folder from which nothing may be opened.
+fn check_all(check: impl FnOnce(&[BrokenVolume])) {
     let folder = tempfile::tempdir().expect("a folder");
-    let forbidden = folder.path().join(FORBIDDEN);
+    let forbidden = folder.path().join(FORBIDDEN_FOLDER);
     std::fs::create_dir(&forbidden).expect("a folder");
     std::fs::write(forbidden.join("voxels.raw"), [0; 512]).expect("room");
-    check(&all(folder.path()));
+    check(&all_broken_volumes(folder.path()));
 }
 
-/// The most memory that this process has had since it was last asked, where the system says it and no other test runs
-/// beside this one.
-struct Peak(bool);
+/// Meter of this process's peak memory since the last reset, if the system reports it and no other test runs in this
+/// process.
+struct PeakMemory(bool);
 
-impl Peak {
-    fn find() -> Self {
-        // The runner that gives each test a process of its own says so.
+impl PeakMemory {
+    fn detect() -> Self {
+        // The runner that gives each test a process of its own sets this.
         let is_alone = std::env::var_os("NEXTEST").is_some();
-        Self(is_alone && Self::reset() && Self::read().is_some())
+        Self(is_alone && Self::reset() && Self::read_every_nth().is_some())
     }
 
-    /// Forgets what was.
+    /// Resets the peak to the current memory.
     fn reset() -> bool {
         std::fs::write("/proc/self/clear_refs", "5").is_ok()
     }
 
-    fn read() -> Option<u64> {
+    fn read_every_nth() -> Option<u64> {
         let status = std::fs::read_to_string("/proc/self/status").ok()?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
         line.trim().strip_suffix(" kB")?.parse::<u64>().ok().map(|kib| kib << 10)
     }
 
-    /// Runs something; how many bytes it needed at once, or 0 where that cannot be seen.
-    fn of<T>(&self, what: impl FnOnce() -> T) -> (T, u64) {
+    /// Runs a function and measures its peak memory in bytes, 0 if it cannot be measured.
+    fn measure<T>(&self, what: impl FnOnce() -> T) -> (T, u64) {
         if !self.0 {
             return (what(), 0);
         }
         Self::reset();
-        let before = Self::read().unwrap_or(0);
+        let before = Self::read_every_nth().unwrap_or(0);
         let done = what();
-        (done, Self::read().unwrap_or(0).saturating_sub(before))
+        (done, Self::read_every_nth().unwrap_or(0).saturating_sub(before))
     }
 }
 
-/// What a refusal lacks.
-fn flaw(error: &LoadError, path: &Path) -> Option<String> {
+/// Deficiency of an error message, if it has one.
+fn message_deficiency(error: &LoadError, path: &Path) -> Option<String> {
     let explanation = match error {
         LoadError::BadInput(explanation)
         | LoadError::Limit(explanation)
@@ -124,7 +124,7 @@ fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     };
     let said = error.to_string();
     let folder = path.parent().unwrap_or(Path::new("")).to_string_lossy().into_owned();
-    // Of the file itself, or of one beside it.
+    // Names the file itself, or one beside it.
     let is_named = explanation.place.contains(&folder);
     let is_missing = said.contains("no such file");
     if !is_named || explanation.help.is_empty() {
@@ -138,15 +138,15 @@ fn flaw(error: &LoadError, path: &Path) -> Option<String> {
     }
 }
 
-/// All that is wrong with how a file is answered, and whether it was refused.
-fn answered(case: &Case, peak: &Peak) -> (Vec<String>, bool) {
+/// Reads a file; returns all faults of the answer, and whether the file was refused.
+fn read_and_check(case: &BrokenVolume, peak: &PeakMemory) -> (Vec<String>, bool) {
     let bytes = std::fs::metadata(&case.path).map_or(0, |data| data.len());
     let begin = Instant::now();
     let read = || catch_unwind(|| load(&case.path, &LoadOptions::default(), &LoadControl::new()));
-    let (done, memory) = peak.of(read);
+    let (done, memory) = peak.measure(read);
     let took = begin.elapsed();
     let mut wrong = Vec::new();
-    if took > PROMPT {
+    if took > READ_TIMEOUT {
         wrong.push(format!("it takes {took:?}"));
     }
     let mut is_refused = true;
@@ -157,23 +157,23 @@ fn answered(case: &Case, peak: &Peak) -> (Vec<String>, bool) {
             wrong.extend(case.is_forbidden.then(|| "it is opened".to_owned()));
         }
         Ok(Err(error)) => {
-            wrong.extend(flaw(&error, &case.path));
-            if memory > 4 * bytes + MOST_BYTES {
+            wrong.extend(message_deficiency(&error, &case.path));
+            if memory > 4 * bytes + MAX_EXTRA_BYTES {
                 wrong.push(format!("{} MiB are taken before {error}", memory >> 20));
             }
         }
     }
     let name = case.path.file_name().unwrap_or_default().to_string_lossy();
-    (wrong.into_iter().map(|flaw| format!("{name}, {}: {flaw}", case.what)).collect(), is_refused)
+    (wrong.into_iter().map(|flaw| format!("{name}, {}: {flaw}", case.fault)).collect(), is_refused)
 }
 
-/// Reads one in so many.
+/// Reads every n-th file in this process.
 fn read(every: usize) {
-    with_all(|cases| {
-        let peak = Peak::find();
+    check_all(|cases| {
+        let peak = PeakMemory::detect();
         let (mut wrong, mut refused, mut tried) = (Vec::new(), 0, 0);
         for case in cases.iter().step_by(every) {
-            let (flaws, is_refused) = answered(case, &peak);
+            let (flaws, is_refused) = read_and_check(case, &peak);
             wrong.extend(flaws);
             refused += usize::from(is_refused);
             tried += 1;
@@ -181,7 +181,7 @@ fn read(every: usize) {
         let memory = if peak.0 { "their memory was measured" } else { "their memory was NOT measured" };
         println!("odd volumes: {refused} refused of {tried}, of {}; {memory}", cases.len());
         assert!(wrong.is_empty(), "{} flaws:\n{}", wrong.len(), wrong.join("\n"));
-        assert!(tried >= LEAST, "{tried} files");
+        assert!(tried >= MIN_CASES, "{tried} files");
         assert!(refused > tried / 2, "most are refused");
     });
 }
@@ -197,19 +197,19 @@ fn all_odd_and_broken_volumes_are_refused_or_read() {
     read(1);
 }
 
-/// The program reads one in so many.
-fn run(every: usize) {
-    with_all(|cases| {
-        let trace = Trace::find();
+/// Lets the program read every n-th file.
+fn run_every_nth(every: usize) {
+    check_all(|cases| {
+        let trace = FileTrace::detect();
         for case in cases.iter().step_by(every) {
-            let Case { what, path, .. } = case;
-            let ended = watch(path.parent().expect("a folder"), &["info".into(), path.into()], trace);
-            // 6 is for a file that is not there: one that a header names.
-            let is_missing = ended.said.contains("no such file");
+            let BrokenVolume { fault: what, path, .. } = case;
+            let ended = run_traced(path.parent().expect("a folder"), &["info".into(), path.into()], trace);
+            // Code 6 is allowed for a missing file that a header names.
+            let is_missing = ended.output.contains("no such file");
             let is_right = matches!(ended.code, Some(0 | 3 | 5)) || ended.code == Some(6) && is_missing;
             assert!(is_right, "{what}: {}: {ended:?}", path.display());
-            for line in &ended.opened {
-                assert!(!line.contains(FORBIDDEN) || line.contains("readlink("), "{what}: {line}");
+            for line in &ended.opened_paths {
+                assert!(!line.contains(FORBIDDEN_FOLDER) || line.contains("readlink("), "{what}: {line}");
                 assert!(!line.contains("connect(") || line.contains("AF_UNIX"), "{what}: {line}");
             }
         }
@@ -220,11 +220,11 @@ fn run(every: usize) {
 #[test]
 fn odd_volumes_lead_the_program_nowhere() {
     // A prime, so that all formats and faults take part.
-    run(61);
+    run_every_nth(61);
 }
 
 #[test]
 #[ignore = "minutes"]
 fn no_odd_volume_leads_the_program_anywhere() {
-    run(1);
+    run_every_nth(1);
 }

@@ -1,38 +1,38 @@
-//! What comes before the numbers of a cube: two lines of words, the grid, the atoms, and which orbitals there are.
+//! Header of a Gaussian cube: two title lines, the grid, the atoms, and the list of orbitals.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
-use super::super::placement::Placement;
-use super::super::samples::{Fault, is_corruption};
+use super::super::placement::GridPlacement;
+use super::super::samples::{ReadFault, is_corruption};
 use super::bad_line;
-use super::words::Words;
-use crate::data::attempt::Attempt;
+use super::word_reader::CubeWordReader;
+use crate::data::load_context::LoadContext;
 
-/// The radius of hydrogen's orbit in millimetres (CODATA 2018).
+/// Bohr radius in millimetres (CODATA 2018).
 const MM_PER_BOHR: f64 = 5.291_772_109_03e-8;
 
 const MM_PER_ANGSTROM: f64 = 1e-7;
 
-/// Most atoms that are skipped: as many as the largest structures of viruses have.
-const MOST_ATOMS: u64 = 10_000_000;
+/// Maximum number of atoms, which are skipped: that of the largest virus structures.
+const MAX_ATOMS: u64 = 10_000_000;
 
-/// Most orbitals of a file.
-const MOST_VALUES: u64 = 4096;
+/// Maximum number of orbitals of a file.
+const MAX_VALUES: u64 = 4096;
 
-pub(super) struct Header {
+pub(super) struct CubeHeader {
     pub(super) title: String,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
-    pub(super) placement: Placement,
-    /// What the values of each voxel are called.
+    pub(super) placement: GridPlacement,
+    /// Name of each value of a voxel.
     pub(super) values: Vec<String>,
     atoms: u64,
     has_orbitals: bool,
 }
 
-impl Header {
-    pub(super) fn read(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<Self, LoadError> {
+impl CubeHeader {
+    pub(super) fn read(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Self, LoadError> {
         let title = line(attempt, words)?.trim().to_owned();
         line(attempt, words)?;
         let third = line(attempt, words)?;
@@ -42,10 +42,10 @@ impl Header {
             return Err(bad_line(attempt, "line 3", &third, "a number of atoms and an origin"));
         };
         let atoms = count.unsigned_abs();
-        if atoms > MOST_ATOMS {
-            return Err(attempt.limit(
+        if atoms > MAX_ATOMS {
+            return Err(attempt.limit_error(
                 "line 3",
-                format!("{atoms} atoms are more than {MOST_ATOMS}"),
+                format!("{atoms} atoms are more than {MAX_ATOMS}"),
                 "check that the file is a Gaussian cube",
             ));
         }
@@ -66,62 +66,71 @@ impl Header {
         let values = match more.first() {
             _ if has_orbitals => {
                 skip_lines(attempt, words, atoms)?;
-                orbitals(attempt, words)?
+                read_orbitals(attempt, words)?
             }
-            Some(&n) if n > 1.0 && n <= MOST_VALUES as f64 => vec![String::new(); n as usize],
+            Some(&n) if n > 1.0 && n <= MAX_VALUES as f64 => vec![String::new(); n as usize],
             _ => vec![String::new()],
         };
-        // Numbers of voxels below zero say that lengths are in Å.
+        // Negative numbers of voxels mean that lengths are in Å.
         let unit = if counts[0] < 0 { MM_PER_ANGSTROM } else { MM_PER_BOHR };
         let [a, b, c] = axes.map(|axis| axis * unit);
         let translation = DVec3::new(*x, *y, *z) * unit;
         let placement =
-            Placement::ras(DAffine3 { matrix3: DMat3::from_cols(a, b, c), translation }).of_no_body();
+            GridPlacement::from_ras_affine(DAffine3 { matrix3: DMat3::from_cols(a, b, c), translation })
+                .without_anatomy();
         let dims = counts.map(i64::unsigned_abs);
         Ok(Self { title, dims, placement, values, atoms, has_orbitals })
     }
 
-    /// Goes past a header that was read before.
-    pub(super) fn skip(&self, attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<(), LoadError> {
+    /// Skips a header that was parsed before.
+    pub(super) fn skip(
+        &self,
+        attempt: LoadContext<'_>,
+        words: &mut CubeWordReader<'_>,
+    ) -> Result<(), LoadError> {
         skip_lines(attempt, words, 6 + self.atoms)?;
         if self.has_orbitals {
-            orbitals(attempt, words)?;
+            read_orbitals(attempt, words)?;
         }
         Ok(())
     }
 }
 
-/// How many orbitals there are, and the number of each.
-fn orbitals(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<Vec<String>, LoadError> {
+/// Reads the list of orbitals: their number, and the identifier of each.
+fn read_orbitals(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Vec<String>, LoadError> {
     let mut word = String::new();
     let mut next = || -> Result<String, LoadError> {
         words.word(&mut word).map_err(|fault| error_of(attempt, fault))?;
         Ok(word.clone())
     };
     let said = next()?;
-    let Some(count) = said.parse::<u64>().ok().filter(|count| (1..=MOST_VALUES).contains(count)) else {
+    let Some(count) = said.parse::<u64>().ok().filter(|count| (1..=MAX_VALUES).contains(count)) else {
         return Err(bad_line(attempt, "orbitals", &said, "how many orbitals there are"));
     };
     (0..count).map(|_| next().map(|id| format!("orbital {id}"))).collect()
 }
 
-fn skip_lines(attempt: Attempt<'_>, words: &mut Words<'_>, count: u64) -> Result<(), LoadError> {
+fn skip_lines(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>, count: u64) -> Result<(), LoadError> {
     (0..count).try_for_each(|_| line(attempt, words).map(drop))
 }
 
-fn line(attempt: Attempt<'_>, words: &mut Words<'_>) -> Result<String, LoadError> {
+fn line(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<String, LoadError> {
     let found = words.line().map_err(|fault| error_of(attempt, fault))?;
     found.ok_or_else(|| {
-        attempt.bad_input("header", "the file ends within its header", "copy or download the file again")
+        attempt.bad_input_error(
+            "header",
+            "the file ends within its header",
+            "copy or download the file again",
+        )
     })
 }
 
-fn error_of(attempt: Attempt<'_>, fault: Fault) -> LoadError {
+fn error_of(attempt: LoadContext<'_>, fault: ReadFault) -> LoadError {
     match fault {
-        Fault::Stopped(error) => error,
-        Fault::Io(error) if !is_corruption(&error) => attempt.io(error),
-        Fault::NotANumber { text } => bad_line(attempt, "header", &text, "a short line of numbers"),
-        _ => attempt.bad_input(
+        ReadFault::Stopped(error) => error,
+        ReadFault::Io(error) if !is_corruption(&error) => attempt.io_error(error),
+        ReadFault::NotANumber { text } => bad_line(attempt, "header", &text, "a short line of numbers"),
+        _ => attempt.bad_input_error(
             "header",
             "the gzip data are broken or truncated",
             "copy or download the file again",

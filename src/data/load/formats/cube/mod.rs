@@ -5,47 +5,50 @@
 mod header;
 #[cfg(test)]
 mod tests;
-mod words;
+mod word_reader;
 
 use super::input::stem;
-use super::placement::Parts;
-use super::reader::{Reader, Source};
-use super::samples::{Fault, Layout, is_corruption, reserve};
-use super::{Dimension, Endian, LoadError};
-use crate::data::attempt::{Attempt, Extent, quoted};
-use crate::data::{Hints, Samples, Volume, VoxelType};
-use header::Header;
-use words::{Words, real};
+use super::placement::VolumeParts;
+use super::reader::{FormatReader, VolumeSource};
+use super::samples::{ReadFault, VoxelLayout, alloc_with_capacity, is_corruption};
+use super::{Endian, FileDimension, LoadError};
+use crate::data::load_context::{GridExtent, LoadContext, quoted};
+use crate::data::{Samples, ValueMetadata, Volume, VoxelType};
+use header::CubeHeader;
+use word_reader::{CubeWordReader, parse_fortran_real};
 
-pub(super) const READER: Reader = Reader {
+pub(super) const READER: FormatReader = FormatReader {
     name: "Gaussian cube",
-    endings: &[".cube", ".cube.gz", ".cub", ".cub.gz"],
+    extensions: &[".cube", ".cube.gz", ".cub", ".cub.gz"],
     recognises: |_| false,
     load,
 };
 
 const HELP: &str = "check the header against the data, or copy the file again";
 
-/// Loads a cube.
-fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
-    let attempt = Attempt { what: "read the Gaussian cube", path: source.path };
+/// Loads a Gaussian cube file.
+fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the Gaussian cube", path: source.path };
     let header = {
         let control = source.control;
-        Header::read(attempt, &mut Words::new(source.content(), control))?
+        CubeHeader::read(attempt, &mut CubeWordReader::new(source.content(), control))?
     };
     let voxel_type = VoxelType::F32;
-    // Its slices are none of the volume's: x is slowest. All of it is read before anything is left out.
-    let room = source.options.room(source.control);
-    let extent = Extent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
-    let layout = Layout { extent, voxel_type, endian: Endian::Little };
+    // x is slowest in the file, so that its slices are not those of the volume: all of it is read before a selection
+    // is made.
+    let room = source.options.limits(source.control);
+    let extent = GridExtent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
+    let layout = VoxelLayout { extent, voxel_type, endian: Endian::Little };
     let values = header.values.len();
-    let chosen = source
-        .numbered(attempt, Dimension::Channel, values as u64, header.dims, |at| header.values[at].clone())?;
-    // A digit each and a space between: less cannot hold the numbers, and nothing is allocated.
+    let chosen =
+        source.choose_numbered(attempt, FileDimension::Channel, values as u64, header.dims, |at| {
+            header.values[at].clone()
+        })?;
+    // At least a digit and a space each: shorter data are refused before memory is allocated.
     let needed = (extent.voxels as u64).saturating_mul(values as u64);
     let room = source.input.len.div_ceil(2);
     if !source.start.is_gzip() && room < needed {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "data",
             format!("the data are truncated: {needed} numbers expected, room for {room} found"),
             HELP,
@@ -54,30 +57,36 @@ fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
     let name = stem(source.path);
     let control = source.control;
     control.start(extent.bytes);
-    // Once more from the beginning: what the first look has read ahead is lost.
-    source.input.seek(0).map_err(|error| attempt.io(error))?;
-    let mut words = Words::new(source.content(), control);
+    // From the beginning again, because the first reader has buffered data.
+    source.input.seek(0).map_err(|error| attempt.io_error(error))?;
+    let mut words = CubeWordReader::new(source.content(), control);
     header.skip(attempt, &mut words)?;
     let samples = read(&mut words, extent, values, chosen).map_err(|fault| match fault {
-        Fault::Io(error) if is_corruption(&error) => {
-            Fault::Corrupt(error).into_error(attempt, &layout, "numbers", HELP)
+        ReadFault::Io(error) if is_corruption(&error) => {
+            ReadFault::Corrupt(error).into_error(attempt, &layout, "numbers", HELP)
         }
-        Fault::Short { got } => attempt.bad_input(
+        ReadFault::Short { got } => attempt.bad_input_error(
             "data",
             format!("the data are truncated: {needed} numbers expected, {got} found"),
             HELP,
         ),
         fault => fault.into_error(attempt, &layout, "numbers", HELP),
     })?;
-    let mut hints = Hints::default();
+    let mut hints = ValueMetadata::default();
     hints.set_acquisition(&header.title);
-    Parts { name, extent, placement: header.placement, voxels: samples.into(), hints }.volume(attempt)
+    VolumeParts { name, extent, placement: header.placement, voxels: samples.into(), hints }
+        .into_volume(attempt)
 }
 
-/// Reads one value of each voxel: x is slowest in the file, and fastest in memory.
-fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> Result<Samples, Fault> {
+/// Reads one value of each voxel, transposing the grid: x is slowest in the file, and fastest in memory.
+fn read(
+    words: &mut CubeWordReader<'_>,
+    extent: GridExtent,
+    values: usize,
+    chosen: usize,
+) -> Result<Samples, ReadFault> {
     let [nx, ny, nz] = extent.dims;
-    let mut samples = reserve(extent.voxels)?;
+    let mut samples = alloc_with_capacity(extent.voxels)?;
     samples.resize(extent.voxels, 0.0f32);
     let mut got = 0;
     let mut word = String::new();
@@ -86,11 +95,12 @@ fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> 
             for z in 0..nz {
                 for value in 0..values {
                     if !words.word(&mut word)? {
-                        return Err(Fault::Short { got });
+                        return Err(ReadFault::Short { got });
                     }
                     got += 1;
                     if value == chosen {
-                        let number = real(&word).ok_or_else(|| Fault::NotANumber { text: word.clone() })?;
+                        let number = parse_fortran_real(&word)
+                            .ok_or_else(|| ReadFault::NotANumber { text: word.clone() })?;
                         samples[x + nx * (y + ny * z)] = number;
                     }
                 }
@@ -101,9 +111,9 @@ fn read(words: &mut Words<'_>, extent: Extent, values: usize, chosen: usize) -> 
     Ok(Samples::F32(samples))
 }
 
-/// A line of numbers that is not what it should be.
-fn bad_line(attempt: Attempt<'_>, field: &str, line: &str, expected: &str) -> LoadError {
-    attempt.bad_input(
+/// Error for a header line with unexpected content.
+fn bad_line(attempt: LoadContext<'_>, field: &str, line: &str, expected: &str) -> LoadError {
+    attempt.bad_input_error(
         field,
         format!("{expected} was expected, {} was found", quoted(line)),
         "check that the file is a Gaussian cube",

@@ -1,18 +1,18 @@
-//! Cubes made by hand: densities and orbitals, straight and oblique, and headers that lie.
+//! Tests of Gaussian cubes: densities and orbitals, orthogonal and oblique, and headers with false sizes.
 
 use std::io::Write as _;
 
 use glam::DVec3;
 
 use super::*;
-use crate::data::load::tests::shared::load_bytes as loaded_as;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::tests::helpers::load_bytes as loaded_as;
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
 const WATER: &str = "Water\n density in atomic units\n 2 1.0 -2.0 3.0\n 2 0.5 0.0 0.0\n 3 0.0 0.5 0.0\n \
                      2 0.0 0.0 1.0\n 8 8.0 0.0 0.0 0.0\n 1 1.0 0.0 1.0 1.0\n";
 
 fn loaded(text: &str) -> Result<Volume, LoadError> {
-    loaded_as("a.cube", text.as_bytes(), Choice::default())
+    loaded_as("a.cube", text.as_bytes(), VolumeChoice::default())
 }
 
 fn numbers(count: usize) -> String {
@@ -34,13 +34,13 @@ fn x_becomes_the_fastest() {
     let origin = volume.world_from_index().translation / bohr;
     assert!((origin - DVec3::new(1.0, -2.0, 3.0)).abs().max_element() < 1e-12);
     assert!(!volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
-    assert_eq!(volume.hints().acquisition(), Some("Water"));
+    assert_eq!(volume.metadata().acquisition(), Some("Water"));
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(text.replace('\n', "\r\n").as_bytes()).unwrap();
     let zipped = encoder.finish().unwrap();
-    let unzipped = loaded_as("b.cube.gz", &zipped, Choice::default()).unwrap();
+    let unzipped = loaded_as("b.cube.gz", &zipped, VolumeChoice::default()).unwrap();
     assert_eq!(unzipped.samples(), volume.samples());
-    let error = loaded_as("b.cube.gz", &zipped[..zipped.len() - 20], Choice::default()).unwrap_err();
+    let error = loaded_as("b.cube.gz", &zipped[..zipped.len() - 20], VolumeChoice::default()).unwrap_err();
     assert!(error.to_string().contains("truncated"), "{error}");
 }
 
@@ -58,12 +58,12 @@ fn grids_may_be_oblique_and_in_angstrom() {
 #[test]
 fn one_of_several_orbitals_is_chosen() {
     let orbitals = WATER.replace("\n 2 1.0 -2.0", "\n -2 1.0 -2.0") + " 2 17\n 18\n" + &numbers(24);
-    let LoadError::Several { dimension: Dimension::Channel, offers, .. } = loaded(&orbitals).unwrap_err()
+    let LoadError::Several { dimension: FileDimension::Channel, offers, .. } = loaded(&orbitals).unwrap_err()
     else {
         panic!("there are two");
     };
     assert_eq!(offers[1].name, "orbital 18");
-    let choice = Choice { channel: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { channel: Some(1), ..VolumeChoice::default() };
     let second = loaded_as("a.cub", orbitals.as_bytes(), choice.clone()).unwrap();
     assert_eq!((second.value(0, 0, 0), second.value(0, 0, 1), second.value(1, 0, 0)), (1.5, 3.5, 13.5));
     let values = WATER.replace(" 3.0\n", " 3.0 2\n") + &numbers(24);
@@ -72,7 +72,7 @@ fn one_of_several_orbitals_is_chosen() {
 }
 
 #[test]
-fn headers_that_lie_are_refused() {
+fn inconsistent_headers_are_refused() {
     for (text, kind, words) in [
         (String::new(), LoadErrorKind::BadInput, "ends within its header"),
         (WATER.to_owned() + &numbers(11), LoadErrorKind::BadInput, "12 numbers expected, 11 found"),

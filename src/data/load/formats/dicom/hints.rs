@@ -1,22 +1,22 @@
-//! What a header says of the values.
+//! Hints on the values of a DICOM volume, from its header.
 
-use super::header::Header;
-use super::header::found::Found;
-use super::header::segments::{SegmentationType, labels};
-use super::layer::Slice;
+use super::header::DicomHeader;
+use super::header::segments::{SegmentationType, labels_from_segments};
+use super::header::values::DicomValues;
 use super::mosaic::is_mosaic;
-use super::pixels::shape::{Colors, PixelNumber, Shape};
-use crate::data::{Hints, Meaning, Modality};
+use super::pixels::layout::{PhotometricKind, PixelLayout, PixelNumber};
+use super::slice_layer::DicomSlice;
+use crate::data::{Modality, ValueMeaning, ValueMetadata};
 
-impl Found {
-    /// What the series is called.
+impl DicomValues {
+    /// Returns the series description, or else the protocol name.
     pub(super) fn description(&self) -> &str {
         let said = [&self.series_description, &self.protocol];
         said.into_iter().find(|text| !text.is_empty()).map_or("", String::as_str)
     }
 
-    /// Everything that is said of how the series was acquired.
-    fn acquisition(&self) -> String {
+    /// Returns series description and protocol name, joined if they differ.
+    fn acquisition_text(&self) -> String {
         match (self.series_description.as_str(), self.protocol.as_str()) {
             (description, protocol) if description.is_empty() || description == protocol => {
                 protocol.to_owned()
@@ -26,11 +26,11 @@ impl Found {
         }
     }
 
-    /// The unit of rescaled values.
+    /// Returns the unit of rescaled values.
     fn unit(&self) -> &str {
-        let is_scaled = self.all.slope.or(self.shared.slope).is_some();
+        let is_scaled = self.file_plane.slope.or(self.shared_plane.slope).is_some();
         match (self.rescale_type.as_str(), self.units.as_str()) {
-            // "Unspecified".
+            // "US" means "unspecified".
             ("" | "US", "")
                 if self.modality == "CT" && is_scaled && !self.image_type.contains("LOCALIZER") =>
             {
@@ -43,25 +43,25 @@ impl Found {
     }
 }
 
-/// What a header says of the values of slices, which have a common slope and intercept or none.
+/// Collects the hints that a header gives on the values of slices, which share a slope and intercept, or have none.
 ///
-/// `has_masks` says that they are masks of segments, of which labels were made.
-pub(super) fn hints(
-    found: &Found,
-    shape: &Shape,
-    slice: &Slice,
+/// `has_masks` tells that the slices are masks of segments, from which labels were made.
+pub(super) fn volume_hints(
+    found: &DicomValues,
+    shape: &PixelLayout,
+    slice: &DicomSlice,
     scale: Option<[f64; 2]>,
     has_masks: bool,
-) -> Hints {
-    let mut hints = Hints::default();
-    hints.modality = Modality::of_code(&found.modality);
-    hints.set_acquisition(&found.acquisition());
+) -> ValueMetadata {
+    let mut hints = ValueMetadata::default();
+    hints.modality = Modality::from_code(&found.modality);
+    hints.set_acquisition(&found.acquisition_text());
     if shape.samples > 1 {
         return hints;
     }
     hints.set_unit(found.unit());
     if let ([Some(center), Some(width)], true) = (slice.plane.window, width_is_usable(slice)) {
-        // PS3.3 section C.11.2.1.2: a width of 256 has 256 values.
+        // PS3.3 section C.11.2.1.2: a window of width 256 contains 256 values.
         let low = center - 0.5 - (width - 1.0) / 2.0;
         hints.set_window(low, low + width - 1.0);
     }
@@ -71,65 +71,68 @@ pub(super) fn hints(
     }
     let is_field = found.segmentation == Some(SegmentationType::Fractional) && !has_masks;
     if hints.modality == Modality::Segmentation && !is_field {
-        hints.meaning = Meaning::Labels;
-        hints.labels = labels(&found.segments);
+        hints.meaning = ValueMeaning::Labels;
+        hints.labels = labels_from_segments(&found.segments);
     }
     hints
 }
 
-/// The value of pixels that were not measured, as it is stored.
-pub(super) fn stored_padding(found: &Found, shape: &Shape) -> Option<f64> {
+/// Returns the stored value of unmeasured pixels (Pixel Padding Value).
+pub(super) fn stored_padding(found: &DicomValues, shape: &PixelLayout) -> Option<f64> {
     let PixelNumber::Integer(bits) = shape.number else { return None };
     let padding = found.padding?;
     Some(if bits.is_signed { f64::from(padding as i16) } else { f64::from(padding) })
 }
 
-/// The segment that is shown where several are, in words.
-pub(super) fn shown_of_overlapping(found: &Found) -> &'static str {
+/// Names the rule by which one of several overlapping segments is shown.
+pub(super) fn overlap_rule(found: &DicomValues) -> &'static str {
     match found.segmentation {
         Some(SegmentationType::Fractional) => "the largest share",
         _ => "the highest number",
     }
 }
 
-/// The value of a mask where all is of its segment.
-pub(super) fn most_fraction(found: &Found) -> f64 {
+/// Returns the value of a mask pixel that lies entirely in its segment.
+pub(super) fn full_mask_value(found: &DicomValues) -> f64 {
     match found.segmentation {
-        Some(SegmentationType::Fractional) => f64::from(found.most_fraction.unwrap_or(255)),
+        Some(SegmentationType::Fractional) => f64::from(found.max_fraction.unwrap_or(255)),
         _ => 1.0,
     }
 }
 
-fn width_is_usable(slice: &Slice) -> bool {
+fn width_is_usable(slice: &DicomSlice) -> bool {
     slice.plane.window[1].is_some_and(|width| width >= 1.0)
 }
 
-/// The part of its pictures that is shown of a volume.
+/// Flags that tell which part of the images a volume shows.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ShownPart {
-    /// One component of colours, which was chosen.
+pub(super) struct ShownImagePart {
+    /// True if the user selected one component of colours.
     pub(super) is_component: bool,
-    /// Slices by themselves that lie side by side in a picture.
-    pub(super) is_unpacked: bool,
+    /// True if the slices were cut out of a mosaic.
+    pub(super) is_mosaic_tile: bool,
 }
 
-/// Remarks on how values are shown.
+/// Returns remarks for the user on how values are shown.
 pub(super) fn remarks(
-    header: &Header,
-    shape: &Shape,
-    ShownPart { is_component, is_unpacked }: ShownPart,
+    header: &DicomHeader,
+    shape: &PixelLayout,
+    ShownImagePart { is_component, is_mosaic_tile: is_unpacked }: ShownImagePart,
 ) -> Vec<String> {
-    let found = &header.found;
+    let found = &header.values;
     let mut remarks = Vec::new();
     match shape.colors {
-        Colors::Inverted => remarks.push("high values are meant to be shown dark; they are kept as they are"),
-        Colors::Palette => {
+        PhotometricKind::Inverted => {
+            remarks.push("high values are meant to be shown dark; they are kept as they are");
+        }
+        PhotometricKind::Palette => {
             remarks.push("its values are numbers of colours in a table: they mean no brightness");
         }
-        Colors::Rgb | Colors::Ybr | Colors::YbrPairs if !is_component => {
+        PhotometricKind::Rgb | PhotometricKind::YbrFull | PhotometricKind::Ybr422 if !is_component => {
             remarks.push("colours are shown as their luminance");
         }
-        Colors::Grey | Colors::Rgb | Colors::Ybr | Colors::YbrPairs => {}
+        PhotometricKind::Grey | PhotometricKind::Rgb | PhotometricKind::YbrFull | PhotometricKind::Ybr422 => {
+        }
     }
     if found.has_value_table {
         remarks.push("a table of what values mean is not applied: they are shown as they are stored");

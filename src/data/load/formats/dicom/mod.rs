@@ -1,103 +1,111 @@
-//! DICOM: the pictures of medical devices, a file each or many in one.
+//! DICOM: images of medical devices, one per file or several frames in one.
 //!
-//! After PS3.3 (what headers mean), PS3.5 (how data sets are written) and PS3.10 (files) of the standard at
-//! <https://www.dicomstandard.org/current>. A data set is read up to its pixels, of which only those that are shown are
-//! read. World space is left-posterior-superior millimetres in files, right-anterior-superior here.
+//! After PS3.3 (meaning of headers), PS3.5 (encoding of data sets) and PS3.10 (files) of the standard at
+//! <https://www.dicomstandard.org/current>. A data set is parsed up to its pixels, and only pixels to be shown are
+//! read. World space is left-posterior-superior millimetres in files, right-anterior-superior in volumes.
 
-mod groups;
 mod header;
+mod header_scan;
 mod hints;
-mod layer;
-mod layers;
+mod image_groups;
+mod layer_reader;
 mod mosaic;
 mod object_class;
-mod open_series;
 mod pixels;
-mod scan;
 mod series;
+mod series_selection;
+mod slice_layer;
 mod stack;
 #[cfg(test)]
 mod tests;
-mod voxels;
+mod volume_reader;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::input::Input;
-use super::reader::{Reader, Source, Start};
+use super::input::InputFile;
+use super::reader::{FileStart, FormatReader, VolumeSource};
 use super::{LoadControl, LoadError, LoadOptions};
-use crate::data::attempt::Attempt;
-use crate::data::{Volume, natural};
-use groups::{groups, left_out};
-use header::{Header, is_dicom};
+use crate::data::load_context::LoadContext;
+use crate::data::{Volume, natural_sort_key};
+use header::{DicomHeader, is_dicom};
+use header_scan::{HeaderScan, files_beside, scan_headers};
+use image_groups::{group_images, omission_remark};
 use object_class::ObjectClass;
-use open_series::OpenSeries;
-use scan::{Scan, beside, scan};
+use series_selection::SeriesSelection;
 
-/// What is being done, for messages.
-const WHAT: &str = "read the DICOM file";
+/// Action that error messages name for a single file.
+const READ_FILE: &str = "read the DICOM file";
 
-/// As [`WHAT`], with a folder.
-const WHAT_SERIES: &str = "read the DICOM series";
+/// Action that error messages name for a folder.
+const READ_SERIES: &str = "read the DICOM series";
 
-pub(super) const READER: Reader = Reader {
+pub(super) const READER: FormatReader = FormatReader {
     name: "DICOM",
-    endings: &[".dcm", ".dicom", ".ima"],
+    extensions: &[".dcm", ".dicom", ".ima"],
     recognises: |start| is_dicom(start.bytes()),
     load,
 };
 
-/// The series of which a file is a slice; none where it is something else, or holds all of it.
-pub(in crate::data::load) fn series_of(path: &Path, control: &LoadControl) -> Option<String> {
-    let attempt = Attempt { what: WHAT, path };
-    let mut input = Input::open(attempt).ok()?;
-    let start = Start::of(&mut input).ok()?;
+/// Returns the identifier of the series of which a file is a slice; `None` for other files, and for files that hold a
+/// whole volume.
+pub(crate) fn series_uid(path: &Path, control: &LoadControl) -> Option<String> {
+    let attempt = LoadContext { operation: READ_FILE, path };
+    let mut input = InputFile::open(attempt).ok()?;
+    let start = FileStart::read(&mut input).ok()?;
     if !is_dicom(start.stored()) {
         return None;
     }
-    let (header, _) = Header::of(attempt, input, start.stored(), control).ok()?;
+    let (header, _) = DicomHeader::parse(attempt, input, start.stored(), control).ok()?;
     let is_slice = header.pixels.is_some() && header.frame_count() == 1;
-    Some(header.found.series).filter(|series| is_slice && !series.is_empty())
+    Some(header.values.series_uid).filter(|series| is_slice && !series.is_empty())
 }
 
-/// Loads a DICOM file, and where it is one slice of a series, those beside it.
-fn load(source: Source<'_>) -> Result<Volume, LoadError> {
-    let Source { path, input, start, options, control } = source;
-    let attempt = Attempt { what: WHAT, path };
+/// Loads a DICOM file; if it is one slice of a series, the other slices in its folder as well.
+fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let VolumeSource { path, input, start, options, control } = source;
+    let attempt = LoadContext { operation: READ_FILE, path };
     if start.is_gzip() {
-        return Err(attempt.bad_input("file", "it is compressed as a whole", "unpack it with gunzip"));
+        return Err(attempt.bad_input_error("file", "it is compressed as a whole", "unpack it with gunzip"));
     }
-    let (header, _) = Header::of(attempt, input, start.stored(), control)?;
+    let (header, _) = DicomHeader::parse(attempt, input, start.stored(), control)?;
     if header.pixels.is_none() {
-        return Err(without_pixels(attempt, &header));
+        return Err(no_pixels_error(attempt, &header));
     }
-    let is_slice = header.frame_count() == 1 && !header.found.series.is_empty();
+    let is_slice = header.frame_count() == 1 && !header.values.series_uid.is_empty();
     if !is_slice {
         let headers = [header];
-        let grouping = groups(&headers);
-        let open = OpenSeries { attempt, path, headers: &headers, main: None, options, control };
+        let grouping = group_images(&headers);
+        let open = SeriesSelection { attempt, path, headers: &headers, named_file: None, options, control };
         return open.load(grouping, Vec::new());
     }
-    let Scan { headers: others, broken, why, .. } = scan(&beside(path), control)?;
-    let found = &header.found;
-    let is_another = |other: &Header| other.found.series == found.series && other.frame_count() == 1;
-    let others: Vec<Header> = others.into_iter().filter(is_another).collect();
+    let HeaderScan { headers: others, unreadable_count, first_error, .. } =
+        scan_headers(&files_beside(path), control)?;
+    let found = &header.values;
+    let is_another =
+        |other: &DicomHeader| other.values.series_uid == found.series_uid && other.frame_count() == 1;
+    let others: Vec<DicomHeader> = others.into_iter().filter(is_another).collect();
     let mut headers = vec![header];
     headers.extend(others);
     let mut remarks = drop_copies(&mut headers);
-    // Where nothing else says an order, that of the names counts.
-    headers.sort_by_cached_key(|header| natural(&name_of(&header.path)));
+    // Without any other order, that of the file names counts.
+    headers.sort_by_cached_key(|header| natural_sort_key(&file_name(&header.path)));
     let main = headers.iter().position(|header| header.path == path);
-    remarks.extend(why.map(|why| left_out(broken, headers.len() + broken, "files", &why)));
-    let mut grouping = groups(&headers);
+    remarks.extend(
+        first_error
+            .map(|why| omission_remark(unreadable_count, headers.len() + unreadable_count, "files", &why)),
+    );
+    let mut grouping = group_images(&headers);
     if let Some(wrong) = grouping.unreadable.iter().position(|unreadable| Some(unreadable.file) == main) {
-        // Others of its series may be well, it is not.
-        return Err(grouping.unreadable.swap_remove(wrong).why);
+        // Other files of the series may be readable, but the named one is not.
+        return Err(grouping.unreadable.swap_remove(wrong).error);
     }
-    OpenSeries { attempt, path, headers: &headers, main, options, control }.load(grouping, remarks)
+    SeriesSelection { attempt, path, headers: &headers, named_file: main, options, control }
+        .load(grouping, remarks)
 }
 
-/// Loads the series in a folder's files; `None` where none is a DICOM file. `remarks` are what is known of the files.
+/// Loads a series from a folder's files; `None` if none is a DICOM file. `remarks` holds earlier remarks on the
+/// files.
 pub(super) fn load_folder(
     path: &Path,
     files: &[PathBuf],
@@ -105,76 +113,79 @@ pub(super) fn load_folder(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Option<Volume>, LoadError> {
-    let attempt = Attempt { what: WHAT_SERIES, path };
-    let Scan { mut headers, without_pixels, broken, why } = scan(files, control)?;
+    let attempt = LoadContext { operation: READ_SERIES, path };
+    let HeaderScan { mut headers, without_pixels, unreadable_count, first_error: why } =
+        scan_headers(files, control)?;
     if headers.is_empty() {
         return match why {
             Some(why) => Err(why),
-            None if !without_pixels.is_empty() => Err(no_pixels_in_folder(attempt, without_pixels)),
+            None if !without_pixels.is_empty() => Err(no_pixels_in_folder_error(attempt, without_pixels)),
             None => Ok(None),
         };
     }
     remarks.extend(drop_copies(&mut headers));
-    remarks.extend(why.map(|why| left_out(broken, headers.len() + broken, "files", &why)));
-    let grouping = groups(&headers);
-    let open = OpenSeries { attempt, path, headers: &headers, main: None, options, control };
+    remarks.extend(
+        why.map(|why| omission_remark(unreadable_count, headers.len() + unreadable_count, "files", &why)),
+    );
+    let grouping = group_images(&headers);
+    let open = SeriesSelection { attempt, path, headers: &headers, named_file: None, options, control };
     open.load(grouping, remarks).map(Some)
 }
 
-/// How many of the files are DICOM files with pixels.
+/// Counts the DICOM files that have pixels.
 pub(super) fn count_pictures(files: &[PathBuf], control: &LoadControl) -> Result<usize, LoadError> {
-    scan(files, control).map(|scan| scan.headers.len())
+    scan_headers(files, control).map(|scan| scan.headers.len())
 }
 
-/// The name of a file.
-fn name_of(path: &Path) -> String {
+/// Returns the file name of a path, as text.
+fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Why there is nothing to see in a file without pixels.
-fn without_pixels(attempt: Attempt<'_>, header: &Header) -> LoadError {
-    let found = &header.found;
+/// Makes the error for a file without pixels, which tells what the file is.
+fn no_pixels_error(attempt: LoadContext<'_>, header: &DicomHeader) -> LoadError {
+    let found = &header.values;
     if found.is_directory {
-        return attempt.bad_input(
+        return attempt.bad_input_error(
             "Directory Record Sequence",
             "it lists the files of a disk, and has no pictures itself",
             "open the folder that it lies in: folders within are looked through",
         );
     }
     match ObjectClass::from_uid(&found.sop_class) {
-        Some(ObjectClass { name, help }) => attempt.bad_input(
+        Some(ObjectClass { name, advice: help }) => attempt.bad_input_error(
             "SOP Class UID",
             format!("it has no pixels: it is a DICOM object of its own, {name}"),
             help,
         ),
-        None => attempt.bad_input(
+        None => attempt.bad_input_error(
             "Pixel Data",
-            format!("it has no pixels, as reports and plans have none: {}", header.kind()),
+            format!("it has no pixels, as reports and plans have none: {}", header.object_kind()),
             "open a file with pictures; if this one should have some, copy it again",
         ),
     }
 }
 
-/// Why there is nothing to see in a folder whose DICOM files have no pixels: so many of each kind.
-fn no_pixels_in_folder(attempt: Attempt<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
-    // As many as a line has room for.
-    const MOST_KINDS: usize = 6;
+/// Makes the error for a folder whose DICOM files have no pixels, with a count of each kind of object.
+fn no_pixels_in_folder_error(attempt: LoadContext<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
+    // As many kinds as fit on a line.
+    const MAX_KINDS: usize = 6;
     let count: usize = kinds.values().sum();
-    let listed = kinds.into_iter().take(MOST_KINDS).map(|(kind, count)| format!("{count} {kind}"));
+    let listed = kinds.into_iter().take(MAX_KINDS).map(|(kind, count)| format!("{count} {kind}"));
     let kinds = listed.collect::<Vec<_>>().join(", ");
-    attempt.bad_input(
+    attempt.bad_input_error(
         "files",
         format!("its {count} DICOM files have no pixels: {kinds}"),
         "name the folder that holds the pictures",
     )
 }
 
-/// Leaves out files that are copies of others.
-fn drop_copies(headers: &mut Vec<Header>) -> Vec<String> {
+/// Drops files that are copies of others, by their SOP instance identifiers; returns a remark.
+fn drop_copies(headers: &mut Vec<DicomHeader>) -> Vec<String> {
     let mut seen = BTreeSet::new();
     let before = headers.len();
     headers.retain(|header| {
-        let instance = &header.found.sop_instance;
+        let instance = &header.values.sop_instance;
         instance.is_empty() || seen.insert(instance.clone())
     });
     let copies = before - headers.len();

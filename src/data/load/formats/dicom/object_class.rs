@@ -1,101 +1,103 @@
-//! Kinds of DICOM objects that are no pictures (PS3.4 annex B, PS3.6 annex A), and what helps with them.
+//! DICOM objects without pixels (PS3.4 annex B, PS3.6 annex A), with advice for the user.
 
-/// A kind of object without pixels.
+/// Class of DICOM objects that have no pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ObjectClass {
-    /// The name of the standard.
+    /// Name of the class in the standard.
     pub(crate) name: &'static str,
-    /// What a user can do with it.
-    pub(crate) help: &'static str,
+    /// Advice to the user on handling such a file.
+    pub(crate) advice: &'static str,
 }
 
-const OPEN_PICTURES: &str = "open the pictures that it belongs to";
+const OPEN_IMAGES_ADVICE: &str = "open the pictures that it belongs to";
 
-const CONTOURS: &str = "make a mask of its contours, and open that: \
+const CONTOURS_ADVICE: &str = "make a mask of its contours, and open that: \
                         `dcmrtstruct2nii convert -r IN.dcm -d FOLDER_OF_ITS_PICTURES -o OUT`, \
                         `plastimatch convert --input IN.dcm --output-labelmap OUT.nrrd`, or 3D Slicer";
 
-const PLAN: &str = "open the dose (RTDOSE) that was computed from it, or the pictures that it was planned on";
+const PLAN_ADVICE: &str =
+    "open the dose (RTDOSE) that was computed from it, or the pictures that it was planned on";
 
-const REPORT: &str = "read it with `dsrdump IN.dcm` (DCMTK), and open the pictures that it is about";
+const REPORT_ADVICE: &str = "read it with `dsrdump IN.dcm` (DCMTK), and open the pictures that it is about";
 
-const SURFACE: &str = "open it as a surface in 3D Slicer, and save a segmentation of it as NRRD";
+const SURFACE_ADVICE: &str = "open it as a surface in 3D Slicer, and save a segmentation of it as NRRD";
 
-const REGISTRATION: &str = "apply it in 3D Slicer, and save the volume that it moves as NRRD";
+const REGISTRATION_ADVICE: &str = "apply it in 3D Slicer, and save the volume that it moves as NRRD";
 
-/// The last parts of identifiers below [`STORAGE`], what they begin, and what helps. Longer ones come first.
+/// Suffixes of class identifiers below [`STORAGE_PREFIX`]; one that ends with a dot matches by prefix. Longer ones come
+/// first.
 const CLASSES: &[(&str, ObjectClass)] = &[
-    ("481.3", ObjectClass { name: "RT Structure Set (contours)", help: CONTOURS }),
-    ("481.5", ObjectClass { name: "RT Plan", help: PLAN }),
-    ("481.8", ObjectClass { name: "RT Ion Plan", help: PLAN }),
-    ("481.", ObjectClass { name: "a record of radiotherapy", help: PLAN }),
-    ("88.59", ObjectClass { name: "Key Object Selection (a list of pictures)", help: OPEN_PICTURES }),
-    ("88.67", ObjectClass { name: "Radiation Dose Report", help: REPORT }),
-    ("88.", ObjectClass { name: "Structured Report", help: REPORT }),
-    ("11.", ObjectClass { name: "Presentation State (how pictures are shown)", help: OPEN_PICTURES }),
+    ("481.3", ObjectClass { name: "RT Structure Set (contours)", advice: CONTOURS_ADVICE }),
+    ("481.5", ObjectClass { name: "RT Plan", advice: PLAN_ADVICE }),
+    ("481.8", ObjectClass { name: "RT Ion Plan", advice: PLAN_ADVICE }),
+    ("481.", ObjectClass { name: "a record of radiotherapy", advice: PLAN_ADVICE }),
+    ("88.59", ObjectClass { name: "Key Object Selection (a list of pictures)", advice: OPEN_IMAGES_ADVICE }),
+    ("88.67", ObjectClass { name: "Radiation Dose Report", advice: REPORT_ADVICE }),
+    ("88.", ObjectClass { name: "Structured Report", advice: REPORT_ADVICE }),
+    ("11.", ObjectClass { name: "Presentation State (how pictures are shown)", advice: OPEN_IMAGES_ADVICE }),
     (
         "104.1",
         ObjectClass {
             name: "Encapsulated PDF",
-            help: "take the document out with `dcm2pdf IN.dcm OUT.pdf` (DCMTK)",
+            advice: "take the document out with `dcm2pdf IN.dcm OUT.pdf` (DCMTK)",
         },
     ),
     (
         "104.2",
         ObjectClass {
             name: "Encapsulated CDA (a document)",
-            help: "take the document out with `dcm2cda IN.dcm OUT.xml` (DCMTK)",
+            advice: "take the document out with `dcm2cda IN.dcm OUT.xml` (DCMTK)",
         },
     ),
     (
         "104.",
         ObjectClass {
             name: "Encapsulated STL, OBJ or MTL (a surface)",
-            help: "take the surface out with `dcmdump +W FOLDER IN.dcm` (DCMTK)",
+            advice: "take the surface out with `dcmdump +W FOLDER IN.dcm` (DCMTK)",
         },
     ),
     (
         "9.",
         ObjectClass {
             name: "Waveform (an ECG or the like)",
-            help: "it has curves and no voxels: programs for cardiology show them",
+            advice: "it has curves and no voxels: programs for cardiology show them",
         },
     ),
-    ("66.1", ObjectClass { name: "Spatial Registration", help: REGISTRATION }),
-    ("66.2", ObjectClass { name: "Spatial Fiducials", help: OPEN_PICTURES }),
-    ("66.3", ObjectClass { name: "Deformable Spatial Registration", help: REGISTRATION }),
-    ("66.5", ObjectClass { name: "Surface Segmentation", help: SURFACE }),
-    ("66.6", ObjectClass { name: "Tractography Results", help: "open it in 3D Slicer with SlicerDMRI" }),
+    ("66.1", ObjectClass { name: "Spatial Registration", advice: REGISTRATION_ADVICE }),
+    ("66.2", ObjectClass { name: "Spatial Fiducials", advice: OPEN_IMAGES_ADVICE }),
+    ("66.3", ObjectClass { name: "Deformable Spatial Registration", advice: REGISTRATION_ADVICE }),
+    ("66.5", ObjectClass { name: "Surface Segmentation", advice: SURFACE_ADVICE }),
+    ("66.6", ObjectClass { name: "Tractography Results", advice: "open it in 3D Slicer with SlicerDMRI" }),
     (
         "66",
         ObjectClass {
             name: "Raw Data (before reconstruction)",
-            help: "reconstruct it on the scanner, and export the pictures",
+            advice: "reconstruct it on the scanner, and export the pictures",
         },
     ),
-    ("67", ObjectClass { name: "Real World Value Mapping", help: OPEN_PICTURES }),
-    ("68.1", ObjectClass { name: "Surface Scan Mesh", help: SURFACE }),
-    ("68.2", ObjectClass { name: "Surface Scan Point Cloud", help: SURFACE }),
+    ("67", ObjectClass { name: "Real World Value Mapping", advice: OPEN_IMAGES_ADVICE }),
+    ("68.1", ObjectClass { name: "Surface Scan Mesh", advice: SURFACE_ADVICE }),
+    ("68.2", ObjectClass { name: "Surface Scan Point Cloud", advice: SURFACE_ADVICE }),
     (
         "4.2",
         ObjectClass {
             name: "MR Spectroscopy",
-            help: "convert it with `spec2nii dicom IN.dcm` and open a map that is made of its spectra",
+            advice: "convert it with `spec2nii dicom IN.dcm` and open a map that is made of its spectra",
         },
     ),
-    ("78.", ObjectClass { name: "measurements of an eye", help: REPORT }),
-    ("79.", ObjectClass { name: "measurements of an eye", help: REPORT }),
-    ("80.", ObjectClass { name: "measurements of an eye", help: REPORT }),
-    ("131", ObjectClass { name: "Basic Structured Display", help: OPEN_PICTURES }),
+    ("78.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
+    ("79.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
+    ("80.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
+    ("131", ObjectClass { name: "Basic Structured Display", advice: OPEN_IMAGES_ADVICE }),
 ];
 
-/// What the identifiers of objects that are stored begin with.
-const STORAGE: &str = "1.2.840.10008.5.1.4.1.1.";
+/// Common prefix of the identifiers of storage classes.
+const STORAGE_PREFIX: &str = "1.2.840.10008.5.1.4.1.1.";
 
 impl ObjectClass {
-    /// The kind of object of a SOP class identifier; `None` where it is not among those known here.
+    /// Looks up the class of a SOP class identifier; `None` if it is not listed here.
     pub(crate) fn from_uid(uid: &str) -> Option<Self> {
-        let rest = uid.strip_prefix(STORAGE)?;
+        let rest = uid.strip_prefix(STORAGE_PREFIX)?;
         let is_of = |part: &str| if part.ends_with('.') { rest.starts_with(part) } else { rest == part };
         CLASSES.iter().find(|(part, _)| is_of(part)).map(|(_, class)| *class)
     }
@@ -119,7 +121,10 @@ mod tests {
             ("1.2.840.10008.5.1.4.1.1.66.1", "Spatial Registration"),
         ] {
             let found = ObjectClass::from_uid(uid);
-            assert!(found.is_some_and(|class| class.name.contains(name) && !class.help.is_empty()), "{uid}");
+            assert!(
+                found.is_some_and(|class| class.name.contains(name) && !class.advice.is_empty()),
+                "{uid}"
+            );
         }
         for uid in ["", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.66.4", "1.2.3", "é"] {
             assert_eq!(ObjectClass::from_uid(uid), None, "{uid}: pictures, or nothing known");

@@ -1,82 +1,82 @@
-//! The series of files: which volumes each has, and which of them comes first.
+//! Series of files, with their volumes, in the order in which they are offered.
 
 use rayon::prelude::*;
 
-use super::groups::{Group, Grouping};
-use super::header::Header;
-use super::layer::Filling;
-use super::pixels::shape::Shape;
-use super::stack::{Stack, StackedVolume};
-use crate::data::attempt::Offer;
+use super::header::DicomHeader;
+use super::image_groups::{ImageGroup, ImageGroups};
+use super::pixels::layout::PixelLayout;
+use super::slice_layer::GapFill;
+use super::stack::{SliceStack, StackedVolume};
+use crate::data::load_context::VolumeOffer;
 
-/// Pictures of one series that are of one size and lie in parallel: one volume, or one for each phase.
+/// Images of one series with equal size and parallel planes: one volume, or one per phase.
 #[derive(Debug)]
-pub(super) struct Series {
+pub(super) struct DicomSeries {
     name: String,
-    pub(super) shape: Shape,
-    pub(super) filling: Filling,
+    pub(super) layout: PixelLayout,
+    pub(super) gap_fill: GapFill,
     pub(super) has_masks: bool,
-    pub(super) stack: Stack,
+    pub(super) stack: SliceStack,
 }
 
-impl Series {
-    /// All series of files, the largest volume first: a scout of one slice, numbered before the scan that it was taken
-    /// for, comes behind that. Films and pictures without depth come last.
-    pub(super) fn all(grouping: Grouping, headers: &[Header]) -> Vec<Self> {
-        let Grouping { groups, image_types, .. } = grouping;
-        let of_group = |group: Group| {
+impl DicomSeries {
+    /// Collects all series of the files, largest volume first: a localiser of one slice, numbered before its scan,
+    /// comes after it. Series without depth (cine, or images without positions) come last.
+    pub(super) fn from_groups(grouping: ImageGroups, headers: &[DicomHeader]) -> Vec<Self> {
+        let ImageGroups { groups, image_types, .. } = grouping;
+        let of_group = |group: ImageGroup| {
             let name = group.name(headers);
-            let Group { shape, slices, filling, has_masks } = group;
-            let stack = Stack::new(slices, filling, has_masks, &image_types);
-            Self { name, shape, filling, has_masks, stack }
+            let ImageGroup { layout: shape, slices, gap_fill: filling, has_masks } = group;
+            let stack = SliceStack::new(slices, filling, has_masks, &image_types);
+            Self { name, layout: shape, gap_fill: filling, has_masks, stack }
         };
         let mut all: Vec<Self> = groups.into_par_iter().map(of_group).collect();
-        // Equal ones stay in the order of their numbers.
+        // Equal ones keep the order of their numbers (stable sort).
         all.sort_by_key(|series| std::cmp::Reverse((series.stack.has_depth, series.voxels())));
         all
     }
 
-    /// Voxels of its first volume.
+    /// Returns the number of voxels of the first volume.
     fn voxels(&self) -> u128 {
         self.dims().into_iter().map(u128::from).product()
     }
 
-    /// Voxels of its first volume along x, y, z.
+    /// Returns the dimensions of the first volume, in voxels along x, y, z.
     fn dims(&self) -> [u64; 3] {
         let layers = self.stack.volumes.first().map_or(0, |volume| volume.layers.len());
-        dims(&self.shape, layers)
+        dims(&self.layout, layers)
     }
 
-    /// What users are offered it as.
-    pub(super) fn offer(&self, number: usize) -> Offer {
-        Offer::numbered(number, &self.name, self.dims())
+    /// Returns the series as an item to choose from.
+    pub(super) fn offer(&self, number: usize) -> VolumeOffer {
+        VolumeOffer::with_number(number, &self.name, self.dims())
     }
 
-    /// What users are offered its volumes as.
-    pub(super) fn volume_offers(&self) -> Vec<Offer> {
+    /// Returns the volumes of the series as items to choose from.
+    pub(super) fn volume_offers(&self) -> Vec<VolumeOffer> {
         let offer = |(number, volume): (usize, &StackedVolume)| {
-            Offer::numbered(number, &volume.name, dims(&self.shape, volume.layers.len()))
+            VolumeOffer::with_number(number, &volume.name, dims(&self.layout, volume.layers.len()))
         };
         self.stack.volumes.iter().enumerate().map(offer).collect()
     }
 
-    /// The number of the volume that has a slice of a file.
-    pub(super) fn volume_of(&self, file: usize) -> Option<usize> {
+    /// Returns the index of the volume that contains a slice of the file.
+    pub(super) fn volume_with_file(&self, file: usize) -> Option<usize> {
         let has = |volume: &StackedVolume| volume.slices.iter().any(|slice| slice.file == file);
         self.stack.volumes.iter().position(has)
     }
 
-    /// The file of its first picture.
+    /// Returns the file index of the first image.
     pub(super) fn first_file(&self) -> Option<usize> {
         self.stack.volumes.first()?.slices.first().map(|slice| slice.file)
     }
 
-    /// How many pictures it has.
-    pub(super) fn pictures(&self) -> usize {
+    /// Returns the number of images in all volumes.
+    pub(super) fn image_count(&self) -> usize {
         self.stack.volumes.iter().map(|volume| volume.slices.len()).sum()
     }
 }
 
-fn dims(shape: &Shape, layers: usize) -> [u64; 3] {
+fn dims(shape: &PixelLayout, layers: usize) -> [u64; 3] {
     [shape.columns as u64, shape.rows as u64, layers as u64]
 }

@@ -1,40 +1,41 @@
-//! How an array of a FITS file is stored, and what its axes stand for: three of them are a volume, one more are several.
+//! Layout of a FITS array: number type, scale, and the meaning of its axes: three form a volume, a fourth makes
+//! several.
 
-use super::super::number::Number;
-use super::super::{Dimension, LoadError};
-use super::header::Header;
-use crate::data::attempt::Attempt;
+use super::super::number::FileNumberType;
+use super::super::{FileDimension, LoadError};
+use super::header::FitsHeader;
+use crate::data::load_context::LoadContext;
 
-/// An array as volumes.
+/// Storage of an array as one or several volumes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Layout {
-    pub(super) number: Number,
-    /// Voxels along x, y, z.
+pub(super) struct FitsLayout {
+    pub(super) number: FileNumberType,
+    /// Number of voxels along x, y, z.
     pub(super) dims: [u64; 3],
-    /// Axes of the file that these are, counted from 1; `None` for the one slice of a picture.
+    /// Axes of the file behind x, y and z, counted from 1; `None` for the z axis of a two-dimensional image.
     pub(super) axes: [Option<usize>; 3],
-    /// Axis along which there are several volumes, counted from 1, and how many.
-    pub(super) outer: Option<(usize, u64)>,
+    /// Axis along which there are several volumes, counted from 1, and their number.
+    pub(super) series_axis: Option<(usize, u64)>,
     /// Slope and intercept of the values (`BSCALE`, `BZERO`).
     pub(super) scale: [f64; 2],
-    /// Value of pixels that were not measured (`BLANK`), scaled.
+    /// Value that marks unmeasured pixels (`BLANK`), after scaling.
     pub(super) blank: Option<f64>,
 }
 
-impl Layout {
-    /// The layout that a header announces; `None` for nothing, and for fewer than two axes. Of more than three axes those of
-    /// one element alone stand for nothing.
+impl FitsLayout {
+    /// Derives the layout from a header; `None` for an array without elements, or with fewer than two axes. If there
+    /// are more than three axes, those of length 1 are dropped.
     ///
     /// # Errors
-    /// `BadInput` for a type that there is not, and for more than four axes.
-    pub(super) fn new(attempt: Attempt<'_>, header: &Header) -> Result<Option<Self>, LoadError> {
+    /// `BadInput` for an unknown type, and for more than four axes longer than 1.
+    pub(super) fn new(attempt: LoadContext<'_>, header: &FitsHeader) -> Result<Option<Self>, LoadError> {
         let lengths = header.axes(attempt)?;
         if lengths.contains(&0) {
             return Ok(None);
         }
         let bits = header.required_int(attempt, "BITPIX")?;
-        let Some(number) = number_of(bits) else {
-            return Err(attempt.bad_input(
+        let Some(number) = number_from_bitpix(bits) else {
+            return Err(attempt.bad_input_error(
                 "BITPIX",
                 format!("there are no values of {bits} bits; 8, 16, 32, 64, -32 and -64 are read"),
                 "copy or download the file again",
@@ -51,7 +52,7 @@ impl Layout {
             [x, y, z] => ([Some(x), Some(y), Some(z)], None),
             [x, y, z, outer] => ([Some(x), Some(y), Some(z)], Some(outer)),
             _ => {
-                return Err(attempt.bad_input(
+                return Err(attempt.bad_input_error(
                     "NAXIS",
                     format!("an array of {} axes longer than 1 is not read: two to four are", axes.len()),
                     "cut it along the others first: python -c \"from astropy.io import fits; \
@@ -60,54 +61,54 @@ impl Layout {
             }
         };
         let scale = [header.float("BSCALE").unwrap_or(1.0), header.float("BZERO").unwrap_or(0.0)];
-        // Only whole numbers have one: others say it with NaN.
+        // Only integer arrays have `BLANK`; floating-point arrays use NaN.
         let blank = if bits > 0 { header.int(attempt, "BLANK").ok().flatten() } else { None };
         Ok(Some(Self {
             number,
             dims: grid.map(|axis| axis.map_or(1, |(_, length)| length)),
             axes: grid.map(|axis| axis.map(|(axis, _)| axis)),
-            outer,
+            series_axis: outer,
             scale,
-            blank: blank.map(|blank| scaled(blank as f64, scale, number)),
+            blank: blank.map(|blank| scale_value(blank as f64, scale, number)),
         }))
     }
 
-    /// In what the volumes differ, and what the one with a number is called.
-    pub(super) fn dimension(&self, header: &Header) -> (Dimension, impl Fn(usize) -> String + use<>) {
-        let axis = self.outer.map_or(0, |(axis, _)| axis);
+    /// Returns the dimension in which the volumes differ, and a function that names the volume of a number.
+    pub(super) fn dimension(&self, header: &FitsHeader) -> (FileDimension, impl Fn(usize) -> String + use<>) {
+        let axis = self.series_axis.map_or(0, |(axis, _)| axis);
         let is_stokes = header.text(&format!("CTYPE{axis}")).eq_ignore_ascii_case("STOKES");
         let at = |keyword: &str, otherwise| header.float(&format!("{keyword}{axis}")).unwrap_or(otherwise);
         let (value, pixel, step) = (at("CRVAL", 0.0), at("CRPIX", 0.0), at("CDELT", 1.0));
         let name = move |number: usize| {
             let code = value + step * (number as f64 + 1.0 - pixel);
-            if is_stokes { stokes(code).to_owned() } else { String::new() }
+            if is_stokes { stokes_name(code).to_owned() } else { String::new() }
         };
-        (if is_stokes { Dimension::Channel } else { Dimension::Frame }, name)
+        (if is_stokes { FileDimension::Channel } else { FileDimension::Frame }, name)
     }
 }
 
-/// Numbers by `BITPIX` (table 8 of the standard).
-fn number_of(bits: i64) -> Option<Number> {
+/// Maps `BITPIX` to a number type (table 8 of the standard).
+fn number_from_bitpix(bits: i64) -> Option<FileNumberType> {
     Some(match bits {
-        8 => Number::U8,
-        16 => Number::I16,
-        32 => Number::I32,
-        64 => Number::I64,
-        -32 => Number::F32,
-        -64 => Number::F64,
+        8 => FileNumberType::U8,
+        16 => FileNumberType::I16,
+        32 => FileNumberType::I32,
+        64 => FileNumberType::I64,
+        -32 => FileNumberType::F32,
+        -64 => FileNumberType::F64,
         _ => return None,
     })
 }
 
-/// A stored number as the value that voxels have. Those of 8 and 16 bits that do not stay whole are 32-bit floats.
-fn scaled(stored: f64, [slope, intercept]: [f64; 2], number: Number) -> f64 {
+/// Scales a stored number as voxels are scaled: 8- and 16-bit integers with a fractional scale become 32-bit floats.
+fn scale_value(stored: f64, [slope, intercept]: [f64; 2], number: FileNumberType) -> f64 {
     let value = stored.mul_add(slope, intercept);
     let is_whole = slope.fract() == 0.0 && intercept.fract() == 0.0;
     if is_whole || number.bytes() > 2 { value } else { f64::from(value as f32) }
 }
 
-/// Polarisations by their codes (table 28).
-fn stokes(code: f64) -> &'static str {
+/// Returns the name of a polarisation (Stokes parameter) by its code (table 28).
+fn stokes_name(code: f64) -> &'static str {
     match code.round() as i64 {
         1 => "I",
         2 => "Q",

@@ -1,38 +1,38 @@
-//! Distances between the voxels of a FITS file, by its world coordinates (section 8 of the standard).
+//! Voxel spacing of a FITS file, from its world coordinates (section 8 of the standard).
 //!
-//! Voxels are shown where pixels are, as other programs show them: the file's coordinates turn nothing and mirror nothing.
-//! Only how long steps are is taken from them. Degrees on the sky are no lengths, but they compare; metres along one axis and
-//! hertz along another do not.
+//! The coordinates neither rotate nor mirror the image: pixels are shown where other programs show them. Only the
+//! lengths of the steps are used. Degrees on the sky are no lengths, but comparable with each other; metres along one
+//! axis and hertz along another are not.
 
-use super::super::placement::Placement;
-use super::header::Header;
-use super::layout::Layout;
-use crate::data::attempt::is_usable_spacing;
-use crate::data::plain;
+use super::super::placement::GridPlacement;
+use super::header::FitsHeader;
+use super::layout::FitsLayout;
+use crate::data::load_context::is_usable_spacing;
+use crate::data::sanitised;
 
-/// Types of coordinates along a spectrum, the first four letters: those of table 25, and what programs write beside them.
+/// First four letters of spectral coordinate types: those of table 25, and others in common use.
 const SPECTRAL: [&str; 16] = [
     "FREQ", "ENER", "WAVN", "VRAD", "WAVE", "VOPT", "ZOPT", "AWAV", "VELO", "BETA", "FELO", "LAMB", "VLSR",
     "CHAN", "PIXE", "LINE",
 ];
 
-/// Types of coordinates on the sky, the first four letters (section 8.3).
+/// First four letters of celestial coordinate types (section 8.3).
 const CELESTIAL: [&str; 12] =
     ["RA--", "DEC-", "GLON", "GLAT", "ELON", "ELAT", "HLON", "HLAT", "SLON", "SLAT", "HPLN", "HPLT"];
 
-/// What a coordinate is measured in.
+/// Unit of a world coordinate, after conversion.
 #[derive(Debug, Clone, PartialEq)]
-enum Unit {
-    /// Angles, in degrees.
+enum FitsUnit {
+    /// Angle on the sky, in degrees.
     Angle,
-    /// Lengths, in millimetres.
+    /// Length in space, in millimetres.
     Length,
-    /// Something else, by its name: comparable with itself alone.
+    /// Any other unit, by its name; comparable only with itself.
     Other(String),
 }
 
-impl Unit {
-    /// In words.
+impl FitsUnit {
+    /// Returns the unit's name for remarks to the user.
     fn name(&self) -> &str {
         match self {
             Self::Angle => "degrees",
@@ -43,80 +43,88 @@ impl Unit {
     }
 }
 
-/// One step along an axis.
+/// Step from one pixel to the next along an axis: length and unit.
 #[derive(Debug, Clone)]
-struct Step {
+struct AxisStep {
     length: f64,
-    unit: Unit,
+    unit: FitsUnit,
 }
 
-/// Where the voxels of an array lie: the first at the lower left, rows upwards.
-pub(super) fn placement(header: &Header, layout: &Layout) -> Placement {
-    let steps = layout.axes.map(|axis| axis.and_then(|axis| step(header, axis)));
-    let said: Vec<&Step> = steps.iter().flatten().collect();
-    let Some(first) = said.first() else { return Placement::unknown() };
-    // The unit that most axes have, or the first axis.
-    let count = |unit: &Unit| said.iter().filter(|step| step.unit == *unit).count();
-    let usual = if count(&first.unit) == 1 && said.len() == 3 && said[1].unit == said[2].unit {
-        &said[1].unit
-    } else {
-        &first.unit
-    };
-    let alike: Vec<f64> = said.iter().filter(|step| step.unit == *usual).map(|step| step.length).collect();
-    let shortest = alike.iter().copied().fold(f64::INFINITY, f64::min);
-    let is_length = *usual == Unit::Length && alike.iter().all(|&length| is_usable_spacing(length));
-    let one = if is_length { 1.0 } else { shortest };
+/// Returns the placement of an array's voxels: the first at the lower left, rows upwards.
+pub(super) fn placement(header: &FitsHeader, layout: &FitsLayout) -> GridPlacement {
+    let steps = layout.axes.map(|axis| axis.and_then(|axis| axis_step(header, axis)));
+    let stated_steps: Vec<&AxisStep> = steps.iter().flatten().collect();
+    let Some(first) = stated_steps.first() else { return GridPlacement::unknown() };
+    // Most common unit: that of the first axis, or that of the other two if only they agree.
+    let count = |unit: &FitsUnit| stated_steps.iter().filter(|step| step.unit == *unit).count();
+    let common_unit =
+        if count(&first.unit) == 1 && stated_steps.len() == 3 && stated_steps[1].unit == stated_steps[2].unit
+        {
+            &stated_steps[1].unit
+        } else {
+            &first.unit
+        };
+    let comparable_lengths: Vec<f64> =
+        stated_steps.iter().filter(|step| step.unit == *common_unit).map(|step| step.length).collect();
+    let shortest = comparable_lengths.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_length = *common_unit == FitsUnit::Length
+        && comparable_lengths.iter().all(|&length| is_usable_spacing(length));
+    let scale = if is_length { 1.0 } else { shortest };
     let spacing = [0, 1, 2].map(|axis| match &steps[axis] {
-        Some(step) if step.unit == *usual => step.length / one,
-        // Nothing is said of how it compares: as wide as the others.
-        _ => shortest / one,
+        Some(step) if step.unit == *common_unit => step.length / scale,
+        // An axis whose unit cannot be compared gets the shortest spacing of the others.
+        _ => shortest / scale,
     });
     let remarks = [0, 1, 2].map(|axis| {
-        let step = steps[axis].as_ref().filter(|step| step.unit != *usual)?;
+        let step = steps[axis].as_ref().filter(|step| step.unit != *common_unit)?;
         let keyword = format!("CTYPE{}", layout.axes[axis].unwrap_or_default());
-        let kind = plain(header.text(&keyword), 40);
+        let kind = sanitised(header.text(&keyword), 40);
         Some(format!(
             "axis {} ({}, in {}) has another unit than the others ({}): its steps are shown as long as theirs",
             axis + 1,
             if kind.is_empty() { "unnamed" } else { &kind },
-            plain(step.unit.name(), 40),
-            plain(usual.name(), 40)
+            sanitised(step.unit.name(), 40),
+            sanitised(common_unit.name(), 40)
         ))
     });
-    let placed = Placement::spaced(spacing);
-    let placed = remarks.into_iter().fold(placed, Placement::remarked);
-    if is_length { placed } else { placed.of_unknown_scale() }
+    let placed = GridPlacement::from_spacing(spacing);
+    let placed = remarks.into_iter().fold(placed, GridPlacement::with_remark);
+    if is_length { placed } else { placed.with_unknown_scale() }
 }
 
-/// One step along an axis of the file, counted from 1; `None` where nothing is said of it that can be.
-fn step(header: &Header, axis: usize) -> Option<Step> {
-    let own = unit(header, axis);
-    let mut along: Vec<(Unit, f64)> = Vec::new();
-    for world in 1..=MOST_COORDINATES {
-        let Some(rate) = rate(header, world, axis).filter(|&rate| rate != 0.0) else { continue };
-        let (unit, factor) = unit(header, world);
+/// Returns the step along an axis of the file, counted from 1; `None` if the header gives no usable one.
+fn axis_step(header: &FitsHeader, axis: usize) -> Option<AxisStep> {
+    let own = coordinate_unit(header, axis);
+    let mut along: Vec<(FitsUnit, f64)> = Vec::new();
+    for world in 1..=MAX_COORDINATES {
+        let Some(rate) = coordinate_derivative(header, world, axis).filter(|&rate| rate != 0.0) else {
+            continue;
+        };
+        let (unit, factor) = coordinate_unit(header, world);
         along.push((unit, (rate * factor).abs()));
     }
-    let length_in = |unit: &Unit| {
+    let length_in = |unit: &FitsUnit| {
         let parts = along.iter().filter(|(other, _)| other == unit).map(|(_, length)| length * length);
         parts.sum::<f64>().sqrt()
     };
     let length = length_in(&own.0);
-    // Where another coordinate alone changes along the axis, it is of that.
+    // If the axis' own coordinate is constant along it, the first other coordinate that varies supplies the step.
     let (unit, length) = match along.first() {
         Some((other, _)) if length == 0.0 => (other.clone(), length_in(other)),
         _ => (own.0, length),
     };
-    (length.is_finite() && length > 0.0).then_some(Step { length, unit })
+    (length.is_finite() && length > 0.0).then_some(AxisStep { length, unit })
 }
 
-/// Coordinates that are looked at: two on the sky, a spectrum, polarisation, and as many degenerate ones.
-const MOST_COORDINATES: usize = 8;
+/// Maximum number of world coordinates examined: two on the sky, a spectrum, polarisation, and as many degenerate
+/// ones.
+const MAX_COORDINATES: usize = 8;
 
-/// How a world coordinate changes along an axis of the array: `CDi_j`, or `CDELTi` times `PCi_j`, or `CDELTi` alone.
-fn rate(header: &Header, world: usize, axis: usize) -> Option<f64> {
-    let has_matrix = (1..=MOST_COORDINATES)
-        .any(|i| (1..=MOST_COORDINATES).any(|j| header.float(&format!("CD{i}_{j}")).is_some()));
+/// Returns the derivative of a world coordinate along an array axis: `CDi_j`, or `CDELTi` times `PCi_j`, or `CDELTi`
+/// alone.
+fn coordinate_derivative(header: &FitsHeader, world: usize, axis: usize) -> Option<f64> {
+    let has_matrix = (1..=MAX_COORDINATES)
+        .any(|i| (1..=MAX_COORDINATES).any(|j| header.float(&format!("CD{i}_{j}")).is_some()));
     if has_matrix {
         return header.float(&format!("CD{world}_{axis}"));
     }
@@ -125,17 +133,18 @@ fn rate(header: &Header, world: usize, axis: usize) -> Option<f64> {
     Some(delta * turned.unwrap_or(if world == axis { 1.0 } else { 0.0 }))
 }
 
-/// The unit of a world coordinate, and how many of degrees or millimetres one of the file's is.
-fn unit(header: &Header, world: usize) -> (Unit, f64) {
+/// Returns the unit of a world coordinate, and the factor to degrees or millimetres.
+fn coordinate_unit(header: &FitsHeader, world: usize) -> (FitsUnit, f64) {
     let kind = header.text(&format!("CTYPE{world}")).to_uppercase();
     let said = header.text(&format!("CUNIT{world}"));
     let begins = |names: &[&str]| names.iter().any(|name| kind.starts_with(name));
     // Wavelengths are lengths, but not in space.
     if begins(&SPECTRAL) || kind == "TIME" || kind == "STOKES" {
         let name = if said.is_empty() { &kind } else { said };
-        return (Unit::Other(name.to_lowercase()), 1.0);
+        return (FitsUnit::Other(name.to_lowercase()), 1.0);
     }
-    // Older programs write them in capitals; of lengths that would be other ones.
+    // Older programs write angle units in capitals; units of length are case-sensitive, as another case means another
+    // unit.
     let angle = match said.to_lowercase().as_str() {
         "" if begins(&CELESTIAL) => Some(1.0),
         "deg" | "degree" | "degrees" => Some(1.0),
@@ -146,16 +155,16 @@ fn unit(header: &Header, world: usize) -> (Unit, f64) {
         _ => None,
     };
     if let Some(degrees) = angle {
-        return (Unit::Angle, degrees);
+        return (FitsUnit::Angle, degrees);
     }
     match said {
-        "km" => (Unit::Length, 1e6),
-        "m" => (Unit::Length, 1e3),
-        "cm" => (Unit::Length, 10.0),
-        "mm" => (Unit::Length, 1.0),
-        "um" | "micron" => (Unit::Length, 1e-3),
-        "nm" => (Unit::Length, 1e-6),
-        "Angstrom" | "angstrom" => (Unit::Length, 1e-7),
-        other => (Unit::Other(other.to_lowercase()), 1.0),
+        "km" => (FitsUnit::Length, 1e6),
+        "m" => (FitsUnit::Length, 1e3),
+        "cm" => (FitsUnit::Length, 10.0),
+        "mm" => (FitsUnit::Length, 1.0),
+        "um" | "micron" => (FitsUnit::Length, 1e-3),
+        "nm" => (FitsUnit::Length, 1e-6),
+        "Angstrom" | "angstrom" => (FitsUnit::Length, 1e-7),
+        other => (FitsUnit::Other(other.to_lowercase()), 1.0),
     }
 }

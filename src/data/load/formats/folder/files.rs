@@ -1,62 +1,62 @@
-//! The files of a folder, and of the folders within it.
+//! Listing of the files in a folder, and in the folders within it.
 
 use std::path::{Path, PathBuf};
 
-use crate::data::attempt::Attempt;
 use crate::data::load::{LoadControl, LoadError};
-use crate::data::natural;
+use crate::data::load_context::LoadContext;
+use crate::data::natural_sort_key;
 
-/// Most files that are looked at: eight times the slices of the longest scans.
-const MOST_FILES: usize = 1 << 16;
+/// Maximum number of files: eight times the slices of the longest scans.
+const MAX_FILES: usize = 1 << 16;
 
-/// Most entries of folders within a folder that are looked at, folders included: some exports have one for each slice.
-const MOST_ENTRIES: usize = 2 * MOST_FILES;
+/// Maximum number of entries in nested folders, folders included: some exports have a folder for each slice.
+const MAX_ENTRIES: usize = 2 * MAX_FILES;
 
-/// How deep folders within each other are looked through: disks have patients, studies, series and parts of these.
-const MOST_DEPTH: usize = 12;
+/// Maximum nesting depth of folders: media have patients, studies, series and parts of these.
+const MAX_DEPTH: usize = 12;
 
-/// The regular files of a folder, also behind links, in natural order: `slice 9` before `slice 10`. Hidden ones are not
-/// meant.
+/// Lists the regular files of a folder, following links, in natural order: `slice 9` before `slice 10`. Hidden files
+/// are left out.
 ///
 /// # Errors
 /// `Io` where the folder cannot be read, `Limit` where it has more files than any volume has slices.
-pub(super) fn files_in(attempt: Attempt<'_>, control: &LoadControl) -> Result<Vec<PathBuf>, LoadError> {
+pub(super) fn list_files(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Vec<PathBuf>, LoadError> {
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(attempt.path).map_err(|error| attempt.io(error))? {
+    for entry in std::fs::read_dir(attempt.path).map_err(|error| attempt.io_error(error))? {
         control.check()?;
-        let entry = entry.map_err(|error| attempt.io(error))?;
+        let entry = entry.map_err(|error| attempt.io_error(error))?;
         let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
         if is_hidden || !entry.path().is_file() {
             continue;
         }
-        if files.len() == MOST_FILES {
-            return Err(attempt.limit(
+        if files.len() == MAX_FILES {
+            return Err(attempt.limit_error(
                 "files",
-                format!("there are more than {MOST_FILES} files in it"),
+                format!("there are more than {MAX_FILES} files in it"),
                 "put the slices of one volume into a folder of their own",
             ));
         }
         files.push(entry.path());
     }
-    sort(&mut files);
+    sort_naturally(&mut files);
     Ok(files)
 }
 
-/// The files of the folders within a folder.
+/// Files in the folders within a folder.
 #[derive(Debug, Default)]
-pub(super) struct Nested {
-    /// Folder after folder, in natural order.
+pub(super) struct NestedFiles {
+    /// Paths of the files, folder by folder, in natural order.
     pub(super) files: Vec<PathBuf>,
-    /// There are more, or deeper ones, than are looked at.
-    is_cut: bool,
-    /// Folders that cannot be read.
+    /// True if the limits on number or depth left files out.
+    is_truncated: bool,
+    /// Number of folders that could not be read.
     unreadable: usize,
 }
 
-impl Nested {
-    /// What users should know of what was not looked at.
+impl NestedFiles {
+    /// Remarks for the user on files that were left out.
     pub(super) fn remarks(&self) -> Vec<String> {
-        let cut = self.is_cut.then(|| {
+        let cut = self.is_truncated.then(|| {
             format!(
                 "of the folders within it {} files were looked at, and more are there: open one of these folders",
                 self.files.len()
@@ -68,15 +68,15 @@ impl Nested {
     }
 }
 
-/// The regular files of all folders within a folder, as far as it is bounded in number and depth; hidden ones are not
-/// meant. Links to folders are not followed: they lead anywhere, also back.
+/// Lists the regular files of all folders within a folder, within the limits on number and depth; hidden ones are
+/// left out. Links to folders are not followed: they may form cycles.
 ///
 /// # Errors
-/// `Cancelled` alone: what cannot be read is counted.
-pub(super) fn files_within(path: &Path, control: &LoadControl) -> Result<Nested, LoadError> {
-    let mut nested = Nested::default();
-    let mut entries_left = MOST_ENTRIES;
-    // The next folder is the last.
+/// `Cancelled` only: unreadable folders are counted.
+pub(super) fn list_nested_files(path: &Path, control: &LoadControl) -> Result<NestedFiles, LoadError> {
+    let mut nested = NestedFiles::default();
+    let mut entries_left = MAX_ENTRIES;
+    // Stack of folders to visit.
     let mut open = vec![(path.to_owned(), 0)];
     while let Some((folder, depth)) = open.pop() {
         control.check()?;
@@ -92,7 +92,7 @@ pub(super) fn files_within(path: &Path, control: &LoadControl) -> Result<Nested,
                 continue;
             }
             if entries_left == 0 {
-                nested.is_cut = true;
+                nested.is_truncated = true;
                 break;
             }
             entries_left -= 1;
@@ -102,23 +102,24 @@ pub(super) fn files_within(path: &Path, control: &LoadControl) -> Result<Nested,
                 files.push(entry.path());
             }
         }
-        sort(&mut files);
-        let room = MOST_FILES - nested.files.len();
-        nested.is_cut |= files.len() > room;
+        sort_naturally(&mut files);
+        let room = MAX_FILES - nested.files.len();
+        nested.is_truncated |= files.len() > room;
         nested.files.extend(files.into_iter().take(room));
-        if depth == MOST_DEPTH {
-            nested.is_cut |= !folders.is_empty();
+        if depth == MAX_DEPTH {
+            nested.is_truncated |= !folders.is_empty();
             continue;
         }
-        sort(&mut folders);
+        sort_naturally(&mut folders);
         open.extend(folders.into_iter().rev().map(|folder| (folder, depth + 1)));
     }
     Ok(nested)
 }
 
-/// Puts paths of one folder in natural order.
-fn sort(paths: &mut [PathBuf]) {
-    paths.sort_by_cached_key(|path| natural(&path.file_name().unwrap_or_default().to_string_lossy()));
+/// Sorts the paths of one folder in natural order.
+fn sort_naturally(paths: &mut [PathBuf]) {
+    paths
+        .sort_by_cached_key(|path| natural_sort_key(&path.file_name().unwrap_or_default().to_string_lossy()));
 }
 
 #[cfg(test)]
@@ -135,7 +136,7 @@ mod tests {
         for name in ["a", "b9/2", "b10/x10", "b10/x9", "b10/.y", "b10/c/z", ".hidden/a"] {
             std::fs::write(path.join(name), "x").unwrap();
         }
-        let found = files_within(path, &LoadControl::new()).unwrap();
+        let found = list_nested_files(path, &LoadControl::new()).unwrap();
         let names: Vec<&Path> = found.files.iter().map(|file| file.strip_prefix(path).unwrap()).collect();
         assert_eq!(names, ["b9/2", "b10/x9", "b10/x10", "b10/c/z"].map(Path::new));
         assert!(found.remarks().is_empty());
@@ -150,17 +151,17 @@ mod tests {
         std::os::unix::fs::symlink(path, path.join("a/back")).unwrap();
         std::fs::write(path.join("file"), "x").unwrap();
         std::os::unix::fs::symlink(path.join("file"), path.join("a/file")).unwrap();
-        let found = files_within(path, &LoadControl::new()).unwrap();
+        let found = list_nested_files(path, &LoadControl::new()).unwrap();
         assert_eq!(found.files, [path.join("a/file")], "links to files are files");
     }
 
     #[test]
     fn depth_is_bounded_and_said() {
         let folder = tempfile::tempdir().unwrap();
-        let deep: PathBuf = (0..=MOST_DEPTH).map(|_| "d").collect();
+        let deep: PathBuf = (0..=MAX_DEPTH).map(|_| "d").collect();
         std::fs::create_dir_all(folder.path().join(&deep)).unwrap();
         std::fs::write(folder.path().join(deep).join("file"), "x").unwrap();
-        let found = files_within(folder.path(), &LoadControl::new()).unwrap();
+        let found = list_nested_files(folder.path(), &LoadControl::new()).unwrap();
         assert_eq!(found.files.len(), 0);
         assert!(found.remarks()[0].contains("open one of these folders"));
     }

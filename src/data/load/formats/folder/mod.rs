@@ -1,5 +1,5 @@
-//! A folder that is opened as a whole: the slices of one volume, a file each. Those of DICOM may lie in folders within
-//! it, as disks and exports of archives have them.
+//! Folders that are opened as a whole: slices of one volume, one file each. DICOM slices may lie in nested folders,
+//! as on media and in archive exports.
 
 mod files;
 
@@ -8,38 +8,34 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::pictures::slices;
-use super::unsupported::of_folder;
+use super::unsupported::unsupported_folder;
 use super::{LoadControl, LoadError, LoadOptions, dicom};
 use crate::data::Volume;
-use crate::data::attempt::Attempt;
-use files::{Nested, files_in, files_within};
+use crate::data::load_context::LoadContext;
+use files::{NestedFiles, list_files, list_nested_files};
 
-/// Endings of files that are pictures for themselves.
+/// Extensions of pictures that are volumes of their own.
 const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
-/// Loads the volume whose slices lie in a folder; of the files in it only those that are meant, where that is said.
-pub(in crate::data::load) fn load(
-    path: &Path,
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Result<Volume, LoadError> {
-    let attempt = Attempt { what: "open the folder", path };
-    if let Some(format) = of_folder(path) {
+/// Loads the volume whose slices lie in a folder, restricted to [`LoadOptions::only_files`] where it is given.
+pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "open the folder", path };
+    if let Some(format) = unsupported_folder(path) {
         return Err(format.refusal(attempt));
     }
-    let mut files = files_in(attempt, control)?;
-    let mut nested = Nested::default();
-    if let Some(among) = &options.among {
-        let meant: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();
-        files.retain(|path| path.file_name().is_some_and(|name| meant.contains(name)));
+    let mut files = list_files(attempt, control)?;
+    let mut nested = NestedFiles::default();
+    if let Some(among) = &options.only_files {
+        let selected: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();
+        files.retain(|path| path.file_name().is_some_and(|name| selected.contains(name)));
     } else {
-        nested = files_within(path, control)?;
+        nested = list_nested_files(path, control)?;
     }
     let count = nested.files.len();
-    if is_about_pictures(&files, &nested, control)? {
-        nested = Nested::default();
+    if is_picture_folder(&files, &nested, control)? {
+        nested = NestedFiles::default();
     }
-    // Each kind of slices looks for its own, the surest marks first.
+    // Each reader selects its own files, the one with the most specific signature first.
     let all = [files.as_slice(), nested.files.as_slice()].concat();
     if let Some(volume) = dicom::load_folder(path, &all, nested.remarks(), options, control)? {
         return Ok(volume);
@@ -48,15 +44,19 @@ pub(in crate::data::load) fn load(
         return Ok(volume);
     }
     let within = if count > 0 { format!(", nor of the {count} in folders within,") } else { String::new() };
-    Err(attempt.bad_input(
+    Err(attempt.bad_input_error(
         "files",
         format!("none of its {} files{within} is a slice that is read", files.len()),
         "name one file",
     ))
 }
 
-/// Whether a folder is one of pictures, beside which a few DICOM files in folders within do not count.
-fn is_about_pictures(files: &[PathBuf], nested: &Nested, control: &LoadControl) -> Result<bool, LoadError> {
+/// Returns true if a folder mainly contains pictures, so that a few DICOM files in nested folders are ignored.
+fn is_picture_folder(
+    files: &[PathBuf],
+    nested: &NestedFiles,
+    control: &LoadControl,
+) -> Result<bool, LoadError> {
     let is_picture = |path: &&PathBuf| {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         ending.is_some_and(|ending| PICTURES.contains(&ending.as_str()))

@@ -1,56 +1,60 @@
-//! Where voxels lie.
+//! Placement of `MetaImage` voxels: spacing, matrix or orientation letters, and offset.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
-use super::super::placement::Placement;
-use super::header::Header;
-use super::layout::Grid;
-use crate::data::attempt::Attempt;
+use super::super::placement::GridPlacement;
+use super::header::MetaImageHeader;
+use super::layout::MetaImageGrid;
+use crate::data::load_context::LoadContext;
 
-/// The place of the voxels of a grid. A matrix says which way a body lies, or three letters do.
-pub(super) fn placement(attempt: Attempt<'_>, header: &Header, grid: &Grid) -> Result<Placement, LoadError> {
+/// Returns the placement of a grid's voxels. A matrix gives the anatomical orientation, or else three letters do.
+pub(super) fn placement(
+    attempt: LoadContext<'_>,
+    header: &MetaImageHeader,
+    grid: &MetaImageGrid,
+) -> Result<GridPlacement, LoadError> {
     let count = grid.sizes.len();
     let spacing = header.numbers(attempt, &["ElementSpacing", "ElementSize"], count)?;
     let origin = header.numbers(attempt, &["Offset", "Position", "Origin"], count)?;
     let matrix = header.numbers(attempt, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
-    // MetaIO's words for what it does not know.
+    // MetaIO's values for "unknown".
     let is_scale_known = header.get("DistanceUnits") != Some("?");
     let is_of_a_body = header.get("AnatomicalOrientation") != Some("???");
-    let mm = header.get("DistanceUnits").and_then(mm_of).unwrap_or(1.0);
+    let mm = header.get("DistanceUnits").and_then(mm_per_unit).unwrap_or(1.0);
 
-    // Without distances the file may still say how its axes lie.
+    // Without spacings the file may still give the directions of its axes.
     let is_scale_known = is_scale_known && spacing.is_some();
     if spacing.is_none() && matrix.is_none() {
-        return Ok(Placement::unknown());
+        return Ok(GridPlacement::unknown());
     }
     let spacing = spacing.unwrap_or_else(|| vec![1.0; count]);
     let length = |axis: usize| spacing.get(axis).or(spacing.get(1)).map_or(1.0, |length| length * mm);
-    let mut spaced = Placement::spaced([length(0), length(1), length(2)]);
-    spaced.is_scale_known = is_scale_known;
-    // A picture lies in no body.
-    let directions = if count < 3 { None } else { matrix.map(|matrix| rows(&matrix, count)) };
-    let named = || header.get("AnatomicalOrientation").filter(|_| count > 2).and_then(directions_of);
-    let Some(directions) = directions.or_else(named) else {
-        return Ok(spaced);
+    let mut axis_aligned = GridPlacement::from_spacing([length(0), length(1), length(2)]);
+    axis_aligned.is_scale_known = is_scale_known;
+    // A two-dimensional image has no anatomical orientation.
+    let directions = if count < 3 { None } else { matrix.map(|matrix| directions_from_rows(&matrix, count)) };
+    let from_letters =
+        || header.get("AnatomicalOrientation").filter(|_| count > 2).and_then(directions_from_letters);
+    let Some(directions) = directions.or_else(from_letters) else {
+        return Ok(axis_aligned);
     };
     let origin = origin.map_or(DVec3::ZERO, |origin| DVec3::new(origin[0], origin[1], origin[2]) * mm);
     if directions.determinant() == 0.0 {
-        return Ok(
-            spaced.remarked(Some("the file's axes are unusable: they are taken for those of the grid"))
-        );
+        return Ok(axis_aligned
+            .with_remark(Some("the file's axes are unusable: they are taken for those of the grid")));
     }
-    // What could not be a distance is mended already.
-    let matrix3 = directions * spaced.world_from_index.matrix3;
-    let mut placed = Placement::lps(DAffine3 { matrix3, translation: origin });
-    placed.remarks.extend(spaced.remarks);
+    // Uses the spacing after unusable distances were replaced.
+    let matrix3 = directions * axis_aligned.world_from_index.matrix3;
+    let mut placed = GridPlacement::from_lps_affine(DAffine3 { matrix3, translation: origin });
+    placed.remarks.extend(axis_aligned.remarks);
     placed.is_scale_known = is_scale_known;
     placed.is_anatomical &= is_of_a_body;
     Ok(placed)
 }
 
-/// Millimetres of a unit of lengths, where it is known.
-fn mm_of(unit: &str) -> Option<f64> {
+/// Returns millimetres per unit of length; `None` for an unknown unit.
+fn mm_per_unit(unit: &str) -> Option<f64> {
     match unit.to_lowercase().as_str() {
         "nm" => Some(1e-6),
         "um" | "µm" => Some(1e-3),
@@ -61,15 +65,15 @@ fn mm_of(unit: &str) -> Option<f64> {
     }
 }
 
-/// The directions of the first three axes: a row of the header for each.
-fn rows(matrix: &[f64], count: usize) -> DMat3 {
+/// Returns the directions of the first three axes, each a row of the header's matrix.
+fn directions_from_rows(matrix: &[f64], count: usize) -> DMat3 {
     let row = |axis: usize| DVec3::from_array(std::array::from_fn(|at| matrix[axis * count + at]));
     DMat3::from_cols(row(0), row(1), row(2))
 }
 
-/// The directions of axes by the sides that they come from, as in `RAI`; `None` where letters are none, or not of three
-/// different axes.
-fn directions_of(letters: &str) -> Option<DMat3> {
+/// Parses axis directions from the sides that they come from, as in `RAI`; `None` for other letters, or if two axes
+/// are parallel.
+fn directions_from_letters(letters: &str) -> Option<DMat3> {
     let axis = |letter: char| match letter {
         'R' => Some(DVec3::X),
         'L' => Some(-DVec3::X),

@@ -1,40 +1,40 @@
-//! Names and colours of labels behind the voxels of an MGH file, where `FreeSurfer` has put them.
+//! Colour table of an MGH file: names and colours of labels, which `FreeSurfer` stores behind the voxels.
 //!
-//! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of `FreeSurfer` (`TAGreadStart`, `znzCTABreadFromBinary`): five real numbers
-//! about the acquisition, then tags. All numbers are big-endian.
+//! After `fio.cpp`, `tags.cpp` and `colortab.cpp` of `FreeSurfer` (`TAGreadStart`, `znzCTABreadFromBinary`): five
+//! real numbers on the acquisition, then tags. All numbers are big-endian.
 
-use crate::data::Labels;
+use crate::data::FileLabelTable;
 
-/// Bytes behind the voxels that are looked at: a table of the two thousand labels of the finest atlases has 100 KiB, and
-/// before it lie the commands that made the file.
-pub(super) const MOST_BYTES: u64 = 4 << 20;
+/// Maximum number of bytes read behind the voxels: a table of the two thousand labels of the finest atlases takes 100
+/// KiB, and the command lines that made the file precede it.
+pub(super) const MAX_FOOTER_BYTES: u64 = 4 << 20;
 
-/// Repetition time, flip angle, echo time, inversion time, field of view.
+/// Size of the acquisition parameters: repetition time, flip angle, echo time, inversion time, field of view.
 const ACQUISITION_BYTES: usize = 20;
 
-/// Tags (`tags.h`) whose length is not said as others say it.
+/// Tags (`tags.h`) whose length is absent or encoded differently from that of other tags.
 const OLD_COLOR_TABLE: i32 = 1;
 const OLD_REAL_RAS: i32 = 2;
 const OLD_SURFACE_GEOMETRY: i32 = 20;
 const OLD_TRANSFORM: i32 = 30;
 
-/// Version of tables in which each entry has its number.
-const WITH_NUMBERS: i32 = -2;
+/// Version of tables in which each entry stores its label number.
+const NUMBERED_VERSION: i32 = -2;
 
-/// The labels of what follows the voxels; none where there is no table, or one that cannot be.
-pub(super) fn labels(footer: &[u8]) -> Labels {
-    find(&mut Bytes { left: footer }).unwrap_or_default()
+/// Parses the labels from the bytes behind the voxels; empty if there is no table, or an invalid one.
+pub(super) fn parse_labels(footer: &[u8]) -> FileLabelTable {
+    find_table(&mut BigEndianCursor { remaining: footer }).unwrap_or_default()
 }
 
-fn find(bytes: &mut Bytes<'_>) -> Option<Labels> {
+fn find_table(bytes: &mut BigEndianCursor<'_>) -> Option<FileLabelTable> {
     bytes.take(ACQUISITION_BYTES)?;
     loop {
         let skip = match bytes.int()? {
-            OLD_COLOR_TABLE => return table(bytes),
+            OLD_COLOR_TABLE => return parse_table(bytes),
             OLD_REAL_RAS | OLD_SURFACE_GEOMETRY => 0,
-            // Without the zero at its end.
+            // The stored length includes a terminating zero that is not written.
             OLD_TRANSFORM => i64::from(bytes.int()?) - 1,
-            // Nothing follows.
+            // Tag 0 ends the list.
             0 => return None,
             _ => bytes.long()?,
         };
@@ -42,14 +42,14 @@ fn find(bytes: &mut Bytes<'_>) -> Option<Labels> {
     }
 }
 
-fn table(bytes: &mut Bytes<'_>) -> Option<Labels> {
+fn parse_table(bytes: &mut BigEndianCursor<'_>) -> Option<FileLabelTable> {
     let first = bytes.int()?;
-    let has_numbers = first == WITH_NUMBERS;
-    // The highest number, in tables whose entries have theirs.
+    let has_numbers = first == NUMBERED_VERSION;
+    // Highest label number in version 2, number of entries in the older version.
     let count = if has_numbers { bytes.int()? } else { first };
     bytes.text()?;
     let count = if has_numbers { bytes.int()? } else { count };
-    let mut labels = Labels::default();
+    let mut labels = FileLabelTable::default();
     for at in 0..count {
         let number = if has_numbers { bytes.int()? } else { at };
         let name = bytes.text()?;
@@ -60,15 +60,15 @@ fn table(bytes: &mut Bytes<'_>) -> Option<Labels> {
     Some(labels)
 }
 
-/// What is left of some bytes.
-struct Bytes<'a> {
-    left: &'a [u8],
+/// Cursor over the bytes that are still to be parsed.
+struct BigEndianCursor<'a> {
+    remaining: &'a [u8],
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> BigEndianCursor<'a> {
     fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, left) = self.left.split_at_checked(count)?;
-        self.left = left;
+        let (taken, left) = self.remaining.split_at_checked(count)?;
+        self.remaining = left;
         Some(taken)
     }
 
@@ -80,7 +80,7 @@ impl<'a> Bytes<'a> {
         self.take(8)?.try_into().ok().map(i64::from_be_bytes)
     }
 
-    /// Text behind its length, up to the zero at its end.
+    /// Reads text that follows its length, up to its terminating zero.
     fn text(&mut self) -> Option<String> {
         let length = usize::try_from(self.int()?).ok()?;
         let bytes = self.take(length)?;

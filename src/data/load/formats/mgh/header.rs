@@ -3,129 +3,135 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::LoadError;
-use super::super::number::Number;
-use super::super::placement::Placement;
-use crate::data::attempt::Attempt;
+use super::super::number::FileNumberType;
+use super::super::placement::GridPlacement;
+use crate::data::load_context::LoadContext;
 
-/// Bytes before the voxels: 90 that say something, the rest is kept free (`UNUSED_SPACE_SIZE` of `mri.h`).
+/// Offset of the voxels in bytes: 90 bytes of fields, the rest reserved (`UNUSED_SPACE_SIZE` of `mri.h`).
 pub(super) const HEADER_BYTES: usize = 284;
 
-/// Version of the format; there has been but one.
+/// Version of the format; only version 1 exists.
 const VERSION: u8 = 1;
 
-/// Intent of numbers that are labels; newer programs put the intent above the version (`MGZ_INTENT_LABEL`).
+/// Intent code of labels; newer programs store the intent in the byte above the version (`MGZ_INTENT_LABEL`).
 const LABEL_INTENT: u8 = 1;
 
-/// Intents above which a file without a mark is not believed to be one of these: fewer than ten are in use.
-const HIGHEST_INTENT: i32 = 15;
+/// Maximum plausible intent code for detection without magic bytes: fewer than ten are in use.
+const MAX_INTENT: i32 = 15;
 
-/// Voxels along an axis above which a file without a mark is not believed to be one of these.
-const MOST_ALONG: i32 = 1 << 24;
+/// Maximum plausible number of voxels along an axis for detection without magic bytes.
+const MAX_AXIS_LENGTH: i32 = 1 << 24;
 
-/// Axes where the header gives none: slices from behind to the front, rows from the head down (`mghRead` of `mriio.cpp`).
+/// Default axes if the header gives none: coronal slices from back to front, rows from superior to inferior
+/// (`mghRead` of `mriio.cpp`).
 const CORONAL: DMat3 =
     DMat3::from_cols(DVec3::new(-1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, -1.0), DVec3::new(0.0, 1.0, 0.0));
 
 const HELP: &str = "copy the file again, or write it again with mri_convert";
 
-/// What a header says.
+/// Parsed header of an MGH file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Header {
+pub(super) struct MghHeader {
     /// Voxels along x, y, z.
     pub(super) dims: [u64; 3],
-    /// Volumes behind each other.
+    /// Number of consecutive volumes (time steps).
     pub(super) frames: u64,
-    pub(super) number: Number,
-    /// Whether the file says that its numbers are labels.
+    pub(super) number: FileNumberType,
+    /// True if the file's intent code marks its numbers as labels.
     pub(super) are_labels: bool,
-    /// Where the voxels lie, unless `goodRASFlag` says that nobody knows.
-    place: Option<Place>,
+    /// Position of the voxels; `None` if `goodRASFlag` is 0, that is, unknown.
+    geometry: Option<MghGeometry>,
 }
 
-/// Place of the voxels.
+/// Spacing, axis directions and centre of the grid.
 #[derive(Debug, Clone, PartialEq)]
-struct Place {
-    /// Distances between voxel centres in millimetres.
+struct MghGeometry {
+    /// Distances between voxel centres, in millimetres.
     spacing_mm: DVec3,
-    /// Directions of the three axes, right-anterior-superior.
+    /// Unit directions of the three axes, right-anterior-superior.
     directions: DMat3,
-    /// Place of index `dims / 2` (`c_ras`), in right-anterior-superior millimetres.
+    /// Position of index `dims / 2` (`c_ras`), in right-anterior-superior millimetres.
     center: DVec3,
 }
 
-/// Whether a file that begins like this is one. The format has no mark: every field must be what it can be.
+/// True if these bytes begin an MGH file. The format has no magic bytes, so every field is checked for plausible
+/// values.
 pub(super) fn is_mgh(bytes: &[u8]) -> bool {
-    let fields = Fields(bytes);
+    let fields = MghFields(bytes);
     let is_version =
-        fields.int(0) & 0xff == i32::from(VERSION) && (0..=HIGHEST_INTENT).contains(&(fields.int(0) >> 8));
-    let are_counts = [4, 8, 12, 16].into_iter().all(|at| (1..=MOST_ALONG).contains(&fields.int(at)));
+        fields.int(0) & 0xff == i32::from(VERSION) && (0..=MAX_INTENT).contains(&(fields.int(0) >> 8));
+    let are_counts = [4, 8, 12, 16].into_iter().all(|at| (1..=MAX_AXIS_LENGTH).contains(&fields.int(at)));
     let is_placed = fields.short(28);
-    let place = fields.place();
+    let place = fields.geometry();
     let is_place = is_placed == 0
         || is_placed == 1
             && place.spacing_mm.cmpgt(DVec3::ZERO).all()
             && place.spacing_mm.is_finite()
             && place.directions.is_finite()
             && place.center.is_finite();
-    bytes.len() >= HEADER_BYTES && is_version && are_counts && number_of(fields.int(20)).is_ok() && is_place
+    bytes.len() >= HEADER_BYTES
+        && is_version
+        && are_counts
+        && number_from_code(fields.int(20)).is_ok()
+        && is_place
 }
 
-impl Header {
-    /// The header at the beginning of a file.
+impl MghHeader {
+    /// Parses the header at the beginning of a file.
     ///
     /// # Errors
-    /// `BadInput` where it is cut off, of another version, or says what cannot be.
-    pub(super) fn parse(attempt: Attempt<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
-        let fields = Fields(bytes);
+    /// `BadInput` if it is truncated, of another version, or contains invalid values.
+    pub(super) fn parse(attempt: LoadContext<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
+        let fields = MghFields(bytes);
         if bytes.len() < HEADER_BYTES {
             let why =
                 format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", bytes.len());
-            return Err(attempt.bad_input("header", why, HELP));
+            return Err(attempt.bad_input_error("header", why, HELP));
         }
         let [_, _, intent, version] = fields.array(0);
         if version != VERSION || fields.int(0) >> 16 != 0 {
             let why = format!("version {VERSION} was expected, {} was found", fields.int(0));
-            return Err(attempt.bad_input("version", why, HELP));
+            return Err(attempt.bad_input_error("version", why, HELP));
         }
         let [x, y, z, frames] = [4, 8, 12, 16].map(|at| fields.int(at));
         let count = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
-        let (Some(dims), Some(frames)) = (all([x, y, z].map(count)), count(frames)) else {
+        let (Some(dims), Some(frames)) = (all_present([x, y, z].map(count)), count(frames)) else {
             let why = format!("{x} x {y} x {z} voxels in {frames} frames cannot be");
-            return Err(attempt.bad_input("width, height, depth, nframes", why, HELP));
+            return Err(attempt.bad_input_error("width, height, depth, nframes", why, HELP));
         };
-        let number = number_of(fields.int(20)).map_err(|why| {
+        let number = number_from_code(fields.int(20)).map_err(|why| {
             let help = "write it again with numbers: mri_convert --out_data_type float IN OUT.mgz";
-            attempt.bad_input("type", why, help)
+            attempt.bad_input_error("type", why, help)
         })?;
-        let place = (fields.short(28) > 0).then(|| fields.place());
-        Ok(Self { dims, frames, number, are_labels: intent == LABEL_INTENT, place })
+        let place = (fields.short(28) > 0).then(|| fields.geometry());
+        Ok(Self { dims, frames, number, are_labels: intent == LABEL_INTENT, geometry: place })
     }
 
-    /// Where the voxels lie.
-    pub(super) fn placement(&self) -> Placement {
+    /// Returns the placement of the voxels in the world.
+    pub(super) fn placement(&self) -> GridPlacement {
         let half = DVec3::from(self.dims.map(|n| n as f64)) / 2.0;
         let centred =
             |axes: DMat3, center: DVec3| DAffine3 { matrix3: axes, translation: center - axes * half };
-        match &self.place {
+        match &self.geometry {
             Some(place) => {
                 let axes = place.directions * DMat3::from_diagonal(place.spacing_mm);
-                Placement::ras(centred(axes, place.center))
+                GridPlacement::from_ras_affine(centred(axes, place.center))
             }
-            None => Placement::ras(centred(CORONAL, DVec3::ZERO)).of_no_body().of_unknown_scale().remarked(Some(
+            None => GridPlacement::from_ras_affine(centred(CORONAL, DVec3::ZERO)).without_anatomy().with_unknown_scale().with_remark(Some(
                 "the header does not say where its voxels lie (goodRASFlag is 0): they are taken for coronal slices",
             )),
         }
     }
 }
 
-/// The number type that a code stands for (`MRI_UCHAR` … of `mri.h`), or why it is not read.
-fn number_of(code: i32) -> Result<Number, String> {
+/// Maps a type code (`MRI_UCHAR` … of `mri.h`) to a number type, or to the reason why it is not supported.
+fn number_from_code(code: i32) -> Result<FileNumberType, String> {
     let why = match code {
-        0 => return Ok(Number::U8),
-        1 => return Ok(Number::I32),
-        3 => return Ok(Number::F32),
-        4 => return Ok(Number::I16),
-        10 => return Ok(Number::U16),
+        0 => return Ok(FileNumberType::U8),
+        1 => return Ok(FileNumberType::I32),
+        3 => return Ok(FileNumberType::F32),
+        4 => return Ok(FileNumberType::I16),
+        10 => return Ok(FileNumberType::U16),
         2 => "long whole numbers (type 2), whose length depends on the machine, are not read",
         5 => "voxels of one bit (type 5) are not read",
         6 => "tensors (type 6) are not read",
@@ -136,16 +142,16 @@ fn number_of(code: i32) -> Result<Number, String> {
     Err(why.to_owned())
 }
 
-/// Three values, where all are there.
-fn all<T: Copy>(values: [Option<T>; 3]) -> Option<[T; 3]> {
+/// Returns the three values if all of them are present.
+fn all_present<T: Copy>(values: [Option<T>; 3]) -> Option<[T; 3]> {
     let [x, y, z] = values;
     Some([x?, y?, z?])
 }
 
-/// Big-endian numbers at places; 0 behind the end.
-struct Fields<'a>(&'a [u8]);
+/// Reader of big-endian numbers at byte offsets; reads zeros beyond the end.
+struct MghFields<'a>(&'a [u8]);
 
-impl Fields<'_> {
+impl MghFields<'_> {
     fn array<const N: usize>(&self, at: usize) -> [u8; N] {
         let found = self.0.get(at..at + N).and_then(|bytes| bytes.try_into().ok());
         found.unwrap_or([0; N])
@@ -163,8 +169,8 @@ impl Fields<'_> {
         DVec3::from_array([0, 4, 8].map(|step| f64::from(f32::from_be_bytes(self.array(at + step)))))
     }
 
-    fn place(&self) -> Place {
+    fn geometry(&self) -> MghGeometry {
         let directions = DMat3::from_cols(self.vector(42), self.vector(54), self.vector(66));
-        Place { spacing_mm: self.vector(30), directions, center: self.vector(78) }
+        MghGeometry { spacing_mm: self.vector(30), directions, center: self.vector(78) }
     }
 }

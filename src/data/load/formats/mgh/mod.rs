@@ -1,8 +1,9 @@
-//! MGH and MGZ, the volumes of `FreeSurfer`: a header of 284 bytes, the voxels, and what tags say behind them; as a whole
-//! often compressed with gzip.
+//! MGH and MGZ, the volumes of `FreeSurfer`: a header of 284 bytes, the voxels, and tags behind them; often gzipped
+//! as a whole.
 //!
-//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of `FreeSurfer`'s `mriio.cpp`. World
-//! space is right-anterior-superior millimetres. Where the volumes of one file differ is not said: they are time steps.
+//! After <https://surfer.nmr.mgh.harvard.edu/fswiki/FsTutorial/MghFormat> and `mghRead` of `FreeSurfer`'s
+//! `mriio.cpp`. World space is right-anterior-superior millimetres. Several volumes of one file count as time steps,
+//! as the format does not say how they differ.
 
 mod color_table;
 mod header;
@@ -11,79 +12,85 @@ mod tests;
 
 use std::io::Read as _;
 
-use super::content::Content;
-use super::input::bare_name;
-use super::label_files;
-use super::number::Stored;
-use super::placement::Parts;
-use super::reader::{Reader, Source};
-use super::samples::{Fault, Layout, is_corruption};
-use super::voxels::Meant;
-use super::{Dimension, Endian, LoadControl, LoadError};
-use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Hints, Labels, Meaning, Volume, plain};
-use header::{HEADER_BYTES, Header, is_mgh};
+use super::content::FileContent;
+use super::input::name_without_extension;
+use super::label_tables;
+use super::number::VoxelEncoding;
+use super::placement::VolumeParts;
+use super::reader::{FormatReader, VolumeSource};
+use super::samples::{ReadFault, VoxelLayout, is_corruption};
+use super::voxels::ValueMapping;
+use super::{Endian, FileDimension, LoadControl, LoadError};
+use crate::data::load_context::{GridExtent, LoadContext};
+use crate::data::{FileLabelTable, ValueMeaning, ValueMetadata, Volume, sanitised};
+use header::{HEADER_BYTES, MghHeader, is_mgh};
 
 const ENDINGS: &[&str] = &[".mgz", ".mgh", ".mgh.gz"];
 
-pub(super) const READER: Reader =
-    Reader { name: "MGH/MGZ", endings: ENDINGS, recognises: |start| is_mgh(start.bytes()), load };
+pub(super) const READER: FormatReader =
+    FormatReader { name: "MGH/MGZ", extensions: ENDINGS, recognises: |start| is_mgh(start.bytes()), load };
 
 const HELP: &str = "check the header, or copy the file again";
 
-/// Loads an MGH file.
-fn load(source: Source<'_>) -> Result<Volume, LoadError> {
-    let attempt = Attempt { what: "read the MGH volume", path: source.path };
-    let header = Header::parse(attempt, source.start.bytes())?;
-    let Header { dims, frames, number, .. } = header;
+/// Loads an MGH or MGZ file.
+fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the MGH volume", path: source.path };
+    let header = MghHeader::parse(attempt, source.start.bytes())?;
+    let MghHeader { dims, frames, number, .. } = header;
     if dims[0] > 1 && dims[1] == 1 && dims[2] == 1 {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "width, height, depth",
             format!("its {} values lie in one row, as those at the vertices of a surface do", dims[0]),
             "open the volume that the surface was made from",
         ));
     }
-    let frame = source.numbered(attempt, Dimension::Frame, frames, dims, |_| String::new())? as u64;
-    let stored = Stored::scalar(number, Endian::Big);
-    let room = source.options.room(source.control);
-    let extent = Extent::checked(attempt, "width, height, depth", dims, stored.voxel_type(), room)?;
-    let layout = Layout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
+    let frame =
+        source.choose_numbered(attempt, FileDimension::Frame, frames, dims, |_| String::new())? as u64;
+    let stored = VoxelEncoding::scalar(number, Endian::Big);
+    let room = source.options.limits(source.control);
+    let extent = GridExtent::checked(attempt, "width, height, depth", dims, stored.voxel_type(), room)?;
+    let layout = VoxelLayout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
 
-    let of_frame = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
-    let place = |frame: u64| of_frame.saturating_mul(frame).saturating_add(HEADER_BYTES as u64);
+    let frame_bytes = (extent.voxels as u64).saturating_mul(stored.voxel_bytes());
+    let frame_offset = |frame: u64| frame_bytes.saturating_mul(frame).saturating_add(HEADER_BYTES as u64);
     let control = source.control;
-    let mut content = Content::of(source.input, source.start.is_gzip());
-    content.check_room(attempt, "nframes", place(frame), u128::from(of_frame))?;
+    let mut content = FileContent::new(source.input, source.start.is_gzip());
+    content.check_length(attempt, "nframes", frame_offset(frame), u128::from(frame_bytes))?;
     let read = content
-        .go_to(place(frame), control)
-        .and_then(|()| content.voxels(&stored, extent, &Meant::as_stored(None), control))
-        .and_then(|voxels| Ok((voxels, labels_behind(&mut content, place(frames), control)?)));
+        .seek_forward(frame_offset(frame), control)
+        .and_then(|()| content.voxels(&stored, extent, &ValueMapping::identity(None), control))
+        .and_then(|voxels| Ok((voxels, read_footer_labels(&mut content, frame_offset(frames), control)?)));
     let (voxels, labels) = read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", HELP))?;
 
-    let mut hints = Hints::default();
+    let mut hints = ValueMetadata::default();
     if header.are_labels {
-        hints.meaning = Meaning::Labels;
+        hints.meaning = ValueMeaning::Labels;
     }
     if labels.is_empty() {
-        label_files::add(attempt, ENDINGS, voxels.in_file(), &mut hints);
-    } else if label_files::is_whole(voxels.in_file()) {
-        (hints.labels, hints.meaning) = (labels, Meaning::Labels);
+        label_tables::add_label_table(attempt, ENDINGS, voxels.stored_numbers(), &mut hints);
+    } else if label_tables::all_integers(voxels.stored_numbers()) {
+        (hints.labels, hints.meaning) = (labels, ValueMeaning::Labels);
     }
-    let name = plain(&bare_name(attempt.path, ENDINGS), 120);
-    Parts { name, extent, placement: header.placement(), voxels, hints }.volume(attempt)
+    let name = sanitised(&name_without_extension(attempt.path, ENDINGS), 120);
+    VolumeParts { name, extent, placement: header.placement(), voxels, hints }.into_volume(attempt)
 }
 
-/// The labels that are said behind all voxels. A file may end there, or with the voxels that were wanted.
-fn labels_behind(content: &mut Content, end: u64, control: &LoadControl) -> Result<Labels, Fault> {
-    match content.go_to(end, control) {
+/// Reads the labels from the tags behind all voxels. A file may end there, or right after the voxels that were
+/// requested.
+fn read_footer_labels(
+    content: &mut FileContent,
+    end: u64,
+    control: &LoadControl,
+) -> Result<FileLabelTable, ReadFault> {
+    match content.seek_forward(end, control) {
         Ok(()) => {}
-        Err(Fault::Short { .. }) => return Ok(Labels::default()),
+        Err(ReadFault::Short { .. }) => return Ok(FileLabelTable::default()),
         Err(fault) => return Err(fault),
     }
     let mut footer = Vec::new();
-    match content.take(color_table::MOST_BYTES).read_to_end(&mut footer) {
-        Ok(_) => Ok(color_table::labels(&footer)),
-        Err(error) if is_corruption(&error) => Err(Fault::Corrupt(error)),
-        Err(error) => Err(Fault::Io(error)),
+    match content.take(color_table::MAX_FOOTER_BYTES).read_to_end(&mut footer) {
+        Ok(_) => Ok(color_table::parse_labels(&footer)),
+        Err(error) if is_corruption(&error) => Err(ReadFault::Corrupt(error)),
+        Err(error) => Err(ReadFault::Io(error)),
     }
 }

@@ -1,26 +1,26 @@
-//! MGH files made by hand: every type, places, frames, tables of labels, and headers that lie.
+//! Tests of MGH files built in memory: every type, placement, frames, colour tables, and invalid headers.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::*;
-use crate::data::load::tests::shared::{assert_refused, gzip, load_bytes};
-use crate::data::load::{Choice, LoadErrorKind};
-use crate::data::{DataKind, Label, Samples};
+use crate::data::load::tests::helpers::{assert_refused, gzip, load_bytes};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
+use crate::data::{DataKind, FileLabel, Samples};
 
-/// A file that is put together field by field.
+/// Builder of an MGH file, field by field.
 #[derive(Clone)]
 struct MghFile {
     /// Version, width, height, depth, frames, type, degrees of freedom.
     ints: [i32; 7],
     is_placed: i16,
-    /// Distances, three axes, centre.
+    /// Spacings, three axis directions, centre.
     place: [f32; 15],
     data: Vec<u8>,
     footer: Vec<u8>,
 }
 
 impl MghFile {
-    /// 2 x 3 x 2 voxels of a type, 1 x 2 x 3 mm apart, along right, anterior and superior.
+    /// A file of 2 x 3 x 2 voxels of a type, 1 x 2 x 3 mm apart, along right, anterior and superior.
     fn new(code: i32, data: Vec<u8>) -> Self {
         let place = [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 10.0, 20.0, 30.0];
         Self { ints: [1, 2, 3, 2, 1, code, 0], is_placed: 1, place, data, footer: Vec::new() }
@@ -40,16 +40,16 @@ impl MghFile {
     }
 
     fn loaded(&self) -> Volume {
-        load_bytes("a.mgh", &self.bytes(), Choice::default()).unwrap()
+        load_bytes("a.mgh", &self.bytes(), VolumeChoice::default()).unwrap()
     }
 }
 
-/// The numbers from 0 to 11 as bytes.
+/// A file with the voxels 0 to 11 as bytes.
 fn twelve() -> MghFile {
     MghFile::new(0, (0..12).collect())
 }
 
-/// The tag of a table of labels: with the numbers of its entries, or of the older kind.
+/// Bytes of a colour table tag: with label numbers in its entries (version 2), or of the older version.
 fn color_table(has_numbers: bool) -> Vec<u8> {
     let int = |value: i32| value.to_be_bytes().to_vec();
     let text = |text: &str| [int(text.len() as i32 + 1), text.as_bytes().to_vec(), vec![0]].concat();
@@ -66,7 +66,7 @@ fn color_table(has_numbers: bool) -> Vec<u8> {
         entry(0, "Unknown", [0, 0, 0]),
         entry(if has_numbers { 17 } else { 1 }, "Left-Hippocampus", [220, 216, 20]),
     ];
-    // Five numbers of the acquisition, a command line, the older form of a transform, the table.
+    // Five acquisition parameters, a command line, the older transform tag, the table.
     let before = [
         vec![0; 20],
         int(3),
@@ -94,10 +94,10 @@ fn every_type_is_read() {
     ] {
         let made = MghFile::new(code, data);
         assert_eq!((made.loaded().samples(), made.loaded().dims()), (&expected, [2, 3, 2]), "type {code}");
-        // By its content, whatever it is called; compressed or not.
+        // Detected by content, whatever the file name; gzipped or not.
         for name in ["scan", "scan.mgz", "scan.bin"] {
             for bytes in [made.bytes(), gzip(&made.bytes())] {
-                let volume = load_bytes(name, &bytes, Choice::default()).unwrap();
+                let volume = load_bytes(name, &bytes, VolumeChoice::default()).unwrap();
                 assert_eq!(volume.samples(), &expected, "{name}");
                 assert_eq!(volume.name(), name.trim_end_matches(".mgz"));
             }
@@ -108,14 +108,14 @@ fn every_type_is_read() {
 #[test]
 fn voxels_lie_where_the_header_says() {
     let volume = twelve().loaded();
-    // Index dims / 2 lies at c_ras.
+    // Index dims / 2 lies at `c_ras`.
     let expected = DAffine3 {
         matrix3: DMat3::from_diagonal(DVec3::new(1.0, 2.0, 3.0)),
         translation: DVec3::new(10.0, 20.0, 30.0) - DVec3::new(1.0, 3.0, 3.0),
     };
     assert_eq!(volume.world_from_index(), expected);
     assert!(volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
-    // As FreeSurfer conforms them: to the left, down, to the front.
+    // Orientation of volumes conformed by FreeSurfer: left, inferior, anterior.
     let mut made = twelve();
     made.place[3..12].copy_from_slice(&[-1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0]);
     let conformed = made.loaded();
@@ -130,20 +130,20 @@ fn voxels_lie_where_the_header_says() {
     assert!(unplaced.remarks()[0].contains("goodRASFlag"), "{:?}", unplaced.remarks());
     let mut flat = twelve();
     flat.place[6..9].copy_from_slice(&[1.0, 0.0, 0.0]);
-    assert!(load_bytes("a.mgh", &flat.bytes(), Choice::default()).unwrap().remarks().len() == 1);
+    assert!(load_bytes("a.mgh", &flat.bytes(), VolumeChoice::default()).unwrap().remarks().len() == 1);
 }
 
 #[test]
 fn volumes_behind_each_other_are_time_steps() {
     let made = MghFile::new(0, (0..24).collect()).with_int(4, 2);
     for bytes in [made.bytes(), gzip(&made.bytes())] {
-        let Err(LoadError::Several { dimension: Dimension::Frame, offers, .. }) =
-            load_bytes("a.mgz", &bytes, Choice::default())
+        let Err(LoadError::Several { dimension: FileDimension::Frame, offers, .. }) =
+            load_bytes("a.mgz", &bytes, VolumeChoice::default())
         else {
             panic!("there are two");
         };
         assert_eq!((offers.len(), offers[1].dims), (2, Some([2, 3, 2])));
-        let second = Choice { frame: Some(1), ..Choice::default() };
+        let second = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
         let volume = load_bytes("a.mgz", &bytes, second).unwrap();
         assert_eq!(*volume.samples(), Samples::U8((12..24).collect()));
     }
@@ -155,26 +155,26 @@ fn labels_have_the_names_of_the_table_behind_them() {
     let mut made = MghFile::new(1, numbers.map(i32::to_be_bytes).concat());
     made.footer = color_table(true);
     for bytes in [made.bytes(), gzip(&made.bytes())] {
-        let volume = load_bytes("aseg.mgz", &bytes, Choice::default()).unwrap();
+        let volume = load_bytes("aseg.mgz", &bytes, VolumeChoice::default()).unwrap();
         let color = Some([220, 216, 20].map(|part: u8| f32::from(part) / 255.0));
-        let expected = Label { name: "Left-Hippocampus".to_owned(), color };
-        assert_eq!(volume.hints().labels.get(17), Some(&expected));
+        let expected = FileLabel { name: "Left-Hippocampus".to_owned(), color };
+        assert_eq!(volume.metadata().labels.get(17), Some(&expected));
         assert!(matches!(volume.kind().kind, DataKind::LabelMap { .. }), "{:?}", volume.kind());
     }
     made.footer = color_table(false);
     assert_eq!(
-        made.loaded().hints().labels.get(1).map(|label| label.name.as_str()),
+        made.loaded().metadata().labels.get(1).map(|label| label.name.as_str()),
         Some("Left-Hippocampus")
     );
-    // The intent above the version says it, too.
+    // The intent code above the version marks labels, too.
     made.footer = Vec::new();
     let intended = made.clone().with_int(0, 0x101).loaded();
-    assert_eq!((intended.hints().meaning, intended.hints().labels.len()), (Meaning::Labels, 0));
-    assert_eq!(made.loaded().hints().meaning, Meaning::Unknown);
-    // A table behind measurements names nothing.
+    assert_eq!((intended.metadata().meaning, intended.metadata().labels.len()), (ValueMeaning::Labels, 0));
+    assert_eq!(made.loaded().metadata().meaning, ValueMeaning::Unknown);
+    // A table behind real-valued measurements names nothing.
     let mut floats = MghFile::new(3, [0.5f32; 12].map(f32::to_be_bytes).concat());
     floats.footer = color_table(true);
-    assert!(floats.loaded().hints().labels.is_empty());
+    assert!(floats.loaded().metadata().labels.is_empty());
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn what_follows_the_voxels_is_no_matter() {
         assert_eq!(*made.loaded().samples(), Samples::U8((0..12).collect()), "{cut} bytes");
     }
     for lie in [i32::MAX, -1, i32::MIN, 0] {
-        // Lengths and counts that cannot be: of a tag, of a name, of entries.
+        // Impossible lengths and counts: of a tag, of a name, of entries.
         for at in [24, 28, table.len() - 4, 48, 52, 56] {
             made.footer = table.clone();
             made.footer[at..at + 4].copy_from_slice(&lie.to_be_bytes());
@@ -202,14 +202,14 @@ fn every_cut_is_refused() {
     let whole = made.bytes();
     for cut in 0..HEADER_BYTES + 12 {
         assert_refused(
-            load_bytes("a.mgh", &whole[..cut], Choice::default()),
+            load_bytes("a.mgh", &whole[..cut], VolumeChoice::default()),
             LoadErrorKind::BadInput,
             &["a.mgh", "truncated"],
         );
     }
     let packed = gzip(&whole);
     for cut in 11..packed.len() - 1 {
-        let error = load_bytes("a.mgz", &packed[..cut], Choice::default()).unwrap_err();
+        let error = load_bytes("a.mgz", &packed[..cut], VolumeChoice::default()).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{cut}: {error}");
     }
 }
@@ -235,7 +235,7 @@ fn headers_that_lie_are_refused() {
         (twelve().with_int(5, 77), LoadErrorKind::BadInput, "no type 77"),
         (twelve().with_int(1, 12).with_int(2, 1).with_int(3, 1), LoadErrorKind::BadInput, "surface"),
     ] {
-        assert_refused(load_bytes("a.mgz", &made.bytes(), Choice::default()), kind, &[words]);
+        assert_refused(load_bytes("a.mgz", &made.bytes(), VolumeChoice::default()), kind, &[words]);
     }
 }
 

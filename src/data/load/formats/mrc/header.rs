@@ -1,45 +1,45 @@
-//! The header of an MRC file: 256 words of 4 bytes, which its definition counts from 1.
+//! Header of an MRC file: 256 words of 4 bytes, which its definition counts from 1.
 
 use super::super::{Endian, LoadError};
-use crate::data::attempt::Attempt;
+use crate::data::load_context::LoadContext;
 
 pub(super) const HEADER_BYTES: usize = 1024;
 
-/// Voxels along an axis above which a header is not believed: it tells the order of its bytes.
-const MOST_ALONG: i32 = 1 << 24;
+/// Maximum plausible number of voxels along an axis; a larger number shows a wrong byte order.
+const MAX_AXIS_LENGTH: i32 = 1 << 24;
 
-/// The highest mode that any program writes: packed 4 bits.
-const HIGHEST_MODE: i32 = 101;
+/// Highest mode that any program writes: 101, packed 4 bits.
+const MAX_MODE: i32 = 101;
 
-/// IMOD's mark, "IMOD" as a number.
+/// IMOD's stamp: "IMOD" as a little-endian integer.
 const IMOD_STAMP: i32 = 1_146_047_817;
 
-/// A bit of IMOD's flags: bytes have signs.
+/// Bit of IMOD's flags: bytes are signed.
 const IMOD_SIGNED_BYTES: i32 = 1;
 
-/// A bit of IMOD's flags: the origin has the opposite sign.
+/// Bit of IMOD's flags: the origin has the opposite sign.
 const IMOD_ORIGIN_INVERTED: i32 = 4;
 
-/// Numbers of space groups that stand for stacks of volumes.
+/// Space group numbers that stand for stacks of volumes.
 const VOLUME_STACKS: std::ops::RangeInclusive<i32> = 401..=630;
 
-pub(super) struct Header {
+pub(super) struct MrcHeader {
     bytes: [u8; HEADER_BYTES],
     pub(super) endian: Endian,
 }
 
-impl Header {
-    /// The header at the beginning of a file.
-    pub(super) fn of(attempt: Attempt<'_>, start: &[u8]) -> Result<Self, LoadError> {
+impl MrcHeader {
+    /// Parses the header at the beginning of a file, and detects its byte order.
+    pub(super) fn parse(attempt: LoadContext<'_>, start: &[u8]) -> Result<Self, LoadError> {
         let Some(&bytes) = start.first_chunk() else {
-            return Err(attempt.bad_input(
+            return Err(attempt.bad_input_error(
                 "header",
                 format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", start.len()),
                 "copy or download the file again",
             ));
         };
-        let as_order = |endian| Self { bytes, endian };
-        // The machine stamp; what it says is wrong in files that were converted by half.
+        let with_endian = |endian| Self { bytes, endian };
+        // The machine stamp is wrong in files that were converted only in part, so plausibility decides.
         let stamped = match bytes[212] {
             0x44 => Some(Endian::Little),
             0x11 => Some(Endian::Big),
@@ -47,13 +47,13 @@ impl Header {
         };
         let first = stamped.unwrap_or(Endian::Little);
         let other = if first == Endian::Little { Endian::Big } else { Endian::Little };
-        let [stated, swapped] = [first, other].map(as_order);
-        if stated.is_plausible() || (stamped.is_some() && !swapped.is_plausible()) {
-            Ok(stated)
+        let [as_stamped, swapped] = [first, other].map(with_endian);
+        if as_stamped.is_plausible() || (stamped.is_some() && !swapped.is_plausible()) {
+            Ok(as_stamped)
         } else if swapped.is_plausible() {
             Ok(swapped)
         } else {
-            Err(attempt.bad_input(
+            Err(attempt.bad_input_error(
                 "header",
                 "it is no header of an MRC file: in neither byte order are its dimensions and its mode possible",
                 "check the file's name and format",
@@ -67,7 +67,7 @@ impl Header {
         bytes
     }
 
-    /// A word as a whole number.
+    /// Returns a word as an integer.
     pub(super) fn int(&self, word: usize) -> i32 {
         match self.endian {
             Endian::Little => i32::from_le_bytes(self.word(word)),
@@ -75,32 +75,33 @@ impl Header {
         }
     }
 
-    /// A word as a real number.
+    /// Returns a word as a real number.
     pub(super) fn float(&self, word: usize) -> f64 {
         f64::from(f32::from_bits(self.int(word).cast_unsigned()))
     }
 
-    /// Three words.
+    /// Returns three consecutive words as integers.
     pub(super) fn ints(&self, first: usize) -> [i32; 3] {
         [first, first + 1, first + 2].map(|word| self.int(word))
     }
 
-    /// Three words.
+    /// Returns three consecutive words as real numbers.
     pub(super) fn floats(&self, first: usize) -> [f64; 3] {
         [first, first + 1, first + 2].map(|word| self.float(word))
     }
 
     fn is_plausible(&self) -> bool {
-        self.ints(1).iter().all(|n| (1..=MOST_ALONG).contains(n)) && (0..=HIGHEST_MODE).contains(&self.mode())
+        self.ints(1).iter().all(|n| (1..=MAX_AXIS_LENGTH).contains(n))
+            && (0..=MAX_MODE).contains(&self.mode())
     }
 
-    /// NX, NY, NZ: columns, rows and sections.
-    pub(super) fn dims(&self, attempt: Attempt<'_>) -> Result<[u64; 3], LoadError> {
+    /// Returns the numbers of columns, rows and sections (`NX`, `NY`, `NZ`).
+    pub(super) fn dims(&self, attempt: LoadContext<'_>) -> Result<[u64; 3], LoadError> {
         let [x, y, z] = self.ints(1);
         let along = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
         match (along(x), along(y), along(z)) {
             (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-            _ => Err(attempt.bad_input(
+            _ => Err(attempt.bad_input_error(
                 "NX, NY, NZ",
                 format!("{x} x {y} x {z} are no dimensions"),
                 "every dimension must be at least 1",
@@ -116,23 +117,23 @@ impl Header {
         self.int(23)
     }
 
-    /// Pictures of one thing from several sides, say.
+    /// True for a stack of images rather than a volume (`ISPG` 0 and `MZ` 1), for example a tilt series.
     pub(super) fn is_image_stack(&self) -> bool {
         self.space_group() == 0 && self.int(10) == 1
     }
 
-    /// Of a stack of volumes, how many sections each has; else all.
-    pub(super) fn slices_of_a_volume(&self, all: u64) -> u64 {
+    /// Returns the number of sections of each volume of a stack; otherwise `all`.
+    pub(super) fn sections_per_volume(&self, all: u64) -> u64 {
         let sampled = u64::try_from(self.int(10)).unwrap_or(0);
         let is_stack = VOLUME_STACKS.contains(&self.space_group()) && sampled > 0;
         if is_stack && all.is_multiple_of(sampled) { sampled } else { all }
     }
 
-    /// Bytes between the header and the voxels.
-    pub(super) fn extension_bytes(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
+    /// Returns the size of the extended header in bytes (`NSYMBT`), which lies between header and voxels.
+    pub(super) fn extension_bytes(&self, attempt: LoadContext<'_>) -> Result<u64, LoadError> {
         let said = self.int(24);
         u64::try_from(said).map_err(|_negative| {
-            attempt.bad_input(
+            attempt.bad_input_error(
                 "NSYMBT",
                 format!("{said} bytes cannot be the length of an extended header"),
                 "copy or download the file again",
@@ -144,8 +145,8 @@ impl Header {
         (self.int(39) == IMOD_STAMP).then(|| self.int(40))
     }
 
-    /// Whether bytes have signs. IMOD says it; the definition of 2014 wants it so; older files show it by the range that
-    /// they state.
+    /// True if bytes are signed: as IMOD's flags state, as the definition of 2014 demands, or as the value range
+    /// suggests in older files.
     pub(super) fn bytes_are_signed(&self) -> bool {
         let is_of_2014 = matches!(self.int(28), 20140..=20149);
         match self.imod_flags() {
@@ -154,7 +155,7 @@ impl Header {
         }
     }
 
-    /// Where the first voxel is, in Å; nothing where all of it is zero.
+    /// Returns the position of the first voxel in Å; `None` if it is all zero.
     pub(super) fn origin(&self) -> Option<[f64; 3]> {
         let origin = self.floats(50);
         let sign =
@@ -163,7 +164,7 @@ impl Header {
         is_said.then(|| origin.map(|x| sign * x))
     }
 
-    /// The first of ten lines in which programs say what they have done.
+    /// Returns the first non-empty one of ten labels, in which programs note what they have done.
     pub(super) fn label(&self) -> String {
         let labels = self.bytes[224..].chunks(80).map(|label| {
             let end = label.iter().position(|&byte| byte == 0).unwrap_or(label.len());

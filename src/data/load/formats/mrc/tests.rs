@@ -1,22 +1,22 @@
-//! MRC files made by hand: every mode and byte order, cells, stacks, and headers that lie.
+//! Tests of MRC files built in memory: every mode and byte order, cells, stacks, and invalid headers.
 
 use glam::DVec3;
 
 use super::*;
 use crate::data::Samples;
-use crate::data::load::tests::shared::{gzip, load_bytes};
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::tests::helpers::{gzip, load_bytes};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
-/// A header that is put together word by word.
+/// Builder of an MRC file, word by word.
 #[derive(Clone)]
-struct Made {
+struct MrcBuilder {
     words: Vec<[u8; 4]>,
     is_big: bool,
     data: Vec<u8>,
 }
 
-impl Made {
-    /// 2 x 1 x 2 voxels of a mode, 2 Å apart.
+impl MrcBuilder {
+    /// A file of 2 x 1 x 2 voxels of a mode, 2 Å apart.
     fn new(mode: i32, is_big: bool, data: Vec<u8>) -> Self {
         let mut made = Self { words: vec![[0; 4]; 256], is_big, data };
         for (at, value) in
@@ -50,16 +50,16 @@ impl Made {
         [self.words.concat(), self.data.clone()].concat()
     }
 
-    fn loaded_with(&self, name: &str, choice: Choice) -> Result<Volume, LoadError> {
+    fn loaded_with(&self, name: &str, choice: VolumeChoice) -> Result<Volume, LoadError> {
         load_bytes(name, &self.bytes(), choice)
     }
 
     fn loaded(&self) -> Volume {
-        self.loaded_with("a.map", Choice::default()).unwrap()
+        self.loaded_with("a.map", VolumeChoice::default()).unwrap()
     }
 }
 
-/// Real numbers, little-endian.
+/// Bytes of real numbers, little-endian.
 fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
@@ -87,14 +87,14 @@ fn every_mode_and_byte_order_is_read() {
             (12, bytes!(u16, halves), Samples::F32(vec![0.5, -2.0, 3.0, 4.0])),
             (16, vec![9, 9, 9, 0, 0, 0, 0, 255, 0, 1, 1, 1], Samples::U8(vec![9, 0, 182, 1])),
         ] {
-            let made = Made::new(mode, is_big, data);
+            let made = MrcBuilder::new(mode, is_big, data);
             let volume = made.loaded();
             assert_eq!(*volume.samples(), expected, "mode {mode}, big {is_big}");
             assert_eq!(volume.dims(), [2, 1, 2]);
-            let hints = volume.hints();
+            let hints = volume.metadata();
             assert_eq!(hints.modality, Modality::ElectronMicroscopy);
-            assert_eq!(hints.meaning == Meaning::PositiveDensity, matches!(mode, 2 | 12), "{mode}");
-            // Without a machine stamp the dimensions tell, and against a wrong one.
+            assert_eq!(hints.meaning == ValueMeaning::PositiveDensity, matches!(mode, 2 | 12), "{mode}");
+            // Without a machine stamp, or with a wrong one, plausible dimensions decide.
             for stamp in [[0; 4], [0x44, 0x44, 0, 0], [0x11, 0x11, 0, 0]] {
                 assert_eq!(*made.clone().text(54, stamp).loaded().samples(), expected, "{stamp:?}");
             }
@@ -104,7 +104,7 @@ fn every_mode_and_byte_order_is_read() {
 
 #[test]
 fn bytes_have_signs_where_something_says_so() {
-    let made = Made::new(0, false, vec![1, 2, 3, 255]);
+    let made = MrcBuilder::new(0, false, vec![1, 2, 3, 255]);
     let signed = Samples::I8(vec![1, 2, 3, -1]);
     let unsigned = Samples::U8(vec![1, 2, 3, 255]);
     let of_imod = made.clone().text(39, *b"IMOD");
@@ -122,11 +122,11 @@ fn bytes_have_signs_where_something_says_so() {
 
 #[test]
 fn cells_say_where_voxels_lie() {
-    let made = Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
+    let made = MrcBuilder::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
     let volume = made.loaded();
     assert!((volume.spacing_mm() * 1e7 - DVec3::splat(2.0)).abs().max_element() < 1e-9);
     assert!(!volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
-    let place = |made: Made| made.loaded().world_from_index();
+    let place = |made: MrcBuilder| made.loaded().world_from_index();
     let near = |found: DVec3, x: f64, y: f64, z: f64| {
         assert!((found * 1e7 - DVec3::new(x, y, z)).abs().max_element() < 1e-6, "{found}");
     };
@@ -147,7 +147,7 @@ fn cells_say_where_voxels_lie() {
 
 #[test]
 fn what_cannot_be_said_of_a_cell_is_mended() {
-    let made = Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
+    let made = MrcBuilder::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
     let unsaid = made.clone().float(11, 0.0).float(12, 0.0).float(13, 0.0).loaded();
     assert!(unsaid.has_unknown_scale() && unsaid.remarks().is_empty());
     assert_eq!(unsaid.spacing_mm(), DVec3::ONE);
@@ -159,36 +159,37 @@ fn what_cannot_be_said_of_a_cell_is_mended() {
     assert_eq!(angles.world_from_index().matrix3.x_axis.y, 0.0);
     let stack = made.clone().int(23, 0).int(10, 1).loaded();
     assert!(stack.remarks()[0].contains("stack of images"));
-    assert_eq!(stack.hints().meaning, Meaning::Unknown);
+    assert_eq!(stack.metadata().meaning, ValueMeaning::Unknown);
 }
 
 #[test]
 fn headers_may_be_longer_and_hold_words_and_stacks() {
-    let mut made = Made::new(2, false, [vec![7; 12], floats(&[1.0, 2.0, 3.0, 4.0]), vec![0; 5]].concat());
+    let mut made =
+        MrcBuilder::new(2, false, [vec![7; 12], floats(&[1.0, 2.0, 3.0, 4.0]), vec![0; 5]].concat());
     made = made.int(24, 12).text(57, *b"  Vi").text(58, *b"rus\0");
     let volume = made.loaded();
     assert_eq!(*volume.samples(), Samples::F32(vec![1.0, 2.0, 3.0, 4.0]));
-    assert_eq!(volume.hints().acquisition(), Some("Virus"));
+    assert_eq!(volume.metadata().acquisition(), Some("Virus"));
     assert_eq!(volume.name(), "a");
 
-    let stack = Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).int(23, 401).int(10, 1);
-    let Err(LoadError::Several { dimension: Dimension::Frame, offers, .. }) =
-        stack.loaded_with("a.mrc", Choice::default())
+    let stack = MrcBuilder::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).int(23, 401).int(10, 1);
+    let Err(LoadError::Several { dimension: FileDimension::Frame, offers, .. }) =
+        stack.loaded_with("a.mrc", VolumeChoice::default())
     else {
         panic!("there are two");
     };
     assert_eq!((offers.len(), offers[1].dims), (2, Some([2, 1, 1])));
-    let second = Choice { frame: Some(1), ..Choice::default() };
+    let second = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
     assert_eq!(*stack.loaded_with("a.mrc", second).unwrap().samples(), Samples::F32(vec![3.0, 4.0]));
-    // Old files have no mark: the ending tells.
+    // Old files have no magic bytes: the name's ending decides.
     let old = stack.clone().int(23, 0).int(10, 2).text(53, [0; 4]);
-    assert!(old.loaded_with("a.rec", Choice::default()).is_ok());
+    assert!(old.loaded_with("a.rec", VolumeChoice::default()).is_ok());
 }
 
 #[test]
 fn compressed_files_are_read_and_checked() {
-    let zipped = gzip(&Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).bytes());
-    let loaded = |bytes: &[u8]| load_bytes("virus.map.gz", bytes, Choice::default());
+    let zipped = gzip(&MrcBuilder::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0])).bytes());
+    let loaded = |bytes: &[u8]| load_bytes("virus.map.gz", bytes, VolumeChoice::default());
     assert_eq!(loaded(&zipped).unwrap().name(), "virus");
     let error = loaded(&zipped[..zipped.len() - 12]).unwrap_err();
     assert!(error.to_string().contains("truncated"), "{error}");
@@ -196,8 +197,8 @@ fn compressed_files_are_read_and_checked() {
 
 #[test]
 fn headers_that_lie_are_refused() {
-    let made = Made::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
-    let component = Choice { component: Some(2), ..Choice::default() };
+    let made = MrcBuilder::new(2, false, floats(&[1.0, 2.0, 3.0, 4.0]));
+    let component = VolumeChoice { component: Some(2), ..VolumeChoice::default() };
     for (made, choice, kind, words) in [
         (made.clone().int(1, 3), None, LoadErrorKind::BadInput, "24 bytes expected for 3 x 1 x 2"),
         (made.clone().int(1, 0), None, LoadErrorKind::BadInput, "0 x 1 x 2 are no dimensions"),
@@ -220,8 +221,8 @@ fn headers_that_lie_are_refused() {
         assert_eq!(error.kind(), kind, "{error}");
         assert!(error.to_string().contains(words), "{words} is not in: {error}");
     }
-    let short = Made { words: vec![[0; 4]; 255], ..made };
-    let error = short.loaded_with("a.mrc", Choice::default()).unwrap_err();
+    let short = MrcBuilder { words: vec![[0; 4]; 255], ..made };
+    let error = short.loaded_with("a.mrc", VolumeChoice::default()).unwrap_err();
     assert!(
         error.to_string().contains("1024 bytes expected, 1036 found")
             || error.to_string().contains("no header")
@@ -230,18 +231,19 @@ fn headers_that_lie_are_refused() {
 
 #[test]
 fn bytes_behind_a_packed_map_are_passed_over_and_checksums_looked_at() {
-    let made = Made::new(0, false, vec![1, 2, 3, 4]);
+    let made = MrcBuilder::new(0, false, vec![1, 2, 3, 4]);
     let packed = gzip(&made.bytes());
     let whole = made.loaded();
     for behind in [vec![0; 1024], vec![0xAA; 3]] {
-        let volume = load_bytes("a.mrc.gz", &[&packed[..], &behind].concat(), Choice::default()).unwrap();
+        let volume =
+            load_bytes("a.mrc.gz", &[&packed[..], &behind].concat(), VolumeChoice::default()).unwrap();
         assert_eq!(volume.samples(), whole.samples());
     }
     let mut changed = packed.clone();
     let checksum = changed.len() - 8;
     changed[checksum] ^= 1;
     for broken in [&changed[..], &packed[..packed.len() - 3]] {
-        let error = load_bytes("a.mrc.gz", broken, Choice::default()).unwrap_err();
+        let error = load_bytes("a.mrc.gz", broken, VolumeChoice::default()).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{error}");
     }
 }

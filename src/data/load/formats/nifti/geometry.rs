@@ -1,15 +1,17 @@
-//! Where voxels lie: by the matrix (`sform`), or the quaternion (`qform`), or the distances alone.
+//! Placement of `NIfTI` voxels: from the matrix (`sform`), else the quaternion (`qform`), else the spacings
+//! (`pixdim`) alone.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::super::placement::Placement;
-use super::header::{Form, Header};
-use crate::data::attempt::is_usable_spacing;
+use super::super::placement::GridPlacement;
+use super::header::{NiftiHeader, NiftiVersion};
+use crate::data::load_context::is_usable_spacing;
 
-/// The place of the voxels of a grid.
-pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
+/// Returns the placement of a grid's voxels, in right-anterior-superior millimetres, with remarks on what the header
+/// leaves open.
+pub(super) fn placement(header: &NiftiHeader, dims: [u64; 3]) -> GridPlacement {
     let unit_mm = unit_mm(header);
-    // Programs that write a place and no unit mean millimetres.
+    // Programs that write a position but no unit mean millimetres.
     let mm = unit_mm.unwrap_or(1.0);
     let spacing = spacing(header, dims);
     let mut remarks = Vec::new();
@@ -19,27 +21,32 @@ pub(super) fn placement(header: &Header, dims: [u64; 3]) -> Placement {
         if code <= 0 {
             continue;
         }
-        let placed = Placement::ras(DAffine3::from_scale(DVec3::splat(mm)) * affine);
+        let placed = GridPlacement::from_ras_affine(DAffine3::from_scale(DVec3::splat(mm)) * affine);
         if placed.is_anatomical {
-            return Placement { remarks, ..placed }.said_in(mm);
+            return GridPlacement { remarks, ..placed }.with_length_unit(mm);
         }
         remarks.push(format!("the header's {name} is unusable"));
     }
-    remarks.push(if header.form == Form::Analyze {
+    remarks.push(if header.version == NiftiVersion::Analyze {
         "Analyze files do not say which way a body lies: left and right are not known".to_owned()
     } else {
         "the header does not say which way a body lies: left and right are not known".to_owned()
     });
-    // What programs write that were told nothing.
+    // Values that programs write by default: no unit, and spacings of 0 or 1.
     let is_default = unit_mm.is_none() && spacing.iter().all(|&length| length == 0.0 || length == 1.0);
-    let placed = if is_default { Placement::unknown() } else { Placement::spaced(spacing.map(|n| n * mm)) };
+    let placed = if is_default {
+        GridPlacement::unknown()
+    } else {
+        GridPlacement::from_spacing(spacing.map(|n| n * mm))
+    };
     remarks.extend(placed.remarks);
-    Placement { remarks, ..placed }.said_in(mm)
+    GridPlacement { remarks, ..placed }.with_length_unit(mm)
 }
 
-/// Millimetres of the unit of lengths, where there is one (`NIFTI_UNITS_METER`, `_MM`, `_MICRON`).
-fn unit_mm(header: &Header) -> Option<f64> {
-    match (header.units & 7, header.words[0].trim().to_lowercase().as_str()) {
+/// Millimetres per unit of length, if the header names a known one (`NIFTI_UNITS_METER`, `_MM`, `_MICRON`; Analyze:
+/// text).
+fn unit_mm(header: &NiftiHeader) -> Option<f64> {
+    match (header.units & 7, header.analyze_units[0].trim().to_lowercase().as_str()) {
         (1, _) | (_, "m") => Some(1e3),
         (2, _) | (_, "mm") => Some(1.0),
         (3, _) | (_, "um" | "µm") => Some(1e-3),
@@ -48,8 +55,9 @@ fn unit_mm(header: &Header) -> Option<f64> {
     }
 }
 
-/// Distances between voxels; along an axis with one voxel alone, of which nothing is said, as along another.
-fn spacing(header: &Header, dims: [u64; 3]) -> [f64; 3] {
+/// Returns the spacings of the three axes, unsigned; an axis of a single voxel without a usable spacing takes that of
+/// another axis.
+fn spacing(header: &NiftiHeader, dims: [u64; 3]) -> [f64; 3] {
     let said = [1, 2, 3].map(|axis: usize| header.pixdim[axis].abs());
     let other = said.into_iter().find(|&length| is_usable_spacing(length));
     std::array::from_fn(|axis| match other {
@@ -58,19 +66,19 @@ fn spacing(header: &Header, dims: [u64; 3]) -> [f64; 3] {
     })
 }
 
-/// The affine of the matrix.
-fn sform(header: &Header) -> DAffine3 {
+/// Returns the affine of the matrix (`srow_x`, `srow_y`, `srow_z`).
+fn sform(header: &NiftiHeader) -> DAffine3 {
     let [x, y, z] = header.srow;
     let column = |at: usize| DVec3::new(x[at], y[at], z[at]);
     DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
 }
 
-/// The affine of the quaternion (`nifti1.h`, "method 2"): its first number follows from the other three, and the sign of
-/// `pixdim[0]` mirrors the third axis.
-fn qform(header: &Header, spacing: [f64; 3]) -> DAffine3 {
+/// Returns the affine of the quaternion (`nifti1.h`, "method 2"): its real part follows from the three stored
+/// numbers, and a negative `pixdim[0]` (`qfac`) mirrors the third axis.
+fn qform(header: &NiftiHeader, spacing: [f64; 3]) -> DAffine3 {
     let vector = DVec3::from_array(header.quatern);
     let rest = 1.0 - vector.length_squared();
-    // Rounded numbers of half a turn can be longer than 1.
+    // Rounding can make the vector of a half turn longer than 1.
     let turn = if rest < 1e-7 {
         let DVec3 { x, y, z } = vector.normalize_or_zero();
         DQuat::from_xyzw(x, y, z, 0.0)
@@ -79,7 +87,8 @@ fn qform(header: &Header, spacing: [f64; 3]) -> DAffine3 {
     };
     let mirror = if header.pixdim[0] < 0.0 { -1.0 } else { 1.0 };
     let lengths = DVec3::from_array(spacing) * DVec3::new(1.0, 1.0, mirror);
-    // Not through a quaternion that is none: its matrix is then not finite, and refused.
+    // Composed from matrices, not by quaternion operations: an invalid quaternion then gives a matrix that is not
+    // finite, which is refused.
     let matrix3 = DMat3::from_quat(turn) * DMat3::from_diagonal(lengths);
     DAffine3 { matrix3, translation: DVec3::from_array(header.qoffset) }
 }

@@ -1,19 +1,19 @@
-//! What a header says of its values.
+//! Hints on the values of a `NIfTI` or Analyze file: modality, unit, window, description, labels.
 
-use super::header::Header;
-use crate::data::{Hints, Meaning, Modality};
+use super::header::NiftiHeader;
+use crate::data::{Modality, ValueMeaning, ValueMetadata};
 
-/// Intents of numbers that stand for something (`NIFTI_INTENT_LABEL`, `NIFTI_INTENT_NEURONAME`).
+/// Intents whose numbers are labels (`NIFTI_INTENT_LABEL`, `NIFTI_INTENT_NEURONAME`).
 const LABEL_INTENTS: [i32; 2] = [1002, 1003];
 
-/// The hints of a header.
-pub(super) fn of(header: &Header) -> Hints {
-    let mut hints = Hints::default();
-    hints.modality = Modality::of_description(&header.descrip);
+/// Collects the hints that a header gives on its values.
+pub(super) fn hints_from_header(header: &NiftiHeader) -> ValueMetadata {
+    let mut hints = ValueMetadata::default();
+    hints.modality = Modality::from_description(&header.descrip);
     if LABEL_INTENTS.contains(&header.intent_code) {
-        hints.meaning = Meaning::Labels;
+        hints.meaning = ValueMeaning::Labels;
     }
-    hints.set_unit(&header.words[1]);
+    hints.set_unit(&header.analyze_units[1]);
     hints.set_window(header.cal_min, header.cal_max);
     hints.set_acquisition(&header.descrip);
     hints

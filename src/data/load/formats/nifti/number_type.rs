@@ -1,40 +1,40 @@
-//! Number types by their codes.
+//! Number types of voxels by `datatype` code.
 
 use super::super::LoadError;
-use super::super::number::{Number, Part};
-use super::header::Header;
-use crate::data::attempt::Attempt;
+use super::super::number::{FileNumberType, ScalarReduction};
+use super::header::NiftiHeader;
+use crate::data::load_context::LoadContext;
 
-/// What a voxel is.
+/// Number type of a voxel: stored type, number of components, and colour flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct NumberType {
-    pub(super) number: Number,
-    /// Numbers of each voxel, beside each other.
+pub(super) struct NiftiNumberType {
+    pub(super) number: FileNumberType,
+    /// Number of interleaved components of each voxel.
     pub(super) components: usize,
     pub(super) is_color: bool,
 }
 
-impl NumberType {
-    /// The type that a header's code stands for (`nifti1.h`, `DT_`… and `NIFTI_TYPE_`…). From 130 to 136 are those that
-    /// SPM added to Analyze.
-    pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
+impl NiftiNumberType {
+    /// Looks up the type of a header's `datatype` code (`nifti1.h`, `DT_`… and `NIFTI_TYPE_`…). Codes 130 to 136 are
+    /// those that SPM added to Analyze.
+    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NiftiHeader) -> Result<Self, LoadError> {
         let scalar = |number| Ok(Self { number, components: 1, is_color: false });
-        let colors = |components| Ok(Self { number: Number::U8, components, is_color: true });
+        let colors = |components| Ok(Self { number: FileNumberType::U8, components, is_color: true });
         let complex = |number| Ok(Self { number, components: 2, is_color: false });
         match header.datatype {
-            2 => scalar(Number::U8),
-            4 => scalar(Number::I16),
-            8 => scalar(Number::I32),
-            16 => scalar(Number::F32),
-            32 => complex(Number::F32),
-            64 => scalar(Number::F64),
+            2 => scalar(FileNumberType::U8),
+            4 => scalar(FileNumberType::I16),
+            8 => scalar(FileNumberType::I32),
+            16 => scalar(FileNumberType::F32),
+            32 => complex(FileNumberType::F32),
+            64 => scalar(FileNumberType::F64),
             128 => colors(3),
-            256 | 130 => scalar(Number::I8),
-            512 | 132 => scalar(Number::U16),
-            768 | 136 => scalar(Number::U32),
-            1024 => scalar(Number::I64),
-            1280 => scalar(Number::U64),
-            1792 => complex(Number::F64),
+            256 | 130 => scalar(FileNumberType::I8),
+            512 | 132 => scalar(FileNumberType::U16),
+            768 | 136 => scalar(FileNumberType::U32),
+            1024 => scalar(FileNumberType::I64),
+            1280 => scalar(FileNumberType::U64),
+            1792 => complex(FileNumberType::F64),
             2304 => colors(4),
             code => {
                 let why = match code {
@@ -42,7 +42,7 @@ impl NumberType {
                     1536 | 2048 => "numbers of 128 bits".to_owned(),
                     _ => format!("voxels of the unknown type {code}"),
                 };
-                Err(attempt.bad_input(
+                Err(attempt.bad_input_error(
                     "datatype",
                     format!("{why} are not read"),
                     "write it with a type of 8 to 64 bits",
@@ -51,9 +51,9 @@ impl NumberType {
         }
     }
 
-    /// What the user is told where not all of a voxel is seen.
-    pub(super) fn remark(&self, part: Part) -> Option<&'static str> {
-        if self.components == 2 && part == Part::Magnitude {
+    /// Returns a remark for the user if only part of a voxel's data is shown.
+    pub(super) fn remark(&self, part: ScalarReduction) -> Option<&'static str> {
+        if self.components == 2 && part == ScalarReduction::Magnitude {
             return Some("complex numbers are shown as their magnitude");
         }
         part.remark()

@@ -1,39 +1,43 @@
-//! The other of two files: the header of voxels, or the voxels of a header.
+//! Pairs of header and data files (`.hdr`, `.img`): finds the second file of a pair.
 
 use std::io::{Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
-use super::super::input::{Input, bare_name, is_gzip};
-use super::super::read_files::note;
-use super::super::reader::Start;
-use super::super::{LoadError, beside};
+use super::super::input::{InputFile, is_gzip, name_without_extension};
+use super::super::read_files::record_read;
+use super::super::reader::FileStart;
+use super::super::{LoadError, companion_path};
 use super::ENDINGS;
-use super::header::{Form, Header};
-use crate::data::attempt::Attempt;
+use super::header::{NiftiHeader, NiftiVersion};
+use crate::data::load_context::LoadContext;
 
-/// The header beside a file of voxels.
-pub(super) fn header(attempt: Attempt<'_>) -> Result<Header, LoadError> {
-    let Some(path) = other(attempt, "hdr")? else {
-        return Err(attempt.bad_input(
+/// Reads the header file beside a file of voxels.
+pub(super) fn read_header_beside(attempt: LoadContext<'_>) -> Result<NiftiHeader, LoadError> {
+    let Some(path) = paired_file(attempt, "hdr")? else {
+        return Err(attempt.bad_input_error(
             "header",
             "it does not begin with a header of NIfTI or Analyze, and no file beside it is called like it and ends in .hdr",
             "put its header beside it",
         ));
     };
-    let of_header = Attempt { what: "read the NIfTI volume's header", path: &path };
-    let mut input = Input::open(of_header)?;
-    note(&path);
-    let start = Start::of(&mut input).map_err(|error| of_header.io(error))?;
-    let Some(form) = Form::of(start.bytes()) else {
-        return Err(of_header.bad_input("header", "it is no header of NIfTI or Analyze", "check the file"));
+    let of_header = LoadContext { operation: "read the NIfTI volume's header", path: &path };
+    let mut input = InputFile::open(of_header)?;
+    record_read(&path);
+    let start = FileStart::read(&mut input).map_err(|error| of_header.io_error(error))?;
+    let Some(form) = NiftiVersion::detect(start.bytes()) else {
+        return Err(of_header.bad_input_error(
+            "header",
+            "it is no header of NIfTI or Analyze",
+            "check the file",
+        ));
     };
-    Header::of(of_header, form, start.bytes())
+    NiftiHeader::parse(of_header, form, start.bytes())
 }
 
-/// The file of voxels beside a header.
-pub(super) fn data(attempt: Attempt<'_>) -> Result<PathBuf, LoadError> {
-    other(attempt, "img")?.ok_or_else(|| {
-        attempt.bad_input(
+/// Finds the data file beside a header file.
+pub(super) fn data_path_beside(attempt: LoadContext<'_>) -> Result<PathBuf, LoadError> {
+    paired_file(attempt, "img")?.ok_or_else(|| {
+        attempt.bad_input_error(
             "data",
             "the header's voxels are in a second file, and none beside it is called like it and ends in .img or .img.gz",
             "put the data file beside the header",
@@ -41,22 +45,23 @@ pub(super) fn data(attempt: Attempt<'_>) -> Result<PathBuf, LoadError> {
     })
 }
 
-/// The file that is called like this one and has another ending.
-fn other(attempt: Attempt<'_>, ending: &str) -> Result<Option<PathBuf>, LoadError> {
-    let stem = bare_name(attempt.path, ENDINGS);
+/// Finds the file in the same folder with the same stem and another ending, in either case and optionally gzipped.
+fn paired_file(attempt: LoadContext<'_>, ending: &str) -> Result<Option<PathBuf>, LoadError> {
+    let stem = name_without_extension(attempt.path, ENDINGS);
     let folder = attempt.path.parent().unwrap_or(Path::new(""));
     let (lower, upper) = (format!("{stem}.{ending}"), format!("{stem}.{}", ending.to_uppercase()));
     for name in [lower.clone(), format!("{lower}.gz"), upper.clone(), format!("{upper}.GZ")] {
         if folder.join(&name).is_file() {
-            return beside::resolve(attempt, "file name", &name).map(Some);
+            return companion_path::resolve(attempt, "file name", &name).map(Some);
         }
     }
     Ok(None)
 }
 
-/// Whether a file is compressed as a whole; goes back to its beginning.
-pub(super) fn starts_as_gzip(attempt: Attempt<'_>, input: &mut Input) -> Result<bool, LoadError> {
+/// Returns true if a file is gzipped as a whole; rewinds it to its beginning.
+pub(super) fn starts_as_gzip(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<bool, LoadError> {
     let mut magic = Vec::new();
-    let looked = input.reader.by_ref().take(3).read_to_end(&mut magic).and_then(|_| input.reader.rewind());
-    looked.map(|()| is_gzip(&magic)).map_err(|error| attempt.io(error))
+    let magic_read =
+        input.reader.by_ref().take(3).read_to_end(&mut magic).and_then(|_| input.reader.rewind());
+    magic_read.map(|()| is_gzip(&magic)).map_err(|error| attempt.io_error(error))
 }

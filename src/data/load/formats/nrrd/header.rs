@@ -1,40 +1,40 @@
-//! The header's lines: a magic, then `field: value`, `key:=value` and `# comment`, then an empty line.
+//! Header lines of an NRRD file: magic, then `field: value`, `key:=value` and `# comment`, then an empty line.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read as _};
 
 use super::super::LoadError;
-use crate::data::attempt::{Attempt, quoted};
+use crate::data::load_context::{LoadContext, quoted};
 
-/// Longer headers are refused: real ones have a few kilobytes.
-const LONGEST_HEADER_BYTES: u64 = 1 << 20;
+/// Maximum size of a header: real ones have a few kilobytes.
+const MAX_HEADER_BYTES: u64 = 1 << 20;
 
-/// The header's fields as text.
+/// Header fields of an NRRD file, as text.
 #[derive(Debug)]
-pub(super) struct Header {
-    /// By name in lower case without spaces: that makes `data file` and `datafile` one field.
+pub(super) struct NrrdHeader {
+    /// Values by field name in lower case without spaces, so that `data file` and `datafile` are one field.
     fields: BTreeMap<String, String>,
-    /// Keys with their values, as they are written; the first of several.
+    /// Values by key in lower case; the first of several wins.
     keys: BTreeMap<String, String>,
-    /// The lines that follow a list of data files: their names.
+    /// Lines that follow a list of data files: their names.
     pub(super) files: Vec<String>,
-    /// Where the data begin in this file; `None` when the file ended before an empty line.
+    /// Byte offset of the data in this file; `None` if the file ends before an empty line.
     data_start: Option<u64>,
 }
 
-impl Header {
+impl NrrdHeader {
     /// Reads up to the empty line or the end of the file.
-    pub(super) fn read(attempt: Attempt<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
-        let mut reader = reader.take(LONGEST_HEADER_BYTES);
+    pub(super) fn read(attempt: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
+        let mut reader = reader.take(MAX_HEADER_BYTES);
         let mut line = Vec::new();
         let (mut fields, mut keys) = (BTreeMap::new(), BTreeMap::new());
         let (mut files, mut is_list) = (Vec::new(), false);
         let mut data_start = None;
         for number in 1.. {
             line.clear();
-            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io(error))?;
+            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io_error(error))?;
             if !line.ends_with(b"\n") && reader.limit() == 0 {
-                return Err(attempt.limit(
+                return Err(attempt.limit_error(
                     "header",
                     "the header has no end within 1 MiB",
                     "check that it ends with an empty line",
@@ -50,7 +50,7 @@ impl Header {
             } else if is_list {
                 files.extend(Some(text.trim()).filter(|name| !name.is_empty()).map(str::to_owned));
             } else if text.is_empty() {
-                data_start = Some(LONGEST_HEADER_BYTES - reader.limit());
+                data_start = Some(MAX_HEADER_BYTES - reader.limit());
                 break;
             } else if let Some((key, value)) = key_and_value(text) {
                 keys.entry(key).or_insert(value);
@@ -59,35 +59,45 @@ impl Header {
             }
         }
         if fields.is_empty() {
-            return Err(attempt.bad_input("header", "it has no fields", "check that it is an NRRD file"));
+            return Err(attempt.bad_input_error(
+                "header",
+                "it has no fields",
+                "check that it is an NRRD file",
+            ));
         }
         Ok(Self { fields, keys, files, data_start })
     }
 
-    /// The value of a field, if the header has it.
+    /// Returns the value of a field, if the header has it.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
-        self.fields.get(&key(name)).map(String::as_str)
+        self.fields.get(&normalized_key(name)).map(String::as_str)
     }
 
-    /// The value of a field that has two names; nothing where the header has neither.
-    pub(super) fn either(&self, name: &str, other: &str) -> &str {
+    /// Returns the value of a field that has two names; empty if the header has neither.
+    pub(super) fn get_any(&self, name: &str, other: &str) -> &str {
         self.get(name).or_else(|| self.get(other)).unwrap_or_default()
     }
 
-    /// The value of a key, if the header has it; in any case of letters.
+    /// Returns the value of a key, if the header has it; keys are case-insensitive.
     pub(super) fn get_key(&self, name: &str) -> Option<&str> {
         self.keys.get(&name.to_lowercase()).map(String::as_str)
     }
 
-    /// The value of a field that must be there; `help` says what it should be.
-    pub(super) fn require(&self, attempt: Attempt<'_>, name: &str, help: &str) -> Result<&str, LoadError> {
-        self.get(name).ok_or_else(|| attempt.bad_input(name, format!("the field {name} is missing"), help))
+    /// Returns the value of a mandatory field; `help` tells the user what it should be.
+    pub(super) fn require(
+        &self,
+        attempt: LoadContext<'_>,
+        name: &str,
+        help: &str,
+    ) -> Result<&str, LoadError> {
+        self.get(name)
+            .ok_or_else(|| attempt.bad_input_error(name, format!("the field {name} is missing"), help))
     }
 
-    /// Where the data begin in the header's own file.
-    pub(super) fn data_start(&self, attempt: Attempt<'_>) -> Result<u64, LoadError> {
+    /// Returns the byte offset of data in the header's own file.
+    pub(super) fn data_start(&self, attempt: LoadContext<'_>) -> Result<u64, LoadError> {
         self.data_start.ok_or_else(|| {
-            attempt.bad_input(
+            attempt.bad_input_error(
                 "data file",
                 "the file ends with its header: no data follow, and no data file is named",
                 "copy the file again, or name the file that holds the voxels in the field data file",
@@ -96,15 +106,15 @@ impl Header {
     }
 }
 
-fn check_magic(attempt: Attempt<'_>, line: &str) -> Result<(), LoadError> {
+fn check_magic(attempt: LoadContext<'_>, line: &str) -> Result<(), LoadError> {
     match line.strip_prefix("NRRD000").map(str::trim_end) {
         Some("1" | "2" | "3" | "4" | "5") => Ok(()),
-        Some(_) => Err(attempt.bad_input(
+        Some(_) => Err(attempt.bad_input_error(
             "magic",
             format!("NRRD0001 to NRRD0005 are read, {} was found", quoted(line)),
             "write it again as NRRD0004 or NRRD0005",
         )),
-        None => Err(attempt.bad_input(
+        None => Err(attempt.bad_input_error(
             "magic",
             format!("an NRRD file begins with NRRD0001 to NRRD0005, {} was found", quoted(line)),
             "check the file's name and format",
@@ -112,32 +122,32 @@ fn check_magic(attempt: Attempt<'_>, line: &str) -> Result<(), LoadError> {
     }
 }
 
-/// The key of a line, in lower case, and its value: `key:=value`. Comments and fields have none.
+/// Splits a `key:=value` line into key, in lower case, and value; `None` for comments and fields.
 fn key_and_value(line: &str) -> Option<(String, String)> {
     let (key, value) =
         line.split_once(":=").filter(|(key, _)| !key.contains(':') && !key.starts_with('#'))?;
     Some((key.trim().to_lowercase(), value.trim().to_owned()))
 }
 
-/// Adds the field of one line. True when it announces a list of data files.
+/// Adds the field of one line; returns true if it announces a list of data files.
 fn add_field(
-    attempt: Attempt<'_>,
+    attempt: LoadContext<'_>,
     fields: &mut BTreeMap<String, String>,
     line: &str,
     number: u32,
 ) -> Result<bool, LoadError> {
     let Some((name, value)) = line.split_once(':') else {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "header",
             format!("line {number} is neither a field, a key, a comment nor empty: {}", quoted(line)),
             "check that an empty line separates header and data",
         ));
     };
-    let (key, value) = (key(name), value.trim());
+    let (key, value) = (normalized_key(name), value.trim());
     let is_list = key == "datafile" && value.split_whitespace().next() == Some("LIST");
     let earlier = fields.insert(key, value.to_owned());
     match earlier {
-        Some(earlier) if earlier != value => Err(attempt.bad_input(
+        Some(earlier) if earlier != value => Err(attempt.bad_input_error(
             name.trim(),
             format!("the field is there twice, as {} and as {}", quoted(&earlier), quoted(value)),
             "remove one of the two lines",
@@ -146,6 +156,6 @@ fn add_field(
     }
 }
 
-fn key(name: &str) -> String {
+fn normalized_key(name: &str) -> String {
     name.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_lowercase()
 }

@@ -1,29 +1,29 @@
-//! What an NRRD header says of its values: the fields `sample units`, `content`, `old min` and `old max`, and those
-//! keys that programs write beside them: what 3D Slicer says of segments, and DICOM attributes by their tags.
+//! Hints on the values of an NRRD file: from the fields `sample units`, `content`, `old min` and `old max`, and from
+//! keys that programs add: 3D Slicer's segments, and DICOM attributes by their tags.
 
-use super::header::Header;
-use crate::data::{Hints, MAX_LABELS, Meaning, Modality};
+use super::header::NrrdHeader;
+use crate::data::{MAX_LABELS, Modality, ValueMeaning, ValueMetadata};
 
-/// Keys of the modality, best first.
+/// Keys of the modality, in order of preference.
 const MODALITY: [&str; 3] = ["modality", "DICOM_0008_0060", "DICOM.Modality"];
 
-/// Keys of the values of voxels that were not measured: in the numbers of the file, …
+/// Keys of the padding value (of unmeasured voxels), in the numbers of the file.
 const PADDING: [&str; 2] = ["padding value", "PaddingValue"];
 
-/// … and as DICOM says it, in the numbers that the scanner stored. Where a header says how these were rescaled, the file
-/// has them rescaled (PS3.3, C.7.5.1.1.2 and C.11.1).
+/// Keys of DICOM's padding value, in the scanner's stored numbers. If the header gives a rescale slope and intercept,
+/// the voxels of the file are already rescaled (PS3.3, C.7.5.1.1.2 and C.11.1).
 const STORED_PADDING: [&str; 2] = ["PixelPaddingValue", "DICOM_0028_0120"];
 const RESCALE_SLOPE: [&str; 2] = ["RescaleSlope", "DICOM_0028_1053"];
 const RESCALE_INTERCEPT: [&str; 2] = ["RescaleIntercept", "DICOM_0028_1052"];
 
-/// Keys of descriptions of how the data were acquired: by hand, of the series, of the protocol.
+/// Keys of descriptions of the acquisition: free text, of the series, of the protocol.
 const ACQUISITION: [&str; 4] = ["acquisition", "SeriesDescription", "DICOM_0008_103E", "DICOM_0018_1030"];
 
-/// Keys of the greys to be shown: their middle and how far they reach (PS3.3, C.11.2.1.2).
+/// Keys of the display window: centre and width (PS3.3, C.11.2.1.2).
 const WINDOW_CENTER: [&str; 2] = ["DICOM_0028_1050", "WindowCenter"];
 const WINDOW_WIDTH: [&str; 2] = ["DICOM_0028_1051", "WindowWidth"];
 
-/// The key in which DICOM names the unit of rescaled values.
+/// Key in which DICOM names the unit of rescaled values.
 const RESCALE_TYPE: &str = "DICOM_0028_1054";
 
 /// Keys by which Slicer marks segmentations; older versions write the second.
@@ -34,14 +34,14 @@ const SEGMENTATION: [&str; 4] = [
     "Segmentation_SourceRepresentation",
 ];
 
-impl Header {
-    /// What the header says of the values.
-    pub(super) fn hints(&self) -> Hints {
-        let mut hints = Hints::default();
+impl NrrdHeader {
+    /// Collects the hints that the header gives on its values.
+    pub(super) fn hints(&self) -> ValueMetadata {
+        let mut hints = ValueMetadata::default();
         let first = |keys: &[&str]| keys.iter().find_map(|key| self.get_key(key)).unwrap_or_default();
         let content = self.get("content").unwrap_or_default();
-        hints.modality = match Modality::of_code(first(&MODALITY)) {
-            Modality::Unknown => Modality::of_description(content),
+        hints.modality = match Modality::from_code(first(&MODALITY)) {
+            Modality::Unknown => Modality::from_description(content),
             known => known,
         };
         hints.is_rescaled = self.get("old min").or_else(|| self.get("old max")).is_some();
@@ -49,7 +49,7 @@ impl Header {
         let is_segmentation = hints.modality == Modality::Segmentation
             || SEGMENTATION.iter().any(|key| self.get_key(key).is_some());
         if is_segmentation || !hints.labels.is_empty() {
-            hints.meaning = Meaning::Labels;
+            hints.meaning = ValueMeaning::Labels;
         }
         for unit in [self.get("sample units"), self.get_key(RESCALE_TYPE)].into_iter().flatten() {
             hints.set_unit(unit.trim_matches(['"', ' ']));
@@ -61,7 +61,7 @@ impl Header {
         if let Some(padding) = number(&PADDING).or_else(|| number(&STORED_PADDING).map(rescaled)) {
             hints.set_padding(padding);
         }
-        // Of several windows the first.
+        // Only the first of several windows is used.
         let first_number = |keys: &[&str]| first(keys).split('\\').next()?.trim().parse::<f64>().ok();
         if let (Some(center), Some(width)) = (first_number(&WINDOW_CENTER), first_number(&WINDOW_WIDTH)) {
             hints.set_window(center - width / 2.0, center + width / 2.0);
@@ -70,9 +70,9 @@ impl Header {
         hints
     }
 
-    /// Segments of Slicer: `Segment0_LabelValue:=1`, `Segment0_Name:=…`, `Segment0_Color:=0.5 0.7 0.5`. Those of other
-    /// layers than the first are of voxels that are not read.
-    fn add_segments(&self, hints: &mut Hints) {
+    /// Adds Slicer's segments: `Segment0_LabelValue:=1`, `Segment0_Name:=…`, `Segment0_Color:=0.5 0.7 0.5`. Segments
+    /// of layers other than the first are skipped, as those layers are not read.
+    fn add_segments(&self, hints: &mut ValueMetadata) {
         for index in 0..MAX_LABELS {
             let part = |part: &str| self.get_key(&format!("Segment{index}_{part}"));
             let (value, name) = (part("LabelValue"), part("Name"));
@@ -82,17 +82,17 @@ impl Header {
             if part("Layer").is_some_and(|layer| layer.trim() != "0") {
                 continue;
             }
-            // Before there were layers, the number was that of the segment.
+            // Before layers existed, the label value was that of the segment's position.
             let number = value.map_or_else(|| Some(index as i64 + 1), |value| value.trim().parse().ok());
             if let Some(number) = number {
-                hints.labels.insert(number, name.unwrap_or_default(), part("Color").and_then(color));
+                hints.labels.insert(number, name.unwrap_or_default(), part("Color").and_then(parse_color));
             }
         }
     }
 }
 
-/// Three numbers of sRGB.
-fn color(text: &str) -> Option<[f32; 3]> {
+/// Parses three numbers as an sRGB colour.
+fn parse_color(text: &str) -> Option<[f32; 3]> {
     let parts: Option<Vec<f32>> = text.split_whitespace().map(|part| part.parse().ok()).collect();
     parts?.try_into().ok()
 }

@@ -1,17 +1,17 @@
-//! The space of an NRRD file: its vectors, its orientation and its units.
+//! World space of an NRRD file: direction vectors, orientation and units.
 
 use glam::DVec3;
 
 use super::super::LoadError;
-use super::header::Header;
-use crate::data::attempt::{Attempt, quoted};
+use super::header::NrrdHeader;
+use crate::data::load_context::{LoadContext, quoted};
 
-/// The vectors of `space directions`, one for each axis; `None` for an axis outside space.
+/// Returns the vectors of `space directions`, one per axis; `None` for a non-spatial axis.
 ///
-/// Without the field, or when it describes no axis at all, there are none.
+/// Without the field, or if it describes no axis at all, there are none.
 pub(super) fn directions(
-    attempt: Attempt<'_>,
-    header: &Header,
+    attempt: LoadContext<'_>,
+    header: &NrrdHeader,
     dimension: usize,
 ) -> Result<Option<Vec<Option<DVec3>>>, LoadError> {
     const FIELD: &str = "space directions";
@@ -20,7 +20,7 @@ pub(super) fn directions(
     };
     let space_dimension = space_dimension(attempt, header)?;
     let wrong = |why: String| {
-        attempt.bad_input(
+        attempt.bad_input_error(
             FIELD,
             why,
             format!("write {dimension} vectors like (1,0,0), or none, one for each axis"),
@@ -31,29 +31,29 @@ pub(super) fn directions(
         .ok_or_else(|| wrong(format!("{dimension} vectors were expected, {} was found", quoted(text))))?;
     let mut directions = Vec::new();
     for vector in vectors {
-        // Old files mark an axis outside space with NaN.
+        // Old files mark a non-spatial axis with NaN.
         let Some(components) = vector.filter(|components| !components.iter().all(|c| c.is_nan())) else {
             directions.push(None);
             continue;
         };
-        let direction = in_space(&components, space_dimension)
+        let direction = spatial_vector(&components, space_dimension)
             .ok_or_else(|| wrong(format!("{components:?} is no vector of {space_dimension} numbers")))?;
-        // An axis of time has steps in time alone.
+        // A time axis has steps in time alone.
         let is_time = direction == DVec3::ZERO && components.get(3).is_some_and(|&step| step != 0.0);
         directions.push((!is_time).then_some(direction));
     }
     Ok(directions.iter().any(Option::is_some).then_some(directions))
 }
 
-/// The centre of the first voxel, in the file's space; the origin where it is not known.
-pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
+/// Returns the centre of the first voxel, in the file's space; the origin if unknown.
+pub(super) fn origin(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
     const FIELD: &str = "space origin";
     let Some(text) = header.get(FIELD) else {
         return Ok(DVec3::ZERO);
     };
     let space_dimension = space_dimension(attempt, header)?;
     let wrong = || {
-        attempt.bad_input(
+        attempt.bad_input_error(
             FIELD,
             format!("a vector of {space_dimension} finite numbers was expected, {} was found", quoted(text)),
             "write it like (0,0,0)",
@@ -67,34 +67,34 @@ pub(super) fn origin(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, Loa
             Ok(DVec3::ZERO)
         }
         [Some(components)] => {
-            in_space(components, space_dimension).filter(|origin| origin.is_finite()).ok_or_else(wrong)
+            spatial_vector(components, space_dimension).filter(|origin| origin.is_finite()).ok_or_else(wrong)
         }
         _ => Err(wrong()),
     }
 }
 
-/// Signs that turn the file's space into right-anterior-superior.
+/// Returns the signs that convert the file's space to right-anterior-superior.
 ///
-/// Spaces without an anatomical meaning are taken as they are.
-pub(super) fn flips(attempt: Attempt<'_>, header: &Header) -> Result<DVec3, LoadError> {
-    // Checks the dimension also where no vector uses it.
+/// Spaces without an anatomical meaning are left unchanged.
+pub(super) fn ras_signs(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
+    // Validates the dimension even if no vector uses it.
     space_dimension(attempt, header)?;
-    Ok(match name(header).as_str() {
+    Ok(match space_name(header).as_str() {
         "left-posterior-superior" | "lps" => DVec3::new(-1.0, -1.0, 1.0),
         "left-anterior-superior" | "las" => DVec3::new(-1.0, 1.0, 1.0),
         _ => DVec3::ONE,
     })
 }
 
-/// Whether the file says which way a body lies.
-pub(super) fn is_anatomical(header: &Header) -> bool {
-    let space = name(header);
+/// True if the file gives an anatomical orientation.
+pub(super) fn is_anatomical(header: &NrrdHeader) -> bool {
+    let space = space_name(header);
     let names = ["right-anterior-superior", "left-anterior-superior", "left-posterior-superior"];
     names.contains(&space.as_str()) || ["ras", "las", "lps"].contains(&space.as_str())
 }
 
-/// Millimetres per unit of `space units` or `units`, from the first unit that is a known length.
-pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
+/// Returns millimetres per unit of `space units` or `units`, from the first unit that is a known length.
+pub(super) fn mm_per_unit(header: &NrrdHeader, field: &str) -> Option<f64> {
     let units = header.get(field).unwrap_or_default();
     let length = |unit: &str| match unit.trim().to_lowercase().as_str() {
         "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Some(1.0),
@@ -104,12 +104,12 @@ pub(super) fn mm_per_unit(header: &Header, field: &str) -> Option<f64> {
         "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => Some(1e-6),
         _ => None,
     };
-    // Units are in quotes: every second piece is one.
+    // Units are quoted: every second piece is a unit.
     units.split('"').skip(1).step_by(2).find_map(length)
 }
 
-/// Whether lengths are counted in voxels: how long they are is not known then.
-pub(super) fn counts_voxels(header: &Header) -> bool {
+/// True if lengths are counted in voxels, so that the physical scale is unknown.
+pub(super) fn is_in_voxel_units(header: &NrrdHeader) -> bool {
     let is_voxel =
         |unit: &str| matches!(unit.trim().to_lowercase().as_str(), "voxel" | "voxels" | "pixel" | "pixels");
     ["space units", "units"]
@@ -117,8 +117,8 @@ pub(super) fn counts_voxels(header: &Header) -> bool {
         .any(|field| header.get(field).unwrap_or_default().split('"').skip(1).step_by(2).any(is_voxel))
 }
 
-/// The name of the space, without time.
-fn name(header: &Header) -> String {
+/// Returns the name of the space, without its time suffix.
+fn space_name(header: &NrrdHeader) -> String {
     let space = header.get("space").unwrap_or_default().to_lowercase();
     match space.as_str() {
         "rast" | "last" | "lpst" => space[..3].to_owned(),
@@ -126,10 +126,10 @@ fn name(header: &Header) -> String {
     }
 }
 
-/// The number of components of the file's vectors: 3, 4 with time, or 2 for pictures.
-fn space_dimension(attempt: Attempt<'_>, header: &Header) -> Result<usize, LoadError> {
+/// Returns the number of components of the file's vectors: 3, 4 with time, or 2 for images.
+fn space_dimension(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<usize, LoadError> {
     let wrong = |found: &str| {
-        attempt.bad_input(
+        attempt.bad_input_error(
             "space dimension",
             format!(
                 "a space of 3 dimensions, 4 with time, or 2 for a slice, was expected, {} was found",
@@ -139,7 +139,7 @@ fn space_dimension(attempt: Attempt<'_>, header: &Header) -> Result<usize, LoadE
         )
     };
     match (header.get("space"), header.get("space dimension")) {
-        // The spaces with time have four dimensions: names and abbreviations end like this.
+        // Spaces with time have four dimensions; names and abbreviations have distinct suffixes.
         (Some(space), _) if has_time(space) => Ok(4),
         (Some(_), _) | (None, None | Some("3")) => Ok(3),
         (None, Some("2")) => Ok(2),
@@ -153,8 +153,8 @@ fn has_time(space: &str) -> bool {
     space.ends_with("-time") || matches!(space.as_str(), "rast" | "last" | "lpst")
 }
 
-/// A vector in three dimensions, without time; none when its length is another.
-fn in_space(components: &[f64], space_dimension: usize) -> Option<DVec3> {
+/// Converts a vector to three dimensions, without time; `None` if its length does not match.
+fn spatial_vector(components: &[f64], space_dimension: usize) -> Option<DVec3> {
     match *components {
         [x, y, z] if space_dimension == 3 => Some(DVec3::new(x, y, z)),
         [x, y, z, _] if space_dimension == 4 => Some(DVec3::new(x, y, z)),
@@ -163,7 +163,7 @@ fn in_space(components: &[f64], space_dimension: usize) -> Option<DVec3> {
     }
 }
 
-/// Takes `(1,0,0) none (0, 1, 0)` apart.
+/// Parses vectors like `(1,0,0) none (0, 1, 0)`.
 fn parse_vectors(text: &str) -> Option<Vec<Option<Vec<f64>>>> {
     let mut vectors = Vec::new();
     let mut rest = text.trim_start();

@@ -1,29 +1,29 @@
-//! The dictionary at the beginning of an array: Python's notation, of which only what NumPy writes is read.
+//! Parser of the Python dictionary in an array's header, restricted to what NumPy writes.
 
-/// A value of the dictionary.
+/// Value of a dictionary entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Value {
+pub(super) enum PythonValue {
     Text(String),
     Bool(bool),
-    /// A tuple of whole numbers.
+    /// Tuple of non-negative integers.
     Numbers(Vec<u64>),
-    /// A list, of which nothing is kept: the fields of records.
+    /// List, whose content is discarded: the fields of a record type.
     List,
 }
 
-/// Most axes that NumPy's arrays can have.
-const MOST_AXES: usize = 64;
+/// Maximum number of axes of a NumPy array.
+const MAX_AXES: usize = 64;
 
-/// The entries of a dictionary, or what was expected where it is none.
-pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
-    let mut text = Text(text.trim_ascii());
+/// Parses a dictionary; the error tells what was expected instead.
+pub(super) fn parse(text: &str) -> Result<Vec<(String, PythonValue)>, &'static str> {
+    let mut text = DictionaryParser(text.trim_ascii());
     text.require('{', "a dictionary in braces")?;
     let mut entries = Vec::new();
-    while !text.takes('}') {
+    while !text.skip_char('}') {
         let key = text.quoted().ok_or("a key in quotes")?;
         text.require(':', "a colon behind a key")?;
         entries.push((key, text.value()?));
-        if !text.takes(',') {
+        if !text.skip_char(',') {
             text.require('}', "a comma or the closing brace")?;
             break;
         }
@@ -31,27 +31,27 @@ pub(super) fn parse(text: &str) -> Result<Vec<(String, Value)>, &'static str> {
     if text.rest().is_empty() { Ok(entries) } else { Err("nothing behind the closing brace") }
 }
 
-/// What is left to be read.
-struct Text<'a>(&'a str);
+/// Remaining text to be parsed.
+struct DictionaryParser<'a>(&'a str);
 
-impl<'a> Text<'a> {
+impl<'a> DictionaryParser<'a> {
     fn rest(&mut self) -> &'a str {
         self.0 = self.0.trim_ascii_start();
         self.0
     }
 
-    /// Goes past a sign, if it comes next.
-    fn takes(&mut self, sign: char) -> bool {
+    /// Skips a character if it comes next, and returns true then.
+    fn skip_char(&mut self, sign: char) -> bool {
         let after = self.0.trim_ascii_start().strip_prefix(sign);
         self.0 = after.unwrap_or(self.0);
         after.is_some()
     }
 
     fn require(&mut self, sign: char, what: &'static str) -> Result<(), &'static str> {
-        if self.takes(sign) { Ok(()) } else { Err(what) }
+        if self.skip_char(sign) { Ok(()) } else { Err(what) }
     }
 
-    /// Text in quotes of either kind, without escapes: no name of a type has any.
+    /// Parses text in single or double quotes, without escapes: type names contain none.
     fn quoted(&mut self) -> Option<String> {
         let quote = self.rest().chars().next().filter(|c| matches!(c, '\'' | '"'))?;
         let (inside, after) = self.0[1..].split_once(quote)?;
@@ -59,39 +59,39 @@ impl<'a> Text<'a> {
         (!inside.contains('\\')).then(|| inside.to_owned())
     }
 
-    fn value(&mut self) -> Result<Value, &'static str> {
+    fn value(&mut self) -> Result<PythonValue, &'static str> {
         for (word, value) in [("True", true), ("False", false)] {
             if let Some(after) = self.rest().strip_prefix(word) {
                 self.0 = after;
-                return Ok(Value::Bool(value));
+                return Ok(PythonValue::Bool(value));
             }
         }
-        if self.takes('(') {
-            return self.numbers().map(Value::Numbers);
+        if self.skip_char('(') {
+            return self.numbers().map(PythonValue::Numbers);
         }
         if self.rest().starts_with('[') {
             return self.list();
         }
-        self.quoted().map(Value::Text).ok_or("a text, True, False, a tuple or a list")
+        self.quoted().map(PythonValue::Text).ok_or("a text, True, False, a tuple or a list")
     }
 
-    /// The rest of a tuple.
+    /// Parses the rest of a tuple, after its parenthesis.
     fn numbers(&mut self) -> Result<Vec<u64>, &'static str> {
         let mut numbers = Vec::new();
-        while !self.takes(')') {
+        while !self.skip_char(')') {
             let rest = self.rest();
             let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
-            // What does not fit 64 bits does not fit anything.
+            // Numbers over 64 bits saturate, and are refused later.
             let number = rest.get(..end).filter(|digits| !digits.is_empty()).ok_or("a whole number")?;
             let number = number.parse().unwrap_or(u64::MAX);
             self.0 = &self.0[end..];
-            // Python 2 marks long numbers.
-            self.takes('L');
-            if numbers.len() == MOST_AXES {
+            // Python 2 appends L to long integers.
+            self.skip_char('L');
+            if numbers.len() == MAX_AXES {
                 return Err("at most 64 axes");
             }
             numbers.push(number);
-            if !self.takes(',') {
+            if !self.skip_char(',') {
                 self.require(')', "a comma or the closing parenthesis")?;
                 break;
             }
@@ -99,8 +99,8 @@ impl<'a> Text<'a> {
         Ok(numbers)
     }
 
-    /// A list, with whatever is in it.
-    fn list(&mut self) -> Result<Value, &'static str> {
+    /// Skips a list with any content.
+    fn list(&mut self) -> Result<PythonValue, &'static str> {
         let mut depth = 0usize;
         let mut quote = None;
         for (at, c) in self.0.char_indices() {
@@ -113,7 +113,7 @@ impl<'a> Text<'a> {
             }
             if depth == 0 {
                 self.0 = &self.0[at + 1..];
-                return Ok(Value::List);
+                return Ok(PythonValue::List);
             }
         }
         Err("the end of a list")
@@ -128,15 +128,18 @@ mod tests {
     fn what_numpy_writes_is_read() {
         let text = "{'descr': '<f4', \"fortran_order\": False, 'shape': (3, 40L, 5), }   \n";
         let entries = parse(text).unwrap();
-        assert_eq!(entries[0], ("descr".to_owned(), Value::Text("<f4".to_owned())));
-        assert_eq!(entries[1].1, Value::Bool(false));
-        assert_eq!(entries[2].1, Value::Numbers(vec![3, 40, 5]));
+        assert_eq!(entries[0], ("descr".to_owned(), PythonValue::Text("<f4".to_owned())));
+        assert_eq!(entries[1].1, PythonValue::Bool(false));
+        assert_eq!(entries[2].1, PythonValue::Numbers(vec![3, 40, 5]));
         assert_eq!(parse("{}").unwrap(), []);
-        assert_eq!(parse("{'a':()}").unwrap()[0].1, Value::Numbers(Vec::new()));
-        assert_eq!(parse("{'a':(7,)}").unwrap()[0].1, Value::Numbers(vec![7]));
+        assert_eq!(parse("{'a':()}").unwrap()[0].1, PythonValue::Numbers(Vec::new()));
+        assert_eq!(parse("{'a':(7,)}").unwrap()[0].1, PythonValue::Numbers(vec![7]));
         let records = "{'descr': [('x]', '<f4', (2,)), ('y', [('z', '|u1')])], 'b': True}";
-        assert_eq!(parse(records).unwrap()[0].1, Value::List);
-        assert_eq!(parse("{'a':(99999999999999999999999,)}").unwrap()[0].1, Value::Numbers(vec![u64::MAX]));
+        assert_eq!(parse(records).unwrap()[0].1, PythonValue::List);
+        assert_eq!(
+            parse("{'a':(99999999999999999999999,)}").unwrap()[0].1,
+            PythonValue::Numbers(vec![u64::MAX])
+        );
     }
 
     #[test]

@@ -1,39 +1,39 @@
-//! What the axes of an array stand for: the three fastest are a volume, those before it several.
+//! Interpretation of the axes of a NumPy array: the three fastest are a volume, those before count volumes.
 
-use super::super::number::Number;
-use super::super::{Dimension, Endian, LoadError};
-use super::header::Header;
-use crate::data::attempt::{Attempt, quoted};
+use super::super::number::FileNumberType;
+use super::super::{Endian, FileDimension, LoadError};
+use super::header::NumpyHeader;
+use crate::data::load_context::{LoadContext, quoted};
 
-/// An array as volumes.
+/// Array as one or several volumes.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Grid {
-    /// How many volumes there are, the slowest first.
-    pub(super) outer: Vec<(Dimension, u64)>,
-    /// Voxels along x, y, z.
+pub(super) struct NumpyGrid {
+    /// Dimensions that count volumes, with their lengths, slowest first.
+    pub(super) outer: Vec<(FileDimension, u64)>,
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
-    pub(super) number: Number,
+    pub(super) number: FileNumberType,
     pub(super) endian: Endian,
     pub(super) components: usize,
     pub(super) is_color: bool,
 }
 
-impl Grid {
-    /// Says what the axes stand for; those of one element alone stand for nothing.
-    pub(super) fn of(attempt: Attempt<'_>, header: &Header) -> Result<Self, LoadError> {
-        let (number, endian, mut components) = number_of(&header.descr).ok_or_else(|| {
-            attempt.bad_input(
+impl NumpyGrid {
+    /// Interprets the axes. Axes of length 1 are dropped while there are more than three.
+    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NumpyHeader) -> Result<Self, LoadError> {
+        let (number, endian, mut components) = parse_type_code(&header.descr).ok_or_else(|| {
+            attempt.bad_input_error(
                 "descr",
                 format!("elements of type {} are not read", quoted(&header.descr)),
                 "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
             )
         })?;
-        // Slowest first, as they lie in the file.
+        // Slowest first, as in the file.
         let mut axes = header.shape.clone();
         if header.is_fortran {
             axes.reverse();
         }
-        let is_color = number == Number::U8 && axes.len() > 3 && matches!(axes.last(), Some(3 | 4));
+        let is_color = number == FileNumberType::U8 && axes.len() > 3 && matches!(axes.last(), Some(3 | 4));
         if is_color {
             components = axes.pop().unwrap_or(1) as usize;
         }
@@ -45,12 +45,12 @@ impl Grid {
         let (outer, dims) = match axes[..] {
             [y, x] => (vec![], [x, y, 1]),
             [z, y, x] => (vec![], [x, y, z]),
-            [frames, z, y, x] => (vec![(Dimension::Frame, frames)], [x, y, z]),
+            [frames, z, y, x] => (vec![(FileDimension::Frame, frames)], [x, y, z]),
             [frames, channels, z, y, x] => {
-                (vec![(Dimension::Frame, frames), (Dimension::Channel, channels)], [x, y, z])
+                (vec![(FileDimension::Frame, frames), (FileDimension::Channel, channels)], [x, y, z])
             }
             _ => {
-                return Err(attempt.bad_input(
+                return Err(attempt.bad_input_error(
                     "shape",
                     format!("an array of {count} axes is no volume"),
                     "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
@@ -58,7 +58,7 @@ impl Grid {
             }
         };
         if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
-            return Err(attempt.bad_input(
+            return Err(attempt.bad_input_error(
                 "shape",
                 format!("there are no {} in it", dimension.plural()),
                 "every axis must have at least one element",
@@ -68,37 +68,38 @@ impl Grid {
     }
 }
 
-impl Grid {
-    /// True for numbers that look as if they belonged to something else, in an array of so many axes: fewer than 16 along
-    /// one of two are an affine, a matrix or a list of points; 2 by 2 to 4 by 4 of more are matrices in a row.
-    pub(super) fn is_table(&self, axes: usize) -> bool {
-        const FEWEST_PIXELS: u64 = 16;
+impl NumpyGrid {
+    /// True for arrays that are likely no image, given the number of their axes: two axes, one of them shorter than
+    /// 16, are an affine, a matrix or a list of points; more axes that end in 2 by 2 to 4 by 4 are a list of
+    /// matrices.
+    pub(super) fn is_likely_table(&self, axes: usize) -> bool {
+        const MIN_PIXELS: u64 = 16;
         let [x, y, _] = self.dims;
-        if axes == 2 { x < FEWEST_PIXELS || y < FEWEST_PIXELS } else { x == y && (2..=4).contains(&x) }
+        if axes == 2 { x < MIN_PIXELS || y < MIN_PIXELS } else { x == y && (2..=4).contains(&x) }
     }
 }
 
-/// The number type of a code, its byte order, and how many of them an element has.
-fn number_of(descr: &str) -> Option<(Number, Endian, usize)> {
+/// Parses a type code: number type, byte order, and number of components per element.
+fn parse_type_code(descr: &str) -> Option<(FileNumberType, Endian, usize)> {
     let (endian, code) = match descr.split_at_checked(1)? {
         (">", code) => (Endian::Big, code),
         ("<" | "|" | "=", code) => (Endian::Little, code),
         _ => (Endian::Little, descr),
     };
     let (number, components) = match code {
-        "b1" | "u1" => (Number::U8, 1),
-        "i1" => (Number::I8, 1),
-        "u2" => (Number::U16, 1),
-        "i2" => (Number::I16, 1),
-        "u4" => (Number::U32, 1),
-        "i4" => (Number::I32, 1),
-        "u8" => (Number::U64, 1),
-        "i8" => (Number::I64, 1),
-        "f2" => (Number::F16, 1),
-        "f4" => (Number::F32, 1),
-        "f8" => (Number::F64, 1),
-        "c8" => (Number::F32, 2),
-        "c16" => (Number::F64, 2),
+        "b1" | "u1" => (FileNumberType::U8, 1),
+        "i1" => (FileNumberType::I8, 1),
+        "u2" => (FileNumberType::U16, 1),
+        "i2" => (FileNumberType::I16, 1),
+        "u4" => (FileNumberType::U32, 1),
+        "i4" => (FileNumberType::I32, 1),
+        "u8" => (FileNumberType::U64, 1),
+        "i8" => (FileNumberType::I64, 1),
+        "f2" => (FileNumberType::F16, 1),
+        "f4" => (FileNumberType::F32, 1),
+        "f8" => (FileNumberType::F64, 1),
+        "c8" => (FileNumberType::F32, 2),
+        "c16" => (FileNumberType::F64, 2),
         _ => return None,
     };
     Some((number, endian, components))

@@ -1,32 +1,33 @@
-//! The header of an array: its type, the order of its axes and its shape.
+//! Header of a NumPy array: type, axis order and shape.
 
 use std::io::Read;
 
 use super::super::LoadError;
-use super::dictionary::{Value, parse};
-use crate::data::attempt::{Attempt, quoted};
+use super::dictionary::{PythonValue, parse};
+use crate::data::load_context::{LoadContext, quoted};
 
-/// How every file of an array begins.
+/// Magic bytes of an array file.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The longest header that is read: NumPy itself reads no longer ones from files that are not trusted.
-const LONGEST_HEADER: u64 = 64 << 10;
+/// Maximum length of a header, in bytes; NumPy itself limits headers of untrusted files as well.
+const MAX_HEADER: u64 = 64 << 10;
 
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Header {
-    /// The type of the numbers in NumPy's code: `<f4`.
+pub(super) struct NumpyHeader {
+    /// Type code of the elements, such as `<f4`.
     pub(super) descr: String,
-    /// Whether the first axis is the fastest.
+    /// True if the first axis is the fastest (Fortran order).
     pub(super) is_fortran: bool,
     pub(super) shape: Vec<u64>,
-    /// Bytes before the first number.
+    /// Length of the header, in bytes.
     pub(super) bytes: u64,
 }
 
-impl Header {
-    /// Reads it from the beginning of an array's file.
-    pub(super) fn read(attempt: Attempt<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
-        let bad = |why: String| attempt.bad_input("header", why, "save the array again with numpy.save");
+impl NumpyHeader {
+    /// Reads the header from the beginning of an array file.
+    pub(super) fn read(attempt: LoadContext<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
+        let bad =
+            |why: String| attempt.bad_input_error("header", why, "save the array again with numpy.save");
         let mut exactly = |count: u64| {
             let mut bytes = Vec::new();
             match Read::take(&mut *content, count).read_to_end(&mut bytes) {
@@ -45,11 +46,11 @@ impl Header {
             other => return Err(bad(format!("version {other} is not known, 1 to 3 are"))),
         };
         let length = exactly(width)?.iter().rev().fold(0u64, |sum, &byte| sum << 8 | u64::from(byte));
-        if length > LONGEST_HEADER {
+        if length > MAX_HEADER {
             return Err(bad(format!("a header of {length} bytes is longer than any that describes numbers")));
         }
         let text = exactly(length)?;
-        // Versions before 3 are in Latin-1; names of types and axes are the same in both.
+        // Versions before 3 are in Latin-1; names of types and axes are ASCII in both.
         let text = if version == 3 {
             String::from_utf8_lossy(&text).into_owned()
         } else {
@@ -60,9 +61,9 @@ impl Header {
         })?;
         let find = |key: &str| entries.iter().find(|(name, _)| name == key).map(|(_, value)| value);
         let descr = match find("descr") {
-            Some(Value::Text(descr)) => descr.clone(),
-            Some(Value::List) => {
-                return Err(attempt.bad_input(
+            Some(PythonValue::Text(descr)) => descr.clone(),
+            Some(PythonValue::List) => {
+                return Err(attempt.bad_input_error(
                     "descr",
                     "its elements are records of several fields",
                     "save one of the fields as an array",
@@ -70,7 +71,7 @@ impl Header {
             }
             _ => return Err(bad("it does not say the type of its numbers (descr)".to_owned())),
         };
-        let (Some(Value::Bool(is_fortran)), Some(Value::Numbers(shape))) =
+        let (Some(PythonValue::Bool(is_fortran)), Some(PythonValue::Numbers(shape))) =
             (find("fortran_order"), find("shape"))
         else {
             return Err(bad("it does not say fortran_order or shape".to_owned()));

@@ -1,11 +1,11 @@
-//! Arrays and archives made by hand: every type, order and shape, and headers that lie.
+//! Tests of NumPy arrays and archives: every type, order and shape, and headers with false sizes.
 
 use std::io::Write as _;
 
 use super::*;
 use crate::data::Samples;
-use crate::data::load::tests::shared::load_bytes as loaded_as;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::tests::helpers::load_bytes as loaded_as;
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
 fn array_of(version: u8, header: &str, data: &[u8]) -> Vec<u8> {
     let length = header.len();
@@ -23,7 +23,7 @@ fn array(descr: &str, order: &str, shape: &str, data: &[u8]) -> Vec<u8> {
 }
 
 fn loaded(bytes: &[u8]) -> Result<Volume, LoadError> {
-    loaded_as("a.bin", bytes, Choice::default())
+    loaded_as("a.bin", bytes, VolumeChoice::default())
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn every_type_and_byte_order_is_read() {
     let volume = loaded(&array("<c8", "False", "(1, 2)", &complex)).unwrap();
     assert_eq!(*volume.samples(), Samples::F32(vec![5.0, 1.0]));
     assert!(volume.remarks()[0].contains("complex"));
-    let imaginary = Choice { component: Some(1), ..Choice::default() };
+    let imaginary = VolumeChoice { component: Some(1), ..VolumeChoice::default() };
     let volume = loaded_as("a.npy", &array("<c8", "False", "(1, 2)", &complex), imaginary).unwrap();
     assert_eq!((volume.samples(), volume.remarks().len()), (&Samples::F32(vec![4.0, 1.0]), 0));
 }
@@ -95,31 +95,31 @@ fn axes_are_a_volume_or_several() {
     let frames = array("|u1", "False", "(2, 3, 2, 2)", &data);
     let error = loaded(&frames).unwrap_err();
     assert!(
-        matches!(&error, LoadError::Several { dimension: Dimension::Frame, offers, .. } if offers.len() == 2)
+        matches!(&error, LoadError::Several { dimension: FileDimension::Frame, offers, .. } if offers.len() == 2)
     );
-    let choice = Choice { frame: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
     assert_eq!(
         *loaded_as("a.npy", &frames, choice.clone()).unwrap().samples(),
         Samples::U8((12..24).collect())
     );
     let channels = array("|u1", "False", "(2, 3, 2, 2, 2)", &(0..48).collect::<Vec<u8>>());
     let error = loaded_as("a.npy", &channels, choice.clone()).unwrap_err();
-    assert!(matches!(error, LoadError::Several { dimension: Dimension::Channel, .. }));
-    let both = Choice { channel: Some(2), ..choice };
+    assert!(matches!(error, LoadError::Several { dimension: FileDimension::Channel, .. }));
+    let both = VolumeChoice { channel: Some(2), ..choice };
     assert_eq!(*loaded_as("a.npy", &channels, both).unwrap().samples(), Samples::U8((40..48).collect()));
 
     let colors = array("|u1", "False", "(1, 2, 2, 3)", &[9, 9, 9, 0, 0, 0, 0, 255, 0, 7, 7, 7]);
     let volume = loaded(&colors).unwrap();
     assert_eq!((volume.dims(), volume.samples()), ([2, 2, 1], &Samples::U8(vec![9, 0, 182, 7])));
     assert!(volume.remarks()[0].contains("luminance"));
-    let green = Choice { component: Some(1), ..Choice::default() };
+    let green = VolumeChoice { component: Some(1), ..VolumeChoice::default() };
     assert_eq!(*loaded_as("a.npy", &colors, green).unwrap().samples(), Samples::U8(vec![9, 0, 255, 7]));
-    let alpha = Choice { component: Some(3), ..Choice::default() };
+    let alpha = VolumeChoice { component: Some(3), ..VolumeChoice::default() };
     assert!(loaded_as("a.npy", &colors, alpha).unwrap_err().to_string().contains("--component"));
 }
 
 #[test]
-fn headers_that_lie_are_refused() {
+fn inconsistent_headers_are_refused() {
     let data = [0; 24];
     for (bytes, kind, words) in [
         (array("|u1", "False", "(5, 5, 1)", &data), LoadErrorKind::BadInput, "25 bytes expected"),
@@ -145,12 +145,12 @@ fn headers_that_lie_are_refused() {
         assert_eq!(error.kind(), kind, "{error}");
         assert!(error.to_string().contains(words), "{words} is not in: {error}");
     }
-    let error = loaded_as("a.npy", b"x", Choice::default()).unwrap_err();
+    let error = loaded_as("a.npy", b"x", VolumeChoice::default()).unwrap_err();
     assert!(error.to_string().contains("truncated"), "{error}");
 }
 
-/// An archive: names and contents, deflated or not; with sizes behind the entries, as streams are written, or not; with
-/// sizes of 64 bits or not.
+/// Builds a ZIP archive of names and contents: deflated or stored; with sizes after the entries, as streaming writers
+/// do, or before them; with ZIP64 sizes or not.
 fn archive(files: &[(&str, &[u8])], [is_deflated, is_stream, is_large]: [bool; 3]) -> Vec<u8> {
     let (mut bytes, mut lines) = (Vec::new(), Vec::new());
     let number = |value: usize| (value as u32).to_le_bytes();
@@ -213,20 +213,20 @@ fn archives_are_read_however_they_are_written() {
         let (is_deflated, is_stream, is_large) = (at & 1 > 0, at & 2 > 0, at & 4 > 0);
         let write = |files: &[(&str, &[u8])]| archive(files, [is_deflated, is_stream, is_large]);
         let one = write(&[("table.npy", &table), ("readme.txt", b"hello"), ("ct.npy", &volume)]);
-        let found = loaded_as("scan.npz", &one, Choice::default()).unwrap();
+        let found = loaded_as("scan.npz", &one, VolumeChoice::default()).unwrap();
         assert_eq!((found.dims(), found.samples()), ([8, 5, 6], &Samples::U8(data.clone())), "{at}");
         assert_eq!(found.name(), "scan ct");
         let two = write(&[("ct.npy", &volume), ("mask.npy", &other)]);
         let error = loaded(&two).unwrap_err();
-        let LoadError::Several { dimension: Dimension::Array, offers, .. } = error else { panic!("two") };
+        let LoadError::Several { dimension: FileDimension::Array, offers, .. } = error else { panic!("two") };
         assert_eq!((offers[1].key.as_str(), offers[1].dims), ("mask", Some([2, 1, 1])));
-        let mask = Choice { array: Some("mask".to_owned()), ..Choice::default() };
+        let mask = VolumeChoice { array: Some("mask".to_owned()), ..VolumeChoice::default() };
         assert_eq!(*loaded_as("a.npz", &two, mask).unwrap().samples(), Samples::I16(vec![1, 2]));
     }
 }
 
 #[test]
-fn matrices_and_tables_beside_a_volume_are_no_question() {
+fn matrices_and_tables_are_not_offered() {
     let data: Vec<u8> = (0..240).collect();
     let volume = array("|u1", "False", "(6, 5, 8)", &data);
     let affine = array("<f8", "False", "(4, 4)", &[0; 128]);
@@ -238,19 +238,19 @@ fn matrices_and_tables_beside_a_volume_are_no_question() {
         [("data.npy", &volume[..]), ("affine.npy", &affine), ("poses.npy", &poses), ("points.npy", &points)];
     let found = loaded(&write(&files)).unwrap();
     assert_eq!((found.dims(), found.samples()), ([8, 5, 6], &Samples::U8(data)));
-    let named = |name: &str| Choice { array: Some(name.to_owned()), ..Choice::default() };
+    let named = |name: &str| VolumeChoice { array: Some(name.to_owned()), ..VolumeChoice::default() };
     let found = loaded_as("a.npz", &write(&files), named("affine")).unwrap();
     assert_eq!(found.dims(), [4, 4, 1], "what is named is meant");
     let unknown = loaded_as("a.npz", &write(&files), named("mask")).unwrap_err();
     assert!(unknown.to_string().contains("\"mask\" is none"), "{unknown}");
-    // Pictures are offered, and tables where there is nothing else.
+    // Pictures are offered, too, and tables only where there is nothing else.
     let error = loaded(&write(&[("data.npy", &volume), ("image.npy", &picture)])).unwrap_err();
     assert!(matches!(error, LoadError::Several { offers, .. } if offers.len() == 2));
     assert_eq!(loaded(&write(&[("affine.npy", &affine)])).unwrap().dims(), [4, 4, 1]);
 }
 
 #[test]
-fn archives_that_lie_are_refused() {
+fn inconsistent_archives_are_refused() {
     let volume = array("|u1", "False", "(6, 5, 8)", &[7; 240]);
     let table = array("<f8", "False", "(3,)", &[0; 24]);
     let stored = archive(&[("ct.npy", &volume)], [false; 3]);
@@ -282,7 +282,7 @@ fn archives_that_lie_are_refused() {
         (archive(&[], [true, false, false]), "none of its 0 arrays"),
         (b"PK".to_vec(), "no directory"),
     ] {
-        let error = loaded_as("a.npz", &bytes, Choice::default()).unwrap_err();
+        let error = loaded_as("a.npz", &bytes, VolumeChoice::default()).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{error}");
         assert!(error.to_string().contains(words), "{words} is not in: {error}");
     }

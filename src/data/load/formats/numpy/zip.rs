@@ -1,121 +1,125 @@
-//! ZIP archives, as far as NumPy writes them: entries that are stored or deflated.
+//! Reader of ZIP archives in the variants that NumPy writes: entries that are stored or deflated.
 //!
-//! After PKWARE's APPNOTE 6.3, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>; its sections are named below.
-//! Only what the directory at the end says counts. The sizes before the entries, or behind them, may be left open.
+//! After PKWARE's APPNOTE 6.3, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>; its sections are named
+//! below. Only the central directory counts. Sizes before the entries, or after them, may be missing.
 
 use std::io::{self, Read, Seek as _, SeekFrom};
 
 use flate2::bufread::DeflateDecoder;
 
 use super::super::LoadError;
-use super::super::input::Input;
-use crate::data::attempt::{Attempt, quoted};
+use super::super::input::InputFile;
+use crate::data::load_context::{LoadContext, quoted};
 
-/// Begins each entry (4.3.7).
-const ENTRY: &[u8] = b"PK\x03\x04";
-/// Begins each line of the directory (4.3.12).
-const DIRECTORY_LINE: &[u8] = b"PK\x01\x02";
-/// Begins the end of the directory (4.3.16), and how long that is without its comment.
-const END: &[u8] = b"PK\x05\x06";
+/// Signature of a local file header (4.3.7).
+const LOCAL_HEADER: &[u8] = b"PK\x03\x04";
+/// Signature of a central directory header (4.3.12).
+const CENTRAL_HEADER: &[u8] = b"PK\x01\x02";
+/// Signature of the end of central directory record (4.3.16), and its length without the comment.
+const END_OF_DIRECTORY: &[u8] = b"PK\x05\x06";
 const END_BYTES: usize = 22;
-/// Begins the end of a large archive's directory (4.3.14), and the note before [`END`] that says where it is (4.3.15).
-const LARGE_END: &[u8] = b"PK\x06\x06";
-const LARGE_NOTE: &[u8] = b"PK\x06\x07";
+/// Signatures of the ZIP64 end of central directory record (4.3.14), and of its locator before [`END_OF_DIRECTORY`]
+/// (4.3.15).
+const ZIP64_END: &[u8] = b"PK\x06\x06";
+const ZIP64_LOCATOR: &[u8] = b"PK\x06\x07";
 const LARGE_NOTE_BYTES: usize = 20;
-/// What stands for numbers that need 64 bits, and the id of the field that has them (4.5.3).
-const IN_LARGE_FIELD: u64 = u32::MAX as u64;
-const LARGE_FIELD: u64 = 1;
+/// Placeholder for numbers that need 64 bits, and the id of the extra field that has them (4.5.3).
+const IN_ZIP64_FIELD: u64 = u32::MAX as u64;
+const ZIP64_FIELD: u64 = 1;
 
-/// The longest directory that is read: that of a hundred thousand entries.
-const LONGEST_DIRECTORY: u64 = 16 << 20;
-/// Deflate makes no more than 1032 bytes of one; a few more for its own words.
-const MOST_INFLATION: u64 = 1032;
+/// Maximum length of the central directory, in bytes: a hundred thousand entries.
+const MAX_DIRECTORY: u64 = 16 << 20;
+/// Maximum expansion by deflate, which makes at most 1032 bytes of one; the caller adds some for its headers.
+const MAX_INFLATION: u64 = 1032;
 
 const HELP: &str = "save the archive again, or copy the file again";
 
-/// A file in an archive.
+/// File in an archive, by its central directory header.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(super) struct ZipEntry {
     pub(super) name: String,
-    /// Bytes of its content.
+    /// Uncompressed length, in bytes.
     pub(super) bytes: u64,
-    /// CRC-32 of its content.
+    /// CRC-32 of the uncompressed content.
     pub(super) checksum: u32,
     is_deflated: bool,
-    /// Bytes of it in the archive.
+    /// Compressed length, in bytes.
     stored_bytes: u64,
-    /// Where in the archive it begins.
+    /// Offset of its local header in the archive.
     at: u64,
 }
 
-/// Whether a file begins with an entry whose name has this ending.
+/// Returns true if a file begins with an entry whose name has this extension.
 pub(super) fn begins_with_entry(start: &[u8], ending: &str) -> bool {
-    let length = number(start, 26, 2) as usize;
+    let length = read_le(start, 26, 2) as usize;
     let name = start.get(30..30 + length);
-    start.starts_with(ENTRY) && name.is_some_and(|name| name.ends_with(ending.as_bytes()))
+    start.starts_with(LOCAL_HEADER) && name.is_some_and(|name| name.ends_with(ending.as_bytes()))
 }
 
-/// All entries of an archive that can be read.
+/// Reads the central directory; returns all entries that are supported.
 ///
 /// # Errors
-/// `BadInput` where it has no directory, or one that cannot be true.
-pub(super) fn entries(attempt: Attempt<'_>, input: &mut Input) -> Result<Vec<Entry>, LoadError> {
-    let bad = |why: &str| attempt.bad_input("directory", why, HELP);
-    let (at, length) = directory(attempt, input)?;
-    if length > LONGEST_DIRECTORY || at.saturating_add(length) > input.len {
+/// `BadInput` where the directory is missing, or inconsistent.
+pub(super) fn read_central_directory(
+    attempt: LoadContext<'_>,
+    input: &mut InputFile,
+) -> Result<Vec<ZipEntry>, LoadError> {
+    let bad = |why: &str| attempt.bad_input_error("directory", why, HELP);
+    let (at, length) = find_central_directory(attempt, input)?;
+    if length > MAX_DIRECTORY || at.saturating_add(length) > input.len {
         return Err(bad("the directory of the archive is longer than it can be"));
     }
-    let bytes = read_at(input, at, length).map_err(|error| attempt.io(error))?;
+    let bytes = read_at(input, at, length).map_err(|error| attempt.io_error(error))?;
     let mut entries = Vec::new();
     let mut rest = &bytes[..];
-    while rest.starts_with(DIRECTORY_LINE) && rest.len() >= 46 {
-        let [name, extra, comment] = [28, 30, 32].map(|at| number(rest, at, 2) as usize);
+    while rest.starts_with(CENTRAL_HEADER) && rest.len() >= 46 {
+        let [name, extra, comment] = [28, 30, 32].map(|at| read_le(rest, at, 2) as usize);
         let Some(line) = rest.get(..46 + name + extra + comment) else {
             return Err(bad("the directory of the archive is truncated"));
         };
         rest = &rest[line.len()..];
-        let [mut bytes, mut stored_bytes, mut at] = [24, 20, 42].map(|at| number(line, at, 4));
-        let mut large = large_numbers(&line[46 + name..46 + name + extra]);
+        let [mut bytes, mut stored_bytes, mut at] = [24, 20, 42].map(|at| read_le(line, at, 4));
+        let mut large = zip64_numbers(&line[46 + name..46 + name + extra]);
         for value in [&mut bytes, &mut stored_bytes, &mut at] {
-            if *value == IN_LARGE_FIELD {
+            if *value == IN_ZIP64_FIELD {
                 *value = large.next().ok_or_else(|| bad("an entry does not say its size"))?;
             }
         }
-        let (flags, method) = (number(line, 8, 2), number(line, 10, 2));
+        let (flags, method) = (read_le(line, 8, 2), read_le(line, 10, 2));
         let name = String::from_utf8_lossy(&line[46..46 + name]).into_owned();
         let most = match method {
             0 => stored_bytes,
-            8 => stored_bytes.saturating_add(64).saturating_mul(MOST_INFLATION),
-            // Neither stored nor deflated.
+            8 => stored_bytes.saturating_add(64).saturating_mul(MAX_INFLATION),
+            // Unsupported compression method.
             _ => continue,
         };
-        // The first bit: encrypted.
+        // Bit 0: encrypted.
         if flags & 1 != 0 {
             continue;
         }
         if stored_bytes > input.len || bytes > most {
             return Err(bad(&format!("{bytes} bytes cannot be the size of {}", quoted(&name))));
         }
-        let checksum = number(line, 16, 4) as u32;
-        entries.push(Entry { name, bytes, checksum, is_deflated: method == 8, stored_bytes, at });
+        let checksum = read_le(line, 16, 4) as u32;
+        entries.push(ZipEntry { name, bytes, checksum, is_deflated: method == 8, stored_bytes, at });
     }
     Ok(entries)
 }
 
-/// The content of an entry, inflated: as much as it is said to be, or less.
-pub(super) fn open<'a>(
-    attempt: Attempt<'_>,
-    input: &'a mut Input,
-    entry: &Entry,
+/// Opens an entry for reading, inflated; it yields at most its announced length.
+pub(super) fn open_entry<'a>(
+    attempt: LoadContext<'_>,
+    input: &'a mut InputFile,
+    entry: &ZipEntry,
 ) -> Result<Box<dyn Read + 'a>, LoadError> {
-    let head = read_at(input, entry.at, 30).map_err(|error| attempt.io(error))?;
-    if !head.starts_with(ENTRY) || head.len() < 30 {
+    let head = read_at(input, entry.at, 30).map_err(|error| attempt.io_error(error))?;
+    if !head.starts_with(LOCAL_HEADER) || head.len() < 30 {
         let why = format!("{} is not where the directory of the archive says", quoted(&entry.name));
-        return Err(attempt.bad_input("directory", why, HELP));
+        return Err(attempt.bad_input_error("directory", why, HELP));
     }
-    // Its name, and a field that may be longer than in the directory.
-    let skip = 30 + number(&head, 26, 2) + number(&head, 28, 2);
-    input.seek(entry.at.saturating_add(skip)).map_err(|error| attempt.io(error))?;
+    // The file name, and an extra field whose length may differ from that in the directory.
+    let skip = 30 + read_le(&head, 26, 2) + read_le(&head, 28, 2);
+    input.seek(entry.at.saturating_add(skip)).map_err(|error| attempt.io_error(error))?;
     let stored = io::Read::by_ref(&mut input.reader).take(entry.stored_bytes);
     Ok(if entry.is_deflated {
         Box::new(DeflateDecoder::new(stored).take(entry.bytes))
@@ -124,49 +128,53 @@ pub(super) fn open<'a>(
     })
 }
 
-/// Where the directory begins, and its length.
-fn directory(attempt: Attempt<'_>, input: &mut Input) -> Result<(u64, u64), LoadError> {
-    // A comment behind it has at most 65535 bytes.
+/// Finds the central directory; returns its offset and its length.
+fn find_central_directory(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<(u64, u64), LoadError> {
+    // A comment after the record has at most 65535 bytes.
     let most = (END_BYTES + LARGE_NOTE_BYTES) as u64 + 0xffff;
     let from = input.len.saturating_sub(most);
-    let tail = read_at(input, from, most).map_err(|error| attempt.io(error))?;
-    let Some(end) = tail.windows(END_BYTES).rposition(|window| window.starts_with(END)) else {
-        return Err(attempt.bad_input("directory", "the archive is truncated: it has no directory", HELP));
+    let tail = read_at(input, from, most).map_err(|error| attempt.io_error(error))?;
+    let Some(end) = tail.windows(END_BYTES).rposition(|window| window.starts_with(END_OF_DIRECTORY)) else {
+        return Err(attempt.bad_input_error(
+            "directory",
+            "the archive is truncated: it has no directory",
+            HELP,
+        ));
     };
-    let (length, at) = (number(&tail, end + 12, 4), number(&tail, end + 16, 4));
+    let (length, at) = (read_le(&tail, end + 12, 4), read_le(&tail, end + 16, 4));
     let note = end.checked_sub(LARGE_NOTE_BYTES).and_then(|at| tail.get(at..end));
-    let note = note.filter(|note| note.starts_with(LARGE_NOTE));
-    if let Some(note) = note.filter(|_| at == IN_LARGE_FIELD || length == IN_LARGE_FIELD) {
-        let end = read_at(input, number(note, 8, 8), 56).map_err(|error| attempt.io(error))?;
-        if end.starts_with(LARGE_END) {
-            return Ok((number(&end, 48, 8), number(&end, 40, 8)));
+    let note = note.filter(|note| note.starts_with(ZIP64_LOCATOR));
+    if let Some(note) = note.filter(|_| at == IN_ZIP64_FIELD || length == IN_ZIP64_FIELD) {
+        let end = read_at(input, read_le(note, 8, 8), 56).map_err(|error| attempt.io_error(error))?;
+        if end.starts_with(ZIP64_END) {
+            return Ok((read_le(&end, 48, 8), read_le(&end, 40, 8)));
         }
     }
     Ok((at, length))
 }
 
-/// The 64-bit numbers in the field for them, in the order of those that need it.
-fn large_numbers(mut extra: &[u8]) -> impl Iterator<Item = u64> + use<> {
+/// Numbers in the ZIP64 extra field, in the order of the fields that they replace.
+fn zip64_numbers(mut extra: &[u8]) -> impl Iterator<Item = u64> + use<> {
     let mut found = Vec::new();
     while extra.len() >= 4 {
-        let length = number(extra, 2, 2) as usize;
+        let length = read_le(extra, 2, 2) as usize;
         let field = extra.get(4..4 + length).unwrap_or_default();
-        if number(extra, 0, 2) == LARGE_FIELD {
-            found = field.chunks_exact(8).map(|bytes| number(bytes, 0, 8)).collect();
+        if read_le(extra, 0, 2) == ZIP64_FIELD {
+            found = field.chunks_exact(8).map(|bytes| read_le(bytes, 0, 8)).collect();
         }
         extra = extra.get(4 + length..).unwrap_or_default();
     }
     found.into_iter()
 }
 
-/// A little-endian number of so many bytes; 0 where there are not so many.
-fn number(bytes: &[u8], at: usize, width: usize) -> u64 {
+/// Decodes a little-endian number of `width` bytes; 0 where the slice is too short.
+fn read_le(bytes: &[u8], at: usize, width: usize) -> u64 {
     let bytes = bytes.get(at..at + width).unwrap_or_default();
     bytes.iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte))
 }
 
-/// Up to so many bytes from a place on.
-fn read_at(input: &mut Input, at: u64, count: u64) -> io::Result<Vec<u8>> {
+/// Reads up to `count` bytes from an offset.
+fn read_at(input: &mut InputFile, at: u64, count: u64) -> io::Result<Vec<u8>> {
     input.reader.seek(SeekFrom::Start(at))?;
     let mut bytes = Vec::new();
     io::Read::by_ref(&mut input.reader).take(count).read_to_end(&mut bytes)?;

@@ -1,5 +1,5 @@
-//! Volumes whose slices are pictures: the pages of a file, or files of their own.
+//! Volumes whose slices are pictures: pages of one file, or files of their own.
 
-mod pile;
+mod slice_reader;
 pub(super) mod slices;
 pub(super) mod tiff;

@@ -1,39 +1,39 @@
-//! The lines at the beginning of a PVM volume, and the words behind the voxels of its third version.
+//! Header lines of a PVM volume, and the texts after the voxels of version 3.
 
 use super::super::LoadError;
-use super::super::number::Part;
-use super::super::placement::Placement;
-use crate::data::attempt::{Attempt, quoted};
-use crate::data::{Hints, Modality};
+use super::super::number::ScalarReduction;
+use super::super::placement::GridPlacement;
+use crate::data::load_context::{LoadContext, quoted};
+use crate::data::{Modality, ValueMetadata};
 
-/// The longest header that is looked for.
-pub(super) const MOST_BYTES: usize = 1024;
+/// Maximum length of a header, in bytes.
+pub(super) const MAX_BYTES: usize = 1024;
 
-/// How volumes of each version begin.
-const MARKS: [&[u8]; 3] = [b"PVM\n", b"PVM2\n", b"PVM3\n"];
+/// Magic bytes of each version.
+const MAGICS: [&[u8]; 3] = [b"PVM\n", b"PVM2\n", b"PVM3\n"];
 
-/// Whether content that begins like this is a volume.
+/// Returns true if content with this beginning is a PVM volume.
 pub(super) fn is_pvm(start: &[u8]) -> bool {
-    MARKS.iter().any(|mark| start.starts_with(mark))
+    MAGICS.iter().any(|mark| start.starts_with(mark))
 }
 
-pub(super) struct Header {
+pub(super) struct PvmHeader {
     version: usize,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
     scale: [f64; 3],
-    /// Bytes of each voxel.
+    /// Bytes of each voxel: 2 are a 16-bit number, 3 and 4 a colour.
     pub(super) components: usize,
-    /// Bytes before the first voxel.
+    /// Length of the header, in bytes.
     pub(super) bytes: usize,
 }
 
-impl Header {
-    pub(super) fn of(attempt: Attempt<'_>, content: &[u8]) -> Result<Self, LoadError> {
-        let mut lines = Lines { content: &content[..content.len().min(MOST_BYTES)], at: 0 };
+impl PvmHeader {
+    pub(super) fn parse(attempt: LoadContext<'_>, content: &[u8]) -> Result<Self, LoadError> {
+        let mut lines = PvmLines { content: &content[..content.len().min(MAX_BYTES)], at: 0 };
         let bad = |field: &str, found: &str, expected: &str| {
             let why = format!("{expected} was expected, {} was found", quoted(found));
-            attempt.bad_input(field, why, "check that the file is a PVM volume, or copy it again")
+            attempt.bad_input_error(field, why, "check that the file is a PVM volume, or copy it again")
         };
         let mark = lines.next().unwrap_or_default();
         let version = match mark.as_str() {
@@ -46,12 +46,12 @@ impl Header {
         while version == 1 && line.starts_with('#') {
             line = lines.next().unwrap_or_default();
         }
-        let dims = three(&line).ok_or_else(|| bad("dimensions", &line, "three numbers of voxels"))?;
+        let dims = parse_three(&line).ok_or_else(|| bad("dimensions", &line, "three numbers of voxels"))?;
         let scale = if version == 1 {
             [1.0; 3]
         } else {
             let line = lines.next().unwrap_or_default();
-            three(&line).ok_or_else(|| bad("scale", &line, "three distances"))?
+            parse_three(&line).ok_or_else(|| bad("scale", &line, "three distances"))?
         };
         let line = lines.next().unwrap_or_default();
         let components = line.trim().parse().ok().filter(|n| (1..=4).contains(n));
@@ -59,41 +59,41 @@ impl Header {
         Ok(Self { version, dims, scale, components, bytes: lines.at })
     }
 
-    /// Distances have no unit: often the shortest is 1.
-    pub(super) fn placement(&self, part: Part) -> Placement {
-        Placement::spaced(self.scale).of_unknown_scale().remarked(part.remark())
+    /// Placement by relative distances: they have no unit, and often the shortest is 1.
+    pub(super) fn placement(&self, part: ScalarReduction) -> GridPlacement {
+        GridPlacement::from_spacing(self.scale).with_unknown_scale().with_remark(part.remark())
     }
 
-    /// What is said behind the voxels: description, courtesy, parameters and comment, each with a zero behind it.
-    pub(super) fn hints(&self, after: &[u8]) -> Hints {
-        let mut hints = Hints::default();
+    /// Metadata after the voxels: description, courtesy, parameters and comment, each ended by a zero byte.
+    pub(super) fn hints(&self, after: &[u8]) -> ValueMetadata {
+        let mut hints = ValueMetadata::default();
         if self.version == 3 {
-            let after = &after[..after.len().min(MOST_BYTES)];
+            let after = &after[..after.len().min(MAX_BYTES)];
             let texts: Vec<String> = after
                 .split(|&byte| byte == 0)
                 .take(4)
                 .map(|t| String::from_utf8_lossy(t).into_owned())
                 .collect();
-            hints.modality = Modality::of_description(&texts.join(" "));
+            hints.modality = Modality::from_description(&texts.join(" "));
             hints.set_acquisition(texts.iter().find(|text| !text.trim().is_empty()).map_or("", |text| text));
         }
         hints
     }
 }
 
-/// Three numbers in a line.
-fn three<T: std::str::FromStr>(line: &str) -> Option<[T; 3]> {
+/// Parses the three numbers of a line.
+fn parse_three<T: std::str::FromStr>(line: &str) -> Option<[T; 3]> {
     let mut numbers = line.split_whitespace().map(|word| word.parse().ok());
     Some([numbers.next()??, numbers.next()??, numbers.next()??])
 }
 
-struct Lines<'a> {
+struct PvmLines<'a> {
     content: &'a [u8],
     at: usize,
 }
 
-impl Lines<'_> {
-    /// The next line that ends.
+impl PvmLines<'_> {
+    /// Next line that is ended by a newline.
     fn next(&mut self) -> Option<String> {
         let rest = self.content.get(self.at..)?;
         let end = rest.iter().position(|&byte| byte == b'\n')?;

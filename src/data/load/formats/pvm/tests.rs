@@ -1,18 +1,21 @@
-//! PVM volumes made by hand, packed and not, and packings that lie.
+//! Tests of PVM volumes, packed and unpacked, and of packings with false sizes.
 
 use glam::DVec3;
 use tempfile::TempDir;
 
 use super::*;
-use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, load as load_file};
+use crate::data::load::{LoadControl, LoadErrorKind, LoadOptions, VolumeChoice, load as load_file};
 use crate::data::{Modality, Samples};
 
 fn loaded_with(bytes: &[u8], budget: u64) -> Result<Volume, LoadError> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("a.pvm");
     std::fs::write(&path, bytes).unwrap();
-    let options =
-        LoadOptions { choice: Choice::default(), memory_budget_bytes: budget, ..LoadOptions::default() };
+    let options = LoadOptions {
+        choice: VolumeChoice::default(),
+        memory_budget_bytes: budget,
+        ..LoadOptions::default()
+    };
     load_file(&path, &options, &LoadControl::new())
 }
 
@@ -20,11 +23,11 @@ fn loaded(bytes: &[u8]) -> Result<Volume, LoadError> {
     loaded_with(bytes, 1 << 20)
 }
 
-/// Bits, the highest of each byte first.
+/// Bit writer, most significant bit first.
 #[derive(Default)]
-struct Bits(Vec<bool>);
+struct DdsBitWriter(Vec<bool>);
 
-impl Bits {
+impl DdsBitWriter {
     fn put(&mut self, value: u32, width: u32) {
         self.0.extend((0..width).rev().map(|bit| value >> bit & 1 == 1));
     }
@@ -36,15 +39,16 @@ impl Bits {
     }
 }
 
-/// Packs as the format is described: runs of up to 100 differences with as many bits as they need.
-fn packed(content: &[u8], interleaved: usize, line: usize, block: usize) -> Vec<u8> {
+/// Packs content as the format description has it: runs of up to 100 differences, each run with the bits that it
+/// needs.
+fn pack_dds(content: &[u8], interleaved: usize, line: usize, block: usize) -> Vec<u8> {
     let mark: &[u8] = if block == usize::MAX { b"DDS v3d\n" } else { b"DDS v3e\n" };
     let apart: Vec<u8> = content
         .chunks(block.min(content.len()))
         .flat_map(|block| (0..interleaved).flat_map(|at| block.iter().skip(at).step_by(interleaved)))
         .copied()
         .collect();
-    let mut bits = Bits::default();
+    let mut bits = DdsBitWriter::default();
     bits.put(interleaved as u32 - 1, 2);
     bits.put(line as u32 - 1, 16);
     let difference = |at: usize| {
@@ -86,21 +90,21 @@ fn every_version_is_read_packed_or_not() {
         let plain = [header.as_bytes(), &bytes[..count], b"\0A CT scan\0somebody\0\0"].concat();
         let mut files = vec![plain.clone()];
         for (interleaved, line) in [(1, 1), (1, 4), (2, 4), (4, 7), (2, 65536)] {
-            files.push(packed(&plain, interleaved, line, usize::MAX));
-            files.push(packed(&plain, interleaved, line, interleaved << 24));
+            files.push(pack_dds(&plain, interleaved, line, usize::MAX));
+            files.push(pack_dds(&plain, interleaved, line, interleaved << 24));
         }
         for file in files {
             let volume = loaded(&file).unwrap();
             assert_eq!((volume.dims(), volume.samples()), ([4, 3, 2], &samples), "{header}");
             assert_eq!((volume.spacing_mm(), volume.has_unknown_scale()), (spacing, true));
             let is_told = header.starts_with("PVM3") && file.starts_with(b"DDS");
-            assert_eq!(volume.hints().acquisition().is_some(), is_told);
-            assert_eq!(volume.hints().modality == Modality::Ct, is_told);
+            assert_eq!(volume.metadata().acquisition().is_some(), is_told);
+            assert_eq!(volume.metadata().modality == Modality::Ct, is_told);
         }
     }
-    // Without the run that ends it: 7 bits and what fills up the last 32.
+    // Without the run that ends the data: 7 bits, and the padding of the last 32.
     let whole = [b"PVM\n4 3 2\n1\n", &bytes[..24]].concat();
-    let endless = packed(&whole, 1, 4, usize::MAX);
+    let endless = pack_dds(&whole, 1, 4, usize::MAX);
     let cut = endless.iter().rposition(|&byte| byte != 0).unwrap() + 1;
     assert_eq!(*loaded(&endless[..cut]).unwrap().samples(), Samples::U8(bytes[..24].to_vec()));
     let colors = loaded(b"PVM\n1 2 1\n3\n\x09\x09\x09\x00\xff\x00").unwrap();
@@ -109,17 +113,17 @@ fn every_version_is_read_packed_or_not() {
 }
 
 #[test]
-fn files_that_lie_are_refused() {
+fn inconsistent_files_are_refused() {
     let good = b"PVM2\n4 3 2\n1 1 1\n1\n".to_vec();
     let whole = [good.clone(), (0..24u8).map(|n| n.wrapping_mul(37)).collect()].concat();
-    let pack = packed(&whole, 1, 4, usize::MAX);
+    let pack = pack_dds(&whole, 1, 4, usize::MAX);
     let zeros = [b"PVM\n1000 1000 1\n1\n".to_vec(), vec![0; 1_000_000]].concat();
     for (bytes, kind, words) in [
         (good.clone(), LoadErrorKind::BadInput, "24 bytes expected"),
         (pack[..pack.len() - 12].to_vec(), LoadErrorKind::BadInput, "truncated"),
         (pack[..9].to_vec(), LoadErrorKind::BadInput, "truncated"),
         (b"DDS v3d\n".to_vec(), LoadErrorKind::BadInput, "truncated"),
-        (packed(b"hello\n", 1, 1, usize::MAX), LoadErrorKind::BadInput, "\"hello\""),
+        (pack_dds(b"hello\n", 1, 1, usize::MAX), LoadErrorKind::BadInput, "\"hello\""),
         (b"PVM2\n4 x 2\n1 1 1\n1\n".to_vec(), LoadErrorKind::BadInput, "dimensions"),
         (b"PVM2\n4 3 2\n1 1\n1\n".to_vec(), LoadErrorKind::BadInput, "scale"),
         (b"PVM2\n4 3 2\n1 1 1\n5\n".to_vec(), LoadErrorKind::BadInput, "components"),
@@ -132,6 +136,6 @@ fn files_that_lie_are_refused() {
         assert_eq!(error.kind(), kind, "{error}");
         assert!(error.to_string().contains(words), "{words} is not in: {error}");
     }
-    let error = loaded_with(&packed(&zeros, 1, 1, usize::MAX), 10_000).unwrap_err();
+    let error = loaded_with(&pack_dds(&zeros, 1, 1, usize::MAX), 10_000).unwrap_err();
     assert_eq!(error.kind(), LoadErrorKind::Limit, "{error}");
 }

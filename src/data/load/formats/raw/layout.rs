@@ -1,51 +1,51 @@
-//! How a file of bare voxels is stored: what can be guessed of it, and the header that says it for good.
+//! Layout of raw files: guesses by name and length, and NRRD headers that record it permanently.
 
 use std::io::Read as _;
 use std::path::Path;
 
 use super::super::input::is_gzip;
 use super::super::{Endian, nrrd};
-use super::said::Said;
+use super::name_hints::RawNameHints;
 use super::{RawFormat, name, sidecar};
 use crate::data::VoxelType;
 
-/// Everything that must be known of a file of bare voxels.
+/// Complete description of how a raw file stores its voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawLayout {
-    /// Voxels along x, y, z.
+    /// Voxels along x, y and z.
     pub dims: [usize; 3],
-    /// The number type.
+    /// Number type of the voxels.
     pub voxel_type: VoxelType,
-    /// Distance between voxel centres, where it is known.
+    /// Distance between voxel centres in millimetres, where it is known.
     pub spacing_mm: Option<[f64; 3]>,
-    /// The byte order.
+    /// Byte order of the voxels.
     pub endian: Endian,
-    /// Bytes before the first voxel, after inflating.
+    /// Bytes before the first voxel, in the uncompressed file.
     pub offset: u64,
 }
 
-/// What can be told of a file without knowing how it is stored.
+/// Guess of a raw file's layout, and the facts behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RawGuess {
-    /// The best guess.
+    /// Most likely layout by name and length.
     pub layout: RawLayout,
-    /// Length of the file.
+    /// Length of the file, in bytes.
     pub file_bytes: u64,
-    /// Whether it is compressed, so that its length says nothing.
+    /// True if it is compressed, so that its length carries no information.
     pub is_gzip: bool,
-    /// What its name says.
-    pub said: Said,
+    /// Layout hints in its name.
+    pub name_hints: RawNameHints,
 }
 
 impl RawLayout {
-    /// Bytes of a file that is stored like that and not compressed; `None` beyond 64 bits.
+    /// Length in bytes of an uncompressed file with this layout; `None` beyond 64 bits.
     pub fn file_bytes(&self) -> Option<u64> {
         let voxels = self.dims.iter().try_fold(1u64, |product, &n| product.checked_mul(n as u64))?;
         voxels.checked_mul(self.voxel_type.bytes() as u64)?.checked_add(self.offset)
     }
 
-    /// As the options of a reader.
-    pub fn format(&self) -> RawFormat {
+    /// Converts to the options of the RAW reader.
+    pub fn to_format(&self) -> RawFormat {
         RawFormat {
             dims: Some(self.dims),
             voxel_type: Some(self.voxel_type),
@@ -55,8 +55,8 @@ impl RawLayout {
         }
     }
 
-    /// A detached NRRD header for a data file in the same folder: every program that reads NRRD then knows.
-    pub fn header(&self, data_file: &str, is_gzip: bool) -> String {
+    /// Text of a detached NRRD header for a data file in the same folder, which lets every NRRD reader open it.
+    pub fn nrrd_header(&self, data_file: &str, is_gzip: bool) -> String {
         let [x, y, z] = self.dims;
         let spacings = self.spacing_mm.map_or(String::new(), |[sx, sy, sz]| {
             format!("spacings: {sx} {sy} {sz}\nunits: \"mm\" \"mm\" \"mm\"\n")
@@ -78,7 +78,8 @@ impl RawLayout {
         )
     }
 
-    /// What the name and the length of a file suggest; `None` for NRRD and for descriptions, which need no guess.
+    /// Guesses the layout by the name and the length of a file; `None` for NRRD and for descriptions, which need no
+    /// guess.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -94,11 +95,11 @@ impl RawLayout {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         let length = (!is_gzip).then_some(file_bytes);
         let (dims, voxel_type) = guess_from(&name, length);
-        let endian = name::order_of(&name);
-        let said = Said { dims: three_numbers(&name), voxel_type: type_said(&name), endian };
+        let endian = name::byte_order_in_name(&name);
+        let said = RawNameHints { dims: three_numbers(&name), voxel_type: type_in_name(&name), endian };
         let endian = endian.unwrap_or(Endian::Little);
         let layout = Self { dims, voxel_type, spacing_mm: None, endian, offset: 0 };
-        Ok(Some(RawGuess { layout, file_bytes, is_gzip, said }))
+        Ok(Some(RawGuess { layout, file_bytes, is_gzip, name_hints: said }))
     }
 }
 
@@ -119,37 +120,37 @@ const TYPE_WORDS: [(&str, VoxelType); 13] = [
     ("float", VoxelType::F32),
 ];
 
-/// Types by how often they are met.
-const USUAL: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
+/// Number types in order of frequency, one for each size.
+const COMMON_TYPES: [VoxelType; 4] = [VoxelType::U8, VoxelType::U16, VoxelType::F32, VoxelType::F64];
 
-/// What is offered when nothing is known.
-const NO_IDEA: [usize; 3] = [256; 3];
+/// Default dimensions where nothing is known.
+const DEFAULT_DIMS: [usize; 3] = [256; 3];
 
-fn type_said(name: &str) -> Option<VoxelType> {
+fn type_in_name(name: &str) -> Option<VoxelType> {
     TYPE_WORDS.iter().find(|(word, _)| name.contains(word)).map(|(_, voxel_type)| *voxel_type)
 }
 
 fn guess_from(name: &str, length: Option<u64>) -> ([usize; 3], VoxelType) {
-    let said = type_said(name);
+    let said = type_in_name(name);
     if let Some(dims) = three_numbers(name) {
-        // Below 10¹⁵.
+        // At most 10¹⁵, so that the product cannot overflow.
         let voxels: u64 = dims.iter().map(|&n| n as u64).product();
         let fitting = |t: &VoxelType| length == Some(voxels.saturating_mul(t.bytes() as u64));
-        let voxel_type = said.or_else(|| USUAL.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
+        let voxel_type = said.or_else(|| COMMON_TYPES.into_iter().find(fitting)).unwrap_or(VoxelType::U8);
         return (dims, voxel_type);
     }
-    // As many voxels along all axes.
+    // Equal numbers of voxels along all axes.
     let cube = |voxel_type: VoxelType| {
         let voxels = length? / voxel_type.bytes() as u64;
         let n = (voxels as f64).cbrt().round() as u64;
         let length_of_cube = n.checked_pow(3)?.checked_mul(voxel_type.bytes() as u64);
         (n > 0 && length_of_cube == length).then_some(([n as usize; 3], voxel_type))
     };
-    let types = said.map_or(USUAL.to_vec(), |voxel_type| vec![voxel_type]);
-    types.into_iter().find_map(cube).unwrap_or((NO_IDEA, said.unwrap_or(VoxelType::U8)))
+    let types = said.map_or(COMMON_TYPES.to_vec(), |voxel_type| vec![voxel_type]);
+    types.into_iter().find_map(cube).unwrap_or((DEFAULT_DIMS, said.unwrap_or(VoxelType::U8)))
 }
 
-/// Three numbers in a row with an `x` or an underscore between, each at most a hundred thousand.
+/// Finds three consecutive numbers, each at most a hundred thousand, between separators such as `x` or underscore.
 fn three_numbers(name: &str) -> Option<[usize; 3]> {
     let pieces: Vec<Option<usize>> = name
         .split(['x', '_', '-', '.', ' '])
@@ -172,9 +173,9 @@ mod tests {
             ("cube.raw", Some(27), ([3; 3], VoxelType::U8)),
             ("cube.raw", Some(54), ([3; 3], VoxelType::U16)),
             ("cube_float.raw", Some(108), ([3; 3], VoxelType::F32)),
-            ("scan_short.raw", Some(1001), (NO_IDEA, VoxelType::I16)),
-            ("empty", Some(0), (NO_IDEA, VoxelType::U8)),
-            ("999999999x2x2.raw", Some(u64::MAX), (NO_IDEA, VoxelType::U8)),
+            ("scan_short.raw", Some(1001), (DEFAULT_DIMS, VoxelType::I16)),
+            ("empty", Some(0), (DEFAULT_DIMS, VoxelType::U8)),
+            ("999999999x2x2.raw", Some(u64::MAX), (DEFAULT_DIMS, VoxelType::U8)),
         ] {
             assert_eq!(guess_from(name, length), expected, "{name}");
         }
@@ -197,15 +198,15 @@ mod tests {
         };
         assert_eq!(layout.file_bytes(), Some(values.len() as u64));
         let header = folder.path().join("odd name.nhdr");
-        std::fs::write(&header, layout.header("odd name.bin", false)).unwrap();
+        std::fs::write(&header, layout.nrrd_header("odd name.bin", false)).unwrap();
         let control = LoadControl::new();
         let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
-        let options = LoadOptions { raw: layout.format(), ..LoadOptions::default() };
+        let options = LoadOptions { raw: layout.to_format(), ..LoadOptions::default() };
         let by_options = load(&path, &options, &control).unwrap();
         assert_eq!(by_header.samples(), by_options.samples());
         assert_eq!(by_header.spacing_mm(), by_options.spacing_mm());
         let unspaced = RawLayout { spacing_mm: None, ..layout };
-        std::fs::write(&header, unspaced.header("odd name.bin", false)).unwrap();
+        std::fs::write(&header, unspaced.nrrd_header("odd name.bin", false)).unwrap();
         let by_header = load(&header, &LoadOptions::default(), &control).unwrap();
         assert!(by_header.has_unknown_scale(), "nobody has said how large its voxels are");
         assert_eq!(RawLayout::guess(&header).unwrap(), None, "it needs no guess");

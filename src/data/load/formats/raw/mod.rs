@@ -1,90 +1,94 @@
-//! RAW: voxels and nothing else, x fastest. How many and of which type say the options, a small file beside them, or their
-//! own name.
+//! RAW files: voxels without a header, x fastest. Their number and type are given by options, by a companion file, or
+//! by the file name.
 
 mod bytes;
-mod form;
 mod layout;
+mod layout_detection;
+mod middle_slices;
 mod name;
-mod plausible;
-mod said;
+mod name_hints;
 mod sidecar;
-mod slices;
+mod storage;
 
 use std::path::Path;
 
 use super::input::stem;
-use super::number::Number;
-use super::placement::Placement;
-use super::reader::{Reader, Source};
+use super::number::FileNumberType;
+use super::placement::GridPlacement;
+use super::reader::{FormatReader, VolumeSource};
 use super::{Endian, LoadError, LoadOptions};
-use crate::data::attempt::{Attempt, is_usable_spacing, quoted, unlike_spacings};
-use crate::data::{Volume, VoxelType, plain};
+use crate::data::load_context::{LoadContext, is_usable_spacing, quoted, spacing_ratio_error};
+use crate::data::{Volume, VoxelType, sanitised};
 pub use bytes::RawBytes;
-use form::Form;
 pub use layout::{RawGuess, RawLayout};
-pub use plausible::{Evidence, Proposal, proposals};
-pub use said::Said;
+pub use layout_detection::{LayoutEvidence, LayoutProposal, propose_layouts};
+pub use middle_slices::{MiddleSlices, PreviewSlice, read_middle_slices};
+pub use name_hints::RawNameHints;
 pub(super) use sidecar::{DAT, INI, IVF};
-pub use slices::{MiddleSlices, Slice, middle_slices};
+use storage::RawStorage;
 
-/// How a RAW file is stored. What is given overrides what the file's name, or a file beside it, says.
+/// Options for the layout of a RAW file. They override the file name and a companion file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RawFormat {
-    /// Voxels along x, y, z (`--dims`).
+    /// Voxels along x, y and z (`--dims`).
     pub dims: Option<[usize; 3]>,
-    /// The number type (`--type`).
+    /// Number type of the voxels (`--type`).
     pub voxel_type: Option<VoxelType>,
-    /// Distance between voxel centres along x, y, z in millimetres (`--spacing`), else nobody knows.
+    /// Distance between voxel centres along x, y and z, in millimetres (`--spacing`); unknown if not given.
     pub spacing_mm: Option<[f64; 3]>,
-    /// The byte order (`--endian`), else little.
+    /// Byte order (`--endian`); little-endian if not given.
     pub endian: Option<Endian>,
-    /// Bytes before the first voxel, after inflating (`--offset`), else 0.
+    /// Bytes before the first voxel, in the uncompressed file (`--offset`); 0 if not given.
     pub offset: Option<u64>,
 }
 
-pub(super) const READER: Reader =
-    Reader { name: "RAW", endings: &[".raw", ".raw.gz", ".dat", ".dat.gz"], recognises: |_| false, load };
+pub(super) const READER: FormatReader = FormatReader {
+    name: "RAW",
+    extensions: &[".raw", ".raw.gz", ".dat", ".dat.gz"],
+    recognises: |_| false,
+    load,
+};
 
 const HELP: &str = "check --dims, --type and --endian";
 
-/// Whether a file's name, or a file beside it, says how its voxels are stored.
+/// Returns true if the name of a file, or a companion file, describes its voxels.
 pub(super) fn is_described(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    name::parse(&name, None).is_some() || sidecar::beside(path).is_some()
+    name::parse_file_name(&name, None).is_some() || sidecar::find_description(path).is_some()
 }
 
 /// Loads a RAW file.
-fn load(source: Source<'_>) -> Result<Volume, LoadError> {
+fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let path = source.path;
-    let attempt = Attempt { what: "read the RAW volume", path };
+    let attempt = LoadContext { operation: "read the RAW volume", path };
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
-    let named = name::parse(&file_name, unpacked_length(&source));
-    let (form, name) = if let Some(form) = sidecar_form(attempt, &source, named.is_some())? {
+    let named = name::parse_file_name(&file_name, unpacked_length(&source));
+    let (form, name) = if let Some(form) = storage_from_companion(attempt, &source, named.is_some())? {
         (form, stem(path))
     } else {
         let name = named.as_ref().map(|named| named.name.clone()).filter(|name| !name.is_empty());
-        let form = form_of(attempt, source.options, named, &file_name)?;
-        (form, name.map_or_else(|| stem(path), |name| plain(&name, 120)))
+        let form = storage_from_options(attempt, source.options, named, &file_name)?;
+        (form, name.map_or_else(|| stem(path), |name| sanitised(&name, 120)))
     };
-    overridden(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
+    with_overrides(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
 }
 
-/// The length of the voxels, where it says something.
-fn unpacked_length(source: &Source<'_>) -> Option<u64> {
+/// Number of bytes of voxels, unless the file is compressed.
+fn unpacked_length(source: &VolumeSource<'_>) -> Option<u64> {
     let offset = source.options.raw.offset.unwrap_or(0);
     (!source.start.is_gzip()).then(|| source.input.len.checked_sub(offset)).flatten()
 }
 
-/// What a file beside a RAW file says of it, unless the options say enough.
-fn sidecar_form(
-    attempt: Attempt<'_>,
-    source: &Source<'_>,
+/// Layout by a companion file, unless the options give the dimensions.
+fn storage_from_companion(
+    attempt: LoadContext<'_>,
+    source: &VolumeSource<'_>,
     is_named: bool,
-) -> Result<Option<Form>, LoadError> {
+) -> Result<Option<RawStorage>, LoadError> {
     if source.options.raw.dims.is_some() {
         return Ok(None);
     }
-    match sidecar::beside(source.path) {
+    match sidecar::find_description(source.path) {
         Some(Ok(form)) => Ok(Some(form)),
         Some(Err(error)) if is_named => {
             attempt.warn(format_args!("the file that describes it is not read: {error}"));
@@ -95,19 +99,19 @@ fn sidecar_form(
     }
 }
 
-/// What options and name say.
-fn form_of(
-    attempt: Attempt<'_>,
+/// Layout by the options and the file name.
+fn storage_from_options(
+    attempt: LoadContext<'_>,
     options: &LoadOptions,
-    named: Option<name::Named>,
+    named: Option<name::RawFileName>,
     file_name: &str,
-) -> Result<Form, LoadError> {
+) -> Result<RawStorage, LoadError> {
     let format = &options.raw;
     let (dims, dims_field) = match (format.dims, &named) {
         (Some(dims), _) => (dims.map(|n| n as u64), "--dims"),
         (None, Some(named)) => (named.dims, "file name"),
         (None, None) => {
-            return Err(attempt.bad_input(
+            return Err(attempt.bad_input_error(
                 "file name",
                 format!("the name {} does not say the dimensions and the type", quoted(file_name)),
                 "give --dims and --type, or name it like skull_256x256x256_uint8.raw",
@@ -116,7 +120,7 @@ fn form_of(
     };
     let named_type = named.as_ref().and_then(|named| named.voxel_type);
     let Some(voxel_type) = format.voxel_type.or(named_type) else {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "--type",
             "neither the options nor the file name say the type of the voxels",
             "give --type: uint8, int8, uint16, int16, uint32, int32, float32 or float64",
@@ -126,42 +130,47 @@ fn form_of(
     let remark = is_guessed.then(|| {
         format!("its name does not say the type of its voxels: by its size they are {}", voxel_type.name())
     });
-    let mut form = Form::new(dims, dims_field, Number::of(voxel_type));
-    form.placement = Placement::unknown().remarked(remark);
+    let mut form = RawStorage::new(dims, dims_field, FileNumberType::from_voxel_type(voxel_type));
+    form.placement = GridPlacement::unknown().with_remark(remark);
     form.endian = named.and_then(|named| named.endian).unwrap_or(Endian::Little);
     Ok(form)
 }
 
-/// A form with what the options say in place of what it says.
-fn overridden(attempt: Attempt<'_>, mut form: Form, format: &RawFormat) -> Result<Form, LoadError> {
+/// Replaces properties of a layout by the options that are given.
+fn with_overrides(
+    attempt: LoadContext<'_>,
+    mut form: RawStorage,
+    format: &RawFormat,
+) -> Result<RawStorage, LoadError> {
     if let Some(dims) = format.dims {
-        (form.dims, form.dims_field) = (dims.map(|n| n as u64), "--dims");
+        (form.dims, form.dims_source) = (dims.map(|n| n as u64), "--dims");
     }
     if let Some(voxel_type) = format.voxel_type {
-        (form.number, form.components, form.is_color) = (Number::of(voxel_type), 1, false);
+        (form.number, form.components, form.is_color) =
+            (FileNumberType::from_voxel_type(voxel_type), 1, false);
     }
     form.endian = format.endian.unwrap_or(form.endian);
     form.offset = format.offset.or(form.offset);
     if let Some(spacing_mm) = format.spacing_mm {
         if !spacing_mm.into_iter().all(is_usable_spacing) {
-            return Err(attempt.bad_input(
+            return Err(attempt.bad_input_error(
                 "--spacing",
                 format!("{spacing_mm:?} mm cannot be distances between voxels"),
                 "give three lengths in millimetres, each above 0",
             ));
         }
-        if let Some(why) = unlike_spacings(spacing_mm) {
+        if let Some(why) = spacing_ratio_error(spacing_mm) {
             let help = "give the three lengths in one unit, millimetres";
-            return Err(attempt.bad_input("--spacing", why, help));
+            return Err(attempt.bad_input_error("--spacing", why, help));
         }
         let remarks = std::mem::take(&mut form.placement.remarks);
-        form.placement = Placement { remarks, ..Placement::spaced(spacing_mm) };
+        form.placement = GridPlacement { remarks, ..GridPlacement::from_spacing(spacing_mm) };
     }
     Ok(form)
 }
 
-/// Whether two paths end in the same name, which some systems write in other letters.
-fn has_name(path: &Path, name: &str) -> bool {
+/// Compares the file name of a path with a name that may have folders, ignoring case, since some systems do.
+fn is_same_file_name(path: &Path, name: &str) -> bool {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     path.file_name().is_some_and(|file| file.to_string_lossy().eq_ignore_ascii_case(last))
 }

@@ -1,42 +1,43 @@
-//! What both forms describe: a grid, arrays of values at its points or in its cells, and which of them is read.
+//! Model of a VTK image that both file formats share: the grid, the arrays of point or cell values, and the chosen
+//! array.
 
 use std::io::{self, BufRead, BufReader, Read, Seek as _};
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::super::input::stem;
-use super::super::number::{Number, Part, Stored};
-use super::super::placement::{Parts, Placement};
-use super::super::reader::Source;
-use super::super::samples::{Fault, Layout};
-use super::super::voxels::Voxels;
-use super::super::{Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
-use crate::data::attempt::{Attempt, Extent};
-use crate::data::{Hints, Modality, Volume};
+use super::super::number::{FileNumberType, ScalarReduction, VoxelEncoding};
+use super::super::placement::{GridPlacement, VolumeParts};
+use super::super::reader::VolumeSource;
+use super::super::samples::{ReadFault, VoxelLayout};
+use super::super::voxels::ReadVoxels;
+use super::super::{Endian, FileDimension, LoadControl, LoadError, LoadOptions, VolumeOffer};
+use crate::data::load_context::{GridExtent, LoadContext};
+use crate::data::{Modality, ValueMetadata, Volume};
 
-/// Arrays that are offered at most: more than simulations have.
-pub(super) const MOST_ARRAYS: usize = 4096;
+/// Maximum number of arrays that a file may offer: more than simulations have.
+pub(super) const MAX_ARRAYS: usize = 4096;
 
-/// Numbers for each voxel that an array has at most: tensors have nine.
-pub(super) const MOST_COMPONENTS: usize = 1 << 10;
+/// Maximum number of components of an array: tensors have nine.
+pub(super) const MAX_COMPONENTS: usize = 1 << 10;
 
-/// A regular grid.
+/// Regular grid of a VTK image.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct VtkGrid {
     /// Points along the axes, none of them 0.
     pub(super) points: [u64; 3],
-    /// The index of the first point: that with index 0 is at the origin.
+    /// Index of the first point; the point with index 0 is at the origin.
     pub(super) first: [f64; 3],
     pub(super) origin: DVec3,
     pub(super) spacing: DVec3,
     pub(super) direction: DMat3,
-    /// Whether the file says how far apart points are.
+    /// True if the file gives the spacing of points.
     pub(super) has_spacing: bool,
 }
 
-impl Grid {
-    /// A grid from the first to the last index along each axis; `None` where one comes before the other.
-    pub(super) fn of_extent(extent: [i64; 6]) -> Option<Self> {
+impl VtkGrid {
+    /// Creates a grid from the first and last index along each axis; `None` where a last index is below the first.
+    pub(super) fn from_extent(extent: [i64; 6]) -> Option<Self> {
         let [x, xx, y, yy, z, zz] = extent;
         let points = |first: i64, last: i64| {
             u64::try_from(i128::from(last) - i128::from(first) + 1).ok().filter(|&points| points > 0)
@@ -51,120 +52,120 @@ impl Grid {
         })
     }
 
-    /// Voxels of an array. An axis of one point has cells that are flat.
+    /// Voxels along the axes. An axis with a single point has one layer of flat cells.
     pub(super) fn dims(&self, of_cells: bool) -> [u64; 3] {
         self.points.map(|points| if of_cells { (points - 1).max(1) } else { points })
     }
 
-    /// All of them; as many as 64 bits can say.
+    /// Number of voxels, saturating at 64 bits.
     pub(super) fn count(&self, of_cells: bool) -> u64 {
         self.dims(of_cells).iter().fold(1u64, |product, &dim| product.saturating_mul(dim))
     }
 
-    /// Where the voxels of an array lie: cells have their values in their middle.
-    fn placement(&self, of_cells: bool) -> Placement {
+    /// Placement of the voxels of an array: cell values are at the centres of cells.
+    fn placement(&self, of_cells: bool) -> GridPlacement {
         if !self.has_spacing {
-            return Placement::unknown();
+            return GridPlacement::unknown();
         }
         let shift = |axis: usize| if of_cells && self.points[axis] > 1 { 0.5 } else { 0.0 };
         let first = DVec3::from_array([0, 1, 2].map(|axis| self.first[axis] + shift(axis)));
-        // As VTK has it; other programs mean nothing by a sign.
+        // VTK reverses such axes; in other programs the sign has no meaning.
         let remark = self.spacing.cmplt(DVec3::ZERO).any().then(|| {
             let [x, y, z] = self.spacing.to_array();
             format!("distances of {x} x {y} x {z} between points: axes with one below 0 run backwards")
         });
         let axes = self.direction * DMat3::from_diagonal(self.spacing);
         let affine = DAffine3 { matrix3: axes, translation: self.origin + axes * first };
-        Placement::ras(affine).of_no_body().remarked(remark)
+        GridPlacement::from_ras_affine(affine).without_anatomy().with_remark(remark)
     }
 }
 
-/// An array of a file.
+/// Array of values in a file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Array<P> {
+pub(super) struct VtkArray<P> {
     pub(super) name: String,
-    pub(super) number: Number,
+    pub(super) number: FileNumberType,
     pub(super) components: usize,
-    /// Whether its values lie in cells, and not at points.
-    pub(super) of_cells: bool,
+    /// True for cell data, false for point data.
+    pub(super) is_cell_data: bool,
     pub(super) is_color: bool,
-    /// Where its values are.
-    pub(super) place: P,
+    /// Location of the values in the file.
+    pub(super) location: P,
 }
 
-/// The array that is read, and as what.
-pub(super) struct Chosen<P> {
-    pub(super) array: Array<P>,
-    pub(super) stored: Stored,
-    pub(super) extent: Extent,
-    /// Whether there are others.
+/// Chosen array, with the storage of its values and the part to read.
+pub(super) struct ChosenVtkArray<P> {
+    pub(super) array: VtkArray<P>,
+    pub(super) stored: VoxelEncoding,
+    pub(super) extent: GridExtent,
+    /// True if the file has other arrays.
     is_one_of_several: bool,
 }
 
-impl<P> Chosen<P> {
-    /// Bytes of all its values as they are written in binary.
+impl<P> ChosenVtkArray<P> {
+    /// Bytes of all values in binary encoding.
     pub(super) fn stored_bytes(&self) -> u64 {
-        (self.extent.voxels as u64).saturating_mul(self.stored.bytes_of_voxel())
+        (self.extent.voxels as u64).saturating_mul(self.stored.voxel_bytes())
     }
 
-    /// Numbers of all its voxels.
+    /// Number of numbers of all voxels, counting components.
     pub(super) fn numbers(&self) -> u64 {
         (self.extent.voxels as u64).saturating_mul(self.array.components as u64)
     }
 
-    /// Reads what is kept of the values from where they begin.
+    /// Reads the selected values; the reader is positioned at their beginning.
     ///
     /// # Errors
-    /// `BadInput` also for what the reader calls invalid or too short: it decodes what a file holds.
+    /// `BadInput` also for errors of the reader about invalid or truncated data, since it decodes the file's content.
     pub(super) fn read(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         reader: &mut impl Read,
         endian: Endian,
         control: &LoadControl,
-    ) -> Result<Voxels, LoadError> {
+    ) -> Result<ReadVoxels, LoadError> {
         const HELP: &str = "copy the file again, or write it again with another program";
-        let stored = Stored { endian, ..self.stored };
-        let layout = Layout { extent: self.extent, voxel_type: stored.voxel_type(), endian };
+        let stored = VoxelEncoding { endian, ..self.stored };
+        let layout = VoxelLayout { extent: self.extent, voxel_type: stored.voxel_type(), endian };
         stored.read(reader, self.extent, control).map_err(|fault| match fault {
-            Fault::Io(error) if is_of_content(&error) => {
-                attempt.bad_input(&self.array.name, error.to_string(), HELP)
+            ReadFault::Io(error) if is_content_error(&error) => {
+                attempt.bad_input_error(&self.array.name, error.to_string(), HELP)
             }
-            Fault::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => {
-                Fault::NoMemory.into_error(attempt, &layout, "bytes", HELP)
+            ReadFault::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => {
+                ReadFault::NoMemory.into_error(attempt, &layout, "bytes", HELP)
             }
             fault => fault.into_error(attempt, &layout, "bytes", HELP),
         })
     }
 
-    /// The volume of the values.
+    /// Assembles the volume from the values.
     pub(super) fn volume(
         self,
-        attempt: Attempt<'_>,
-        grid: &Grid,
-        voxels: Voxels,
+        attempt: LoadContext<'_>,
+        grid: &VtkGrid,
+        voxels: ReadVoxels,
         title: &str,
     ) -> Result<Volume, LoadError> {
-        let mut placement = grid.placement(self.array.of_cells);
-        placement.remarks.extend(self.stored.part.remark().map(str::to_owned));
+        let mut placement = grid.placement(self.array.is_cell_data);
+        placement.remarks.extend(self.stored.reduction.remark().map(str::to_owned));
         let file = stem(attempt.path);
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
-        let mut hints = Hints::default();
-        hints.modality = Modality::of_description(title);
-        Parts { name, extent: self.extent, placement, voxels, hints }.volume(attempt)
+        let mut hints = ValueMetadata::default();
+        hints.modality = Modality::from_description(title);
+        VolumeParts { name, extent: self.extent, placement, voxels, hints }.into_volume(attempt)
     }
 }
 
-/// Which of the arrays is read: the one that is meant, and of its components the one that is meant.
-pub(super) fn choose<P>(
-    attempt: Attempt<'_>,
-    grid: &Grid,
-    mut arrays: Vec<Array<P>>,
+/// Selects the array and its component by the user's choice.
+pub(super) fn choose_array<P>(
+    attempt: LoadContext<'_>,
+    grid: &VtkGrid,
+    mut arrays: Vec<VtkArray<P>>,
     options: &LoadOptions,
     control: &LoadControl,
-) -> Result<Chosen<P>, LoadError> {
+) -> Result<ChosenVtkArray<P>, LoadError> {
     if arrays.is_empty() {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "arrays",
             "it holds no array of numbers with a value for each point or cell",
             "write it again with the values as point data",
@@ -174,22 +175,23 @@ pub(super) fn choose<P>(
     let offers = arrays
         .iter()
         .enumerate()
-        .map(|(at, array)| Offer::numbered(at, &array.name, grid.dims(array.of_cells)))
+        .map(|(at, array)| VolumeOffer::with_number(at, &array.name, grid.dims(array.is_cell_data)))
         .collect();
-    let array = arrays.swap_remove(attempt.chosen(&options.choice, Dimension::Array, offers)?);
+    let array = arrays.swap_remove(attempt.resolve_choice(&options.choice, FileDimension::Array, offers)?);
     let components = array.components;
-    let component = options.choice.component_among(components, array.is_color);
-    let part = Part::asked(attempt, component, components, array.is_color)?;
-    // The byte order is said when they are read.
-    let stored = Stored { number: array.number, endian: Endian::Little, components, part };
-    let dims = grid.dims(array.of_cells);
-    let extent = Extent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.room(control))?;
-    Ok(Chosen { array, stored, extent, is_one_of_several })
+    let component = options.choice.resolve_component(components, array.is_color);
+    let part = ScalarReduction::require(attempt, component, components, array.is_color)?;
+    // The byte order is set when values are read.
+    let stored = VoxelEncoding { number: array.number, endian: Endian::Little, components, reduction: part };
+    let dims = grid.dims(array.is_cell_data);
+    let extent =
+        GridExtent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.limits(control))?;
+    Ok(ChosenVtkArray { array, stored, extent, is_one_of_several })
 }
 
-/// Refuses data of which less is there than they need, before memory is taken for them.
-pub(super) fn check_room(
-    attempt: Attempt<'_>,
+/// Refuses truncated data before memory is allocated for them.
+pub(super) fn check_available(
+    attempt: LoadContext<'_>,
     field: &str,
     needed: u64,
     found: u64,
@@ -198,47 +200,47 @@ pub(super) fn check_room(
     if needed <= found {
         return Ok(());
     }
-    Err(attempt.bad_input(
+    Err(attempt.bad_input_error(
         field,
         format!("the data are truncated: {needed} {unit} expected, room for {found} found"),
         "copy the file again",
     ))
 }
 
-/// Whether an error is about what a file holds, and not about the disk that holds it.
-pub(super) fn is_of_content(error: &io::Error) -> bool {
+/// Returns true if an error concerns the content of a file, not the disk.
+pub(super) fn is_content_error(error: &io::Error) -> bool {
     matches!(
         error.kind(),
         io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
     )
 }
 
-/// An error about what the file holds.
-pub(super) fn invalid(why: impl Into<String>) -> io::Error {
+/// Creates an error about the content of a file.
+pub(super) fn invalid_data(why: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, why.into())
 }
 
-/// The content of a file from one of its bytes on.
-pub(super) fn content_from<'a>(
-    attempt: Attempt<'_>,
-    source: &'a mut Source<'_>,
+/// Opens the content of a file from offset `at` on, inflated where it is compressed.
+pub(super) fn open_content_at<'a>(
+    attempt: LoadContext<'_>,
+    source: &'a mut VolumeSource<'_>,
     at: u64,
 ) -> Result<Box<dyn BufRead + 'a>, LoadError> {
     if !source.start.is_gzip() {
-        source.input.seek(at).map_err(|error| attempt.io(error))?;
+        source.input.seek(at).map_err(|error| attempt.io_error(error))?;
         return Ok(Box::new(&mut source.input.reader));
     }
-    source.input.reader.rewind().map_err(|error| attempt.io(error))?;
+    source.input.reader.rewind().map_err(|error| attempt.io_error(error))?;
     let control = source.control;
     let mut content = source.content();
     let mut left = at;
-    // As much as the look at `cancel` may wait for.
+    // Bytes between two checks for cancellation.
     const BLOCK_BYTES: u64 = 1 << 20;
     while left > 0 {
         control.check()?;
         let want = left.min(BLOCK_BYTES);
         let got = io::copy(&mut content.by_ref().take(want), &mut io::sink())
-            .map_err(|error| broken(attempt, error))?;
+            .map_err(|error| content_error(attempt, error))?;
         if got == 0 {
             break;
         }
@@ -247,11 +249,11 @@ pub(super) fn content_from<'a>(
     Ok(Box::new(BufReader::new(content)))
 }
 
-/// An error of a reader, in words for what the file holds where it is about that.
-pub(super) fn broken(attempt: Attempt<'_>, error: io::Error) -> LoadError {
-    if is_of_content(&error) {
-        attempt.bad_input("content", format!("the file is broken: {error}"), "copy the file again")
+/// Converts an I/O error of a reader: `BadInput` where it concerns the content.
+pub(super) fn content_error(attempt: LoadContext<'_>, error: io::Error) -> LoadError {
+    if is_content_error(&error) {
+        attempt.bad_input_error("content", format!("the file is broken: {error}"), "copy the file again")
     } else {
-        attempt.io(error)
+        attempt.io_error(error)
     }
 }

@@ -1,32 +1,32 @@
-//! Packed streams of one member or of several, as gzip and bzip2 write them; bytes behind the last one are passed over.
+//! Decoders of gzip and bzip2 streams of one or several members; bytes after the last member are ignored.
 //!
-//! Tapes and copies by blocks fill files up with zeros, and mail gateways add lines of their own. What follows a whole
-//! member and does not begin as another one is no part of the content, as gzip itself has it ("trailing garbage ignored",
-//! and zeros without a word) and `gzread` of zlib. Members that are cut off, or whose checksum is another, are errors.
+//! Tapes and block copies pad files with zeros, and mail gateways append lines. Bytes after a complete member that do
+//! not begin another one are no part of the content, as in gzip itself ("trailing garbage ignored", and zeros
+//! silently) and zlib's `gzread`. Truncated members, and wrong checksums, are errors.
 
 use std::io::{self, BufRead, Read};
 
 use bzip2::bufread::BzDecoder;
 use flate2::bufread::GzDecoder;
 
-/// Zeros behind a member that are searched for another one: the longest block that tapes have (LTO, 16 MiB).
-const MOST_PADDING_BYTES: u64 = 16 << 20;
+/// Maximum length of zero padding that is searched for another member: the largest block of tapes (LTO, 16 MiB).
+const MAX_PADDING_BYTES: u64 = 16 << 20;
 
 /// Decoder of a single member.
 pub(crate) trait Member: Read {
-    /// Source of its bytes.
+    /// Reader of the compressed bytes.
     type Packed: BufRead;
-    /// The bytes that every member begins with.
+    /// Magic bytes at the beginning of every member.
     const MAGIC: &'static [u8];
 
-    /// A decoder of the member that comes next.
+    /// Starts a decoder at the next member.
     fn new(packed: Self::Packed) -> Self;
 
-    /// Bytes that follow the member, once all of it has been read.
+    /// Returns the reader, positioned after the member, once all of it has been decoded.
     fn into_packed(self) -> Self::Packed;
 }
 
-/// A member of a gzip file (RFC 1952: two bytes of magic, then method 8).
+/// Member of a gzip file (RFC 1952: two bytes of magic, then method 8).
 impl<R: BufRead> Member for GzDecoder<Lookahead<R>> {
     type Packed = Lookahead<R>;
     const MAGIC: &'static [u8] = &[0x1f, 0x8b, 8];
@@ -40,7 +40,7 @@ impl<R: BufRead> Member for GzDecoder<Lookahead<R>> {
     }
 }
 
-/// A member of a bzip2 file.
+/// Member of a bzip2 file, decoded by the `bzip2` crate.
 impl<R: BufRead> Member for BzDecoder<Lookahead<R>> {
     type Packed = Lookahead<R>;
     const MAGIC: &'static [u8] = b"BZh";
@@ -54,20 +54,20 @@ impl<R: BufRead> Member for BzDecoder<Lookahead<R>> {
     }
 }
 
-/// Reader of the content of all members.
+/// Reader of the concatenated content of all members.
 pub(crate) struct Members<M> {
-    /// The one that is being read; none behind the last, and after an error.
+    /// Decoder of the current member; `None` after the last one, and after an error.
     current: Option<M>,
 }
 
-/// Content of a gzip file.
+/// Reader of the content of a gzip file.
 pub(crate) type GzipMembers<R> = Members<GzDecoder<Lookahead<R>>>;
 
-/// Content of a bzip2 file.
+/// Reader of the content of a bzip2 file.
 pub(crate) type Bzip2Members<R> = Members<BzDecoder<Lookahead<R>>>;
 
 impl<R: BufRead, M: Member<Packed = Lookahead<R>>> Members<M> {
-    /// The content of packed bytes, which must begin with a member.
+    /// Starts decoding compressed bytes, which must begin with a member.
     pub(crate) fn new(packed: R) -> Self {
         Self { current: Some(M::new(Lookahead { front: Vec::new(), at: 0, rest: packed })) }
     }
@@ -97,16 +97,16 @@ impl<R: BufRead, M: Member<Packed = Lookahead<R>>> Read for Members<M> {
     }
 }
 
-/// Reader that can look at some bytes before they are read.
+/// Reader that can look ahead some bytes without consuming them.
 pub(crate) struct Lookahead<R> {
-    /// Bytes that were looked at, and how many of them were read since.
+    /// Bytes that were looked at; those before `at` have been consumed since.
     front: Vec<u8>,
     at: usize,
     rest: R,
 }
 
 impl<R: BufRead> Lookahead<R> {
-    /// The bytes that come next, at least one before the end; a signal does not end it.
+    /// Fills the buffer and returns it, empty only at the end of the stream; retries after interruption by a signal.
     fn block(&mut self) -> io::Result<&[u8]> {
         loop {
             match self.fill_buf() {
@@ -117,10 +117,10 @@ impl<R: BufRead> Lookahead<R> {
         }
     }
 
-    /// Passes over zeros; whether anything else follows them, as far as is searched.
+    /// Skips zeros, up to the limit; returns true if anything else follows.
     fn skip_padding(&mut self) -> io::Result<bool> {
         let mut skipped = 0;
-        while skipped < MOST_PADDING_BYTES {
+        while skipped < MAX_PADDING_BYTES {
             let block = self.block()?;
             let zeros = block.iter().take_while(|&&byte| byte == 0).count();
             if zeros < block.len() || block.is_empty() {
@@ -134,7 +134,7 @@ impl<R: BufRead> Lookahead<R> {
         Ok(false)
     }
 
-    /// True where these bytes come next. They are read all the same later.
+    /// True if these bytes come next; they are not consumed.
     fn begins_with(&mut self, bytes: &[u8]) -> io::Result<bool> {
         let mut front = Vec::new();
         while front.len() < bytes.len() {
@@ -147,7 +147,7 @@ impl<R: BufRead> Lookahead<R> {
             self.consume(count);
         }
         let is_same = front == bytes;
-        // What was looked at before and not read since comes behind it.
+        // Bytes from an earlier look-ahead that are still unread follow.
         front.extend_from_slice(self.front.get(self.at..).unwrap_or_default());
         (self.front, self.at) = (front, 0);
         Ok(is_same)
@@ -179,7 +179,7 @@ mod tests {
     use std::io::{BufReader, Write as _};
 
     use super::*;
-    use crate::data::load::tests::shared::gzip;
+    use crate::data::load::tests::helpers::gzip;
 
     fn bzip2(bytes: &[u8]) -> Vec<u8> {
         let mut encoder = bzip2::write::BzEncoder::new(Vec::new(), bzip2::Compression::fast());
@@ -187,7 +187,7 @@ mod tests {
         encoder.finish().unwrap()
     }
 
-    /// The content of a stream, read with buffers of `room` bytes.
+    /// Decompresses a stream with a read buffer of `room` bytes.
     fn content(packed: &[u8], room: usize) -> io::Result<Vec<u8>> {
         let mut content = Vec::new();
         let packed_by = BufReader::with_capacity(room, packed);

@@ -1,4 +1,4 @@
-//! What a file holds, read forwards: as it is stored, or inflated where it is compressed as a whole.
+//! Forward-only reader of a file's content: as stored, or inflated where the whole file is compressed.
 
 pub(crate) mod members;
 
@@ -7,59 +7,59 @@ use std::io::{self, BufReader, Read};
 
 use members::GzipMembers;
 
-use super::input::{Input, most_inflated};
-use super::number::Stored;
-use super::samples::{Fault, fill, skip_bytes};
-use super::sieve::{Leap, leap_in_file};
-use super::voxels::{Meant, Voxels};
+use super::input::{InputFile, max_inflated_bytes};
+use super::number::VoxelEncoding;
+use super::samples::{ReadFault, read_until_full, skip_bytes};
+use super::voxel_filter::{SkipFn, skip_in_file};
+use super::voxels::{ReadVoxels, ValueMapping};
 use super::{LoadControl, LoadError};
-use crate::data::attempt::{Attempt, Extent};
+use crate::data::load_context::{GridExtent, LoadContext};
 
-/// The content of a file.
-pub(in crate::data::load) struct Content {
-    form: Form,
-    /// Bytes before the next one.
-    at: u64,
-    /// Bytes of the content, or what it cannot be longer than.
-    most_bytes: u64,
+/// Content of a file, read forwards.
+pub(crate) struct FileContent {
+    form: ContentReader,
+    /// Position in the content, in bytes.
+    position: u64,
+    /// Length of the content in bytes, or an upper bound of it for compressed files.
+    max_bytes: u64,
 }
 
-enum Form {
-    Stored(Input),
+enum ContentReader {
+    Stored(InputFile),
     Inflated(Box<GzipMembers<BufReader<File>>>),
 }
 
-impl Content {
-    /// The content of a file that is open at its beginning.
-    pub(in crate::data::load) fn of(input: Input, is_gzip: bool) -> Self {
-        let most_bytes = if is_gzip { most_inflated(input.len) } else { input.len };
+impl FileContent {
+    /// Starts at the beginning of a file's content.
+    pub(crate) fn new(input: InputFile, is_gzip: bool) -> Self {
+        let most_bytes = if is_gzip { max_inflated_bytes(input.len) } else { input.len };
         let form = if is_gzip {
-            Form::Inflated(Box::new(GzipMembers::new(input.reader)))
+            ContentReader::Inflated(Box::new(GzipMembers::new(input.reader)))
         } else {
-            Form::Stored(input)
+            ContentReader::Stored(input)
         };
-        Self { form, at: 0, most_bytes }
+        Self { form, position: 0, max_bytes: most_bytes }
     }
 
-    /// Checks that so many bytes follow a place, as far as this shows without inflating them all.
-    pub(in crate::data::load) fn check_room(
+    /// Checks that the content can have `bytes` bytes from `start` on, without inflating it.
+    pub(crate) fn check_length(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         field: &str,
         start: u64,
         bytes: u128,
     ) -> Result<(), LoadError> {
-        let found = self.most_bytes.saturating_sub(start);
+        let found = self.max_bytes.saturating_sub(start);
         if u128::from(found) >= bytes {
             return Ok(());
         }
-        Err(attempt.bad_input(
+        Err(attempt.bad_input_error(
             field,
             match self.form {
-                Form::Stored(_) => {
+                ContentReader::Stored(_) => {
                     format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found")
                 }
-                Form::Inflated(_) => format!(
+                ContentReader::Inflated(_) => format!(
                     "the data are truncated: {bytes} bytes expected from byte {start} on, room for {found} found"
                 ),
             },
@@ -67,69 +67,71 @@ impl Content {
         ))
     }
 
-    /// Goes forward to a byte.
-    pub(in crate::data::load) fn go_to(&mut self, position: u64, control: &LoadControl) -> Result<(), Fault> {
-        if let Form::Stored(input) = &mut self.form {
-            self.at = position;
-            return input.seek(position).map_err(Fault::Io);
+    /// Moves forward to byte `position`.
+    pub(crate) fn seek_forward(&mut self, position: u64, control: &LoadControl) -> Result<(), ReadFault> {
+        if let ContentReader::Stored(input) = &mut self.form {
+            self.position = position;
+            return input.seek(position).map_err(ReadFault::Io);
         }
-        let skip = position.saturating_sub(self.at);
-        if skip_bytes(self, skip, control).map_err(Fault::of_stream)? < skip {
-            return Err(Fault::Short { got: 0 });
+        let skip = position.saturating_sub(self.position);
+        if skip_bytes(self, skip, control).map_err(ReadFault::into_decoder_fault)? < skip {
+            return Err(ReadFault::Short { got: 0 });
         }
         Ok(())
     }
 
-    /// Goes forward in what is stored as it is.
-    fn leap(&mut self, count: u64) -> io::Result<()> {
-        self.at += count;
+    /// Skips `count` bytes by seeking; only in uncompressed files.
+    fn skip_forward(&mut self, count: u64) -> io::Result<()> {
+        self.position += count;
         match &mut self.form {
-            Form::Stored(input) => leap_in_file(&mut input.reader, count),
-            Form::Inflated(_) => Err(io::Error::from(io::ErrorKind::Unsupported)),
+            ContentReader::Stored(input) => skip_in_file(&mut input.reader, count),
+            ContentReader::Inflated(_) => Err(io::Error::from(io::ErrorKind::Unsupported)),
         }
     }
 
-    /// Reads the voxels that come next: what is kept of them.
-    pub(in crate::data::load) fn voxels(
+    /// Reads the selected voxels of the grid that comes next.
+    pub(crate) fn voxels(
         &mut self,
-        stored: &Stored,
-        extent: Extent,
-        meant: &Meant<'_>,
+        stored: &VoxelEncoding,
+        extent: GridExtent,
+        meant: &ValueMapping<'_>,
         control: &LoadControl,
-    ) -> Result<Voxels, Fault> {
-        if let Form::Stored(input) = &mut self.form
-            && extent.read.is_all()
+    ) -> Result<ReadVoxels, ReadFault> {
+        if let ContentReader::Stored(input) = &mut self.form
+            && extent.read.is_whole_grid()
         {
-            let bytes = (extent.voxels as u64).saturating_mul(stored.bytes_of_voxel());
-            let voxels = stored.read_of_file(input, self.at, extent, meant, control);
-            let voxels = voxels.map_err(Fault::of_stream)?;
-            self.at = self.at.saturating_add(bytes);
-            input.seek(self.at).map_err(Fault::Io)?;
+            let bytes = (extent.voxels as u64).saturating_mul(stored.voxel_bytes());
+            let voxels = stored.read_from_file(input, self.position, extent, meant, control);
+            let voxels = voxels.map_err(ReadFault::into_decoder_fault)?;
+            self.position = self.position.saturating_add(bytes);
+            input.seek(self.position).map_err(ReadFault::Io)?;
             return Ok(voxels);
         }
-        let leap: Option<Leap<Self>> = match self.form {
-            Form::Stored(_) => Some(Self::leap),
-            Form::Inflated(_) => None,
+        let skip_fn: Option<SkipFn<Self>> = match self.form {
+            ContentReader::Stored(_) => Some(Self::skip_forward),
+            ContentReader::Inflated(_) => None,
         };
-        stored.read_meant(self, leap, extent, meant, control).map_err(Fault::of_stream)
+        stored.read_values(self, skip_fn, extent, meant, control).map_err(ReadFault::into_decoder_fault)
     }
 
-    /// Makes a decoder look at the checksum, which comes after the last byte. What follows the voxels is nobody's business.
-    pub(in crate::data::load) fn finish(&mut self, control: &LoadControl) -> Result<(), Fault> {
+    /// Makes a decoder verify the checksum, which follows the last byte. Bytes after the voxels are ignored.
+    pub(crate) fn finish(&mut self, control: &LoadControl) -> Result<(), ReadFault> {
         match &mut self.form {
-            Form::Stored(_) => Ok(()),
-            Form::Inflated(_) => fill(self, &mut [0], control).map_err(Fault::of_stream).map(drop),
+            ContentReader::Stored(_) => Ok(()),
+            ContentReader::Inflated(_) => {
+                read_until_full(self, &mut [0], control).map_err(ReadFault::into_decoder_fault).map(drop)
+            }
         }
     }
 }
 
-impl Read for Content {
+impl Read for FileContent {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = match &mut self.form {
-            Form::Stored(input) => input.reader.read(buffer),
-            Form::Inflated(decoder) => decoder.read(buffer),
+            ContentReader::Stored(input) => input.reader.read(buffer),
+            ContentReader::Inflated(decoder) => decoder.read(buffer),
         }?;
-        self.at += count as u64;
+        self.position += count as u64;
         Ok(count)
     }
 }

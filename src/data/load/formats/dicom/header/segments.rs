@@ -1,23 +1,23 @@
-//! The segments of a segmentation (PS3.3 section C.8.20): numbers, names and colours.
+//! Segments of a segmentation (PS3.3 section C.8.20): numbers, names and colours.
 
-use crate::data::Labels;
+use crate::data::FileLabelTable;
 
-/// Most segments that are looked at: numbers have 16 bits.
-pub(crate) const MOST_SEGMENTS: usize = 1 << 16;
+/// Maximum number of segments read: their numbers have 16 bits.
+pub(crate) const MAX_SEGMENTS: usize = 1 << 16;
 
-/// What the values of a segmentation are.
+/// Type of a segmentation: meaning of its pixel values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SegmentationType {
-    /// A bit for each pixel, and for each segment frames of its own.
+    /// One bit per pixel, with separate frames for each segment.
     Binary,
-    /// Shares of a segment, which has frames of its own.
+    /// Fraction of a segment per pixel, with separate frames for each segment.
     Fractional,
-    /// Numbers of segments.
+    /// Segment number per pixel, in one set of frames.
     LabelMap,
 }
 
 impl SegmentationType {
-    /// The type that a code string (0062,0001) stands for.
+    /// Parses the code string of element (0062,0001).
     pub(crate) fn parse(code: &str) -> Option<Self> {
         match code {
             "BINARY" => Some(Self::Binary),
@@ -28,18 +28,18 @@ impl SegmentationType {
     }
 }
 
-/// A segment as the header describes it.
+/// Segment as the header describes it.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Segment {
+pub(crate) struct DicomSegment {
     pub(crate) number: Option<u16>,
     pub(crate) label: String,
-    /// `CIELab` as the standard stores it: each part from 0 to 65535.
+    /// Colour in `CIELab` as the standard stores it: each component from 0 to 65535.
     pub(crate) color: Option<[u16; 3]>,
 }
 
-/// Names and colours of segments by their numbers.
-pub(crate) fn labels(segments: &[Segment]) -> Labels {
-    let mut labels = Labels::default();
+/// Returns names and colours of segments by their numbers.
+pub(crate) fn labels_from_segments(segments: &[DicomSegment]) -> FileLabelTable {
+    let mut labels = FileLabelTable::default();
     for segment in segments {
         if let Some(number) = segment.number {
             labels.insert(number.into(), &segment.label, segment.color.map(srgb_from_cielab));
@@ -48,19 +48,19 @@ pub(crate) fn labels(segments: &[Segment]) -> Labels {
     labels
 }
 
-/// sRGB, each part 0 … 1, of a colour in `CIELab` under D50 as PS3.3 section C.10.7.1.1 stores it; what no screen can
-/// show is the nearest in each part.
+/// Converts a colour from `CIELab` under D50, as PS3.3 section C.10.7.1.1 stores it, to sRGB from 0 to 1; components
+/// out of gamut are clamped.
 fn srgb_from_cielab([lightness, a, b]: [u16; 3]) -> [f32; 3] {
     let share = |part: u16| f64::from(part) / f64::from(u16::MAX);
     // L* from 0 to 100, a* and b* from −128 to 127.
     let lightness = share(lightness) * 100.0;
     let [a, b] = [a, b].map(|part| share(part) * 255.0 - 128.0);
-    // CIE 15: the inverse of f(t) is t³ above 6/29, and a line below.
+    // CIE 15: the inverse of f(t) is t³ above 6/29, and linear below.
     let y = (lightness + 16.0) / 116.0;
     let inverse = |f: f64| {
         if f > 6.0 / 29.0 { f.powi(3) } else { 3.0 * (6.0f64 / 29.0).powi(2) * (f - 4.0 / 29.0) }
     };
-    // The white of D50 (ICC.1, the profile connection space).
+    // White point of D50 (ICC.1, the profile connection space).
     let x = 0.9642 * inverse(y + a / 500.0);
     let z = 0.8249 * inverse(y - b / 200.0);
     let y = inverse(y);
@@ -81,8 +81,8 @@ fn srgb_from_cielab([lightness, a, b]: [u16; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
 
-    /// As a segmentation stores L*, a* and b*.
-    fn stored([lightness, a, b]: [f64; 3]) -> [u16; 3] {
+    /// Encodes L*, a* and b* as a segmentation stores them.
+    fn encode_cielab([lightness, a, b]: [f64; 3]) -> [u16; 3] {
         [lightness / 100.0, (a + 128.0) / 255.0, (b + 128.0) / 255.0]
             .map(|part| (part * 65535.0).round() as u16)
     }
@@ -98,8 +98,8 @@ mod tests {
             ([29.57, 68.30, -112.03], [0.0, 0.0, 1.0]),
             ([53.39, 0.0, 0.0], [0.5, 0.5, 0.5]),
         ] {
-            let found = srgb_from_cielab(stored(lab));
-            // Numbers above have four digits; dark parts are steep in sRGB.
+            let found = srgb_from_cielab(encode_cielab(lab));
+            // The figures above have four digits, and sRGB is steep in dark colours.
             let furthest = found.iter().zip(rgb).map(|(found, right): (&f32, f32)| (found - right).abs());
             assert!(furthest.fold(0.0, f32::max) < 0.02, "{lab:?}: {found:?}, {rgb:?} expected");
         }
@@ -107,9 +107,9 @@ mod tests {
 
     #[test]
     fn segments_without_numbers_have_no_labels() {
-        let segment = Segment { label: "Liver".to_owned(), ..Segment::default() };
-        assert!(labels(std::slice::from_ref(&segment)).is_empty());
-        let labels = labels(&[Segment { number: Some(3), ..segment }]);
+        let segment = DicomSegment { label: "Liver".to_owned(), ..DicomSegment::default() };
+        assert!(labels_from_segments(std::slice::from_ref(&segment)).is_empty());
+        let labels = labels_from_segments(&[DicomSegment { number: Some(3), ..segment }]);
         assert_eq!(labels.get(3).map(|label| (label.name.as_str(), label.color)), Some(("Liver", None)));
     }
 }

@@ -1,10 +1,10 @@
-//! Pixels: how they are stored, where they are, how they are unpacked, and what voxels they become.
+//! DICOM pixels: storage layout, location, decompression, and conversion to voxels.
 
 mod codec;
-mod extended;
+pub(super) mod conversion;
 mod jpeg_ls;
-pub(super) mod raster;
+pub(super) mod layout;
+mod lossy_jpeg;
+pub(super) mod pixel_store;
 mod rle;
-pub(super) mod room;
-pub(super) mod shape;
-pub(super) mod store;
+pub(super) mod size_check;

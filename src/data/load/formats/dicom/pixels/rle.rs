@@ -1,12 +1,12 @@
-//! DICOM's run-length code (PS3.5 annex G): a plane for each byte of a pixel, the highest first, each packed.
+//! DICOM's RLE codec (PS3.5 annex G): one byte plane per byte of a pixel, highest first, each packed with `PackBits`.
 
-/// Bytes before the first plane: how many there are, and where up to 15 begin.
-const HEADER: usize = 64;
+/// Size of the header in bytes: the number of planes, and the offsets of up to 15.
+const HEADER_BYTES: usize = 64;
 
-/// Unpacks a picture of so many pixels: its bytes, the lowest of a number first, the colours of a pixel side by side.
+/// Decodes an image of `pixels` pixels: little-endian numbers, colours interleaved.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A message that tells what is wrong with the image.
 pub(super) fn decode(
     packed: &[u8],
     pixels: usize,
@@ -18,17 +18,17 @@ pub(super) fn decode(
         let bytes = packed.get(4 * at..)?.first_chunk()?;
         usize::try_from(u32::from_le_bytes(*bytes)).ok()
     };
-    let said = word(0).unwrap_or(0);
-    if said != planes || packed.len() < HEADER {
-        return Err(format!("a picture has {said} planes of bytes where {planes} are expected"));
+    let plane_count = word(0).unwrap_or(0);
+    if plane_count != planes || packed.len() < HEADER_BYTES {
+        return Err(format!("a picture has {plane_count} planes of bytes where {planes} are expected"));
     }
-    // Two bytes stand for 128 at most: what cannot be there is not made room for.
+    // Two bytes encode at most 128: data that cannot be complete get no memory.
     if packed.len().saturating_mul(64) < pixels.saturating_mul(planes) {
         return Err(format!("a picture is cut off: {} bytes cannot hold {pixels} pixels", packed.len()));
     }
     let mut unpacked = vec![0; pixels * planes];
     for plane in 0..planes {
-        let start = word(plane + 1).filter(|&start| start >= HEADER);
+        let start = word(plane + 1).filter(|&start| start >= HEADER_BYTES);
         let end = if plane + 1 < planes { word(plane + 2) } else { Some(packed.len()) };
         let (Some(start), Some(end)) = (start, end) else { return Err("a plane has no place".to_owned()) };
         let Some(packed) = packed.get(start..end) else {
@@ -37,16 +37,16 @@ pub(super) fn decode(
         let (sample, byte) = (plane / bytes_of_number, plane % bytes_of_number);
         let first = sample * bytes_of_number + (bytes_of_number - 1 - byte);
         let into = unpacked.iter_mut().skip(first).step_by(planes);
-        let done = unpack(packed, into);
-        if done < pixels {
-            return Err(format!("a plane is cut off: it has {done} of {pixels} bytes"));
+        let decoded = decode_plane(packed, into);
+        if decoded < pixels {
+            return Err(format!("a plane is cut off: it has {decoded} of {pixels} bytes"));
         }
     }
     Ok(unpacked)
 }
 
-/// Unpacks bytes in order; how many there were, at most as many as there is room for.
-fn unpack<'a>(packed: &[u8], mut into: impl Iterator<Item = &'a mut u8>) -> usize {
+/// Decodes a plane's bytes in order; returns their number, at most as many as `into` takes.
+fn decode_plane<'a>(packed: &[u8], mut into: impl Iterator<Item = &'a mut u8>) -> usize {
     let mut done = 0;
     let mut rest = packed;
     let mut put = |byte: u8| into.next().map(|place| *place = byte).is_some();
@@ -77,29 +77,29 @@ fn unpack<'a>(packed: &[u8], mut into: impl Iterator<Item = &'a mut u8>) -> usiz
 mod tests {
     use super::*;
 
-    fn packed(planes: &[&[u8]]) -> Vec<u8> {
+    fn encode_planes(planes: &[&[u8]]) -> Vec<u8> {
         let mut header = vec![planes.len() as u32];
-        let mut at = HEADER as u32;
+        let mut at = HEADER_BYTES as u32;
         for plane in planes {
             header.push(at);
             at += plane.len() as u32;
         }
-        header.resize(HEADER / 4, 0);
+        header.resize(HEADER_BYTES / 4, 0);
         [header.into_iter().flat_map(u32::to_le_bytes).collect(), planes.concat()].concat()
     }
 
     #[test]
     fn runs_and_literals_are_unpacked_plane_by_plane() {
-        // High bytes 1 1 1 2, low bytes 3 4 5 6, and a byte that fills up.
-        let bytes = packed(&[&[254, 1, 128, 0, 2], &[3, 3, 4, 5, 6, 0]]);
+        // High bytes 1 1 1 2, low bytes 3 4 5 6, and a padding byte.
+        let bytes = encode_planes(&[&[254, 1, 128, 0, 2], &[3, 3, 4, 5, 6, 0]]);
         assert_eq!(decode(&bytes, 4, 1, 2).unwrap(), [3, 1, 4, 1, 5, 1, 6, 2]);
-        let colors = packed(&[&[1, 1, 2], &[1, 3, 4], &[1, 5, 6]]);
+        let colors = encode_planes(&[&[1, 1, 2], &[1, 3, 4], &[1, 5, 6]]);
         assert_eq!(decode(&colors, 2, 3, 1).unwrap(), [1, 3, 5, 2, 4, 6]);
     }
 
     #[test]
     fn what_is_broken_is_refused() {
-        let good = packed(&[&[3, 1, 2, 3, 4]]);
+        let good = encode_planes(&[&[3, 1, 2, 3, 4]]);
         assert!(decode(&good, 4, 1, 1).is_ok());
         assert!(decode(&good, 4, 1, 2).unwrap_err().contains("1 planes of bytes where 2"));
         assert!(decode(&good, 5, 1, 1).unwrap_err().contains("4 of 5"));

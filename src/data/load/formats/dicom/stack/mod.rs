@@ -1,107 +1,115 @@
-//! Pictures in the order in which they lie, and where they lie.
+//! Stacks of slices: order and placement of the images of a series.
 //!
-//! The order is that of their positions across the pictures, never that of their numbers, unless nothing else is said.
-//! Several that lie at each place are phases, of which each is a volume.
+//! Slices are ordered by their positions along the normal, never by their numbers, unless no position is stated.
+//! Several images at each position are phases, each of which is a volume.
 
-mod grid;
+mod coincident_phases;
 mod phases;
 mod placement;
-mod places;
-mod ranks;
+mod positions;
 mod segments;
+mod slice_grid;
 
 use glam::DVec3;
 
-use super::layer::{Filling, Layer, Slice};
-use crate::data::load::reading::placement::Placement;
-use grid::SliceGrid;
-use phases::{Phase, Phases};
-use placement::{distance, of_positions, placed, spacing_remark, thickness};
-use places::{Places, Pose};
-use ranks::by_time;
-use segments::of_segments;
+use super::slice_layer::{DicomSlice, GapFill, SliceLayer};
+use crate::data::load::reading::placement::GridPlacement;
+use coincident_phases::compare_acquisition;
+use phases::{PhaseImages, SeriesPhases};
+use placement::{
+    placement_from_plane, placement_from_positions, slice_spacing, slice_thickness, spacing_remark,
+};
+use positions::{ImagePose, PositionGroups};
+use segments::segment_volume;
+use slice_grid::SliceGrid;
 
-use super::header::plane::Plane;
-use super::header::taken::Attribute;
+use super::header::acquisition_attributes::AcquisitionAttribute;
+use super::header::image_plane::ImagePlane;
 
-/// A volume: its slices, and the layers of an even grid that are made of them.
+/// Volume of a series: its slices, and the layers of a regular grid made from them.
 #[derive(Debug)]
 pub(crate) struct StackedVolume {
-    /// What sets it apart from others of the same series; empty where there are none.
+    /// Name that distinguishes the volume from others of the series; empty if it is the only one.
     pub(crate) name: String,
-    pub(crate) slices: Vec<Slice>,
-    pub(crate) layers: Vec<Layer>,
-    pub(crate) placement: Placement,
+    pub(crate) slices: Vec<DicomSlice>,
+    pub(crate) layers: Vec<SliceLayer>,
+    pub(crate) placement: GridPlacement,
 }
 
-/// The volumes of a series: one, or one for each phase.
+/// Volumes of a series: one, or one per phase.
 #[derive(Debug)]
-pub(crate) struct Stack {
-    /// At least one.
+pub(crate) struct SliceStack {
+    /// Volumes, at least one of them.
     pub(crate) volumes: Vec<StackedVolume>,
-    /// What users should know of all of them.
+    /// Remarks for the user that apply to all volumes.
     pub(crate) remarks: Vec<String>,
-    /// Slices lie at places of their own: it is no film.
+    /// True if slices have distinct positions, so that they are no image sequence.
     pub(crate) has_depth: bool,
 }
 
-/// What says where pictures lie along the line across them.
+/// Source of the images' positions along their common line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Line {
-    /// Positions, across the pictures.
+enum PositionSource {
+    /// Image positions, projected to the normal.
     Positions,
-    /// Positions, along the axis along which they differ most: which way pictures lie is not said.
+    /// Image positions, along the axis in which they differ most, if no orientation is stated.
     Axis,
-    /// Slice Location.
+    /// Slice Location, which has no known direction.
     Locations,
 }
 
-impl Stack {
-    /// Puts pictures that lie in parallel in order. There is at least one.
+impl SliceStack {
+    /// Orders parallel images, at least one, and splits them into volumes.
     ///
-    /// `has_masks` says that they are masks of segments; `image_types` are the texts that [`Attribute::ImageType`] counts.
+    /// `has_masks` tells that they are masks of segments; `image_types` holds the texts that
+    /// [`AcquisitionAttribute::ImageType`] indexes.
     pub(crate) fn new(
-        mut slices: Vec<Slice>,
-        filling: Filling,
+        mut slices: Vec<DicomSlice>,
+        filling: GapFill,
         has_masks: bool,
         image_types: &[String],
     ) -> Self {
         let mut remarks = Vec::new();
         drop_unplaced(&mut slices, &mut remarks);
         if has_masks {
-            return Self { volumes: vec![of_segments(slices)], remarks, has_depth: true };
+            return Self { volumes: vec![segment_volume(slices)], remarks, has_depth: true };
         }
-        for line in [Line::Positions, Line::Axis, Line::Locations] {
-            let Some(places_mm) = line.places_mm(&slices) else { continue };
-            let pose = |(slice, place_mm): (&Slice, f64)| Pose { place_mm, taken: slice.plane.taken };
-            let poses: Vec<Pose> = slices.iter().zip(places_mm).map(pose).collect();
+        for line in [PositionSource::Positions, PositionSource::Axis, PositionSource::Locations] {
+            let Some(places_mm) = line.positions_mm(&slices) else { continue };
+            let pose = |(slice, place_mm): (&DicomSlice, f64)| ImagePose {
+                position_mm: place_mm,
+                attributes: slice.plane.attributes,
+            };
+            let poses: Vec<ImagePose> = slices.iter().zip(places_mm).map(pose).collect();
             let mut order: Vec<usize> = (0..poses.len()).collect();
-            order.sort_by(|&a, &b| poses[a].place_mm.total_cmp(&poses[b].place_mm));
-            let tolerance_mm = Places::tolerance_mm(&poses, &order);
-            if slices.len() > 1 && Places::new(&poses, &order, tolerance_mm).len() == 1 {
+            order.sort_by(|&a, &b| poses[a].position_mm.total_cmp(&poses[b].position_mm));
+            let tolerance_mm = PositionGroups::tolerance_mm(&poses, &order);
+            if slices.len() > 1 && PositionGroups::new(&poses, &order, tolerance_mm).len() == 1 {
                 continue;
             }
-            let Phases { phases, remark } = Phases::new(&poses, image_types);
-            let volumes = phases.into_iter().map(|phase| line.volume(&slices, &poses, phase, filling));
+            let SeriesPhases { phases, remark } = SeriesPhases::new(&poses, image_types);
+            let volumes = phases.into_iter().map(|phase| line.build_volume(&slices, &poses, phase, filling));
             remarks.extend(remark);
             return Self { volumes: volumes.collect(), remarks, has_depth: true };
         }
-        let is_film = |slice: &Slice| slice.plane.position.is_some() && slice.plane.has_own_position;
-        let volume = if slices.iter().all(is_film) { film(slices) } else { unplaced(slices) };
+        let is_at_one_position =
+            |slice: &DicomSlice| slice.plane.position.is_some() && slice.plane.has_own_position;
+        let volume =
+            if slices.iter().all(is_at_one_position) { cine_volume(slices) } else { unplaced_volume(slices) };
         Self { volumes: vec![volume], remarks, has_depth: false }
     }
 }
 
-impl Line {
-    /// Where pictures lie, millimetres; `None` where it is not said of all of them.
-    fn places_mm(self, slices: &[Slice]) -> Option<Vec<f64>> {
+impl PositionSource {
+    /// Returns the positions of the images in millimetres; `None` if any of them lacks one.
+    fn positions_mm(self, slices: &[DicomSlice]) -> Option<Vec<f64>> {
         let first = slices.first()?.plane;
         let direction = match self {
             Self::Positions => first.normal(),
-            Self::Axis if first.normal().is_none() && slices.len() > 1 => longest_axis(slices),
+            Self::Axis if first.normal().is_none() && slices.len() > 1 => axis_of_largest_extent(slices),
             Self::Axis | Self::Locations => None,
         };
-        let place = |slice: &Slice| match self {
+        let place = |slice: &DicomSlice| match self {
             Self::Positions | Self::Axis => Some(slice.plane.position?.dot(direction?)),
             Self::Locations if slices.len() > 1 => slice.plane.location_mm,
             Self::Locations => None,
@@ -110,35 +118,45 @@ impl Line {
         slices.iter().map(|slice| place(slice).filter(is_finite)).collect()
     }
 
-    /// The volume of a phase's pictures.
-    fn volume(self, slices: &[Slice], poses: &[Pose], phase: Phase, filling: Filling) -> StackedVolume {
-        let Phase { name, pictures } = phase;
-        let places_mm: Vec<f64> = pictures.iter().map(|&picture| poses[picture].place_mm).collect();
-        let slices: Vec<Slice> = pictures.iter().map(|&picture| slices[picture]).collect();
+    /// Builds the volume of a phase's images.
+    fn build_volume(
+        self,
+        slices: &[DicomSlice],
+        poses: &[ImagePose],
+        phase: PhaseImages,
+        filling: GapFill,
+    ) -> StackedVolume {
+        let PhaseImages { name, images: pictures } = phase;
+        let places_mm: Vec<f64> = pictures.iter().map(|&picture| poses[picture].position_mm).collect();
+        let slices: Vec<DicomSlice> = pictures.iter().map(|&picture| slices[picture]).collect();
         let plane = slices.first().map(|slice| slice.plane).unwrap_or_default();
         if slices.len() < 2 {
-            let placement =
-                if self == Self::Positions { of_positions(&slices, 1) } else { Placement::unknown() };
-            return StackedVolume { name, slices, layers: vec![Layer::Picture(0)], placement };
+            let placement = if self == Self::Positions {
+                placement_from_positions(&slices, 1)
+            } else {
+                GridPlacement::unknown()
+            };
+            return StackedVolume { name, slices, layers: vec![SliceLayer::Slice(0)], placement };
         }
-        let distance_mm = plane.between.map(f64::abs).or(plane.thickness);
-        let SliceGrid { layers, distance, remark } = SliceGrid::new(&places_mm, filling, distance_mm);
+        let distance_mm = plane.slice_spacing_mm.map(f64::abs).or(plane.thickness_mm);
+        let SliceGrid { layers, spacing: distance, remark } =
+            SliceGrid::new(&places_mm, filling, distance_mm);
         let placement = match self {
-            Self::Positions => of_positions(&slices, layers.len()),
+            Self::Positions => placement_from_positions(&slices, layers.len()),
             Self::Axis | Self::Locations => {
                 let from =
                     if self == Self::Axis { "positions, whatever their direction" } else { "Slice Location" };
-                spaced(&plane, distance).remarked(spacing_remark(&plane)).remarked(Some(format!(
-                    "where its slices lie, {distance:.4} mm apart, is taken from {from}"
-                )))
+                spaced_placement(&plane, distance).with_remark(spacing_remark(&plane)).with_remark(Some(
+                    format!("where its slices lie, {distance:.4} mm apart, is taken from {from}"),
+                ))
             }
         };
-        StackedVolume { name, slices, layers, placement: placement.remarked(remark) }
+        StackedVolume { name, slices, layers, placement: placement.with_remark(remark) }
     }
 }
 
-/// Leaves out the few pictures that do not say where they lie, where most do.
-fn drop_unplaced(slices: &mut Vec<Slice>, remarks: &mut Vec<String>) {
+/// Drops the few images without a position, if most have one.
+fn drop_unplaced(slices: &mut Vec<DicomSlice>, remarks: &mut Vec<String>) {
     let total = slices.len();
     let placed = slices.iter().filter(|slice| slice.plane.position.is_some()).count();
     if placed < total && 2 * placed > total {
@@ -148,8 +166,8 @@ fn drop_unplaced(slices: &mut Vec<Slice>, remarks: &mut Vec<String>) {
     }
 }
 
-/// The axis of space along which positions differ most.
-fn longest_axis(slices: &[Slice]) -> Option<DVec3> {
+/// Returns the coordinate axis along which positions differ most.
+fn axis_of_largest_extent(slices: &[DicomSlice]) -> Option<DVec3> {
     let positions = slices.iter().filter_map(|slice| slice.plane.position);
     let first = slices.first()?.plane.position?;
     let (low, high) = positions.fold((first, first), |(low, high), at| (low.min(at), high.max(at)));
@@ -158,70 +176,75 @@ fn longest_axis(slices: &[Slice]) -> Option<DVec3> {
     axes.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, axis)| axis)
 }
 
-/// Slices so far apart, with the pixels that a picture has.
-fn spaced(plane: &Plane, distance_mm: f64) -> Placement {
+/// Returns the placement of slices with this spacing, and the pixel spacing of an image.
+fn spaced_placement(plane: &ImagePlane, distance_mm: f64) -> GridPlacement {
     match plane.spacing {
         Some([between_rows, between_columns]) => {
-            Placement::spaced([between_columns, between_rows, distance_mm])
+            GridPlacement::from_spacing([between_columns, between_rows, distance_mm])
         }
-        None => Placement::unknown(),
+        None => GridPlacement::unknown(),
     }
 }
 
-/// Every picture is a layer.
-fn as_layers(slices: Vec<Slice>, placement: Placement) -> StackedVolume {
-    let layers = (0..slices.len()).map(Layer::Picture).collect();
+/// Builds a volume in which every image is a layer.
+fn layer_per_image(slices: Vec<DicomSlice>, placement: GridPlacement) -> StackedVolume {
+    let layers = (0..slices.len()).map(SliceLayer::Slice).collect();
     StackedVolume { name: String::new(), slices, layers, placement }
 }
 
-/// Pictures that lie all at one place, taken one after the other.
-fn film(mut slices: Vec<Slice>) -> StackedVolume {
-    slices.sort_by(|a, b| by_time(&a.plane.taken, &b.plane.taken));
+/// Builds a volume of images at one position, in order of time.
+fn cine_volume(mut slices: Vec<DicomSlice>) -> StackedVolume {
+    slices.sort_by(|a, b| compare_acquisition(&a.plane.attributes, &b.plane.attributes));
     let remark = format!(
         "its {} pictures lie all at one place: they are stacked in the order in which they were taken",
         slices.len()
     );
-    as_layers(slices, Placement::unknown().remarked(Some(remark)))
+    layer_per_image(slices, GridPlacement::unknown().with_remark(Some(remark)))
 }
 
-/// Pictures of which it is not said where each lies: in the order of their numbers, or else of their files' names.
-fn unplaced(mut slices: Vec<Slice>) -> StackedVolume {
-    let order = |slice: &Slice| {
-        [Attribute::Acquisition, Attribute::Instance, Attribute::AcquisitionTime]
-            .map(|attribute| slice.plane.taken.get(attribute).unwrap_or(0.0))
+/// Builds a volume of images without distinct positions, in order of their numbers, or else of their file names.
+fn unplaced_volume(mut slices: Vec<DicomSlice>) -> StackedVolume {
+    let order = |slice: &DicomSlice| {
+        [
+            AcquisitionAttribute::Acquisition,
+            AcquisitionAttribute::Instance,
+            AcquisitionAttribute::AcquisitionTime,
+        ]
+        .map(|attribute| slice.plane.attributes.get(attribute).unwrap_or(0.0))
     };
     slices.sort_by(|a, b| {
         let both = order(a).into_iter().zip(order(b));
         both.map(|(a, b)| a.total_cmp(&b)).fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
     });
     let plane = slices.first().map(|slice| slice.plane).unwrap_or_default();
-    // Frames that follow each other in time do not lie above each other.
+    // Frames that follow each other in time have no spatial distance.
     let count = slices.len();
     let depth = match count {
-        1 => thickness(&plane),
-        _ if plane.is_of_film => None,
-        _ => distance(&plane),
+        1 => slice_thickness(&plane),
+        _ if plane.is_cine => None,
+        _ => slice_spacing(&plane),
     };
     let Some(depth) = depth else {
         let how = "the file does not say how its";
         let remark =
             (count > 1).then(|| format!("{how} {count} pictures lie: they are stacked in their order"));
-        // How pixels compare is known.
+        // The aspect ratio of pixels is known.
         let [between_rows, between_columns] = plane.spacing.unwrap_or([1.0; 2]);
         let placement = match plane.spacing {
-            Some(_) => Placement::spaced([between_columns, between_rows, between_rows]).of_unknown_scale(),
-            None => Placement::unknown(),
+            Some(_) => GridPlacement::from_spacing([between_columns, between_rows, between_rows])
+                .with_unknown_scale(),
+            None => GridPlacement::unknown(),
         };
-        return as_layers(slices, placement.remarked(remark));
+        return layer_per_image(slices, placement.with_remark(remark));
     };
     let placement = match plane.normal() {
         Some(normal) if plane.position.is_some() && plane.spacing.is_some() => {
-            // Some say the direction by the sign.
-            let sign = plane.between.map_or(1.0, f64::signum);
-            placed(&plane, Some(normal * depth.depth_mm * sign))
+            // Some programs encode the direction in the sign.
+            let sign = plane.slice_spacing_mm.map_or(1.0, f64::signum);
+            placement_from_plane(&plane, Some(normal * depth.depth_mm * sign))
         }
-        _ => spaced(&plane, depth.depth_mm),
+        _ => spaced_placement(&plane, depth.depth_mm),
     };
-    let placement = placement.remarked(spacing_remark(&plane)).remarked(depth.remark);
-    as_layers(slices, placement)
+    let placement = placement.with_remark(spacing_remark(&plane)).with_remark(depth.remark);
+    layer_per_image(slices, placement)
 }

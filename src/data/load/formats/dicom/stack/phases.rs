@@ -1,77 +1,90 @@
-//! Which pictures of one series are a volume, where several lie at the same places or nearly so: phases, echoes,
-//! acquisitions. No slice of one comes among those of another.
+//! Phases: splits images of one series at equal or nearly equal positions into volumes (phases, echoes,
+//! acquisitions), none of which gets slices of another.
 
 use std::collections::BTreeMap;
 
-use super::places::{Places, Pose, collisions, usual_distance};
-use super::ranks::{by_rank, by_turn};
-use crate::data::load::formats::dicom::header::taken::{Attribute, Taken};
+use super::coincident_phases::{phases_by_instance_number, phases_by_rank};
+use super::positions::{ImagePose, PositionGroups, count_coincident, median_spacing};
+use crate::data::load::formats::dicom::header::acquisition_attributes::{
+    AcquisitionAttribute, AcquisitionAttributes,
+};
 
-/// Slices of two phases that are nearer to each other than this share of the distance within a phase lie at nearly the
-/// same place. Halves are those of phases that were taken in turns, and are one volume.
-const NEAR: f64 = 0.45;
+/// Fraction of the spacing within a phase below which slices of two phases count as nearly coincident. Interleaved
+/// passes, half a spacing apart, form one volume.
+const COINCIDENCE_FRACTION: f64 = 0.45;
 
-/// Phases with less than this share of the slices of the largest stand behind the others.
-const WHOLE: f64 = 0.5;
+/// Fraction of the largest phase's slices below which a phase is listed behind the others.
+const COMPLETE_FRACTION: f64 = 0.5;
 
-/// Pictures of one volume, by their numbers, in the order of their places.
+/// Images of one volume, by index, in order of position.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Phase {
-    /// What sets it apart from others; empty where there are none.
+pub(crate) struct PhaseImages {
+    /// Name that distinguishes the phase from others; empty if it is the only one.
     pub(crate) name: String,
-    pub(crate) pictures: Vec<usize>,
+    pub(crate) images: Vec<usize>,
 }
 
-/// Pictures that are told apart, and what was left out.
+/// Phases of a series, with a remark on omitted images.
 #[derive(Debug)]
-pub(crate) struct Phases {
-    pub(crate) phases: Vec<Phase>,
+pub(crate) struct SeriesPhases {
+    pub(crate) phases: Vec<PhaseImages>,
     pub(crate) remark: Option<String>,
 }
 
-/// Some of the pictures, and the attributes that all of them share and others have not.
-struct Class {
-    shared: Vec<(Attribute, Option<f64>)>,
-    /// In the order of their places.
-    pictures: Vec<usize>,
+/// Subset of the images, with the attribute values that they have in common and others have not.
+struct AttributeClass {
+    shared: Vec<(AcquisitionAttribute, Option<f64>)>,
+    /// Indices of the images, in order of position.
+    images: Vec<usize>,
 }
 
-impl Phases {
-    /// Tells pictures apart. `image_types` are the texts that [`Attribute::ImageType`] counts.
-    pub(crate) fn new(poses: &[Pose], image_types: &[String]) -> Self {
+impl SeriesPhases {
+    /// Splits images into phases. `image_types` holds the texts that [`AcquisitionAttribute::ImageType`] indexes.
+    pub(crate) fn new(poses: &[ImagePose], image_types: &[String]) -> Self {
         let mut order: Vec<usize> = (0..poses.len()).collect();
-        order.sort_by(|&a, &b| poses[a].place_mm.total_cmp(&poses[b].place_mm));
-        let tolerance_mm = Places::tolerance_mm(poses, &order);
-        let mut classes = vec![Class { shared: Vec::new(), pictures: order }];
-        for attribute in Attribute::ALL.into_iter().filter(|&attribute| attribute != Attribute::Instance) {
-            classes =
-                classes.into_iter().flat_map(|class| class.divided(attribute, poses, tolerance_mm)).collect();
+        order.sort_by(|&a, &b| poses[a].position_mm.total_cmp(&poses[b].position_mm));
+        let tolerance_mm = PositionGroups::tolerance_mm(poses, &order);
+        let mut classes = vec![AttributeClass { shared: Vec::new(), images: order }];
+        for attribute in AcquisitionAttribute::ALL
+            .into_iter()
+            .filter(|&attribute| attribute != AcquisitionAttribute::Instance)
+        {
+            classes = classes
+                .into_iter()
+                .flat_map(|class| class.split_by(attribute, poses, tolerance_mm))
+                .collect();
         }
         let (mut phases, mut left_out) = (Vec::new(), 0);
-        for Class { shared, pictures } in classes {
+        for AttributeClass { shared, images: pictures } in classes {
             let said = shared
                 .into_iter()
-                .filter_map(|(attribute, value)| Some(attribute.in_words(value?, image_types)));
+                .filter_map(|(attribute, value)| Some(attribute.format(value?, image_types)));
             let name = said.collect::<Vec<_>>().join(", ");
-            let places = Places::new(poses, &pictures, tolerance_mm);
-            let most = places.most_at_one();
+            let places = PositionGroups::new(poses, &pictures, tolerance_mm);
+            let most = places.max_coincident();
             if most <= 1 {
-                phases.push(Phase { name, pictures });
-            } else if let Some(ranks) = by_rank(&places, poses).or_else(|| by_turn(&places, poses)) {
+                phases.push(PhaseImages { name, images: pictures });
+            } else if let Some(ranks) =
+                phases_by_rank(&places, poses).or_else(|| phases_by_instance_number(&places, poses))
+            {
                 for (number, pictures) in ranks.iter().enumerate() {
                     let other = &ranks[usize::from(number == 0)];
-                    let own = set_apart(&poses[pictures[0]].taken, &poses[other[0]].taken, image_types);
+                    let own = first_difference(
+                        &poses[pictures[0]].attributes,
+                        &poses[other[0]].attributes,
+                        image_types,
+                    );
                     let both = [name.as_str(), own.as_str()].into_iter().filter(|name| !name.is_empty());
                     let name = both.collect::<Vec<_>>().join(", ");
-                    phases.push(Phase { name, pictures: pictures.clone() });
+                    phases.push(PhaseImages { name, images: pictures.clone() });
                 }
             } else {
                 left_out += pictures.len() - places.len();
-                phases.push(Phase { name, pictures: places.firsts() });
+                phases.push(PhaseImages { name, images: places.first_of_each() });
             }
         }
-        let largest = phases.iter().map(|phase| phase.pictures.len()).max().unwrap_or(0) as f64;
-        phases.sort_by_key(|phase| (phase.pictures.len() as f64) < WHOLE * largest);
+        let largest = phases.iter().map(|phase| phase.images.len()).max().unwrap_or(0) as f64;
+        phases.sort_by_key(|phase| (phase.images.len() as f64) < COMPLETE_FRACTION * largest);
         let total = poses.len();
         let remark = (left_out > 0).then(|| {
             format!("{left_out} of {total} pictures lie where others do: the first of each place are shown")
@@ -80,59 +93,67 @@ impl Phases {
     }
 }
 
-impl Class {
-    /// Its pictures by the values of an attribute, where that tells apart what lies at the same places; else all.
-    fn divided(self, attribute: Attribute, poses: &[Pose], tolerance_mm: f64) -> Vec<Self> {
+impl AttributeClass {
+    /// Splits the class by the values of an attribute, if that separates coincident images; otherwise returns it
+    /// unchanged.
+    fn split_by(self, attribute: AcquisitionAttribute, poses: &[ImagePose], tolerance_mm: f64) -> Vec<Self> {
         let mut parts: BTreeMap<Option<u64>, Vec<usize>> = BTreeMap::new();
-        for &picture in &self.pictures {
-            let value = poses[picture].taken.get(attribute);
+        for &picture in &self.images {
+            let value = poses[picture].attributes.get(attribute);
             parts.entry(value.map(ordered_bits)).or_default().push(picture);
         }
-        if parts.len() < 2 || !self.is_told_apart(&parts, poses, tolerance_mm) {
+        if parts.len() < 2 || !self.separates_coincident(&parts, poses, tolerance_mm) {
             return vec![self];
         }
         let part = |pictures: Vec<usize>| {
-            let value = pictures.first().and_then(|&picture| poses[picture].taken.get(attribute));
+            let value = pictures.first().and_then(|&picture| poses[picture].attributes.get(attribute));
             let shared = [self.shared.as_slice(), &[(attribute, value)]].concat();
-            Self { shared, pictures }
+            Self { shared, images: pictures }
         };
         parts.into_values().map(part).collect()
     }
 
-    /// Whether these parts overlap, and pictures that are at the same places or nearly so are in different ones.
-    fn is_told_apart(
+    /// Returns true if the parts overlap in space, and coincident images are in different parts.
+    fn separates_coincident(
         &self,
         parts: &BTreeMap<Option<u64>, Vec<usize>>,
-        poses: &[Pose],
+        poses: &[ImagePose],
         tolerance_mm: f64,
     ) -> bool {
-        // Attributes that are another for each picture tell nothing: a part has some slices.
-        const FEWEST_ON_AVERAGE: usize = 3;
-        let (total, count) = (self.pictures.len(), parts.len());
-        let places = Places::new(poses, &self.pictures, tolerance_mm).len();
-        if 2 * total <= count * places && total < FEWEST_ON_AVERAGE * count {
+        // Attributes that differ for each image do not separate phases: a part has several slices.
+        const MIN_MEAN_SLICES: usize = 3;
+        let (total, count) = (self.images.len(), parts.len());
+        let places = PositionGroups::new(poses, &self.images, tolerance_mm).len();
+        if 2 * total <= count * places && total < MIN_MEAN_SLICES * count {
             return false;
         }
-        let Some(usual) = usual_distance(parts.values(), poses, tolerance_mm) else { return false };
-        let near = NEAR * usual;
-        let together = collisions(&self.pictures, poses, near);
-        let apart: usize = parts.values().map(|part| collisions(part, poses, near)).sum();
-        // Where one begins as the other ends, a few are near each other: they are one volume.
+        let Some(usual) = median_spacing(parts.values(), poses, tolerance_mm) else { return false };
+        let near = COINCIDENCE_FRACTION * usual;
+        let coincident = count_coincident(&self.images, poses, near);
+        let coincident_within_parts: usize =
+            parts.values().map(|part| count_coincident(part, poses, near)).sum();
+        // Parts that merely adjoin have a few coincident images: they are one volume.
         let largest = parts.values().map(Vec::len).max().unwrap_or(0);
-        together > apart && 4 * (together - apart) > total - largest
+        coincident > coincident_within_parts && 4 * (coincident - coincident_within_parts) > total - largest
     }
 }
 
-/// The bits of a number, so that they are in its order.
+/// Maps a float to bits that sort in the same order.
 fn ordered_bits(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
-/// The first attribute in which a picture differs from another, in words.
-fn set_apart(taken: &Taken, other: &Taken, image_types: &[String]) -> String {
-    let named = Attribute::ALL.into_iter().filter(|&attribute| attribute != Attribute::Instance);
+/// Formats the first attribute in which an image differs from another.
+fn first_difference(
+    taken: &AcquisitionAttributes,
+    other: &AcquisitionAttributes,
+    image_types: &[String],
+) -> String {
+    let named = AcquisitionAttribute::ALL
+        .into_iter()
+        .filter(|&attribute| attribute != AcquisitionAttribute::Instance);
     let mut different = named.filter(|&attribute| taken.get(attribute) != other.get(attribute));
-    let found = different.find_map(|attribute| Some(attribute.in_words(taken.get(attribute)?, image_types)));
+    let found = different.find_map(|attribute| Some(attribute.format(taken.get(attribute)?, image_types)));
     found.unwrap_or_default()
 }

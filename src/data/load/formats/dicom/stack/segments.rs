@@ -1,57 +1,64 @@
-//! The frames of segments: which of them lie at one place, and where the others are that have no segment in them.
+//! Stack of segmentation frames: groups masks by position, and restores the empty slices that files omit.
 
 use std::ops::Range;
 
 use super::StackedVolume;
-use super::grid::SliceGrid;
-use super::placement::{distance, of_positions};
-use super::places::{Places, Pose};
-use crate::data::load::formats::dicom::layer::{Filling, Layer, Slice};
-use crate::data::load::reading::placement::Placement;
+use super::placement::{placement_from_positions, slice_spacing};
+use super::positions::{ImagePose, PositionGroups};
+use super::slice_grid::SliceGrid;
+use crate::data::load::formats::dicom::slice_layer::{DicomSlice, GapFill, SliceLayer};
+use crate::data::load::reading::placement::GridPlacement;
 
-/// The volume of masks, each of a segment at a place; without places every mask is a layer.
-pub(super) fn of_segments(slices: Vec<Slice>) -> StackedVolume {
+/// Builds the volume of masks, each of one segment at one position; without positions every mask is a layer.
+pub(super) fn segment_volume(slices: Vec<DicomSlice>) -> StackedVolume {
     let name = String::new();
     let normal = slices.first().and_then(|slice| slice.plane.normal());
-    let pose = |slice: &Slice| {
+    let pose = |slice: &DicomSlice| {
         let place_mm = Some(slice.plane.position?.dot(normal?)).filter(|place| place.is_finite())?;
-        Some(Pose { place_mm, taken: slice.plane.taken })
+        Some(ImagePose { position_mm: place_mm, attributes: slice.plane.attributes })
     };
-    let Some(poses) = slices.iter().map(pose).collect::<Option<Vec<Pose>>>() else {
+    let Some(poses) = slices.iter().map(pose).collect::<Option<Vec<ImagePose>>>() else {
         let remark =
             (slices.len() > 1).then_some("the file does not say where the masks of its segments lie");
-        let layers = (0..slices.len()).map(|mask| Layer::Masks(mask..mask + 1)).collect();
-        return StackedVolume { name, slices, layers, placement: Placement::unknown().remarked(remark) };
+        let layers = (0..slices.len()).map(|mask| SliceLayer::Masks(mask..mask + 1)).collect();
+        return StackedVolume {
+            name,
+            slices,
+            layers,
+            placement: GridPlacement::unknown().with_remark(remark),
+        };
     };
     let mut order: Vec<usize> = (0..poses.len()).collect();
-    order.sort_by(|&a, &b| poses[a].place_mm.total_cmp(&poses[b].place_mm));
-    let Places(places) = Places::new(&poses, &order, Places::tolerance_mm(&poses, &order));
-    let slices: Vec<Slice> = order.iter().map(|&picture| slices[picture]).collect();
+    order.sort_by(|&a, &b| poses[a].position_mm.total_cmp(&poses[b].position_mm));
+    let PositionGroups(places) =
+        PositionGroups::new(&poses, &order, PositionGroups::tolerance_mm(&poses, &order));
+    let slices: Vec<DicomSlice> = order.iter().map(|&picture| slices[picture]).collect();
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for place in &places {
         let start = ranges.last().map_or(0, |range| range.end);
         ranges.push(start..start + place.len());
     }
     if places.len() < 2 {
-        let placement = of_positions(&slices, 1);
+        let placement = placement_from_positions(&slices, 1);
         return StackedVolume {
             name,
             slices,
-            layers: ranges.into_iter().map(Layer::Masks).collect(),
+            layers: ranges.into_iter().map(SliceLayer::Masks).collect(),
             placement,
         };
     }
-    let places_mm: Vec<f64> = places.iter().map(|place| poses[place[0]].place_mm).collect();
-    let said = slices.first().and_then(|slice| distance(&slice.plane)).map(|depth| depth.depth_mm);
-    let SliceGrid { layers, remark, .. } = SliceGrid::new(&places_mm, Filling::NoSegment, said);
+    let places_mm: Vec<f64> = places.iter().map(|place| poses[place[0]].position_mm).collect();
+    let stated_spacing =
+        slices.first().and_then(|slice| slice_spacing(&slice.plane)).map(|depth| depth.depth_mm);
+    let SliceGrid { layers, remark, .. } = SliceGrid::new(&places_mm, GapFill::NoSegment, stated_spacing);
     let masks = |layer| match layer {
-        Layer::Picture(place) => Layer::Masks(ranges[place].clone()),
-        Layer::Between { pictures: [low, high], share, is_missing: false } => {
-            Layer::Masks(ranges[if share < 0.5 { low } else { high }].clone())
+        SliceLayer::Slice(place) => SliceLayer::Masks(ranges[place].clone()),
+        SliceLayer::Blend { pictures: [low, high], share, is_missing: false } => {
+            SliceLayer::Masks(ranges[if share < 0.5 { low } else { high }].clone())
         }
-        Layer::Between { .. } | Layer::Masks(_) | Layer::Empty => Layer::Empty,
+        SliceLayer::Blend { .. } | SliceLayer::Masks(_) | SliceLayer::Empty => SliceLayer::Empty,
     };
-    let layers: Vec<Layer> = layers.into_iter().map(masks).collect();
-    let placement = of_positions(&slices, layers.len()).remarked(remark);
+    let layers: Vec<SliceLayer> = layers.into_iter().map(masks).collect();
+    let placement = placement_from_positions(&slices, layers.len()).with_remark(remark);
     StackedVolume { name, slices, layers, placement }
 }

@@ -1,4 +1,4 @@
-//! Compressed pixels. The pictures were written by other programs.
+//! Tests of compressed pixels, with images that other programs wrote.
 
 use super::*;
 
@@ -8,32 +8,32 @@ const JPEG_EXTENDED: &str = "1.2.840.10008.1.2.4.51";
 const JPEG_LS: &str = "1.2.840.10008.1.2.4.80";
 const JPEG_2000: &str = "1.2.840.10008.1.2.4.90";
 
-/// 16 bits without loss.
+/// Lossless JPEG of 16 bits.
 const LOSSLESS: &str = "ffd8ffe000104a46494600010100000100010000ffc3000b100004000501011100ffc400160001010100000000\
     0000000000000000000c0e0fffda0008010100010000c0019998ccc6663332ff00f33ffbd6671998cccbff00c6663331998cccbffc666333\
     1998cccfffd9";
 
-/// The same picture, by another standard.
+/// JPEG-LS of the image in `LOSSLESS`.
 const LS: &str = "ffd8fff7000b100004000501011100fff8000d01ffff0012004301140040ffda000801010000000040d02cb8165d995664c0\
     0000007f80000000080e733ab33005987ff6000000000001e6677ff6b328ccb3ff4acc8598eb318cca00ffd9";
 
-/// 16 bits with a sign.
+/// JPEG 2000 of 16 bits, signed.
 const SIGNED: &str = "ff4fff5100290000000000050000000400000000000000000000000500000004000000000000000000018f0101ff52000c\
     00000001000004040001ff5c00044080ff90000a0000000000380001ff93dff8913015f9b61e325d3295bdd032d13a0f166a9e25c9923893\
     509fcde4e43bf6bfb53962f32b9435bfffd9";
 
-/// Red, green and blue of 8 bits.
+/// JPEG 2000 of RGB, 8 bits each.
 const COLORS: &str = "ff4fff51002f000000000005000000040000000000000000000000050000000400000000000000000003070101070101\
     070101ff52000c00000001010004040001ff5c00044040ff90000a0000000000320001ff93cfb44c1273217ba468235268374faf010a0e67\
     29d9dfc0f844140058efc0f8441150508fffd9";
 
-/// 8 bits with hardly any loss.
+/// Baseline JPEG of 8 bits, with minimal loss.
 const LOSSY: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010101010101010101010101010101010101010101010101\
     01010101010101010101010101010101010101010101010101010101010101010101010101ffc0000b080004000501011100ffc4\
     0014000100000000000000000000000000000009ffc4001f100001000b0000000000000000000000000200050708091627435253\
     65ffda0008010100003f00401894249c82520a5fa2fabf03e4a7ffd9";
 
-/// Red, green and blue of 8 bits in JPEG-LS: one after the other, line by line, pixel by pixel.
+/// JPEG-LS of RGB, 8 bits each: one scan per component, interleaved by line, interleaved by sample.
 const COLORS_LS: [&str; 3] = [
     "ffd8fff70011080004000503011100021100031100ffda0008010100000000003870e4bc0000058c10a20100000058dcc5142247\
     7100ffda000801020000000000050e4bda000002c6085100822731453023b880ffda000801030000000000014392f6800000b182\
@@ -44,7 +44,7 @@ const COLORS_LS: [&str; 3] = [
     00b188810a21cc523b810a21817973b33332aa9cc52d2c2b6db6db647700ffd9",
 ];
 
-/// 12 bits with hardly any loss.
+/// Extended JPEG of 12 bits, with minimal loss.
 const EXTENDED: &str = "ffd8ffe000104a46494600010100000100010000ffdb004300010101010101010101010101010101010101010101010101010101\
     01010101010101010101010101010101010101010101010101010101010101010101010101ffc1000b0c0004000501011100ffc4\
     001400010000000000000000000000000000000cffc40027100000010a0603000000000000000000001202040507090a0b111317\
@@ -61,12 +61,12 @@ fn hex(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// A file of pictures of 5 x 4 pixels.
-fn file(syntax: &'static str, is_signed: bool, fragments: &[&[u8]]) -> File {
-    File::new(syntax).size(5, 4).bits(16, 16, is_signed).fragments(fragments)
+/// A file with images of 5 x 4 pixels.
+fn file(syntax: &'static str, is_signed: bool, fragments: &[&[u8]]) -> DicomFileBuilder {
+    DicomFileBuilder::new(syntax).size(5, 4).bits(16, 16, is_signed).fragments(fragments)
 }
 
-/// What [`LOSSLESS`] and [`LS`] show.
+/// Returns the pixels of [`LOSSLESS`] and [`LS`].
 fn unsigned() -> Vec<u16> {
     let mut values: Vec<u16> = (0..20).map(|n| n * 3276 + 7).collect();
     values[6] = 65535;
@@ -114,13 +114,13 @@ fn colours_are_unpacked() {
         .short(tags::SAMPLES, 3)
         .with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "YBR_RCT"));
     for (component, add) in [(0, 0), (1, 5), (2, 9)] {
-        let choice = Choice { component: Some(component), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(component), ..VolumeChoice::default() };
         let volume = colors.load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
     }
     for (component, (picture, add)) in COLORS_LS.into_iter().zip([0, 5, 9]).enumerate() {
         let colors = file(JPEG_LS, false, &[&[], &hex(picture)]).bits(8, 8, false).short(tags::SAMPLES, 3);
-        let choice = Choice { component: Some(component), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(component), ..VolumeChoice::default() };
         let volume = colors.with(|set| set.text(tags::PHOTOMETRIC, *b"CS", "RGB")).load_with(choice).unwrap();
         assert_eq!(volume.samples(), &Samples::U8((0..20).map(|n| n * 10 + 20 + add).collect()));
     }
@@ -152,7 +152,7 @@ fn runs_are_unpacked() {
     let mut packed: Vec<u8> = packed.into_iter().flat_map(u32::to_le_bytes).collect();
     // High bytes all 1; low bytes 2 2 2 3 4 5.
     packed.extend([251, 1, 254, 2, 2, 3, 4, 5]);
-    let volume = File::new(RLE).fragments(&[&[], &packed]).load().unwrap();
+    let volume = DicomFileBuilder::new(RLE).fragments(&[&[], &packed]).load().unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![258, 258, 258, 259, 260, 261]));
 }
 
@@ -171,7 +171,7 @@ fn pictures_that_are_not_what_the_header_says_are_refused() {
     ] {
         assert_refused(file.load(), LoadErrorKind::BadInput, &[words]);
     }
-    // Of 12 bits with loss: the first bytes of one, and another size.
+    // Lossy JPEG of 12 bits: the first bytes of one, and one of another size.
     let twelve = [0xff, 0xd8, 0xff, 0xc1, 0, 11, 12, 0, 4, 0, 5, 1, 1, 0x11, 0, 0];
     let twelve = file(JPEG_EXTENDED, false, &[&[], &twelve]);
     assert_refused(twelve.load(), LoadErrorKind::BadInput, &["cut off", "gdcmconv --raw"]);
@@ -179,7 +179,7 @@ fn pictures_that_are_not_what_the_header_says_are_refused() {
     assert_refused(twelve.load(), LoadErrorKind::BadInput, &["5 x 4 pixels where the header says 4 x 4"]);
 }
 
-/// Decoders take time and memory for as many pixels as are announced, whatever there is.
+/// Decoders take time and memory for all announced pixels, whatever the data hold.
 #[test]
 fn bombs_are_refused_before_there_is_room_for_them() {
     for syntax in [JPEG_LOSSLESS, JPEG_BASELINE, JPEG_LS, JPEG_2000, RLE] {

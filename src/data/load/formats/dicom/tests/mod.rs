@@ -1,4 +1,4 @@
-//! DICOM files from the outside: what is read and what is refused.
+//! Tests of DICOM files, end to end: accepted and refused files.
 
 mod codecs;
 mod frames;
@@ -21,10 +21,10 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use tempfile::TempDir;
 
-use super::header::syntax::{Form, Syntax};
-use super::header::tags::{self, Tag};
-use crate::data::load::tests::shared::{assert_refused, load_path};
-use crate::data::load::{Choice, Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use super::header::tags::{self, DicomTag};
+use super::header::transfer_syntax::{ElementEncoding, TransferSyntax};
+use crate::data::load::tests::helpers::{assert_refused, load_path};
+use crate::data::load::{Endian, LoadControl, LoadError, LoadErrorKind, LoadOptions, VolumeChoice, load};
 use crate::data::{Samples, Volume};
 
 const IMPLICIT: &str = "1.2.840.10008.1.2";
@@ -33,61 +33,61 @@ const DEFLATED: &str = "1.2.840.10008.1.2.1.99";
 const BIG: &str = "1.2.840.10008.1.2.2";
 const RLE: &str = "1.2.840.10008.1.2.5";
 
-/// What an element holds.
+/// Content of a data element, for encoding.
 #[derive(Debug, Clone)]
-enum Content {
-    /// Its representation, and its bytes.
+enum TestContent {
+    /// Value with its representation (VR), encoded.
     Value([u8; 2], Vec<u8>),
-    /// Items, whose lengths are said or marked.
-    Items(Vec<Set>, bool),
-    /// Compressed pixels.
+    /// Items of a sequence; `true` for undefined lengths with delimiters.
+    Items(Vec<DataSetBuilder>, bool),
+    /// Fragments of compressed pixels, in order.
     Fragments(Vec<Vec<u8>>),
 }
 
-/// A data set.
+/// Builder of a data set.
 #[derive(Debug, Clone, Default)]
-struct Set(BTreeMap<Tag, Content>);
+struct DataSetBuilder(BTreeMap<DicomTag, TestContent>);
 
-impl Set {
-    fn value(mut self, tag: Tag, vr: [u8; 2], bytes: &[u8]) -> Self {
-        self.0.insert(tag, Content::Value(vr, bytes.to_vec()));
+impl DataSetBuilder {
+    fn value(mut self, tag: DicomTag, vr: [u8; 2], bytes: &[u8]) -> Self {
+        self.0.insert(tag, TestContent::Value(vr, bytes.to_vec()));
         self
     }
 
-    fn text(self, tag: Tag, vr: [u8; 2], text: &str) -> Self {
+    fn text(self, tag: DicomTag, vr: [u8; 2], text: &str) -> Self {
         let space = if text.len().is_multiple_of(2) { "" } else { " " };
         self.value(tag, vr, format!("{text}{space}").as_bytes())
     }
 
-    fn decimal(self, tag: Tag, text: &str) -> Self {
+    fn decimal(self, tag: DicomTag, text: &str) -> Self {
         self.text(tag, *b"DS", text)
     }
 
-    fn items(mut self, tag: Tag, items: Vec<Self>, is_marked: bool) -> Self {
-        self.0.insert(tag, Content::Items(items, is_marked));
+    fn items(mut self, tag: DicomTag, items: Vec<Self>, is_marked: bool) -> Self {
+        self.0.insert(tag, TestContent::Items(items, is_marked));
         self
     }
 
-    fn without(mut self, tag: Tag) -> Self {
+    fn without(mut self, tag: DicomTag) -> Self {
         self.0.remove(&tag);
         self
     }
 
-    fn bytes(&self, form: Form) -> Vec<u8> {
+    fn bytes(&self, form: ElementEncoding) -> Vec<u8> {
         let u16s = |n: u16| if form.endian == Endian::Little { n.to_le_bytes() } else { n.to_be_bytes() };
         let u32s = |n: u32| if form.endian == Endian::Little { n.to_le_bytes() } else { n.to_be_bytes() };
-        let mark = |tag: Tag, length: u32| {
+        let mark = |tag: DicomTag, length: u32| {
             [&u16s((tag >> 16) as u16)[..], &u16s(tag as u16), &u32s(length)].concat()
         };
         let mut bytes = Vec::new();
         for (&tag, content) in &self.0 {
             let (vr, length, body) = match content {
-                Content::Value(vr, value) => (*vr, value.len() as u32, value.clone()),
-                Content::Fragments(fragments) => {
+                TestContent::Value(vr, value) => (*vr, value.len() as u32, value.clone()),
+                TestContent::Fragments(fragments) => {
                     let each = fragments.iter().flat_map(|f| [mark(tags::ITEM, f.len() as u32), f.clone()]);
                     (*b"OB", u32::MAX, each.chain([mark(tags::SEQUENCE_END, 0)]).collect::<Vec<_>>().concat())
                 }
-                Content::Items(items, is_marked) => {
+                TestContent::Items(items, is_marked) => {
                     let mut body = Vec::new();
                     for item in items {
                         let set = item.bytes(form);
@@ -117,21 +117,21 @@ impl Set {
     }
 }
 
-/// A file.
+/// Builder of a DICOM file.
 #[derive(Debug, Clone)]
-struct File {
+struct DicomFileBuilder {
     syntax: &'static str,
-    set: Set,
+    set: DataSetBuilder,
 }
 
-impl File {
-    /// A picture of 3 x 2 pixels of 16 bits in a place, 10 … 60.
+impl DicomFileBuilder {
+    /// A file of 3 x 2 pixels of 16 bits, 10 … 60, with a position.
     fn new(syntax: &'static str) -> Self {
-        let set = Set::default()
+        let set = DataSetBuilder::default()
             .text(tags::SOP_CLASS, *b"UI", "1.2.840.10008.5.1.4.1.1.2")
             .text(tags::MODALITY, *b"CS", "CT")
             .text(tags::SERIES_DESCRIPTION, *b"LO", "Head")
-            .text(tags::SERIES, *b"UI", "1.2.3")
+            .text(tags::SERIES_INSTANCE_UID, *b"UI", "1.2.3")
             .decimal(tags::SLICE_THICKNESS, "2.5")
             .decimal(tags::POSITION, "1\\2\\3")
             .decimal(tags::ORIENTATION, "1\\0\\0\\0\\1\\0")
@@ -145,15 +145,15 @@ impl File {
             .words(&[10, 20, 30, 40, 50, 60])
     }
 
-    fn form(&self) -> Form {
-        Syntax::of(self.syntax).form
+    fn form(&self) -> ElementEncoding {
+        TransferSyntax::from_uid(self.syntax).encoding
     }
 
-    fn with(self, change: impl FnOnce(Set) -> Set) -> Self {
+    fn with(self, change: impl FnOnce(DataSetBuilder) -> DataSetBuilder) -> Self {
         Self { set: change(self.set), ..self }
     }
 
-    fn short(self, tag: Tag, number: u16) -> Self {
+    fn short(self, tag: DicomTag, number: u16) -> Self {
         let is_big = self.form().endian == Endian::Big;
         let bytes = if is_big { number.to_be_bytes() } else { number.to_le_bytes() };
         self.with(|set| set.value(tag, *b"US", &bytes))
@@ -187,12 +187,14 @@ impl File {
 
     fn fragments(mut self, fragments: &[&[u8]]) -> Self {
         let fragments = fragments.iter().map(|fragment| fragment.to_vec()).collect();
-        self.set.0.insert(tags::PIXELS, Content::Fragments(fragments));
+        self.set.0.insert(tags::PIXELS, TestContent::Fragments(fragments));
         self
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let meta = Set::default().text(tags::TRANSFER_SYNTAX, *b"UI", self.syntax).bytes(Form::EXPLICIT);
+        let meta = DataSetBuilder::default()
+            .text(tags::TRANSFER_SYNTAX, *b"UI", self.syntax)
+            .bytes(ElementEncoding::EXPLICIT);
         let set = self.set.bytes(self.form());
         let set = if self.syntax == DEFLATED {
             let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
@@ -211,28 +213,28 @@ impl File {
     }
 
     fn load(&self) -> Result<Volume, LoadError> {
-        self.load_with(Choice::default())
+        self.load_with(VolumeChoice::default())
     }
 
-    fn load_with(&self, choice: Choice) -> Result<Volume, LoadError> {
+    fn load_with(&self, choice: VolumeChoice) -> Result<Volume, LoadError> {
         let folder = TempDir::new().unwrap();
         load_path(&self.write(&folder, "a.dcm"), choice)
     }
 }
 
-/// A picture of 4 x 3 pixels v = x + 10 y + `base` in a place.
-fn numbered(base: u16) -> File {
-    File::new(EXPLICIT).size(4, 3).words(&numbered_values(&[base]))
+/// A file of 4 x 3 pixels v = x + 10 y + `base`, with a position.
+fn ramp_file(base: u16) -> DicomFileBuilder {
+    DicomFileBuilder::new(EXPLICIT).size(4, 3).words(&ramp_values(&[base]))
 }
 
-/// The pixels of pictures as [`numbered`] makes them.
-fn numbered_values(bases: &[u16]) -> Vec<u16> {
+/// Returns the pixels of images as [`ramp_file`] makes them.
+fn ramp_values(bases: &[u16]) -> Vec<u16> {
     let pixels = |&base: &u16| (0..12).map(move |at| at % 4 + at / 4 * 10 + base);
     bases.iter().flat_map(pixels).collect()
 }
 
-/// A folder with these files, each called by its number.
-fn folder(files: &[File]) -> TempDir {
+/// Makes a folder with these files, each named by its index.
+fn folder(files: &[DicomFileBuilder]) -> TempDir {
     let folder = TempDir::new().unwrap();
     for (number, file) in files.iter().enumerate() {
         file.write(&folder, &format!("{number}"));
@@ -246,7 +248,7 @@ fn assert_remark(volume: &Volume, words: &str) {
     assert!(remarks.iter().any(|remark| remark.contains(words)), "{words:?} is not in {remarks:?}");
 }
 
-/// The axes and the origin of a volume, rounded.
-fn place(volume: &Volume) -> [f64; 12] {
+/// Returns axes and origin of a volume, rounded.
+fn affine_columns(volume: &Volume) -> [f64; 12] {
     volume.world_from_index().to_cols_array().map(|number| (number * 1e6).round() / 1e6)
 }

@@ -1,23 +1,23 @@
-//! Several acquisitions at the same places, or nearly so: each is a volume of its own.
+//! Tests of several acquisitions at equal or nearly equal positions: each is a volume.
 
 use super::*;
 
 /// A slice of 4 x 3 pixels v = x + 10 y + `base` at a height.
-fn slice(z_mm: f64, base: u16, set: impl FnOnce(Set) -> Set) -> File {
-    numbered(base).with(|all| set(all.decimal(tags::POSITION, &format!("0\\0\\{z_mm}"))))
+fn slice(z_mm: f64, base: u16, set: impl FnOnce(DataSetBuilder) -> DataSetBuilder) -> DicomFileBuilder {
+    ramp_file(base).with(|all| set(all.decimal(tags::POSITION, &format!("0\\0\\{z_mm}"))))
 }
 
-/// The volume of a phase of files.
-fn phase(files: &[File], frame: usize) -> Volume {
-    load_path(folder(files).path(), Choice { frame: Some(frame), ..Choice::default() }).unwrap()
+/// Loads the volume of one phase of the files.
+fn phase(files: &[DicomFileBuilder], frame: usize) -> Volume {
+    load_path(folder(files).path(), VolumeChoice { frame: Some(frame), ..VolumeChoice::default() }).unwrap()
 }
 
-fn acquisition(number: u16) -> impl Fn(Set) -> Set {
+fn acquisition(number: u16) -> impl Fn(DataSetBuilder) -> DataSetBuilder {
     move |set| set.text(tags::ACQUISITION_NUMBER, *b"IS", &number.to_string())
 }
 
-/// Acquisition 1 at the heights 0, 1 and 3 times 2 mm, acquisition 2 at all four and 1000 higher in its values.
-fn acquisitions(shift_mm: f64) -> Vec<File> {
+/// Acquisition 1 at heights 0, 1 and 3 times 2 mm; acquisition 2 at all four, with values higher by 1000.
+fn acquisitions(shift_mm: f64) -> Vec<DicomFileBuilder> {
     let first = [0u16, 1, 3].map(|z| slice(f64::from(z) * 2.0, 100 * z, acquisition(1)));
     let second =
         [0u16, 1, 2, 3].map(|z| slice(f64::from(z) * 2.0 + shift_mm, 1000 + 100 * z, acquisition(2)));
@@ -26,36 +26,39 @@ fn acquisitions(shift_mm: f64) -> Vec<File> {
 
 #[test]
 fn a_phase_that_lacks_a_slice_borrows_none() {
-    // At the same places, with a tremor, and after a breath.
+    // At equal positions, with jitter, and after a breath.
     for shift_mm in [0.0, 0.001, 0.3, 0.8] {
         let files = acquisitions(shift_mm);
-        let offered = load_path(folder(&files).path(), Choice::default());
+        let offered = load_path(folder(&files).path(), VolumeChoice::default());
         assert_refused(
             offered,
             LoadErrorKind::BadInput,
             &["2 time steps", "0 \"acquisition 1\" (4 x 3 x 4)", "1 \"acquisition 2\" (4 x 3 x 4)"],
         );
         let second = phase(&files, 1);
-        assert_eq!(second.samples(), &Samples::U16(numbered_values(&[1000, 1100, 1200, 1300])), "{shift_mm}");
-        assert_eq!(place(&second)[8..], [2.0, 0.0, 0.0, shift_mm], "each lies at its own place");
+        assert_eq!(second.samples(), &Samples::U16(ramp_values(&[1000, 1100, 1200, 1300])), "{shift_mm}");
+        assert_eq!(affine_columns(&second)[8..], [2.0, 0.0, 0.0, shift_mm], "each lies at its own place");
         assert!(second.remarks().is_empty(), "{:?}", second.remarks());
         let first = phase(&files, 0);
-        assert_eq!(first.samples(), &Samples::U16(numbered_values(&[0, 100, 200, 300])), "{shift_mm}");
+        assert_eq!(first.samples(), &Samples::U16(ramp_values(&[0, 100, 200, 300])), "{shift_mm}");
         assert_remark(&first, "1 slice is missing of 4, 2.0000 mm apart: interpolated");
     }
 }
 
 #[test]
 fn phases_that_were_taken_in_turns_are_one_volume() {
-    let volume = load_path(folder(&acquisitions(1.0)).path(), Choice { frame: Some(0), ..Choice::default() });
+    let volume = load_path(
+        folder(&acquisitions(1.0)).path(),
+        VolumeChoice { frame: Some(0), ..VolumeChoice::default() },
+    );
     let volume = volume.unwrap();
     assert_eq!(volume.dims(), [4, 3, 8], "{:?}", volume.remarks());
-    assert_eq!(place(&volume)[8], 1.0);
+    assert_eq!(affine_columns(&volume)[8], 1.0);
 }
 
 #[test]
 fn every_attribute_that_varies_is_offered() {
-    type Attribute = fn(Set, f64) -> Set;
+    type Attribute = fn(DataSetBuilder, f64) -> DataSetBuilder;
     let cases: [(Attribute, &str); 8] = [
         (|set, n| set.text(tags::TEMPORAL_POSITION, *b"IS", &n.to_string()), "temporal position 2"),
         (|set, n| set.text(tags::ECHO_NUMBER, *b"IS", &n.to_string()), "echo 2"),
@@ -70,24 +73,24 @@ fn every_attribute_that_varies_is_offered() {
         ),
     ];
     for (set, words) in cases {
-        // The second of each three lacks a slice, whichever it is.
+        // The second phase lacks one of three slices, whichever it is.
         for missing in [0, 1, 2] {
             let heights = [0u16, 1, 2];
             let first = heights.map(|z| slice(f64::from(z), 100 * z, |all| set(all, 1.0)));
             let second = heights.into_iter().filter(|&z| z != missing);
             let second = second.map(|z| slice(f64::from(z), 1000 + 100 * z, |all| set(all, 2.0)));
-            let files: Vec<File> = first.into_iter().chain(second).collect();
-            let offered = load_path(folder(&files).path(), Choice::default());
+            let files: Vec<DicomFileBuilder> = first.into_iter().chain(second).collect();
+            let offered = load_path(folder(&files).path(), VolumeChoice::default());
             assert_refused(offered, LoadErrorKind::BadInput, &["2 time steps", words]);
-            assert_eq!(phase(&files, 0).samples(), &Samples::U16(numbered_values(&[0, 100, 200])), "{words}");
+            assert_eq!(phase(&files, 0).samples(), &Samples::U16(ramp_values(&[0, 100, 200])), "{words}");
             let expected: &[u16] = match missing {
                 0 => &[1100, 1200],
                 1 => &[1000, 1100, 1200],
                 _ => &[1000, 1100],
             };
-            // Two slices that lie 2 mm apart are an even volume by themselves.
+            // Two slices 2 mm apart are an even volume.
             let expected = if missing == 1 { &[1000, 1200][..] } else { expected };
-            assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(expected)), "{words}");
+            assert_eq!(phase(&files, 1).samples(), &Samples::U16(ramp_values(expected)), "{words}");
         }
     }
 }
@@ -102,16 +105,16 @@ fn attributes_are_combined() {
             })
         })
     });
-    let files: Vec<File> = slices.collect();
-    let offered = load_path(folder(&files).path(), Choice::default());
+    let files: Vec<DicomFileBuilder> = slices.collect();
+    let offered = load_path(folder(&files).path(), VolumeChoice::default());
     let words = ["4 time steps", "2 \"temporal position 2, echo time 5 ms\""];
     assert_refused(offered, LoadErrorKind::BadInput, &words);
-    assert_eq!(phase(&files, 2).samples(), &Samples::U16(numbered_values(&[2005, 2105, 2205])));
+    assert_eq!(phase(&files, 2).samples(), &Samples::U16(ramp_values(&[2005, 2105, 2205])));
 }
 
 #[test]
 fn times_that_differ_from_slice_to_slice_are_those_of_the_nearest_phase() {
-    // Three phases of which each slice has its own times; the first time of the second slice is missing.
+    // Three phases, in which each slice has its own times; the first time of the second slice is missing.
     let times = [[0.0, 40.0, 80.0], [1.0, 41.5, 81.0], [0.5, 39.0, 79.5]];
     let mut files = Vec::new();
     for (z, times) in times.into_iter().enumerate() {
@@ -121,7 +124,7 @@ fn times_that_differ_from_slice_to_slice_are_those_of_the_nearest_phase() {
         }
     }
     for (number, expected) in [(0, &[0, 200][..]), (1, &[1000, 1100, 1200]), (2, &[2000, 2100, 2200])] {
-        assert_eq!(phase(&files, number).samples(), &Samples::U16(numbered_values(expected)), "{number}");
+        assert_eq!(phase(&files, number).samples(), &Samples::U16(ramp_values(expected)), "{number}");
     }
 }
 
@@ -134,32 +137,32 @@ fn instance_numbers_tell_passes_apart() {
     };
     // One pass after the other, the second without a slice.
     let files = [file(0, 0, 1), file(1, 0, 2), file(2, 0, 3), file(0, 1000, 4), file(2, 1000, 5)];
-    assert_eq!(phase(&files, 0).samples(), &Samples::U16(numbered_values(&[0, 100, 200])));
-    assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(&[1000, 1200])));
-    // Slice after slice.
+    assert_eq!(phase(&files, 0).samples(), &Samples::U16(ramp_values(&[0, 100, 200])));
+    assert_eq!(phase(&files, 1).samples(), &Samples::U16(ramp_values(&[1000, 1200])));
+    // Slice by slice, with both passes at each position.
     let files = [file(0, 0, 1), file(0, 1000, 2), file(1, 0, 3), file(1, 1000, 4)];
-    assert_eq!(phase(&files, 1).samples(), &Samples::U16(numbered_values(&[1000, 1100])));
+    assert_eq!(phase(&files, 1).samples(), &Samples::U16(ramp_values(&[1000, 1100])));
 }
 
 #[test]
 fn acquisitions_that_follow_each_other_are_one_volume() {
-    let files: Vec<File> = (0..8u16)
+    let files: Vec<DicomFileBuilder> = (0..8u16)
         .map(|z| slice(f64::from(z), 100 * z, acquisition(1 + z / 4)))
         .chain([slice(4.0, 2000, acquisition(1))])
         .collect();
-    let volume = load_path(folder(&files).path(), Choice::default()).unwrap();
+    let volume = load_path(folder(&files).path(), VolumeChoice::default()).unwrap();
     let expected: Vec<u16> = (0..8).map(|z| 100 * z).collect();
     assert_eq!(volume.dims()[2], 8);
-    assert_eq!(volume.samples(), &Samples::U16(numbered_values(&expected)));
+    assert_eq!(volume.samples(), &Samples::U16(ramp_values(&expected)));
     assert_remark(&volume, "1 of 9 pictures lie where others do");
 }
 
 #[test]
 fn a_file_says_which_phase_is_meant() {
     let at = folder(&acquisitions(0.0));
-    let volume = load_path(&at.path().join("5"), Choice::default()).unwrap();
-    assert_eq!(volume.samples(), &Samples::U16(numbered_values(&[1000, 1100, 1200, 1300])));
-    let choice = Choice { frame: Some(0), ..Choice::default() };
+    let volume = load_path(&at.path().join("5"), VolumeChoice::default()).unwrap();
+    assert_eq!(volume.samples(), &Samples::U16(ramp_values(&[1000, 1100, 1200, 1300])));
+    let choice = VolumeChoice { frame: Some(0), ..VolumeChoice::default() };
     let volume = load_path(&at.path().join("5"), choice).unwrap();
     assert_eq!(volume.samples().value(0), 0.0, "unless another is asked for");
 }

@@ -1,34 +1,34 @@
-//! Segmentations: masks of one bit, shares, and numbers.
+//! Tests of segmentations: masks of one bit, fractions, and label maps.
 
 use super::*;
-use crate::data::{Label, Meaning};
+use crate::data::{FileLabel, ValueMeaning};
 
-/// A segment as the header describes it; colours are grey of this lightness, from 0 to 100.
-fn segment(number: u16, label: &str, lightness: f64) -> Set {
+/// A segment as the header describes it, coloured grey of this lightness, from 0 to 100.
+fn segment(number: u16, label: &str, lightness: f64) -> DataSetBuilder {
     let grey = [(lightness / 100.0 * 65535.0) as u16, 32896, 32896];
-    Set::default()
+    DataSetBuilder::default()
         .value(tags::SEGMENT_NUMBER, *b"US", &number.to_le_bytes())
         .text(tags::SEGMENT_LABEL, *b"LO", label)
         .value(tags::SEGMENT_COLOR, *b"US", &grey.map(u16::to_le_bytes).concat())
 }
 
-/// Frames of 5 x 3 pixels, each of a segment at a height.
-fn segmentation(kind: &str, frames: &[(u16, &str)]) -> File {
+/// A segmentation with frames of 5 x 3 pixels, each of a segment at a height.
+fn segmentation(kind: &str, frames: &[(u16, &str)]) -> DicomFileBuilder {
     let frame = |(number, z): &(u16, &str)| {
-        let position = Set::default().decimal(tags::POSITION, &format!("0\\0\\{z}"));
-        let number = Set::default().value(tags::REFERENCED_SEGMENT, *b"US", &number.to_le_bytes());
-        Set::default().items(tags::PLANE_POSITION, vec![position], false).items(
+        let position = DataSetBuilder::default().decimal(tags::POSITION, &format!("0\\0\\{z}"));
+        let number = DataSetBuilder::default().value(tags::REFERENCED_SEGMENT, *b"US", &number.to_le_bytes());
+        DataSetBuilder::default().items(tags::PLANE_POSITION, vec![position], false).items(
             tags::SEGMENT_IDENTIFICATION,
             vec![number],
             true,
         )
     };
-    let measures = Set::default()
+    let measures = DataSetBuilder::default()
         .decimal(tags::PIXEL_SPACING, "0.5\\0.25")
-        .decimal(tags::SPACING_BETWEEN, "2")
+        .decimal(tags::SPACING_BETWEEN_SLICES, "2")
         .decimal(tags::SLICE_THICKNESS, "2");
-    let shared = Set::default().items(tags::PIXEL_MEASURES, vec![measures], false);
-    File::new(EXPLICIT).size(5, 3).frames(&frames.len().to_string()).with(|set| {
+    let shared = DataSetBuilder::default().items(tags::PIXEL_MEASURES, vec![measures], false);
+    DicomFileBuilder::new(EXPLICIT).size(5, 3).frames(&frames.len().to_string()).with(|set| {
         set.without(tags::POSITION)
             .without(tags::SLICE_THICKNESS)
             .text(tags::SOP_CLASS, *b"UI", "1.2.840.10008.5.1.4.1.1.66.4")
@@ -40,7 +40,7 @@ fn segmentation(kind: &str, frames: &[(u16, &str)]) -> File {
     })
 }
 
-/// Frames of bits, eight in a byte, the first the lowest, without a gap between frames.
+/// Packs frames of bits, eight to a byte, lowest bit first, without a gap between frames.
 fn bits(frames: &[[u8; 15]]) -> Vec<u8> {
     let mut bytes = vec![0u8; (frames.len() * 15).div_ceil(16) * 2];
     for (at, bit) in frames.iter().flatten().enumerate() {
@@ -49,7 +49,7 @@ fn bits(frames: &[[u8; 15]]) -> Vec<u8> {
     bytes
 }
 
-/// A mask that has some of its pixels, by their numbers.
+/// Makes a mask with these pixels set.
 fn mask(pixels: &[usize]) -> [u8; 15] {
     let mut mask = [0; 15];
     for &pixel in pixels {
@@ -59,9 +59,9 @@ fn mask(pixels: &[usize]) -> [u8; 15] {
 }
 
 fn assert_labels(volume: &Volume) {
-    assert_eq!(volume.hints().meaning, Meaning::Labels);
-    let label = |name: &str, grey: f32| Label { name: name.to_owned(), color: Some([grey; 3]) };
-    let found: Vec<_> = volume.hints().labels.iter().collect();
+    assert_eq!(volume.metadata().meaning, ValueMeaning::Labels);
+    let label = |name: &str, grey: f32| FileLabel { name: name.to_owned(), color: Some([grey; 3]) };
+    let found: Vec<_> = volume.metadata().labels.iter().collect();
     assert_eq!((found[0].0, found[1].0), (1, 3));
     for ((_, found), right) in found.into_iter().zip([label("Liver", 0.0), label("Spleen", 1.0)]) {
         assert_eq!(found.name, right.name);
@@ -76,7 +76,7 @@ fn masks_of_one_bit_are_a_label_map() {
     let masks = [mask(&[0, 14]), mask(&[1, 2]), mask(&[7]), mask(&[3, 4])];
     let file = segmentation("BINARY", &frames).bits(1, 1, false).pixels(&bits(&masks));
     for syntax in [EXPLICIT, IMPLICIT, DEFLATED] {
-        let volume = File { syntax, ..file.clone() }.load().unwrap();
+        let volume = DicomFileBuilder { syntax, ..file.clone() }.load().unwrap();
         let mut expected = vec![0u8; 5 * 15];
         for (voxel, number) in
             [(0, 1), (14, 1), (15 + 1, 1), (15 + 2, 1), (15 + 7, 3), (60 + 3, 3), (60 + 4, 3)]
@@ -84,7 +84,11 @@ fn masks_of_one_bit_are_a_label_map() {
             expected[voxel] = number;
         }
         assert_eq!((volume.dims(), volume.samples()), ([5, 3, 5], &Samples::U8(expected)), "{syntax}");
-        assert_eq!(place(&volume)[8], 2.0, "frames without segments are left out in the file, not in space");
+        assert_eq!(
+            affine_columns(&volume)[8],
+            2.0,
+            "frames without segments are left out in the file, not in space"
+        );
         assert_labels(&volume);
         assert!(volume.remarks().is_empty(), "{:?}", volume.remarks());
     }
@@ -114,20 +118,20 @@ fn shares_of_several_segments_are_a_label_map() {
     let frames = [shares(&[(0, 200), (1, 99), (2, 120)]), shares(&[(0, 100), (1, 100), (2, 150)])];
     let file = segmentation("FRACTIONAL", &[(1, "0"), (3, "0")])
         .bits(8, 8, false)
-        .short(tags::MOST_FRACTION, 200)
+        .short(tags::MAX_FRACTION, 200)
         .pixels(&frames.concat());
     let volume = file.load().unwrap();
     let Samples::U8(found) = volume.samples() else { panic!() };
     assert_eq!(&found[..4], [1, 3, 3, 0], "the largest share of a half at least");
     assert_labels(&volume);
-    // Those of one are a field.
+    // Fractions of a single segment are a scalar field.
     let one = segmentation("FRACTIONAL", &[(1, "0"), (1, "4")])
         .bits(8, 8, false)
         .with(|set| set.items(tags::SEGMENTS, vec![segment(1, "Liver", 0.0)], false));
     let volume = one.pixels(&frames.concat()).load().unwrap();
     assert_eq!(volume.dims(), [5, 3, 3]);
     assert_eq!([0, 1, 15, 30].map(|at| volume.samples().value(at)), [200.0, 99.0, 0.0, 100.0]);
-    assert_eq!(volume.hints().meaning, Meaning::Unknown);
+    assert_eq!(volume.metadata().meaning, ValueMeaning::Unknown);
 }
 
 #[test]
@@ -144,7 +148,7 @@ fn numbers_of_segments_have_names_and_colors() {
 
 #[test]
 fn pixels_of_one_bit_are_read_anywhere() {
-    let film = File::new(EXPLICIT).size(5, 3).frames("2").bits(1, 1, false);
+    let film = DicomFileBuilder::new(EXPLICIT).size(5, 3).frames("2").bits(1, 1, false);
     let volume = film.pixels(&bits(&[mask(&[0, 14]), mask(&[1])])).load().unwrap();
     let ones: Vec<usize> = (0..30).filter(|&at| volume.samples().value(at) == 1.0).collect();
     assert_eq!(ones, [0, 14, 16]);
@@ -156,7 +160,7 @@ fn segmentations_that_lie_are_no_harm() {
         segmentation("BINARY", &[(1, "0"), (1, "2")]).bits(1, 1, false).pixels(&bits(&[mask(&[0]); 2]));
     let truncated = whole.clone().frames("60000");
     assert_refused(truncated.load(), LoadErrorKind::BadInput, &["truncated", "60000 frames"]);
-    // Far apart: as many layers as there is room for, and no more.
+    // Far apart: no more layers than the limit allows.
     let far =
         segmentation("BINARY", &[(1, "0"), (1, "1e12")]).bits(1, 1, false).pixels(&bits(&[mask(&[0]); 2]));
     assert_eq!(far.load().unwrap().dims()[2], 2);
@@ -166,5 +170,5 @@ fn segmentations_that_lie_are_no_harm() {
     let many = many.pixels(&bits(&[mask(&[0]); 2])).load().unwrap();
     assert_eq!(many.samples().value(0), 65535.0);
     let packed = whole.fragments(&[&[], &[0; 64], &[0; 64]]);
-    assert!(File { syntax: RLE, ..packed }.load().is_err());
+    assert!(DicomFileBuilder { syntax: RLE, ..packed }.load().is_err());
 }

@@ -1,18 +1,18 @@
-//! FITS files that are cut off, lie, or hold no picture.
+//! Tests of FITS files that are truncated, contradict themselves, or hold no image.
 
 use super::super::*;
-use super::writer::Unit;
+use super::writer::TestUnit;
 use super::{assert_refused, gzip, load_bytes, picture};
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
 fn opened(bytes: &[u8]) -> Result<Volume, LoadError> {
-    load_bytes("a.fits", bytes, Choice::default())
+    load_bytes("a.fits", bytes, VolumeChoice::default())
 }
 
 #[test]
 fn every_cut_is_refused() {
     let whole = picture().bytes();
-    // Behind the last pixel only what fills the block is missing.
+    // Behind the last pixel only the fill of the block is missing.
     for cut in (0..whole.len()).step_by(7).filter(|&cut| cut < 2880 + 12) {
         let error = opened(&whole[..cut]).unwrap_err();
         assert_eq!(error.kind(), LoadErrorKind::BadInput, "{cut}: {error}");
@@ -23,8 +23,8 @@ fn every_cut_is_refused() {
     for cut in 11..packed.len() {
         assert_eq!(opened(&packed[..cut]).unwrap_err().kind(), LoadErrorKind::BadInput, "{cut}");
     }
-    // An extension that is cut off ends the list.
-    let second = Unit::extension("IMAGE", 8, &[3, 2], (0..6).collect()).bytes();
+    // A truncated extension ends the list of units.
+    let second = TestUnit::extension("IMAGE", 8, &[3, 2], (0..6).collect()).bytes();
     for cut in [0, 1, 79, 80, 2000, 2879] {
         assert!(opened(&[whole.as_slice(), &second[..cut]].concat()).is_ok(), "{cut}");
     }
@@ -49,16 +49,16 @@ fn headers_that_lie_are_refused() {
         (picture().with("BITPIX", 12), LoadErrorKind::BadInput, "12 bits"),
         (picture().with("BITPIX", i64::MIN), LoadErrorKind::BadInput, "BITPIX"),
         (picture().without("BITPIX"), LoadErrorKind::BadInput, "BITPIX"),
-        (Unit::primary(8, &[2, 2, 2, 2, 2], vec![1; 32]), LoadErrorKind::BadInput, "5 axes"),
-        (Unit::primary(8, &[2, 2, 2, FAR], vec![1; 32]), LoadErrorKind::Limit, "time steps"),
+        (TestUnit::primary(8, &[2, 2, 2, 2, 2], vec![1; 32]), LoadErrorKind::BadInput, "5 axes"),
+        (TestUnit::primary(8, &[2, 2, 2, FAR], vec![1; 32]), LoadErrorKind::Limit, "time steps"),
         (
-            Unit::primary(-32, &[1, 2], [f32::NAN; 2].map(f32::to_be_bytes).concat()),
+            TestUnit::primary(-32, &[1, 2], [f32::NAN; 2].map(f32::to_be_bytes).concat()),
             LoadErrorKind::BadInput,
             "finite",
         ),
     ] {
         for bytes in [unit.bytes(), gzip(&unit.bytes())] {
-            // What is compressed may hold more than it is long: then the missing data show when they are read.
+            // Gzipped content may be longer than the file suggests: missing data show only while they are read.
             let error = opened(&bytes).unwrap_err();
             assert!(error.kind() == kind || error.to_string().contains("truncated"), "{words}: {error}");
             if error.kind() == kind && !error.to_string().contains("truncated") {
@@ -71,38 +71,38 @@ fn headers_that_lie_are_refused() {
 #[test]
 fn a_header_without_an_end_is_read_no_further_than_headers_are_long() {
     let card = format!("{:<80}", "HISTORY that goes on");
-    let endless = [picture().open_header(), card.repeat(36 * 2100).into_bytes()].concat();
+    let endless = [picture().header_without_end(), card.repeat(36 * 2100).into_bytes()].concat();
     assert_refused(opened(&endless), LoadErrorKind::Limit, &["no END"]);
     assert_refused(opened(&gzip(&endless)), LoadErrorKind::Limit, &["no END"]);
-    assert_refused(opened(&picture().open_header()), LoadErrorKind::BadInput, &["without END"]);
-    // Letters that are none, in comments and in values.
+    assert_refused(opened(&picture().header_without_end()), LoadErrorKind::BadInput, &["without END"]);
+    // Control characters and invalid UTF-8 in comments and values.
     let mut odd = picture().with("OBJECT", "'\u{1b}[2J x'").with("BSCALE", "nan").with("BZERO", "1e999");
     odd = odd.with("CDELT1", "nan").with("BLANK", "none");
     let mut bytes = odd.bytes();
     let blank = bytes.windows(5).position(|word| word == b"BLANK").unwrap();
     bytes[blank + 40..blank + 80].fill(0xff);
     let volume = opened(&bytes).unwrap();
-    assert!(!volume.hints().acquisition().unwrap_or_default().contains('\u{1b}'));
+    assert!(!volume.metadata().acquisition().unwrap_or_default().contains('\u{1b}'));
     assert!(opened(&[&b"SIMPLE  ="[..], &[0xfe; 6000]].concat()).is_err());
 }
 
 #[test]
 fn files_without_a_picture_say_what_they_hold() {
-    let empty = Unit::primary(8, &[], Vec::new());
-    let table = Unit::extension("BINTABLE", 8, &[7, 3], vec![9; 21]);
+    let empty = TestUnit::primary(8, &[], Vec::new());
+    let table = TestUnit::extension("BINTABLE", 8, &[7, 3], vec![9; 21]);
     let packed = table.clone().with("ZIMAGE", "T");
     let groups =
-        Unit::primary(-32, &[0, 3], vec![0; 24]).with("GROUPS", "T").with("PCOUNT", 3).with("GCOUNT", 1);
+        TestUnit::primary(-32, &[0, 3], vec![0; 24]).with("GROUPS", "T").with("PCOUNT", 3).with("GCOUNT", 1);
     for (units, words) in [
         (vec![empty.clone()], "no picture"),
         (vec![empty.clone(), table.clone()], "tables"),
         (vec![empty.clone(), packed.clone()], "funpack"),
         (vec![groups], "interferometer"),
     ] {
-        let bytes: Vec<u8> = units.iter().flat_map(Unit::bytes).collect();
+        let bytes: Vec<u8> = units.iter().flat_map(TestUnit::bytes).collect();
         assert_refused(opened(&bytes), LoadErrorKind::BadInput, &[words]);
     }
-    // A picture beside a compressed one is shown, and the other is told.
+    // An image beside a compressed one is shown, with a remark on the other.
     let both = [picture().bytes(), packed.bytes()].concat();
     assert!(opened(&both).unwrap().remarks()[0].contains("funpack"));
     assert_refused(opened(b"something else"), LoadErrorKind::BadInput, &["SIMPLE"]);

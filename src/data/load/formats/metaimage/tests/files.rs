@@ -1,4 +1,4 @@
-//! Voxels in other files, and those that must not be opened.
+//! Tests of voxels in other files, and of files that must not be opened.
 
 use std::fs;
 use std::path::Path;
@@ -7,9 +7,9 @@ use tempfile::TempDir;
 
 use super::{HEADER, VOXELS, assert_refused, header_with, load_path, write, zlib};
 use crate::data::Samples;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
-/// A folder with the voxels in one file, in a file for each slice, and compressed so.
+/// A folder with the voxels in one file, in one file per slice, in compressed slices, and in rows.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     fs::create_dir(folder.path().join("sub")).unwrap();
@@ -49,16 +49,19 @@ fn data_are_found_in_one_file_or_many() {
         (&["CompressedData = True", "CompressedDataSize = 3"], "z%d.raw 1 2"),
     ] {
         let header = header_with(fields) + &format!("ElementDataFile = {data_file}\n");
-        let volume = load_path(&write(&folder, "v.mhd", &header, &[]), Choice::default());
+        let volume = load_path(&write(&folder, "v.mhd", &header, &[]), VolumeChoice::default());
         let volume = volume.unwrap_or_else(|error| panic!("{data_file}: {error}"));
         assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()), "{data_file}");
     }
-    // The header's own file from its end, or from its beginning.
+    // The header's own file, with the data at its end or after a fixed offset.
     for (skip, data) in [("-1", [b"what ever", &VOXELS[..]].concat()), ("200", VOXELS.to_vec())] {
         let header = header_with(&[&format!("HeaderSize = {skip:>4}")]) + "ElementDataFile = LOCAL\n";
         let header = if skip == "200" { format!("{header:<200}") } else { header };
         let path = write(&folder, "v.mha", &header, &data);
-        assert_eq!(*load_path(&path, Choice::default()).unwrap().samples(), Samples::U8(VOXELS.to_vec()));
+        assert_eq!(
+            *load_path(&path, VolumeChoice::default()).unwrap().samples(),
+            Samples::U8(VOXELS.to_vec())
+        );
     }
 }
 
@@ -71,7 +74,8 @@ fn time_steps_are_taken_from_their_files_alone() {
     {
         let header = header_with(&fields) + &format!("ElementDataFile = {files}\n");
         let path = write(&folder, "v.mhd", &header, &[]);
-        let volume = load_path(&path, Choice { frame: Some(frame), ..Choice::default() }).unwrap();
+        let volume =
+            load_path(&path, VolumeChoice { frame: Some(frame), ..VolumeChoice::default() }).unwrap();
         assert_eq!(*volume.samples(), Samples::U8(VOXELS[4 * frame..][..4].to_vec()), "{files}");
     }
 }
@@ -82,7 +86,7 @@ fn data_elsewhere_and_broken_lists_are_refused() {
     let inner = folder.path().join("sub");
     let refused = |value: &str, kind, words: &[&str]| {
         let path = write(&folder, "sub/v.mhd", &format!("{HEADER}ElementDataFile = {value}\n"), &[]);
-        assert_refused(load_path(&path, Choice::default()), kind, words);
+        assert_refused(load_path(&path, VolumeChoice::default()), kind, words);
     };
     let bad = LoadErrorKind::BadInput;
     refused("../with space.raw", bad, &["out of the header's folder", "ElementDataFile"]);
@@ -112,10 +116,10 @@ fn data_elsewhere_and_broken_lists_are_refused() {
         &[],
     );
     write(&folder, "z1.raw", "", &zlib(&VOXELS[..3]));
-    assert_refused(load_path(&path, Choice::default()), bad, &["truncated", "3 found"]);
+    assert_refused(load_path(&path, VolumeChoice::default()), bad, &["truncated", "3 found"]);
     let many = header_with(&["DimSize = 1 1 99999"]) + "ElementDataFile = s%d.raw\n";
     assert_refused(
-        load_path(&write(&folder, "v.mhd", &many, &[]), Choice::default()),
+        load_path(&write(&folder, "v.mhd", &many, &[]), VolumeChoice::default()),
         LoadErrorKind::Limit,
         &["99999 files"],
     );

@@ -1,4 +1,4 @@
-//! Where voxels lie.
+//! Tests of `MetaImage` placement: matrices, orientation letters, units.
 
 use glam::{DAffine3, DVec3};
 

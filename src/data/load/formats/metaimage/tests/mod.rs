@@ -1,4 +1,4 @@
-//! `MetaImage` files from the outside: what is read and what is refused.
+//! Tests of `MetaImage` files, end to end: accepted and refused files.
 
 mod files;
 mod geometry;
@@ -8,18 +8,18 @@ use std::path::PathBuf;
 
 use tempfile::TempDir;
 
-use crate::data::load::tests::shared::{assert_refused, gzip, load_path, zlib};
-use crate::data::load::{Choice, LoadError, LoadErrorKind};
-use crate::data::{Meaning, Modality, Samples, Volume};
+use crate::data::load::tests::helpers::{assert_refused, gzip, load_path, zlib};
+use crate::data::load::{LoadError, LoadErrorKind, VolumeChoice};
+use crate::data::{Modality, Samples, ValueMeaning, Volume};
 
-/// A header of 2 x 2 x 2 bytes, without the field that ends it.
+/// Header of 2 x 2 x 2 bytes, without its last field.
 const HEADER: &str = "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
-/// The data that fit it.
+/// Voxels of the volume that `HEADER` describes.
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
-/// The field that ends it.
+/// Last field, for data behind the header.
 const LOCAL: &str = "ElementDataFile = LOCAL\n";
 
-/// The header with other fields in place of those of the same name.
+/// Returns the header with other fields in place of those with the same name.
 fn header_with(fields: &[&str]) -> String {
     let name = |line: &str| line.split('=').next().unwrap_or_default().to_owned();
     let replaced: Vec<_> = fields.iter().map(|line| name(line)).collect();
@@ -33,14 +33,14 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
     path
 }
 
-/// Loads a file of its own: a header with some fields, and data behind it.
-fn load_local(fields: &[&str], data: &[u8], choice: Choice) -> Result<Volume, LoadError> {
+/// Loads a single file: a header with these fields, and data behind it.
+fn load_local(fields: &[&str], data: &[u8], choice: VolumeChoice) -> Result<Volume, LoadError> {
     let folder = TempDir::new().unwrap();
     load_path(&write(&folder, "v.mha", &(header_with(fields) + LOCAL), data), choice)
 }
 
 fn read(fields: &[&str], data: &[u8]) -> Volume {
-    load_local(fields, data, Choice::default()).unwrap()
+    load_local(fields, data, VolumeChoice::default()).unwrap()
 }
 
 #[test]
@@ -84,11 +84,11 @@ fn headers_are_told_by_their_content_and_read_with_tolerance() {
     let folder = TempDir::new().unwrap();
     let header = "Comment = a chest, CT\r\nNDims=3\r\nNonsense\r\n\r\ndimsize : 2 2 2\r\nName = a \u{1b}tooth\r\n\
                   ElementType = MET_UCHAR\r\nElementDataFile = LOCAL\r\n";
-    let volume = load_path(&write(&folder, "no_ending", header, &VOXELS), Choice::default()).unwrap();
+    let volume = load_path(&write(&folder, "no_ending", header, &VOXELS), VolumeChoice::default()).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()));
     assert_eq!(volume.name(), "a ·tooth");
-    assert_eq!(volume.hints().acquisition(), Some("a chest, CT"));
-    assert_eq!(volume.hints().modality, Modality::Ct);
+    assert_eq!(volume.metadata().acquisition(), Some("a chest, CT"));
+    assert_eq!(volume.metadata().modality, Modality::Ct);
     assert_eq!(read(&[], &VOXELS).name(), "v");
 }
 
@@ -102,11 +102,11 @@ fn what_values_mean_is_told() {
         ("Modality = MET_MOD_OTHER", Modality::Unknown),
         ("0008|0060 = PT", Modality::Pet),
     ] {
-        assert_eq!(read(&[field], &VOXELS).hints().modality, modality, "{field}");
+        assert_eq!(read(&[field], &VOXELS).metadata().modality, modality, "{field}");
     }
     let stored =
         ["0028|0120 = 3", "0028|1052 = -1", "0028|1053 = 2", "0028|1050 = 40\\80", "0028|1051 = 400\\20"];
-    let hints = read(&stored, &VOXELS).hints().clone();
+    let hints = read(&stored, &VOXELS).metadata().clone();
     assert_eq!((hints.padding, hints.window), (Some(5.0), Some([-160.0, 240.0])));
     let scaled = ["ElementToIntensityFunctionSlope = 0.5", "ElementToIntensityFunctionOffset = -1"];
     let expected = VOXELS.map(|value| f32::from(value) * 0.5 - 1.0).to_vec();
@@ -114,14 +114,14 @@ fn what_values_mean_is_told() {
     let folder = TempDir::new().unwrap();
     let path = write(&folder, "seg.mha", &(header_with(&[]) + LOCAL), &VOXELS);
     write(&folder, "seg.ctab", "1 Bone 255 0 0 0\n", &[]);
-    let volume = load_path(&path, Choice::default()).unwrap();
-    assert_eq!(volume.hints().meaning, Meaning::Labels);
-    assert!(volume.hints().labels.get(1).is_some_and(|label| label.name == "Bone"));
+    let volume = load_path(&path, VolumeChoice::default()).unwrap();
+    assert_eq!(volume.metadata().meaning, ValueMeaning::Labels);
+    assert!(volume.metadata().labels.get(1).is_some_and(|label| label.name == "Bone"));
 }
 
 #[test]
 fn channels_and_time_steps_are_chosen() {
-    let component = |component| Choice { component: Some(component), ..Choice::default() };
+    let component = |component| VolumeChoice { component: Some(component), ..VolumeChoice::default() };
     let vector = ["DimSize = 2 1 1", "ElementNumberOfChannels = 2", "ElementType = MET_SHORT_ARRAY"];
     let data = [3u8, 0, 4, 0, 0, 0, 2, 0];
     let volume = read(&vector, &data);
@@ -140,7 +140,7 @@ fn channels_and_time_steps_are_chosen() {
         assert_eq!(*read(&color, &[0, 255, 0, 9][..channels]).samples(), Samples::U8(vec![182]));
     }
 
-    let frame = |frame| Choice { frame: Some(frame), ..Choice::default() };
+    let frame = |frame| VolumeChoice { frame: Some(frame), ..VolumeChoice::default() };
     let series = ["NDims = 4", "DimSize = 2 1 1 3", "ElementSpacing = 1 1 1 1"];
     let zipped = [&series[..], &["CompressedData = True"]].concat();
     let text = [&series[..], &["BinaryData = False"]].concat();
@@ -152,7 +152,7 @@ fn channels_and_time_steps_are_chosen() {
             let volume = load_local(fields, &data, frame(at)).unwrap();
             assert_eq!(*volume.samples(), Samples::U8(values.to_vec()));
         }
-        let unsaid = load_local(fields, &data, Choice::default());
+        let unsaid = load_local(fields, &data, VolumeChoice::default());
         assert_refused(unsaid, LoadErrorKind::BadInput, &["3 time steps", "--frame"]);
         assert_refused(load_local(fields, &data, frame(3)), LoadErrorKind::BadInput, &["--frame"]);
     }
@@ -165,7 +165,11 @@ fn missing_and_wrong_fields_are_named() {
         let header = header.fold(String::new(), |header, line| header + line + "\n") + LOCAL;
         let folder = TempDir::new().unwrap();
         let path = write(&folder, "v.mha", &header, &VOXELS);
-        assert_refused(load_path(&path, Choice::default()), LoadErrorKind::BadInput, &[field, "missing"]);
+        assert_refused(
+            load_path(&path, VolumeChoice::default()),
+            LoadErrorKind::BadInput,
+            &[field, "missing"],
+        );
     }
     for (field, words) in [
         ("NDims = 1", &["NDims"][..]),
@@ -189,38 +193,42 @@ fn missing_and_wrong_fields_are_named() {
         ("HeaderSize = 18446744073709551615", &["truncated"]),
         ("HeaderSize = x", &["HeaderSize"]),
     ] {
-        assert_refused(load_local(&[field], &VOXELS, Choice::default()), LoadErrorKind::BadInput, words);
+        assert_refused(
+            load_local(&[field], &VOXELS, VolumeChoice::default()),
+            LoadErrorKind::BadInput,
+            words,
+        );
     }
     for field in ["CompressedData = True", "BinaryData = False"] {
-        let refused = load_local(&["HeaderSize = -1", field], &VOXELS, Choice::default());
+        let refused = load_local(&["HeaderSize = -1", field], &VOXELS, VolumeChoice::default());
         assert_refused(refused, LoadErrorKind::BadInput, &["HeaderSize", "plain binary"]);
     }
     let folder = TempDir::new().unwrap();
     let path = write(&folder, "v.mha", HEADER, &[]);
     assert_refused(
-        load_path(&path, Choice::default()),
+        load_path(&path, VolumeChoice::default()),
         LoadErrorKind::BadInput,
         &["ElementDataFile", "missing"],
     );
     let endless = format!("{HEADER}Comment = {}", "x".repeat(5 << 20));
     let path = write(&folder, "v.mha", &endless, &[]);
-    assert_refused(load_path(&path, Choice::default()), LoadErrorKind::Limit, &["4 MiB"]);
+    assert_refused(load_path(&path, VolumeChoice::default()), LoadErrorKind::Limit, &["4 MiB"]);
 }
 
 #[test]
 fn lying_sizes_and_broken_data_are_refused() {
     for more in ["CompressedData = True", "BinaryData = False", "BinaryData = True"] {
         let refused = |size, kind, words: &[&str]| {
-            assert_refused(load_local(&[size, more], &VOXELS, Choice::default()), kind, words);
+            assert_refused(load_local(&[size, more], &VOXELS, VolumeChoice::default()), kind, words);
         };
         refused("DimSize = 1000000 1000000 1000000", LoadErrorKind::Limit, &["DimSize", "1.0 MiB"]);
         refused("DimSize = 18446744073709551615 1 1", LoadErrorKind::Limit, &["DimSize"]);
         refused("DimSize = 100 100 100", LoadErrorKind::BadInput, &["data"]);
     }
-    let many = load_local(&["NDims = 4", "DimSize = 1 1 1 9999999999"], &VOXELS, Choice::default());
+    let many = load_local(&["NDims = 4", "DimSize = 1 1 1 9999999999"], &VOXELS, VolumeChoice::default());
     assert_refused(many, LoadErrorKind::Limit, &["too many"]);
     let zipped = zlib(&VOXELS);
-    let compressed = |data: &[u8]| load_local(&["CompressedData = True"], data, Choice::default());
+    let compressed = |data: &[u8]| load_local(&["CompressedData = True"], data, VolumeChoice::default());
     for (data, words) in [
         (&zipped[..zipped.len() - 1], &["compressed data", "truncated"][..]),
         (&zipped[..4], &["truncated"]),
@@ -229,7 +237,7 @@ fn lying_sizes_and_broken_data_are_refused() {
     ] {
         assert_refused(compressed(data), LoadErrorKind::BadInput, words);
     }
-    let text = |data: &[u8]| load_local(&["BinaryData = False"], data, Choice::default());
+    let text = |data: &[u8]| load_local(&["BinaryData = False"], data, VolumeChoice::default());
     for (data, words) in [
         (&b"1 2 3 4 5 6 7        "[..], &["7 found"][..]),
         (b"1 2 3 4 5 6 7", &["truncated"]),
@@ -257,7 +265,8 @@ fn bytes_behind_packed_data_are_passed_over() {
         let padded = [&packed[..], &[0; 512], b"junk"].concat();
         let volume = read(&["CompressedData = True"], &padded);
         assert_eq!(*volume.samples(), Samples::U8(VOXELS.to_vec()));
-        let cut = load_local(&["CompressedData = True"], &packed[..packed.len() - 5], Choice::default());
+        let cut =
+            load_local(&["CompressedData = True"], &packed[..packed.len() - 5], VolumeChoice::default());
         assert_refused(cut, LoadErrorKind::BadInput, &["broken or truncated"]);
     }
 }

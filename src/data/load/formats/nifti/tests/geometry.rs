@@ -1,24 +1,24 @@
-//! Where voxels lie.
+//! Tests of `NIfTI` placement: sform, qform, spacings and units.
 
 use glam::{DAffine3, DVec3};
 
-use super::{Bytes, nifti, read};
+use super::{NiftiBuilder, nifti1_header, read};
 use crate::data::Volume;
 
-fn place(header: &Bytes) -> Volume {
-    read(&header.with(&[1; 8]))
+fn place(header: &NiftiBuilder) -> Volume {
+    read(&header.with_data(&[1; 8]))
 }
 
-/// The columns of an affine, rounded to what numbers of 32 bits can say.
+/// Returns the columns of an affine, rounded to the precision of 32-bit floats.
 fn columns(affine: DAffine3) -> [[f64; 3]; 4] {
     let matrix = affine.matrix3;
     [matrix.x_axis, matrix.y_axis, matrix.z_axis, affine.translation]
         .map(|column| ((column * 1e4).round() / 1e4).to_array().map(|n| n + 0.0))
 }
 
-/// A header with a matrix that mirrors and turns.
-fn matrix() -> Bytes {
-    nifti(&[2, 2, 2], 2)
+/// A header with an sform that mirrors and rotates.
+fn matrix() -> NiftiBuilder {
+    nifti1_header(&[2, 2, 2], 2)
         .i16(254, &[4])
         .f32(280, &[-2.0, 0.0, 0.5, 90.0])
         .f32(296, &[0.0, 0.0, 3.0, -126.0])
@@ -27,10 +27,10 @@ fn matrix() -> Bytes {
 
 const MATRIX: [[f64; 3]; 4] = [[-2.0, 0.0, 0.25], [0.0, 0.0, 4.0], [0.5, 3.0, 0.0], [90.0, -126.0, -72.0]];
 
-/// A header with a turn by a quarter around z: x runs along y.
-fn quaternion() -> Bytes {
+/// A header with a qform that rotates by 90° around z: the x axis maps to y.
+fn quaternion() -> NiftiBuilder {
     let half = 0.5f32.sqrt();
-    nifti(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[0.0, 0.0, half, 10.0, 20.0, 30.0])
+    nifti1_header(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[0.0, 0.0, half, 10.0, 20.0, 30.0])
 }
 
 #[test]
@@ -46,13 +46,13 @@ fn the_matrix_comes_before_the_quaternion_and_this_before_distances() {
         quaternion().i16(254, &[2]).f32(280, &[1.0, 0.0, 0.0, 7.0]).f32(296, &[0.0, 1.0]).f32(320, &[1.0]);
     let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [7.0, 0.0, 0.0]];
     assert_eq!(columns(place(&both).world_from_index()), identity);
-    // A matrix that is none leaves it to the quaternion.
+    // A singular matrix falls back to the quaternion.
     let flat = both.f32(320, &[0.0]);
     let volume = place(&flat);
     assert_eq!(columns(volume.world_from_index()), turned);
     assert!(volume.remarks()[0].contains("sform"));
 
-    let volume = place(&nifti(&[2, 2, 2], 2));
+    let volume = place(&nifti1_header(&[2, 2, 2], 2));
     assert_eq!(volume.spacing_mm(), DVec3::new(2.0, 3.0, 4.0));
     assert!(!volume.is_anatomical() && !volume.has_unknown_scale());
     assert!(volume.remarks()[0].contains("left and right"));
@@ -62,11 +62,11 @@ fn the_matrix_comes_before_the_quaternion_and_this_before_distances() {
 fn the_third_axis_can_be_mirrored_and_half_turns_are_rounded() {
     let mirrored = place(&quaternion().f32(76, &[-1.0]));
     assert_eq!(columns(mirrored.world_from_index())[2], [0.0, 0.0, -4.0]);
-    // b² + c² + d² a little over 1.
-    let half_turn = nifti(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[1.000_001]);
+    // b² + c² + d² slightly above 1.
+    let half_turn = nifti1_header(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[1.000_001]);
     let axes = columns(place(&half_turn).world_from_index());
     assert_eq!(axes[..3], [[2.0, 0.0, 0.0], [0.0, -3.0, 0.0], [0.0, 0.0, -4.0]]);
-    let broken = place(&nifti(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[f32::NAN]));
+    let broken = place(&nifti1_header(&[2, 2, 2], 2).i16(252, &[1]).f32(256, &[f32::NAN]));
     assert!(!broken.is_anatomical());
     assert_eq!(broken.spacing_mm(), DVec3::new(2.0, 3.0, 4.0));
     assert!(broken.remarks()[0].contains("qform"));
@@ -80,21 +80,21 @@ fn lengths_have_units() {
         let affine = volume.world_from_index();
         assert!((affine.translation - expected[3]).length() < 1e-6 * expected[3].length(), "{code}");
         assert!((affine.matrix3.x_axis - expected[0]).length() < 1e-6 * expected[0].length(), "{code}");
-        let spaced = place(&nifti(&[2, 2, 2], 2).text(123, &[code]));
+        let spaced = place(&nifti1_header(&[2, 2, 2], 2).text(123, &[code]));
         assert!((spaced.spacing_mm() - DVec3::new(2.0, 3.0, 4.0) * mm).length() < 1e-6 * mm, "{code}");
     }
 }
 
 #[test]
 fn what_nobody_has_said_is_not_known() {
-    let default = nifti(&[2, 2, 2], 2).f32(76, &[1.0; 8]);
+    let default = nifti1_header(&[2, 2, 2], 2).f32(76, &[1.0; 8]);
     assert!(place(&default).has_unknown_scale());
     assert!(place(&default.clone().f32(76, &[0.0; 8])).has_unknown_scale());
     assert!(!place(&default.clone().text(123, &[2])).has_unknown_scale(), "one millimetre");
     let volume = place(&default.f32(76, &[1.0, 2.0, 0.0, -3.0]));
     assert_eq!(volume.spacing_mm(), DVec3::new(2.0, 1.0, 3.0));
     assert!(volume.remarks().iter().any(|remark| remark.contains("cannot be")));
-    // One slice, and nothing said of a second.
-    let slice = read(&nifti(&[2, 2], 2).f32(88, &[0.0]).with(&[1; 4]));
+    // One slice, without a spacing along z.
+    let slice = read(&nifti1_header(&[2, 2], 2).f32(88, &[0.0]).with_data(&[1; 4]));
     assert_eq!((slice.dims(), slice.spacing_mm()), ([2, 2, 1], DVec3::new(2.0, 3.0, 2.0)));
 }

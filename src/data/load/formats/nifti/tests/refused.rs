@@ -1,17 +1,17 @@
-//! Headers that lie, and files that are broken.
+//! Tests of invalid headers and corrupt files, which must be refused.
 
-use super::{Bytes, assert_refused, gzip, load_bytes, nifti, read};
+use super::{NiftiBuilder, assert_refused, gzip, load_bytes, nifti1_header, read};
 use crate::data::Samples;
-use crate::data::load::{Choice, Endian, LoadErrorKind};
+use crate::data::load::{Endian, LoadErrorKind, VolumeChoice};
 
 #[track_caller]
 fn refused(file: &[u8], words: &[&str]) {
-    assert_refused(load_bytes(file, Choice::default()), LoadErrorKind::BadInput, words);
+    assert_refused(load_bytes(file, VolumeChoice::default()), LoadErrorKind::BadInput, words);
 }
 
 #[test]
 fn wrong_fields_are_named() {
-    let header = || nifti(&[2, 1, 1], 2);
+    let header = || nifti1_header(&[2, 1, 1], 2);
     for (header, words) in [
         (header().i16(40, &[0]), &["dim[0]"][..]),
         (header().i16(40, &[8]), &["dim[0]"]),
@@ -27,33 +27,33 @@ fn wrong_fields_are_named() {
         (header().f32(108, &[1e18]), &["truncated"]),
         (header().i16(42, &[3]), &["truncated", "3 bytes", "2 found"]),
     ] {
-        refused(&header.with(&[1, 2]), words);
+        refused(&header.with_data(&[1, 2]), words);
     }
     let two = |dims: &[i64]| {
-        let header = Bytes { endian: Endian::Little, bytes: vec![0; 544] };
-        header.i32(0, &[540]).text(4, b"n+2\0").i16(12, &[2]).i64(16, dims).i64(168, &[544]).with(&[1])
+        let header = NiftiBuilder { endian: Endian::Little, bytes: vec![0; 544] };
+        header.i32(0, &[540]).text(4, b"n+2\0").i16(12, &[2]).i64(16, dims).i64(168, &[544]).with_data(&[1])
     };
-    assert!(load_bytes(&two(&[3, 1, 1, 1]), Choice::default()).is_ok());
+    assert!(load_bytes(&two(&[3, 1, 1, 1]), VolumeChoice::default()).is_ok());
     refused(&two(&[i64::MIN, 1, 1, 1]), &["dim[0]"]);
     refused(&two(&[3, -1, 1, 1]), &["dim[1]"]);
     for dims in [[3, i64::MAX, i64::MAX, i64::MAX, 1], [4, 1, 1, 1, i64::MAX], [3, 1 << 11, 1 << 10, 1, 1]] {
-        assert_refused(load_bytes(&two(&dims), Choice::default()), LoadErrorKind::Limit, &["dim"]);
+        assert_refused(load_bytes(&two(&dims), VolumeChoice::default()), LoadErrorKind::Limit, &["dim"]);
     }
 }
 
 #[test]
 fn empty_offsets_mean_the_header_and_extensions_are_skipped() {
     let expected = Samples::U8(vec![1, 2]);
-    let header = nifti(&[2, 1, 1], 2);
-    assert_eq!(*read(&header.clone().f32(108, &[0.0]).with(&[1, 2])).samples(), expected);
+    let header = nifti1_header(&[2, 1, 1], 2);
+    assert_eq!(*read(&header.clone().f32(108, &[0.0]).with_data(&[1, 2])).samples(), expected);
     let extension = [16u8, 0, 0, 0, 6, 0, 0, 0, b'n', b'o', b't', b'e', 0, 0, 0, 0];
     let extended = header.text(348, &[1]).f32(108, &[368.0]);
-    assert_eq!(*read(&extended.with(&[&extension[..], &[1, 2, 99]].concat())).samples(), expected);
+    assert_eq!(*read(&extended.with_data(&[&extension[..], &[1, 2, 99]].concat())).samples(), expected);
 }
 
 #[test]
 fn broken_files_are_refused() {
-    let file = nifti(&[2, 1, 1], 2).with(&[1, 2]);
+    let file = nifti1_header(&[2, 1, 1], 2).with_data(&[1, 2]);
     for length in [0, 4, 347] {
         refused(&file[..length], &["header"]);
     }

@@ -1,4 +1,4 @@
-//! Data files beside the header, and those that must not be opened.
+//! Tests of detached NRRD data files, and of files that must not be opened.
 
 use std::fs;
 use std::path::Path;
@@ -71,7 +71,7 @@ fn links_are_followed_where_repositories_keep_their_files() {
     let path = |name: &str| folder.path().join(name);
     let expected = Samples::U8(VOXELS.to_vec());
     let header = format!("{HEADER}data file: v.raw\n");
-    // As git-annex has it: both are links to where it keeps files by their content.
+    // As in git-annex: header and data are links into its content-addressed store.
     for store in [".git/annex/objects", ".dvc/cache"] {
         let root = path(&store.replace(['/', '.'], "_"));
         fs::create_dir_all(root.join(store).join("ab")).unwrap();
@@ -82,14 +82,14 @@ fn links_are_followed_where_repositories_keep_their_files() {
         symlink(to.join("ab/header"), root.join("sub/anat/v.nhdr")).unwrap();
         symlink(to.join("ab/data"), root.join("sub/anat/v.raw")).unwrap();
         assert_eq!(*load_path(&root.join("sub/anat/v.nhdr")).unwrap().samples(), expected, "{store}");
-        // Not fetched yet.
+        // Content that has not been fetched yet.
         fs::remove_file(root.join(store).join("ab/data")).unwrap();
         let words = ["link to a file that is not there", "datalad get"];
         assert_refused(load_path(&root.join("sub/anat/v.nhdr")), LoadErrorKind::Io, &words);
         fs::remove_file(root.join(store).join("ab/header")).unwrap();
         assert_refused(load_path(&root.join("sub/anat/v.nhdr")), LoadErrorKind::Io, &words);
     }
-    // A header that is a link: its data lie beside the link, or beside the file.
+    // A header that is a link: its data lie beside the link, or beside its target.
     fs::create_dir_all(path("study")).unwrap();
     fs::create_dir_all(path("desk")).unwrap();
     fs::write(path("study/v.nhdr"), &header).unwrap();
@@ -98,7 +98,7 @@ fn links_are_followed_where_repositories_keep_their_files() {
     assert_eq!(*load_path(&path("desk/v.nhdr")).unwrap().samples(), expected);
     symlink(path("study/v.raw"), path("desk/v.raw")).unwrap();
     assert_eq!(*load_path(&path("desk/v.nhdr")).unwrap().samples(), expected);
-    // A store that is itself a link is none.
+    // A link in place of a store is not trusted.
     fs::create_dir_all(path("hostile/.git/annex")).unwrap();
     symlink(path("study"), path("hostile/.git/annex/objects")).unwrap();
     fs::write(path("hostile/v.nhdr"), &header).unwrap();

@@ -1,4 +1,4 @@
-//! Dimensions, orientation and spacing, from the outside.
+//! Tests of NRRD dimensions, orientation and spacing, end to end.
 
 use glam::DVec3;
 

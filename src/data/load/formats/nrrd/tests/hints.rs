@@ -1,12 +1,12 @@
-//! What headers say of the values.
+//! Tests of the hints that NRRD headers give on values.
 
 use super::{HEADER, VOXELS, load_attached};
-use crate::data::{Hints, MAX_LABEL_NAME, MAX_LABELS, Meaning, Missing, Modality};
+use crate::data::{MAX_LABEL_NAME, MAX_LABELS, MissingVoxels, Modality, ValueMeaning, ValueMetadata};
 
-/// What is made of a header with these lines.
-fn hints_of(lines: &[&str]) -> Hints {
+/// Returns the hints of a header with these lines added.
+fn hints_of(lines: &[&str]) -> ValueMetadata {
     let header = lines.iter().fold(HEADER.to_owned(), |header, line| header + line + "\n");
-    load_attached(&header, &VOXELS).unwrap().hints().clone()
+    load_attached(&header, &VOXELS).unwrap().metadata().clone()
 }
 
 #[test]
@@ -21,13 +21,13 @@ fn what_values_are_is_understood() {
         assert_eq!(hints_of(&[line]).modality, Modality::Ct, "{line}");
     }
     for line in ["sample units: HU", "sample units: \"Hounsfield\"", "DICOM_0028_1054:=HU"] {
-        assert_eq!(hints_of(&[line]).meaning, Meaning::HounsfieldUnits, "{line}");
+        assert_eq!(hints_of(&[line]).meaning, ValueMeaning::HounsfieldUnits, "{line}");
     }
     assert_eq!(hints_of(&["sample units: \"mg/ml\""]).unit(), Some("mg/ml"));
     assert!(hints_of(&["old min: -1000", "old max: 3000"]).is_rescaled);
     assert_eq!(hints_of(&["DICOM_0028_0120:=-2000"]).padding, Some(-2000.0));
     assert_eq!(hints_of(&["padding value:=0"]).padding, Some(0.0));
-    // DICOM's is a number of the scanner's, which were rescaled as the header says.
+    // DICOM's padding value is a stored number, rescaled as the header says.
     let rescale = ["DICOM_0028_1053:=2", "DICOM_0028_1052:=-1024"];
     let with = |padding| hints_of(&[rescale[0], rescale[1], padding]).padding;
     assert_eq!(with("DICOM_0028_0120:=-500"), Some(-2024.0));
@@ -57,13 +57,13 @@ fn segments_of_slicer_are_labels() {
         "Segment4_Name:=after a gap",
         "Segmentation_ContainedRepresentationNames:=Binary labelmap|",
     ]);
-    assert_eq!(hints.meaning, Meaning::Labels);
+    assert_eq!(hints.meaning, ValueMeaning::Labels);
     let labels: Vec<_> = hints.labels.iter().map(|(number, label)| (number, label.name.as_str())).collect();
     assert_eq!(labels, [(2, "heart"), (3, "left lung")]);
     assert_eq!(hints.labels.get(3).and_then(|label| label.color), Some([0.5, 0.25, 1.0]));
     assert_eq!(hints.labels.get(2).and_then(|label| label.color), None, "two numbers are no colour");
-    assert_eq!(hints_of(&["containedRepresentationNames:=Closed surface"]).meaning, Meaning::Labels);
-    assert_eq!(hints_of(&["modality:=SEG"]).meaning, Meaning::Labels);
+    assert_eq!(hints_of(&["containedRepresentationNames:=Closed surface"]).meaning, ValueMeaning::Labels);
+    assert_eq!(hints_of(&["modality:=SEG"]).meaning, ValueMeaning::Labels);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn hostile_keys_do_no_harm() {
     ] {
         let hints = hints_of(&[line]);
         assert_eq!(hints.padding, None, "{line}");
-        assert_eq!(hints.meaning, Meaning::Unknown, "{line}");
+        assert_eq!(hints.meaning, ValueMeaning::Unknown, "{line}");
     }
     let twice = hints_of(&["modality:=CT", "modality:=MR"]);
     assert_eq!(twice.modality, Modality::Ct, "the first counts");
@@ -107,17 +107,17 @@ fn padding_holds_nothing() {
     let load = |line: &str| load_attached(&format!("{HEADER}{line}\n"), &VOXELS).unwrap();
     let volume = load("PaddingValue:=1");
     assert_eq!((volume.padding_value(), volume.value_range().low), (Some(1.0), 2.0));
-    assert_eq!(volume.missing().map(Missing::count), Some(1));
+    assert_eq!(volume.missing().map(MissingVoxels::count), Some(1));
     let header = format!("{HEADER}PaddingValue:=5\n");
     let alone = load_attached(&header, &[5; 8]).unwrap();
-    assert_eq!((alone.padding_value(), alone.hints().padding), (None, Some(5.0)), "nothing else is there");
+    assert_eq!((alone.padding_value(), alone.metadata().padding), (None, Some(5.0)), "nothing else is there");
 }
 
 #[test]
 fn hints_stay_when_voxels_are_averaged() {
     let volume = load_attached(&format!("{HEADER}modality:=MR\nsample units: ms\n"), &VOXELS).unwrap();
-    let hints = volume.hints().clone();
-    let reduced = volume.reduced([2; 3]).unwrap();
-    assert_eq!((reduced.dims(), reduced.hints()), ([1; 3], &hints));
+    let hints = volume.metadata().clone();
+    let reduced = volume.block_averaged([2; 3]).unwrap();
+    assert_eq!((reduced.dims(), reduced.metadata()), ([1; 3], &hints));
     assert_eq!(hints.unit(), Some("ms"));
 }

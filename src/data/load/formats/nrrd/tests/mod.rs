@@ -1,4 +1,4 @@
-//! NRRD files from the outside: what is read and what is refused.
+//! Tests of NRRD files, end to end: accepted and refused files.
 
 mod detached;
 mod frames;
@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::data::load::tests::shared::{assert_refused, gzip, load_path as load_path_as};
-use crate::data::load::{Choice, LoadError, LoadErrorKind};
+use crate::data::load::tests::helpers::{assert_refused, gzip, load_path as load_path_as};
+use crate::data::load::{LoadError, LoadErrorKind, VolumeChoice};
 use crate::data::{Samples, Volume};
 
-/// A header of a 2 x 2 x 2 volume of bytes, without its data.
+/// Header of a 2 x 2 x 2 volume of bytes, without its data.
 const HEADER: &str = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
-/// The data that fit it.
+/// Voxels of the volume that `HEADER` describes.
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 
 fn bzip2(bytes: &[u8]) -> Vec<u8> {
@@ -26,7 +26,7 @@ fn bzip2(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-/// Lines of a byte each, in letters of both sizes.
+/// Encodes bytes in hexadecimal, one a line, with digits of mixed case.
 fn hex(bytes: &[u8]) -> String {
     let digits = |byte: &u8| format!("{:x}{:X}\n", byte >> 4, byte & 15);
     bytes.iter().map(digits).collect::<Vec<_>>().concat()
@@ -39,7 +39,7 @@ fn write(folder: &TempDir, name: &str, header: &str, data: &[u8]) -> PathBuf {
 }
 
 fn load_path(path: &Path) -> Result<Volume, LoadError> {
-    load_path_as(path, Choice::default())
+    load_path_as(path, VolumeChoice::default())
 }
 
 /// Loads an attached file: `header`, an empty line, `data`.
@@ -48,7 +48,7 @@ fn load_attached(header: &str, data: &[u8]) -> Result<Volume, LoadError> {
     load_path(&write(&folder, "v.nrrd", &format!("{header}\n"), data))
 }
 
-/// A header with other fields in place of those of [`HEADER`] with the same name.
+/// Returns [`HEADER`] with other fields in place of those with the same name.
 fn header_with(fields: &[&str]) -> String {
     let name = |line: &str| line.split(':').next().unwrap_or_default().to_owned();
     let replaced: Vec<_> = fields.iter().map(|line| name(line)).collect();
@@ -84,7 +84,7 @@ fn every_type_is_read_in_both_byte_orders_and_encodings() {
             }
         };
     }
-    // Of 64 bits no more are kept than are needed.
+    // 64-bit integers become the smallest type that holds them.
     let wide: [i64; 3] = [-7, 0, 1 << 31];
     let narrow = Samples::F64(wide.iter().map(|&value| value as f64).collect());
     for synonym in ["longlong", "signed long long int", "int64_t"] {
@@ -217,7 +217,7 @@ fn data_of_the_wrong_length_are_refused() {
     ] {
         assert_refused(load_attached(&text, data.as_bytes()), LoadErrorKind::BadInput, &[word]);
     }
-    // No data at all, and no word about another file.
+    // No data at all, and no data file named.
     let folder = TempDir::new().unwrap();
     let path = write(&folder, "v.nhdr", HEADER, &[]);
     assert_refused(load_path(&path), LoadErrorKind::BadInput, &["data file"]);

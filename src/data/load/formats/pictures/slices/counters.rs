@@ -1,29 +1,29 @@
-//! Meaning of the numbers in a file's name: slices, channels, time steps or places, by the letters before them.
+//! Meaning of the numbers in a file name: slices, channels, time steps or positions, by the letters before them.
 //!
-//! Microscopes write such names, each maker in an order of its own: `Series001_z00_ch00` (Leica), `s_C001Z001T001`
+//! Microscopes write such names, each vendor in an order of its own: `Series001_z00_ch00` (Leica), `s_C001Z001T001`
 //! (Olympus), `exp_w1_s2_t3` (`MetaMorph`, `ImageXpress`), `img_channel000_position001_time000000000_z000`
 //! (Micro-Manager), `r01c01f01p01-ch1sk1` (Operetta), `A - 01(fld 1 wv DAPI z 1)` (IN Cell), `b0t0z0c0` (Zeiss).
 
-/// Kind of a number in a name, the likeliest to count slices first.
+/// Meaning of a number in a file name, the likeliest to count slices first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum NameCounter {
-    /// Slices, by the word for them.
+    /// Slice number, with a word for slices before it.
     Slice,
-    /// Anything: no word is before it, or one that says no more than that it counts.
+    /// Unspecific number: without a word before it, or with one that only says that it counts.
     Number,
     Time,
-    /// Series, positions, samples: whatever has a name.
+    /// Series, position or sample number: any other word is before it.
     Place,
     Channel,
 }
 
-/// Words for slices.
+/// Words that mark slice numbers.
 const SLICES: [&str; 17] = [
     "z", "zs", "zstep", "zplane", "zslice", "zpos", "slice", "sl", "slc", "plane", "pln", "pl", "depth",
     "section", "sec", "layer", "focus",
 ];
 
-/// Words that say no more than that something is counted. `s` and `p` stand for slice and plane, and for site and place.
+/// Words that only say that something is counted. `s` and `p` can mean slice and plane, or site and position.
 const NUMBERS: [&str; 19] = [
     "s", "p", "i", "idx", "index", "im", "img", "image", "n", "no", "nr", "num", "page", "file", "frame",
     "scan", "rec", "recon", "raw",
@@ -54,22 +54,22 @@ const CHANNELS: [&str; 17] = [
 /// Characters between a word and its number.
 const SEPARATORS: [char; 8] = [' ', '_', '-', '.', '=', '#', '(', '['];
 
-/// Kind of each number of a name, by the text before it.
-pub(super) fn counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<NameCounter> {
-    let words: Vec<Option<String>> = texts.into_iter().map(word).collect();
+/// Meaning of each number of a name, by the text before it.
+pub(super) fn name_counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<NameCounter> {
+    let words: Vec<Option<String>> = texts.into_iter().map(counter_word).collect();
     let has = |word: &str| words.iter().flatten().any(|other| other == word);
     let (has_wavelengths, has_channels) = (has("w"), has("ch"));
     let counter = |word: &Option<String>| match word.as_deref() {
         None => NameCounter::Number,
-        // Beside wavelengths it is a site, beside channels a column of wells.
+        // Beside wavelengths `s` is a site, beside channels `c` a column of wells.
         Some("s") if has_wavelengths => NameCounter::Place,
         Some("c") if has_channels => NameCounter::Place,
-        Some(word) => known(word).unwrap_or(NameCounter::Place),
+        Some(word) => counter_of_word(word).unwrap_or(NameCounter::Place),
     };
     words.iter().map(counter).collect()
 }
 
-fn known(word: &str) -> Option<NameCounter> {
+fn counter_of_word(word: &str) -> Option<NameCounter> {
     if SLICES.contains(&word) {
         Some(NameCounter::Slice)
     } else if NUMBERS.contains(&word) {
@@ -81,13 +81,13 @@ fn known(word: &str) -> Option<NameCounter> {
     }
 }
 
-/// The word for a number, in lower case: the letters right before it, or, past a separator, a word that is known.
-fn word(text: &str) -> Option<String> {
+/// Word that marks a number, in lower case: the letters directly before it, or, across a separator, a known word.
+fn counter_word(text: &str) -> Option<String> {
     let trimmed = text.trim_end_matches(SEPARATORS);
     let start = trimmed.char_indices().rev().take_while(|(_, c)| c.is_alphabetic()).last();
     let letters = &trimmed[start.map_or(trimmed.len(), |(at, _)| at)..];
     let whole = letters.to_lowercase();
-    if known(&whole).is_some() {
+    if counter_of_word(&whole).is_some() {
         return Some(whole);
     }
     // `brainT01`: the capital letters at the end.
@@ -95,16 +95,16 @@ fn word(text: &str) -> Option<String> {
     let last = letters.char_indices().rev().take_while(|(_, c)| c.is_uppercase()).last();
     let last = last.map_or("", |(at, _)| &letters[at..]).to_lowercase();
     for tail in [capitals.to_lowercase(), last] {
-        if known(&tail).is_some() {
+        if counter_of_word(&tail).is_some() {
             return Some(tail);
         }
     }
     let is_next = trimmed.len() == text.len() && !letters.is_empty();
-    // Hardly a word ends in z.
+    // Hardly any word ends in z.
     is_next.then(|| if whole.ends_with('z') { "z".to_owned() } else { whole })
 }
 
-/// Number among some that counts the slices: the last of the likeliest kind.
+/// Index of the number that counts the slices: among those that vary, the last of the likeliest meaning.
 pub(super) fn slice_column(varying: &[usize], counters: &[NameCounter]) -> Option<usize> {
     let kind = |column: usize| counters.get(column).copied().unwrap_or(NameCounter::Number);
     let likeliest = varying.iter().map(|&column| kind(column)).min()?;
@@ -138,10 +138,10 @@ mod tests {
             ("Series", Place),
             ("XY", Place),
         ] {
-            assert_eq!(counters([text]), [expected], "{text:?}");
+            assert_eq!(name_counters([text]), [expected], "{text:?}");
         }
-        assert_eq!(counters(["exp_w", "_s", "_t"]), [Channel, Place, Time]);
-        assert_eq!(counters(["r", "c", "f", "p", "-ch"]), [Place, Place, Place, Number, Channel]);
+        assert_eq!(name_counters(["exp_w", "_s", "_t"]), [Channel, Place, Time]);
+        assert_eq!(name_counters(["r", "c", "f", "p", "-ch"]), [Place, Place, Place, Number, Channel]);
     }
 
     #[test]

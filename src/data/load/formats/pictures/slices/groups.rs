@@ -1,34 +1,34 @@
-//! Which files of a folder are the slices of one volume, by their names.
+//! Grouping of a folder's files into volumes, by the numbers in their names.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::counters::{NameCounter, counters, slice_column};
-use super::picture::Kind;
+use super::counters::{NameCounter, name_counters, slice_column};
+use super::picture::SliceFormat;
 
-/// Files that are slices of one volume, by their numbers in the list of all.
+/// Files that are slices of one volume, as indices into the list of all.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Group {
-    /// What their names have in common, with `#` where they count.
+pub(super) struct SliceGroup {
+    /// Common part of their names, with `#` in place of the slice number.
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: SliceFormat,
     pub(super) files: Vec<usize>,
-    /// What is missing in their numbers.
+    /// Remark about gaps in the numbering.
     pub(super) gap: Option<String>,
 }
 
-/// A name in pieces: text, and digits between.
-struct Pieces {
+/// File name split into texts and the digits between them.
+struct NamePieces {
     texts: Vec<String>,
     digits: Vec<String>,
-    /// Kind of each of the numbers.
+    /// Meaning of each of the numbers.
     counters: Vec<NameCounter>,
 }
 
-impl Pieces {
-    fn of(path: &Path) -> Self {
+impl NamePieces {
+    fn parse(path: &Path) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let name = without_mark(&name);
+        let name = strip_uuid(&name);
         let (mut texts, mut digits) = (vec![String::new()], Vec::new());
         let mut was_digit = false;
         for c in name.chars() {
@@ -43,12 +43,12 @@ impl Pieces {
             }
             was_digit = is_digit;
         }
-        let counters = counters(texts.iter().take(digits.len()).map(String::as_str));
+        let counters = name_counters(texts.iter().take(digits.len()).map(String::as_str));
         let texts = texts.iter().map(|text| text.to_lowercase()).collect();
         Self { texts, digits, counters }
     }
 
-    /// The name with `#` in place of some of its digits.
+    /// Returns the name with `#` in place of those digits that count.
     fn name(&self, is_counted: impl Fn(usize) -> bool) -> String {
         let mut name = self.texts.first().cloned().unwrap_or_default();
         for (at, (digits, text)) in self.digits.iter().zip(self.texts.iter().skip(1)).enumerate() {
@@ -59,8 +59,9 @@ impl Pieces {
     }
 }
 
-/// A name without the mark of 32 hexadecimal digits by which some databases keep files apart (RFC 9562, 4): it says nothing.
-fn without_mark(name: &str) -> String {
+/// Removes a UUID from a name (32 hexadecimal digits, RFC 9562, 4), by which some databases keep files apart: it
+/// carries no order.
+fn strip_uuid(name: &str) -> String {
     const GROUPS: [usize; 5] = [8, 4, 4, 4, 12];
     const MARK_BYTES: usize = 36;
     let is_mark = |mark: &str| {
@@ -75,15 +76,16 @@ fn without_mark(name: &str) -> String {
     at.map_or_else(|| name.to_owned(), |at| [&name[..at], &name[at + MARK_BYTES..]].concat())
 }
 
-/// Name with `#` in place of all numbers, which slices have in common.
-pub(super) fn pattern(path: &Path) -> String {
-    Pieces::of(path).name(|_| true)
+/// Name with `#` in place of all numbers, which the slices of a volume have in common.
+pub(super) fn name_pattern(path: &Path) -> String {
+    NamePieces::parse(path).name(|_| true)
 }
 
-/// Sorts pictures, in natural order, into groups: those whose names differ in the number that counts slices.
-pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> Vec<Group> {
-    let files: Vec<(Pieces, Kind)> = files.into_iter().map(|(path, kind)| (Pieces::of(path), kind)).collect();
-    let alike = gathered((0..files.len()).map(|at| {
+/// Groups pictures, in natural order: members of a group differ in the number that counts slices.
+pub(super) fn group_slices<'a>(files: impl IntoIterator<Item = (&'a Path, SliceFormat)>) -> Vec<SliceGroup> {
+    let files: Vec<(NamePieces, SliceFormat)> =
+        files.into_iter().map(|(path, kind)| (NamePieces::parse(path), kind)).collect();
+    let alike = group_by_key((0..files.len()).map(|at| {
         let (pieces, kind) = &files[at];
         ((*kind, pieces.name(|_| true)), at)
     }));
@@ -97,15 +99,16 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
         let counters = members.first().map_or(&[][..], |&member| &files[member].0.counters);
         let Some(counted) = slice_column(&varying, counters) else {
             let name = members.first().map_or(String::new(), |&member| files[member].0.name(|_| false));
-            groups.push(Group { name, kind, files: members, gap: None });
+            groups.push(SliceGroup { name, kind, files: members, gap: None });
             continue;
         };
-        let parts = gathered(members.iter().map(|&member| {
+        let parts = group_by_key(members.iter().map(|&member| {
             let others = varying.iter().filter(|&&column| column != counted);
             let key: Vec<&str> = others.map(|&column| digits(member)[column].as_str()).collect();
             (key, member)
         }));
-        // Numbers that go on together, as a count and the time of day, count together: one of them alone tells all apart.
+        // Numbers that change together, such as a counter and the time of day, count together: one of them alone
+        // distinguishes all members.
         let tells_all = |&column: &usize| {
             let numbers: HashSet<&str> =
                 members.iter().map(|&member| digits(member)[column].as_str()).collect();
@@ -121,15 +124,15 @@ pub(super) fn groups<'a>(files: impl IntoIterator<Item = (&'a Path, Kind)>) -> V
         for (counts, part) in parts {
             let name = files[part[0]].0.name(|column| counts.contains(&column));
             let numbers = part.iter().map(|&member| digits(member)[counted].parse().ok());
-            let gap = if counts.len() == 1 { gap(&numbers.collect::<Vec<_>>()) } else { None };
-            groups.push(Group { name, kind, files: part, gap });
+            let gap = if counts.len() == 1 { gap_remark(&numbers.collect::<Vec<_>>()) } else { None };
+            groups.push(SliceGroup { name, kind, files: part, gap });
         }
     }
     groups
 }
 
-/// Things with the same key together, in the order in which keys come first.
-fn gathered<K: Clone + Eq + std::hash::Hash>(
+/// Groups items by key, in the order in which the keys first occur.
+fn group_by_key<K: Clone + Eq + std::hash::Hash>(
     things: impl IntoIterator<Item = (K, usize)>,
 ) -> Vec<(K, Vec<usize>)> {
     let mut places: HashMap<K, usize> = HashMap::new();
@@ -144,8 +147,8 @@ fn gathered<K: Clone + Eq + std::hash::Hash>(
     groups
 }
 
-/// What is missing in numbers that go on by equal steps.
-fn gap(numbers: &[Option<u64>]) -> Option<String> {
+/// Remark about missing numbers in a sequence of equal steps.
+fn gap_remark(numbers: &[Option<u64>]) -> Option<String> {
     let steps = numbers.windows(2).filter_map(|pair| {
         let (before, after) = (pair[0]?, pair[1]?);
         Some((before, after, after.checked_sub(before)?))
@@ -167,8 +170,8 @@ mod tests {
     use super::*;
 
     fn grouped(names: &[&str]) -> Vec<(String, Vec<usize>, bool)> {
-        let kind = |name: &str| if name.ends_with("jpg") { Kind::Jpeg } else { Kind::Png };
-        let groups = groups(names.iter().map(|name| (Path::new(*name), kind(name))));
+        let kind = |name: &str| if name.ends_with("jpg") { SliceFormat::Jpeg } else { SliceFormat::Png };
+        let groups = group_slices(names.iter().map(|name| (Path::new(*name), kind(name))));
         groups.into_iter().map(|group| (group.name, group.files, group.gap.is_some())).collect()
     }
 
@@ -216,14 +219,14 @@ mod tests {
         let names: Vec<String> = [("z1", "0A"), ("z2", "9F"), ("z3", "B7")]
             .map(|(slice, mark)| format!("p_{slice}_w1{}-1111-2222-3333-444455556666.tif", mark.repeat(4)))
             .to_vec();
-        let found = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+        let found = group_slices(names.iter().map(|name| (Path::new(name.as_str()), SliceFormat::Tiff)));
         assert_eq!((found.len(), found[0].name.as_str()), (1, "p_z#_w1.tif"));
         for name in ["slice-1111-2222-3333-1.png", "é-1.png", "x"] {
-            assert_eq!(without_mark(name), name);
+            assert_eq!(strip_uuid(name), name);
         }
     }
 
-    /// All orders of some things.
+    /// All permutations of some items.
     fn orders<T: Clone>(things: &[T]) -> Vec<Vec<T>> {
         if things.is_empty() {
             return vec![Vec::new()];
@@ -238,7 +241,7 @@ mod tests {
 
     #[test]
     fn slices_are_told_in_any_order_of_letters() {
-        // The word of a counter, and how many of it there are; the first counts the slices.
+        // Word before a counter, and how many values it has; the first counts the slices.
         let sets: [&[(&str, usize)]; 8] = [
             &[("z", 8), ("ch", 2)],
             &[("Z", 3), ("C", 2), ("T", 4)],
@@ -262,7 +265,8 @@ mod tests {
                         names = names.iter().flat_map(numbered).collect();
                     }
                     let names: Vec<String> = names.into_iter().map(|name| name + ".tif").collect();
-                    let groups = groups(names.iter().map(|name| (Path::new(name.as_str()), Kind::Tiff)));
+                    let groups =
+                        group_slices(names.iter().map(|name| (Path::new(name.as_str()), SliceFormat::Tiff)));
                     let (_, slices) = set[0];
                     let others: usize = set[1..].iter().map(|&(_, count)| count).product();
                     assert_eq!(groups.len(), others, "{names:?}");
@@ -279,11 +283,12 @@ mod tests {
 
     #[test]
     fn gaps_are_found_and_equal_steps_are_none() {
-        let numbers = |numbers: &[u64]| gap(&numbers.iter().map(|&number| Some(number)).collect::<Vec<_>>());
+        let numbers =
+            |numbers: &[u64]| gap_remark(&numbers.iter().map(|&number| Some(number)).collect::<Vec<_>>());
         assert_eq!(numbers(&[1, 2, 3]), None);
         assert_eq!(numbers(&[10, 20, 30]), None);
         assert_eq!(numbers(&[7]), None);
         assert!(numbers(&[1, 2, 5, 6, 9]).unwrap().contains("2 and 5, and at 1 more places"));
-        assert_eq!(gap(&[Some(1), None, Some(9)]), None, "a number that is too long for a count");
+        assert_eq!(gap_remark(&[Some(1), None, Some(9)]), None, "a number that is too long for a count");
     }
 }

@@ -1,4 +1,4 @@
-//! A slice in a file of its own: PNG, JPEG, BMP or TIFF.
+//! Slice in a file of its own: recognition, header and decoding of PNG, JPEG, BMP and TIFF.
 
 use std::io::{self, BufRead as _, BufReader, Read as _};
 
@@ -6,33 +6,33 @@ use image::error::{ImageError, LimitErrorKind};
 use image::{ColorType, ImageDecoder as _, ImageFormat, ImageReader, Limits};
 
 use super::super::tiff;
-use crate::data::attempt::{Attempt, human_bytes};
-use crate::data::load::reading::input::{Input, Witness};
-use crate::data::load::reading::number::{Number, Part, Stored};
-use crate::data::load::reading::samples::reserve;
+use crate::data::load::reading::input::{FileChangeGuard, InputFile};
+use crate::data::load::reading::number::{FileNumberType, ScalarReduction, VoxelEncoding};
+use crate::data::load::reading::samples::alloc_with_capacity;
 use crate::data::load::{Endian, LoadControl, LoadError, LoadOptions};
-use crate::data::plain;
+use crate::data::load_context::{LoadContext, human_bytes};
+use crate::data::sanitised;
 
-/// Bytes by which pictures are told.
-pub(super) const MARK_BYTES: usize = 32;
+/// Number of bytes that picture formats are detected by.
+pub(super) const MAGIC_BYTES: usize = 32;
 
-/// Headers of BMP are so long (`BITMAPCOREHEADER` to `BITMAPV5HEADER`): "BM" alone may begin a text.
+/// Lengths of BMP headers (`BITMAPCOREHEADER` to `BITMAPV5HEADER`): "BM" alone may begin a text.
 const BMP_HEADERS: [u8; 7] = [12, 40, 52, 56, 64, 108, 124];
 
 const HELP: &str = "copy the file again, or save it anew as PNG or TIFF";
 
-/// A format of pictures.
+/// File format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) enum Kind {
+pub(super) enum SliceFormat {
     Png,
     Jpeg,
     Bmp,
     Tiff,
 }
 
-impl Kind {
-    /// By how a file begins.
-    pub(super) fn of(start: &[u8]) -> Option<Self> {
+impl SliceFormat {
+    /// Detects the format by the first bytes of a file.
+    pub(super) fn detect(start: &[u8]) -> Option<Self> {
         let is_bmp = || {
             let header = start.get(14..18);
             start.starts_with(b"BM")
@@ -49,18 +49,18 @@ impl Kind {
         }
     }
 
-    /// The format of a file, if it is a picture.
+    /// Detects the format of a file; `None` if it is not a picture.
     ///
     /// # Errors
     /// `Io` where it cannot be read.
-    pub(super) fn of_file(attempt: Attempt<'_>) -> Result<Option<Self>, LoadError> {
-        let input = Input::open(attempt)?;
+    pub(super) fn detect_file(attempt: LoadContext<'_>) -> Result<Option<Self>, LoadError> {
+        let input = InputFile::open(attempt)?;
         let mut start = Vec::new();
-        // No buffer of the whole size for a look at a few bytes.
+        // Without the large buffer, for a few bytes.
         let mut file = input.reader.into_inner();
-        let read = file.by_ref().take(MARK_BYTES as u64).read_to_end(&mut start);
-        read.map_err(|error| attempt.io(error))?;
-        Ok(Self::of(&start))
+        let read = file.by_ref().take(MAGIC_BYTES as u64).read_to_end(&mut start);
+        read.map_err(|error| attempt.io_error(error))?;
+        Ok(Self::detect(&start))
     }
 
     fn format(self) -> Option<ImageFormat> {
@@ -73,69 +73,70 @@ impl Kind {
     }
 }
 
-/// What is known of a picture before it is decoded.
+/// Properties of a picture that are known before it is decoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Header {
-    /// Width and height.
+pub(super) struct PictureHeader {
+    /// Width and height, in pixels.
     pub(super) size: [u64; 2],
-    /// How its numbers are stored once it is decoded.
-    pub(super) stored: Stored,
-    /// Pages that could be slices.
+    /// Storage of its numbers after decoding.
+    pub(super) stored: VoxelEncoding,
+    /// Number of pages that could be slices.
     pub(super) pages: usize,
 }
 
-/// Looks at a picture, and where `decoded` is asked for decodes it.
+/// Reads the header of a picture, and decodes it if `is_decoded`; otherwise the bytes are empty.
 ///
 /// # Errors
-/// `BadInput` for a broken file, or one whose numbers are not read; `Limit` over the budget.
-pub(super) fn look(
-    attempt: Attempt<'_>,
-    kind: Kind,
+/// `BadInput` for a broken file, or an unsupported number type; `Limit` over the budget.
+pub(super) fn read_picture(
+    attempt: LoadContext<'_>,
+    kind: SliceFormat,
     options: &LoadOptions,
     control: &LoadControl,
     is_decoded: bool,
-) -> Result<(Header, Vec<u8>), LoadError> {
+) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     control.check()?;
     if let Some(format) = kind.format() {
-        return look_at_image(attempt, format, options, is_decoded);
+        return read_image(attempt, format, options, is_decoded);
     }
-    let picture = tiff::Picture::open(attempt, control)?;
+    let picture = tiff::SingleSlice::open(attempt, control)?;
     let (size, pages) = (picture.size(), picture.pages);
-    let header = Header { size, stored: picture.stored(attempt, options)?, pages };
+    let header = PictureHeader { size, stored: picture.stored(attempt, options)?, pages };
     let bytes = if is_decoded { picture.decode(attempt, control)? } else { Vec::new() };
     Ok((header, bytes))
 }
 
-/// Bytes of a BMP up to the end of its compression's number.
+/// Bytes of a BMP up to the end of its compression field.
 const BMP_HEADER: usize = 34;
 
-/// Most pixels that a file of some length can hold. Decoders make room for as many as its header says, and some fill what
-/// is missing with grey.
-fn most_pixels(format: ImageFormat, length: u64, first: &[u8]) -> u64 {
+/// Upper bound of the pixels in a file of some length. Decoders allocate as many as the header announces, and some
+/// fill the missing ones with grey.
+fn max_pixels(format: ImageFormat, length: u64, first: &[u8]) -> u64 {
     match format {
-        // A bit for each block of 8 x 8 pixels: the shortest code of its mean.
+        // One bit for each block of 8 x 8 pixels: the shortest code of a DC coefficient.
         ImageFormat::Jpeg => length.saturating_mul(8 * 64),
-        ImageFormat::Bmp => most_of_bmp(length, first),
-        // Deflate makes 1032 of one byte (RFC 1951: 258 bytes of two bits), and up to eight pixels are in one of these.
+        ImageFormat::Bmp => max_bmp_pixels(length, first),
+        // Deflate expands a byte to at most 1032 (RFC 1951: 258 bytes from two bits), and a byte holds up to eight
+        // pixels.
         _ => length.saturating_mul(1032 * 8),
     }
 }
 
-/// The same of a BMP that begins so.
-fn most_of_bmp(length: u64, first: &[u8]) -> u64 {
+/// Upper bound of the pixels in a BMP with these first bytes.
+fn max_bmp_pixels(length: u64, first: &[u8]) -> u64 {
     let word = |at: usize| first.get(at..at + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
-    // The first headers, of twelve bytes, have neither runs nor their bits there.
+    // Headers of twelve bytes have no compression, and their bit depth is elsewhere.
     let is_old = word(14) < 40;
     match word(30) {
-        // Runs, of 255 pixels in two bytes at most.
+        // Run-length encoding: at most 255 pixels in two bytes.
         1 | 2 if !is_old => length.saturating_mul(128),
         _ => length.saturating_mul(8) / if is_old { 1 } else { u64::from(word(28)).max(1) },
     }
 }
 
-/// Whether a JPEG comes to its end, for which its decoder does not ask: a marker behind the first one that begins a scan
-/// (ITU-T T.81, B.1.1.3 and B.2.1). In the data of a scan no marker is like it.
-fn has_end(input: &mut Input) -> io::Result<bool> {
+/// Returns true if a JPEG has an end-of-image marker after its first scan, which its decoder does not check (ITU-T
+/// T.81, B.1.1.3 and B.2.1). Entropy-coded data cannot contain this marker.
+fn has_end_of_image(input: &mut InputFile) -> io::Result<bool> {
     let mut bytes = Vec::new();
     input.seek(0)?;
     input.reader.read_to_end(&mut bytes)?;
@@ -143,9 +144,9 @@ fn has_end(input: &mut Input) -> io::Result<bool> {
     let mut at = 2;
     while let Some(&[0xFF, marker, high, low]) = bytes.get(at..).and_then(<[u8]>::first_chunk) {
         at += match marker {
-            // Filled up.
+            // Fill byte before a marker.
             0xFF => 1,
-            // Without a length.
+            // Marker without a length field.
             0x01 | 0xD0..=0xD7 => 2,
             _ => 2 + usize::from(u16::from_be_bytes([high, low])),
         };
@@ -153,22 +154,22 @@ fn has_end(input: &mut Input) -> io::Result<bool> {
             return Ok(bytes.get(at..).is_some_and(|data| data.windows(2).any(|two| two == [0xFF, 0xD9])));
         }
     }
-    // Its decoder knows more of what is none.
+    // Not a valid sequence of markers: left to the decoder to report.
     Ok(true)
 }
 
-fn look_at_image(
-    attempt: Attempt<'_>,
+fn read_image(
+    attempt: LoadContext<'_>,
     format: ImageFormat,
     options: &LoadOptions,
     is_decoded: bool,
-) -> Result<(Header, Vec<u8>), LoadError> {
-    let mut input = Input::open(attempt)?;
-    let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io(error))?;
+) -> Result<(PictureHeader, Vec<u8>), LoadError> {
+    let mut input = InputFile::open(attempt)?;
+    let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
     let first_bytes = first_bytes[..first_bytes.len().min(BMP_HEADER)].to_vec();
     let budget = options.memory_budget_bytes;
     let too_large = |bytes: u64| {
-        attempt.limit(
+        attempt.limit_error(
             "size",
             format!(
                 "the picture needs {}, {} are allowed",
@@ -178,26 +179,31 @@ fn look_at_image(
             "close other programs, or load a smaller picture",
         )
     };
-    // JPEG is read whole before it is decoded.
+    // A JPEG file is read whole before it is decoded.
     if input.len > budget {
         return Err(too_large(input.len));
     }
-    let witness = Witness::of(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input)?;
     let fault = |error: ImageError| match error {
-        ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit(
+        ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit_error(
             "size",
             format!("the picture needs more than the {} that are allowed", human_bytes(budget.into())),
             "close other programs, or load a smaller picture",
         ),
         ImageError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-            attempt.bad_input("data", "the picture is truncated: the file ends too early", HELP)
+            attempt.bad_input_error("data", "the picture is truncated: the file ends too early", HELP)
         }
-        error => attempt.bad_input("data", plain(&format!("the picture is broken: {error}"), 200), HELP),
+        error => {
+            attempt.bad_input_error("data", sanitised(&format!("the picture is broken: {error}"), 200), HELP)
+        }
     };
-    if is_decoded && format == ImageFormat::Jpeg && !has_end(&mut input).map_err(|error| attempt.io(error))? {
-        return Err(attempt.bad_input("data", "the picture is truncated: it has no end", HELP));
+    if is_decoded
+        && format == ImageFormat::Jpeg
+        && !has_end_of_image(&mut input).map_err(|error| attempt.io_error(error))?
+    {
+        return Err(attempt.bad_input_error("data", "the picture is truncated: it has no end", HELP));
     }
-    let (length, most_pixels) = (input.len, most_pixels(format, input.len, &first_bytes));
+    let (length, most_pixels) = (input.len, max_pixels(format, input.len, &first_bytes));
     let mut reader: ImageReader<BufReader<_>> = ImageReader::with_format(input.reader, format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(budget);
@@ -205,22 +211,22 @@ fn look_at_image(
     let decoder = reader.into_decoder().map_err(fault)?;
     let (width, height) = decoder.dimensions();
     let (number, components) = match decoder.color_type() {
-        ColorType::L8 => (Number::U8, 1),
-        ColorType::La8 => (Number::U8, 2),
-        ColorType::Rgb8 => (Number::U8, 3),
-        ColorType::Rgba8 => (Number::U8, 4),
-        ColorType::L16 => (Number::U16, 1),
-        ColorType::La16 => (Number::U16, 2),
-        ColorType::Rgb16 => (Number::U16, 3),
-        ColorType::Rgba16 => (Number::U16, 4),
-        other => return Err(attempt.bad_input("data", format!("its colours are {other:?}"), HELP)),
+        ColorType::L8 => (FileNumberType::U8, 1),
+        ColorType::La8 => (FileNumberType::U8, 2),
+        ColorType::Rgb8 => (FileNumberType::U8, 3),
+        ColorType::Rgba8 => (FileNumberType::U8, 4),
+        ColorType::L16 => (FileNumberType::U16, 1),
+        ColorType::La16 => (FileNumberType::U16, 2),
+        ColorType::Rgb16 => (FileNumberType::U16, 3),
+        ColorType::Rgba16 => (FileNumberType::U16, 4),
+        other => return Err(attempt.bad_input_error("data", format!("its colours are {other:?}"), HELP)),
     };
-    let component = options.choice.component_among(components, true);
-    let part = Part::asked(attempt, component, components, true)?;
-    // Decoders give numbers in the order of this machine.
+    let component = options.choice.resolve_component(components, true);
+    let part = ScalarReduction::require(attempt, component, components, true)?;
+    // Decoders return numbers in machine byte order.
     let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
-    let stored = Stored { number, endian, components, part };
-    let header = Header { size: [width.into(), height.into()], stored, pages: 1 };
+    let stored = VoxelEncoding { number, endian, components, reduction: part };
+    let header = PictureHeader { size: [width.into(), height.into()], stored, pages: 1 };
     let total = decoder.total_bytes();
     if total > budget {
         return Err(too_large(total));
@@ -228,14 +234,14 @@ fn look_at_image(
     if u64::from(width).saturating_mul(height.into()) > most_pixels {
         let found =
             format!("the picture is truncated: {width} x {height} pixels do not fit in {length} bytes");
-        return Err(attempt.bad_input("data", found, HELP));
+        return Err(attempt.bad_input_error("data", found, HELP));
     }
     let mut bytes = Vec::new();
     if is_decoded {
         let count = usize::try_from(total).ok();
-        bytes = count.and_then(|count| reserve(count).ok()).ok_or_else(|| too_large(total))?;
+        bytes = count.and_then(|count| alloc_with_capacity(count).ok()).ok_or_else(|| too_large(total))?;
         bytes.resize(bytes.capacity().min(count.unwrap_or(0)), 0);
         decoder.read_image(&mut bytes).map_err(fault)?;
     }
-    witness.vouch(attempt, Ok((header, bytes)))
+    witness.check_unchanged(attempt, Ok((header, bytes)))
 }

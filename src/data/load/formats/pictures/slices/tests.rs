@@ -1,21 +1,21 @@
-//! Folders of pictures from the outside.
+//! Tests that load folders of pictures through the public interface.
 
 use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
 use tempfile::TempDir;
 
-use crate::data::load::tests::shared::assert_refused;
-use crate::data::load::{Choice, LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use crate::data::load::tests::helpers::assert_refused;
+use crate::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, VolumeChoice, load};
 use crate::data::{Samples, Volume};
 
-fn load_with(path: &Path, choice: Choice) -> Result<Volume, LoadError> {
+fn load_with(path: &Path, choice: VolumeChoice) -> Result<Volume, LoadError> {
     let options = LoadOptions { memory_budget_bytes: 1 << 16, choice, ..LoadOptions::default() };
     load(path, &options, &LoadControl::new())
 }
 
 fn load_path(path: &Path) -> Result<Volume, LoadError> {
-    load_with(path, Choice::default())
+    load_with(path, VolumeChoice::default())
 }
 
 fn grey(width: u32, values: &[u8]) -> DynamicImage {
@@ -67,7 +67,7 @@ fn of_a_folder_the_files_that_are_meant_are_read() {
     ]);
     let meant = |names: &[&str]| {
         let among = names.iter().map(|name| stack.path().join(name)).collect();
-        let options = LoadOptions { among: Some(among), ..LoadOptions::default() };
+        let options = LoadOptions { only_files: Some(among), ..LoadOptions::default() };
         load(stack.path(), &options, &LoadControl::new())
     };
     assert_eq!(*meant(&["3.png", "2.png"]).unwrap().samples(), Samples::U8(vec![3, 4, 5, 6]));
@@ -79,7 +79,7 @@ fn of_a_folder_the_files_that_are_meant_are_read() {
 fn all_kinds_of_pictures_also_single() {
     let picture = grey(4, &[7; 16]);
     for ending in ["png", "bmp", "jpg"] {
-        // The encoder of BMP takes grey, that of JPEG as well.
+        // Encoders of BMP and JPEG accept grey.
         let name = format!("one.{ending}");
         let one = folder(&[(name.as_str(), picture.clone())]);
         let volume = load_path(&one.path().join(&name)).unwrap();
@@ -92,9 +92,10 @@ fn all_kinds_of_pictures_also_single() {
     let volume = load_path(stack.path()).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(vec![54, 19, 54, 19]));
     assert!(volume.remarks()[0].contains("luminance"));
-    let blue = load_with(stack.path(), Choice { component: Some(2), ..Choice::default() }).unwrap();
+    let blue =
+        load_with(stack.path(), VolumeChoice { component: Some(2), ..VolumeChoice::default() }).unwrap();
     assert_eq!(*blue.samples(), Samples::U8(vec![0, 30, 0, 30]));
-    let none = load_with(stack.path(), Choice { component: Some(3), ..Choice::default() });
+    let none = load_with(stack.path(), VolumeChoice { component: Some(3), ..VolumeChoice::default() });
     assert_refused(none, LoadErrorKind::BadInput, &["component 3", "its 3"]);
 }
 
@@ -121,7 +122,7 @@ fn several_groups_are_series_and_strays_are_left_out() {
         ("b3.png", pixel(5)),
     ]);
     assert_refused(load_path(two.path()), LoadErrorKind::BadInput, &["2 series", "1 \"b#.png\" (1 x 1 x 3)"]);
-    let choice = Choice { series: Some("b#.png".to_owned()), ..Choice::default() };
+    let choice = VolumeChoice { series: Some("b#.png".to_owned()), ..VolumeChoice::default() };
     let volume = load_with(two.path(), choice).unwrap();
     assert_eq!((volume.samples(), volume.name()), (&Samples::U8(vec![3, 4, 5]), "b#.png"));
     let stray = folder(&[
@@ -145,7 +146,7 @@ fn broken_and_huge_pictures_are_refused() {
         assert_refused(load_path(stack.path()), LoadErrorKind::BadInput, &["a2.png", "the picture is"]);
         assert_refused(load_path(&path), LoadErrorKind::BadInput, &["the picture is"]);
     }
-    // The size of a picture is at byte 16; its checksum is made to fit.
+    // The size of a PNG picture is at byte 16; its checksum is recomputed.
     let mut huge = whole.clone();
     huge[16..24].copy_from_slice(&[0x7F, 0xFF, 0xFF, 0xFF, 0x7F, 0xFF, 0xFF, 0xFF]);
     let mut checksum = flate2::Crc::new();
@@ -154,7 +155,7 @@ fn broken_and_huge_pictures_are_refused() {
     std::fs::write(&path, &huge).unwrap();
     let error = load_path(&path).unwrap_err();
     assert!(matches!(error.kind(), LoadErrorKind::Limit | LoadErrorKind::BadInput), "{error}");
-    // Half of a picture with loss, in which decoders fill what is missing with grey.
+    // Half of a JPEG picture: decoders fill the missing rest with grey.
     let values: Vec<u8> = (0..64 * 64).map(|at| (at * 37 % 251) as u8).collect();
     let lossy = folder(&[("a.jpg", grey(64, &values))]);
     let path = lossy.path().join("a.jpg");
@@ -181,7 +182,7 @@ fn slices_come_before_channels_in_names() {
     let listed = ["2 series", "0 \"series001_z#_ch00.png\" (2 x 1 x 8)", "1 \"series001_z#_ch01.png\""];
     assert_refused(load_path(stacks.path()), LoadErrorKind::BadInput, &listed);
     for channel in 0..2 {
-        let choice = Choice { series: Some(channel.to_string()), ..Choice::default() };
+        let choice = VolumeChoice { series: Some(channel.to_string()), ..VolumeChoice::default() };
         let volume = load_with(stacks.path(), choice).unwrap();
         let expected: Vec<u8> = (0..8).flat_map(|z| [z + 100 * channel, z]).collect();
         assert_eq!((volume.dims(), volume.samples()), ([2, 1, 8], &Samples::U8(expected)));
@@ -203,14 +204,14 @@ fn a_slice_that_is_no_picture_is_said() {
     }
     assert!(damaged(b"garbage", "other.jpeg").contains("\"other.jpeg\" is left out"));
     assert!(!damaged(b"garbage", "other.dat").contains("left out"));
-    // Of slices in TIFF files one is left, which is read as a file of its own.
+    // A single slice is left, which is read as a file of its own.
     let two = TempDir::new().unwrap();
     grey(2, &[1, 2]).save_with_format(two.path().join("a0.png"), ImageFormat::Png).unwrap();
     std::fs::write(two.path().join("a1.png"), b"garbage").unwrap();
     let volume = load_path(two.path()).unwrap();
     assert_eq!(*volume.samples(), Samples::U8(vec![1, 2]));
     assert!(volume.remarks()[0].contains("\"a1.png\" is left out"));
-    // Those of other series are not told of this one.
+    // Damaged files of another series are not reported.
     let series = folder(&[
         ("a1.png", grey(1, &[1])),
         ("a2.png", grey(1, &[2])),
@@ -218,7 +219,8 @@ fn a_slice_that_is_no_picture_is_said() {
         ("b2.png", grey(1, &[4])),
     ]);
     std::fs::write(series.path().join("b3.png"), b"garbage").unwrap();
-    let choose = |series_key: &str| Choice { series: Some(series_key.to_owned()), ..Choice::default() };
+    let choose =
+        |series_key: &str| VolumeChoice { series: Some(series_key.to_owned()), ..VolumeChoice::default() };
     assert!(load_with(series.path(), choose("0")).unwrap().remarks().is_empty());
     assert!(load_with(series.path(), choose("1")).unwrap().remarks()[0].contains("b3.png"));
 }

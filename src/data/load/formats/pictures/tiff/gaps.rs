@@ -1,18 +1,18 @@
-//! Recordings that have not all of their pages: they were stopped, or a file of theirs is not there.
+//! Incomplete recordings: pages are missing because it was stopped, or because one of its files is missing.
 
-use super::stack::Slice;
+use super::stack::TiffSlice;
 
-/// Slices that are shown of a recording, with what the user is told of the others.
+/// Slices of a recording that are shown, with a remark on the missing ones.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct SliceRun {
-    /// From the first that has a page to the last; those between without a page are empty.
-    pub(super) slices: Vec<Option<Slice>>,
+    /// Slices from the first that has a page to the last; gaps in between are empty.
+    pub(super) slices: Vec<Option<TiffSlice>>,
     pub(super) remark: Option<String>,
 }
 
 impl SliceRun {
-    /// Run of slices of which some have no page; `None` where none has one.
-    pub(super) fn new(slices: &[Option<Slice>]) -> Option<Self> {
+    /// Creates a run from slices some of which lack a page; `None` where none has one.
+    pub(super) fn new(slices: &[Option<TiffSlice>]) -> Option<Self> {
         let first = slices.iter().position(Option::is_some)?;
         let last = slices.iter().rposition(Option::is_some)?;
         let kept = slices[first..=last].to_vec();
@@ -27,16 +27,16 @@ impl SliceRun {
         }
         let empty: Vec<usize> = (first..=last).filter(|&at| slices[at].is_none()).collect();
         if !empty.is_empty() {
-            parts.push(format!("no pages are there for slices {}: they are empty", listed(&empty)));
+            parts.push(format!("no pages are there for slices {}: they are empty", list_numbers(&empty)));
         }
         let remark = (!parts.is_empty()).then(|| parts.join("; "));
         Some(Self { slices: kept, remark })
     }
 }
 
-/// Numbers in words, not all of many.
-fn listed(numbers: &[usize]) -> String {
-    // As many as a line has room for.
+/// Lists numbers as text, shortened where there are many.
+fn list_numbers(numbers: &[usize]) -> String {
+    // As many as fit into a line.
     const MOST: usize = 8;
     let mut words: Vec<String> = numbers.iter().take(MOST).map(usize::to_string).collect();
     if numbers.len() > MOST {
@@ -51,8 +51,11 @@ mod tests {
 
     #[test]
     fn ends_are_left_out_and_gaps_between_stay() {
-        let slices = |pages: &[i32]| -> Vec<Option<Slice>> {
-            pages.iter().map(|&page| usize::try_from(page).ok().map(|page| Slice { file: 0, page })).collect()
+        let slices = |pages: &[i32]| -> Vec<Option<TiffSlice>> {
+            pages
+                .iter()
+                .map(|&page| usize::try_from(page).ok().map(|page| TiffSlice { file: 0, page }))
+                .collect()
         };
         let recorded = |pages: &[i32]| SliceRun::new(&slices(pages));
         assert_eq!(recorded(&[-1, -1]), None);

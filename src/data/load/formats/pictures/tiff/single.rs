@@ -1,77 +1,75 @@
-//! A TIFF file that holds one slice, beside others that do.
+//! TIFF file with a single slice, which is part of a numbered stack of files.
 
-use super::file::Tiff;
-use super::file::page::{Page, tag};
-use super::plain::usable;
-use super::said::ome;
-use super::stack::{check_page_bytes, stored};
-use crate::data::attempt::Attempt;
-use crate::data::load::reading::input::Input;
-use crate::data::load::reading::number::Stored;
-use crate::data::load::reading::read_files::note;
+use super::file::TiffFile;
+use super::file::page::{TiffPage, tag};
+use super::metadata::ome;
+use super::stack::{check_page_bytes, page_encoding};
+use super::undescribed::usable_pages;
+use crate::data::load::reading::input::InputFile;
+use crate::data::load::reading::number::VoxelEncoding;
+use crate::data::load::reading::read_files::record_read;
 use crate::data::load::{LoadControl, LoadError, LoadOptions};
+use crate::data::load_context::LoadContext;
 
-/// The one page of a file.
-pub(in crate::data::load) struct Picture {
-    tiff: Tiff,
-    page: Page,
+/// Single page of a file, with the file.
+pub(crate) struct SingleSlice {
+    tiff: TiffFile,
+    page: TiffPage,
     number: usize,
-    /// Pages that could be slices as well.
-    pub(in crate::data::load) pages: usize,
+    /// Number of pages that could be slices.
+    pub(crate) pages: usize,
 }
 
-impl Picture {
-    /// Looks at a file.
+impl SingleSlice {
+    /// Reads the directories of a file.
     ///
     /// # Errors
     /// As the reader of whole volumes.
-    pub(in crate::data::load) fn open(
-        attempt: Attempt<'_>,
-        control: &LoadControl,
-    ) -> Result<Self, LoadError> {
-        let tiff = Tiff::open(attempt, Input::open(attempt)?, control)?;
-        let pages = usable(&tiff, &mut Vec::new());
+    pub(crate) fn open(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
+        let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
+        let pages = usable_pages(&tiff, &mut Vec::new());
         let Some(&number) = pages.first() else {
-            return Err(attempt.bad_input("pages", "there is none", super::fault::HELP));
+            return Err(attempt.bad_input_error("pages", "there is none", super::messages::HELP));
         };
         let page = tiff.pages[number];
         Ok(Self { tiff, page, number, pages: pages.len() })
     }
 
-    /// Whether it says how the pages of several files belong together, and names this one, or a list of all.
-    pub(in crate::data::load) fn names(&mut self, file: &str) -> bool {
-        let description = self.tiff.text(tag::DESCRIPTION, ome::MOST_XML_BYTES).unwrap_or_default();
+    /// True if its OME-XML describes how several files belong together, and names `file` or refers to the file that
+    /// lists them.
+    pub(crate) fn describes_set_with(&mut self, file: &str) -> bool {
+        let description = self.tiff.text_entry(tag::DESCRIPTION, ome::MAX_XML_BYTES).unwrap_or_default();
         ome::is_ome(&description) && (description.contains(file) || description.contains("<BinaryOnly"))
     }
 
-    /// Its width and height.
-    pub(in crate::data::load) fn size(&self) -> [u64; 2] {
+    /// Width and height, in pixels.
+    pub(crate) fn size(&self) -> [u64; 2] {
         [self.page.width, self.page.height]
     }
 
-    /// How its numbers are stored once it is decoded.
+    /// Storage of the samples after decoding.
     ///
     /// # Errors
-    /// `BadInput` for kinds that are not read, `Limit` for a page over the budget.
-    pub(in crate::data::load) fn stored(
+    /// `BadInput` for unsupported encodings, `Limit` for a page over the budget.
+    pub(crate) fn stored(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         options: &LoadOptions,
-    ) -> Result<Stored, LoadError> {
+    ) -> Result<VoxelEncoding, LoadError> {
         check_page_bytes(attempt, &self.page, options)?;
-        stored(attempt, &self.page, None, options)
+        page_encoding(attempt, &self.page, None, options)
     }
 
-    /// Its numbers.
+    /// Decodes the samples of the page.
     ///
     /// # Errors
     /// `BadInput` where the file is broken.
-    pub(in crate::data::load) fn decode(
+    pub(crate) fn decode(
         mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
-        note(attempt.path);
+        record_read(attempt.path);
         let packed = self.tiff.fetch(attempt, self.number, None, control)?;
         packed.unpack(attempt, self.number, control)
     }

@@ -1,196 +1,211 @@
-//! Which pages of which files are the slices of a volume, and their voxels.
+//! Slices of a TIFF volume, as pages of one or several files, and reading of their voxels.
 
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::fault::HELP;
-use super::file::page::{Meaning, Page};
-use super::file::{Tiff, zeroed};
-use crate::data::attempt::{Attempt, Extent};
-use crate::data::load::formats::pictures::pile::read_pile;
-use crate::data::load::reading::input::{Input, Witness};
-use crate::data::load::reading::number::{Part, Stored};
-use crate::data::load::reading::placement::{Parts, Placement};
-use crate::data::load::reading::rescaled::rescaled;
-use crate::data::load::reading::voxels::Meant;
-use crate::data::load::{Choice, Dimension, Endian, LoadControl, LoadError, LoadOptions, Offer};
-use crate::data::{Hints, Volume};
+use super::file::page::{SampleMeaning, TiffPage};
+use super::file::{TiffFile, alloc_zeroed_bytes};
+use super::messages::HELP;
+use crate::data::load::formats::pictures::slice_reader::read_slices;
+use crate::data::load::reading::input::{FileChangeGuard, InputFile};
+use crate::data::load::reading::number::{ScalarReduction, VoxelEncoding};
+use crate::data::load::reading::placement::{GridPlacement, VolumeParts};
+use crate::data::load::reading::rescale::rescale;
+use crate::data::load::reading::voxels::ValueMapping;
+use crate::data::load::{
+    Endian, FileDimension, LoadControl, LoadError, LoadOptions, VolumeChoice, VolumeOffer,
+};
+use crate::data::load_context::{GridExtent, LoadContext};
+use crate::data::{ValueMetadata, Volume};
 
-/// Bytes of pages that are fetched before they are unpacked: pages are longer than what is in them only by mistake, or
-/// where many of them are the same bytes.
+/// Bytes of compressed pages that are read before they are decoded. Compressed pages are longer than their pixels
+/// only by mistake, or where many pages share the same bytes.
 const PACKED_BYTES: u64 = 32 << 20;
 
-/// A page of one of several files.
+/// Page of one of several files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Slice {
-    /// 0 is the file that is opened, others are those of [`Stack::beside`].
+pub(super) struct TiffSlice {
+    /// Index of the file: 0 is the opened one, others are those of [`TiffStack::other_files`] plus 1.
     pub(super) file: usize,
     pub(super) page: usize,
 }
 
-/// A volume, before its voxels are read.
-pub(super) struct Stack {
+/// Volume before its voxels are read.
+pub(super) struct TiffStack {
     pub(super) name: String,
-    /// One after the other; what has no page is empty.
-    pub(super) slices: Vec<Option<Slice>>,
-    /// Files besides the one that is opened.
-    pub(super) beside: Vec<PathBuf>,
-    /// The sample that is meant, where those of a page are channels.
+    /// Slices in order; those without a page are empty.
+    pub(super) slices: Vec<Option<TiffSlice>>,
+    /// Files besides the opened one.
+    pub(super) other_files: Vec<PathBuf>,
+    /// Index of the chosen sample, where the samples of a page are channels.
     pub(super) sample: Option<usize>,
-    pub(super) placement: Placement,
-    pub(super) hints: Hints,
-    /// What values are multiplied by, and what is added then.
+    pub(super) placement: GridPlacement,
+    pub(super) hints: ValueMetadata,
+    /// Slope and intercept of the values.
     pub(super) scale: [f64; 2],
 }
 
-/// Channels and time steps that a file has.
-pub(super) struct Steps {
+/// Numbers of channels and time steps in a file.
+pub(super) struct ChannelsAndTimes {
     pub(super) dims: [u64; 3],
     pub(super) channels: usize,
     pub(super) channel_names: Vec<String>,
     pub(super) frames: usize,
 }
 
-/// What of them is meant.
+/// Chosen channel and time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Chosen {
+pub(super) struct ChosenChannelAndTime {
     pub(super) channel: usize,
     pub(super) frame: usize,
-    /// Each time step is one slice, and all of them together are shown as a volume.
-    pub(super) is_time_depth: bool,
+    /// True if each time step is one slice, and all together are shown as a volume.
+    pub(super) time_is_depth: bool,
 }
 
-impl Steps {
-    /// Asks what is meant where there are several.
-    pub(super) fn chosen(&self, attempt: Attempt<'_>, choice: &Choice) -> Result<Chosen, LoadError> {
+impl ChannelsAndTimes {
+    /// Selects the channel and the time step by the user's choice, where there are several.
+    pub(super) fn choose(
+        &self,
+        attempt: LoadContext<'_>,
+        choice: &VolumeChoice,
+    ) -> Result<ChosenChannelAndTime, LoadError> {
         let [width, height, slices] = self.dims;
-        // A recording of one slice over time is a volume only with time as its depth.
+        // A time series of one slice is a volume only with time as its depth.
         let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
         let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
         let offers = |count: usize| {
             let name = |at: usize| self.channel_names.get(at).map_or("", String::as_str);
-            (0..count).map(move |at| Offer::numbered(at, name(at), dims)).collect()
+            (0..count).map(move |at| VolumeOffer::with_number(at, name(at), dims)).collect()
         };
-        let channel = attempt.chosen(choice, Dimension::Channel, offers(self.channels))?;
+        let channel = attempt.resolve_choice(choice, FileDimension::Channel, offers(self.channels))?;
         let frame = if is_time_depth {
             0
         } else {
-            let frames = (0..self.frames).map(|at| Offer::numbered(at, "", dims)).collect();
-            attempt.chosen(choice, Dimension::Frame, frames)?
+            let frames = (0..self.frames).map(|at| VolumeOffer::with_number(at, "", dims)).collect();
+            attempt.resolve_choice(choice, FileDimension::Frame, frames)?
         };
-        Ok(Chosen { channel, frame, is_time_depth })
+        Ok(ChosenChannelAndTime { channel, frame, time_is_depth: is_time_depth })
     }
 }
 
-impl Chosen {
-    /// The time step and the slice of each slice of the volume.
+impl ChosenChannelAndTime {
+    /// Time step and slice index of each slice of the volume.
     pub(super) fn slices(&self, slices: usize, frames: usize) -> Vec<[usize; 2]> {
-        if self.is_time_depth {
+        if self.time_is_depth {
             (0..frames).map(|frame| [frame, 0]).collect()
         } else {
             (0..slices).map(|slice| [self.frame, slice]).collect()
         }
     }
 
-    /// What is to be said of it: nobody knows how far apart times are.
-    pub(super) fn remark(&self, placement: &mut Placement) {
-        if self.is_time_depth {
+    /// Adds the remark on time as depth to a placement; the scale along it is unknown.
+    pub(super) fn add_time_remark(&self, placement: &mut GridPlacement) {
+        if self.time_is_depth {
             let remark = "each time step is one slice: they are stacked in the order of time";
             placement.remarks.push(remark.to_owned());
             let axes = placement.world_from_index.matrix3;
-            let flat = Placement::spaced([1.0, axes.y_axis.length() / axes.x_axis.length(), 1.0]);
+            let flat = GridPlacement::from_spacing([1.0, axes.y_axis.length() / axes.x_axis.length(), 1.0]);
             placement.world_from_index = flat.world_from_index;
             placement.is_scale_known = false;
         }
     }
 }
 
-/// The files of a stack: the first, and one of the others at a time.
-struct Files<'a> {
-    attempt: Attempt<'a>,
-    first: Tiff,
+/// Files of a stack: the first, and one of the others open at a time.
+struct TiffStackFiles<'a> {
+    attempt: LoadContext<'a>,
+    first: TiffFile,
     beside: &'a [PathBuf],
-    open: Option<(usize, Tiff, Witness)>,
+    open: Option<(usize, TiffFile, FileChangeGuard)>,
     control: &'a LoadControl,
 }
 
-impl Files<'_> {
-    /// Does something with one of the files.
+impl TiffStackFiles<'_> {
+    /// Calls a function with one of the files.
     fn with<T>(
         &mut self,
         number: usize,
-        what: impl FnOnce(Attempt<'_>, &mut Tiff) -> Result<T, LoadError>,
+        what: impl FnOnce(LoadContext<'_>, &mut TiffFile) -> Result<T, LoadError>,
     ) -> Result<T, LoadError> {
         let Some(at) = number.checked_sub(1) else { return what(self.attempt, &mut self.first) };
         let path: &Path = self.beside.get(at).map_or(self.attempt.path, PathBuf::as_path);
-        let attempt = Attempt { what: self.attempt.what, path };
+        let attempt = LoadContext { operation: self.attempt.operation, path };
         let (tiff, witness) = match self.open.take() {
             Some((open, tiff, witness)) if open == number => (tiff, witness),
             _ => {
-                let input = Input::open(attempt)?;
-                let witness = Witness::of(attempt, &input)?;
-                (Tiff::open(attempt, input, self.control)?, witness)
+                let input = InputFile::open(attempt)?;
+                let witness = FileChangeGuard::new(attempt, &input)?;
+                (TiffFile::open(attempt, input, self.control)?, witness)
             }
         };
         let (_, tiff, witness) = self.open.insert((number, tiff, witness));
         let done = what(attempt, tiff);
-        witness.vouch(attempt, done)
+        witness.check_unchanged(attempt, done)
     }
 }
 
-impl Stack {
-    /// Reads the voxels.
+impl TiffStack {
+    /// Reads the voxels and assembles the volume.
     ///
     /// # Errors
-    /// `BadInput` where pages are broken, not there, or differ; `Limit` over the budget.
-    pub(super) fn volume(
+    /// `BadInput` where pages are broken, missing, or differ; `Limit` over the budget.
+    pub(super) fn into_volume(
         self,
-        attempt: Attempt<'_>,
-        tiff: Tiff,
+        attempt: LoadContext<'_>,
+        tiff: TiffFile,
         options: &LoadOptions,
         control: &LoadControl,
     ) -> Result<Volume, LoadError> {
-        let Self { name, slices, beside, sample, mut placement, mut hints, scale: [slope, intercept] } = self;
-        let mut files = Files { attempt, first: tiff, beside: &beside, open: None, control };
+        let Self {
+            name,
+            slices,
+            other_files: beside,
+            sample,
+            mut placement,
+            mut hints,
+            scale: [slope, intercept],
+        } = self;
+        let mut files = TiffStackFiles { attempt, first: tiff, beside: &beside, open: None, control };
         let Some(&first) = slices.iter().flatten().next() else {
-            return Err(attempt.bad_input("pages", "there is none", HELP));
+            return Err(attempt.bad_input_error("pages", "there is none", HELP));
         };
         let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
         let sample = sample.or_else(|| chosen_sample(&model, options));
-        let stored = stored(attempt, &model, sample, options)?;
+        let stored = page_encoding(attempt, &model, sample, options)?;
         let dims = [model.width, model.height, slices.len() as u64];
-        let extent = Extent::checked(attempt, "pages", dims, stored.voxel_type(), options.room(control))?;
+        let extent =
+            GridExtent::checked(attempt, "pages", dims, stored.voxel_type(), options.limits(control))?;
         check_page_bytes(attempt, &model, options)?;
-        placement.remarks.extend(stored.part.remark().map(str::to_owned));
-        // That is for screens and paper: what was measured, or marked in a mask, is what is stored.
+        placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
+        // Inversion is a property of display: the stored values are the measurements, or those of the mask.
         if model.is_inverted {
             let remark = "0 is said to stand for white: values are those that are stored";
             placement.remarks.push(remark.to_owned());
         }
-        // The first page, before there is room for all: one that has not what it announces asks for none.
+        // The first page is checked before memory is allocated for all, in case that it lacks the announced data.
         files.with(first.file, |attempt, tiff| {
-            tiff.check_room(attempt, first.page, sample.filter(|_| model.is_planar), control)
+            tiff.check_parts(attempt, first.page, sample.filter(|_| model.is_planar), control)
         })?;
-        let values = |samples| rescaled(attempt, samples, [slope, intercept], options.memory_budget_bytes);
-        let empty_bytes = model.width.saturating_mul(model.height).saturating_mul(stored.bytes_of_voxel());
-        let meant = Meant { padding: hints.padding, values: &values };
-        let voxels = read_pile(attempt, &stored, extent, &meant, control, |some| {
+        let values = |samples| rescale(attempt, samples, [slope, intercept], options.memory_budget_bytes);
+        let empty_bytes = model.width.saturating_mul(model.height).saturating_mul(stored.voxel_bytes());
+        let meant = ValueMapping { padding: hints.padding, map: &values };
+        let voxels = read_slices(attempt, &stored, extent, &meant, control, |some| {
             let mut unpacked = Vec::new();
             let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
             while slices.peek().is_some() {
                 let (mut packed, mut bytes) = (Vec::new(), 0);
                 while let Some(&slice) = slices.next_if(|_| bytes < PACKED_BYTES) {
-                    let Some(Slice { file, page }) = slice else {
+                    let Some(TiffSlice { file, page }) = slice else {
                         packed.push(None);
                         continue;
                     };
                     let of_page = files.with(file, |attempt, tiff| {
                         let found = page_of(attempt, tiff, page)?;
-                        if !found.is_like(&model) {
-                            return Err(unlike(attempt, page, &found, &model));
+                        if !found.matches(&model) {
+                            return Err(mismatch_error(attempt, page, &found, &model));
                         }
-                        // Where samples lie beside each other all are fetched, and one is taken later.
+                        // Interleaved samples are all read, and one is selected later.
                         tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
                     })?;
                     bytes += of_page.len();
@@ -198,7 +213,7 @@ impl Stack {
                 }
                 let of_slices = packed.par_iter().map(|packed| match packed {
                     Some((page, packed)) => packed.unpack(attempt, *page, control),
-                    None => zeroed(attempt, "pages", empty_bytes),
+                    None => alloc_zeroed_bytes(attempt, "pages", empty_bytes),
                 });
                 unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
             }
@@ -207,80 +222,84 @@ impl Stack {
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        Parts { name, extent, placement, voxels, hints }.volume(attempt)
+        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
     }
 }
 
-fn page_of(attempt: Attempt<'_>, tiff: &Tiff, number: usize) -> Result<Page, LoadError> {
+fn page_of(attempt: LoadContext<'_>, tiff: &TiffFile, number: usize) -> Result<TiffPage, LoadError> {
     let count = tiff.pages.len();
     tiff.pages.get(number).copied().ok_or_else(|| {
         let field = format!("page {number}");
-        attempt.bad_input(&field, format!("the file has only {count} pages"), HELP)
+        attempt.bad_input_error(&field, format!("the file has only {count} pages"), HELP)
     })
 }
 
-/// The component that the user has named. Channels are chosen as such.
-fn said_component(page: &Page, options: &LoadOptions) -> Option<usize> {
+/// Component that the user has chosen; channels are chosen as layers.
+fn chosen_component(page: &TiffPage, options: &LoadOptions) -> Option<usize> {
     match page.meaning {
-        Meaning::Channels => options.choice.layer_among(page.samples),
-        _ => options.choice.component_among(page.samples, true),
+        SampleMeaning::Channels => options.choice.resolve_layer(page.samples),
+        _ => options.choice.resolve_component(page.samples, true),
     }
 }
 
-/// The sample that is fetched alone, where the user has named a component.
-fn chosen_sample(page: &Page, options: &LoadOptions) -> Option<usize> {
-    said_component(page, options).filter(|_| page.meaning != Meaning::Channels)
+/// Sample that is read alone, where the user has chosen a component.
+fn chosen_sample(page: &TiffPage, options: &LoadOptions) -> Option<usize> {
+    chosen_component(page, options).filter(|_| page.meaning != SampleMeaning::Channels)
 }
 
-/// How the numbers of unpacked pages are stored.
+/// Storage of the samples of decoded pages.
 ///
 /// # Errors
-/// `BadInput` for pages of kinds that are not read, and for a component that there is not.
-pub(super) fn stored(
-    attempt: Attempt<'_>,
-    page: &Page,
+/// `BadInput` for unsupported encodings, and for a component that does not exist.
+pub(super) fn page_encoding(
+    attempt: LoadContext<'_>,
+    page: &TiffPage,
     sample: Option<usize>,
     options: &LoadOptions,
-) -> Result<Stored, LoadError> {
-    page.check(attempt, "first page")?;
+) -> Result<VoxelEncoding, LoadError> {
+    page.check_supported(attempt, "first page")?;
     let Some(number) = page.number() else {
-        return Err(attempt.bad_input("first page", "its numbers are of a kind that is not read", HELP));
+        return Err(attempt.bad_input_error(
+            "first page",
+            "its numbers are of a kind that is not read",
+            HELP,
+        ));
     };
-    let component = sample.or(said_component(page, options)).or(match page.meaning {
-        Meaning::Channels => Some(0),
+    let component = sample.or(chosen_component(page, options)).or(match page.meaning {
+        SampleMeaning::Channels => Some(0),
         _ => None,
     });
-    let is_color = page.meaning != Meaning::Channels;
-    let part = Part::asked(attempt, component, page.samples, is_color)?;
-    // A sample that lies by itself is fetched by itself.
+    let is_color = page.meaning != SampleMeaning::Channels;
+    let part = ScalarReduction::require(attempt, component, page.samples, is_color)?;
+    // A sample in strips of its own is read alone.
     let is_alone = page.is_planar && sample.is_some();
-    let (components, part) = if is_alone { (1, Part::Component(0)) } else { (page.samples, part) };
-    Ok(Stored { number, endian: Endian::Little, components, part })
+    let (components, part) = if is_alone { (1, ScalarReduction::Component(0)) } else { (page.samples, part) };
+    Ok(VoxelEncoding { number, endian: Endian::Little, components, reduction: part })
 }
 
-/// A page is unpacked as a whole.
+/// Checks that a decoded page fits into the budget, since pages are decoded as a whole.
 pub(super) fn check_page_bytes(
-    attempt: Attempt<'_>,
-    page: &Page,
+    attempt: LoadContext<'_>,
+    page: &TiffPage,
     options: &LoadOptions,
 ) -> Result<(), LoadError> {
     if page.bytes().is_some_and(|bytes| bytes <= options.memory_budget_bytes) {
         return Ok(());
     }
-    Err(attempt.limit(
+    Err(attempt.limit_error(
         "first page",
         format!("a page of {} x {} pixels of {} numbers is too large", page.width, page.height, page.samples),
         "close other programs, or load a smaller or cropped picture",
     ))
 }
 
-/// Two pages that are no slices of one volume.
-fn unlike(attempt: Attempt<'_>, number: usize, page: &Page, model: &Page) -> LoadError {
-    let say = |page: &Page| {
-        let Page { width, height, bits, samples, .. } = page;
+/// Error for two pages that cannot be slices of one volume.
+fn mismatch_error(attempt: LoadContext<'_>, number: usize, page: &TiffPage, model: &TiffPage) -> LoadError {
+    let say = |page: &TiffPage| {
+        let TiffPage { width, height, bits, samples, .. } = page;
         format!("{width} x {height} pixels of {samples} x {bits} bits")
     };
-    attempt.bad_input(
+    attempt.bad_input_error(
         &format!("page {number}"),
         format!("it has {}, the first page {}", say(page), say(model)),
         "save the pages of one size in a file of their own",

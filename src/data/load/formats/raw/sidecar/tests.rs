@@ -1,4 +1,5 @@
-//! Descriptions beside bare voxels: opened themselves, found beside, contradicted, and lying.
+//! Tests of companion files that describe raw voxels: opened themselves, found beside the data, contradicted by
+//! options, and with false contents.
 
 use std::path::PathBuf;
 
@@ -6,7 +7,9 @@ use glam::DVec3;
 use tempfile::TempDir;
 
 use super::*;
-use crate::data::load::{Choice, LoadControl, LoadErrorKind, LoadOptions, RawFormat, load as load_file};
+use crate::data::load::{
+    LoadControl, LoadErrorKind, LoadOptions, RawFormat, VolumeChoice, load as load_file,
+};
 use crate::data::xml::tests::{many_attributes, nested_namespaces};
 use crate::data::{Modality, Samples, VoxelType};
 
@@ -19,10 +22,10 @@ const IVF: &str = "<?xml version=\"1.0\" ?>\n<InviwoVolume version=\"2\">\n<RawF
                    <col1 x=\"0\" y=\"3\" z=\"0\" w=\"0\" /><col2 x=\"0\" y=\"0\" z=\"4\" w=\"0\" /></BasisAndOffset>\
                    </InviwoVolume>";
 
-struct Folder(TempDir);
+struct DescriptionFolder(TempDir);
 
-impl Folder {
-    /// A folder with twelve bytes as voxels.
+impl DescriptionFolder {
+    /// Creates a folder with a file of twelve bytes as voxels.
     fn new(data: &str) -> Self {
         let folder = Self(TempDir::new().unwrap());
         folder.write(data, (0..12).collect::<Vec<u8>>());
@@ -55,7 +58,7 @@ fn descriptions_are_read_from_either_side() {
         ("foot.dat", "foot.dat.ini", INI, DVec3::ONE, false),
         ("foot.raw", "foot.ivf", IVF, DVec3::new(1.0, 1.0, 2.0), false),
     ] {
-        let folder = Folder::new(data);
+        let folder = DescriptionFolder::new(data);
         folder.write(description, text);
         for opened in [data, description] {
             let volume = folder.load(opened, plain()).unwrap();
@@ -67,7 +70,7 @@ fn descriptions_are_read_from_either_side() {
                 "{opened}"
             );
             assert_eq!(volume.name(), "foot");
-            assert_eq!(volume.hints().modality == Modality::Ct, text == DAT);
+            assert_eq!(volume.metadata().modality == Modality::Ct, text == DAT);
             let raw = RawFormat {
                 spacing_mm: Some([3.0; 3]),
                 voxel_type: Some(VoxelType::I8),
@@ -104,19 +107,19 @@ fn types_orders_and_models_are_understood() {
         ("Format: Vec3UINT8\n", colors.clone(), &bytes),
         ("Format: UCHAR\nObjectModel: RGB\n", colors, &bytes),
     ] {
-        let folder = Folder::new("x");
+        let folder = DescriptionFolder::new("x");
         folder.write("v.raw", data);
         folder.write("v.dat", format!("RawFile: v.raw\nResolution: 2 3 2\nSpacing: 1 1 2\n{lines}"));
         let volume = folder.load("v.dat", plain()).unwrap();
         assert_eq!(volume.samples(), samples, "{lines}");
         assert_eq!((volume.spacing_mm().z, volume.has_unknown_scale()), (2.0, true), "1 1 2 compares only");
     }
-    let folder = Folder::new("v.raw");
+    let folder = DescriptionFolder::new("v.raw");
     let sequence = "RawFile: v.raw\nResolution: 2 3 1\nFormat: UCHAR\nSequences: 2\n\
                     BasisVector1: 2 0 0\nBasisVector2: 0 3 0\nBasisVector3: 0 0 2";
     folder.write("v.dat", sequence);
     assert!(matches!(folder.load("v.dat", plain()), Err(LoadError::Several { .. })));
-    let choice = Choice { frame: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
     let second = folder.load("v.raw", LoadOptions { choice, ..plain() }).unwrap();
     assert_eq!(*second.samples(), Samples::U8((6..12).collect()));
     assert_eq!((second.spacing_mm(), second.has_unknown_scale()), (DVec3::new(1.0, 1.0, 2.0), true));
@@ -124,7 +127,7 @@ fn types_orders_and_models_are_understood() {
 
 #[test]
 fn descriptions_of_other_files_do_not_count() {
-    let folder = Folder::new("foot_12x1x1_uint8.raw");
+    let folder = DescriptionFolder::new("foot_12x1x1_uint8.raw");
     folder.write("foot_12x1x1_uint8.dat", DAT);
     assert_eq!(folder.load("foot_12x1x1_uint8.raw", plain()).unwrap().dims(), [12, 1, 1]);
     folder.write("foot_12x1x1_uint8.ini", INI.replace("dimx:2", "dimx:two"));
@@ -134,13 +137,13 @@ fn descriptions_of_other_files_do_not_count() {
     let raw = RawFormat { dims: Some([3, 2, 2]), voxel_type: Some(VoxelType::U8), ..RawFormat::default() };
     let said = LoadOptions { raw, ..plain() };
     assert_eq!(folder.load("foot_12x1x1_uint8.raw", said).unwrap().dims(), [3, 2, 2]);
-    // Bare voxels may be called .dat as well.
-    let folder = Folder::new("sim_2x3x2_uint8.dat");
+    // Raw voxels may have the extension .dat as well.
+    let folder = DescriptionFolder::new("sim_2x3x2_uint8.dat");
     assert_eq!(folder.load("sim_2x3x2_uint8.dat", plain()).unwrap().dims(), [2, 3, 2]);
 }
 
 #[test]
-fn descriptions_that_lie_are_refused() {
+fn inconsistent_descriptions_are_refused() {
     for (name, text, kind, words) in [
         ("a.dat", DAT.replace("foot.raw", "../foot.raw"), LoadErrorKind::BadInput, "leads out"),
         ("a.dat", DAT.replace("foot.raw", "/etc/passwd"), LoadErrorKind::BadInput, "absolute"),
@@ -165,13 +168,13 @@ fn descriptions_that_lie_are_refused() {
         ("a.ivf", IVF.replace("x=\"2\" y=\"3\"", "x=\"2\""), LoadErrorKind::BadInput, "Dimension"),
         ("a.ivf", "<a>".to_owned(), LoadErrorKind::BadInput, "XML"),
     ] {
-        let folder = Folder::new("foot.raw");
+        let folder = DescriptionFolder::new("foot.raw");
         folder.write(name, &text);
         let error = folder.load(name, plain()).unwrap_err();
         assert_eq!(error.kind(), kind, "{error}");
         assert!(error.to_string().contains(words), "{words} is not in: {error}");
     }
-    let folder = Folder::new("foot.raw");
+    let folder = DescriptionFolder::new("foot.raw");
     folder.write("foot.ini", INI.replace("uint8", "?"));
     let error = folder.load("foot.raw", plain()).unwrap_err();
     assert!(error.to_string().contains("foot.ini"), "nothing else says what it is: {error}");
@@ -179,15 +182,15 @@ fn descriptions_that_lie_are_refused() {
 
 #[test]
 fn xml_that_would_take_long_is_refused() {
-    let folder = Folder::new("foot.raw");
-    // As much as a description may have, with what makes it one for who looks at its beginning alone.
+    let folder = DescriptionFolder::new("foot.raw");
+    // As long as a description may be, with a beginning that is recognised as one.
     let namespaces = nested_namespaces("InviwoVolume", 1500);
     let attributes = many_attributes("InviwoVolume", 7000).replacen('<', "<?x <!-- <RawFile ?><", 1);
     folder.write("a.ivf", format!("<!-- <RawFile -->{namespaces}"));
     let error = folder.load("a.ivf", plain()).unwrap_err();
     assert_eq!(error.kind(), LoadErrorKind::BadInput);
     assert!(error.to_string().contains("1501 namespaces"), "{error}");
-    // These take 0.1 s.
+    // Parsing these takes 0.1 s.
     folder.write("a.ivf", attributes);
     assert!(folder.load("a.ivf", plain()).unwrap_err().to_string().contains("RawFile"));
 }

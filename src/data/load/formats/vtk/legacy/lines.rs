@@ -1,48 +1,52 @@
-//! A file of lines with data between them, which are skipped.
+//! Line reader for files with data between the lines, which it can skip.
 
 use std::io::{self, BufRead, Cursor, Read};
 
 use super::super::super::{LoadControl, LoadError};
-use super::super::image::broken;
-use crate::data::attempt::{Attempt, quoted};
+use super::super::image::content_error;
+use crate::data::load_context::{LoadContext, quoted};
 
-/// Longer lines are refused: VTK itself reads 256 bytes.
-const LONGEST_LINE_BYTES: u64 = 4096;
+/// Maximum length of a line, in bytes: VTK itself reads 256.
+const MAX_LINE_BYTES: u64 = 4096;
 
-/// Lines and what lies between them.
-pub(super) struct Lines<'a> {
-    attempt: Attempt<'a>,
+/// Lines of a file, and the data between them.
+pub(super) struct LegacyLines<'a> {
+    attempt: LoadContext<'a>,
     control: &'a LoadControl,
-    reader: Counted<'a>,
+    reader: CountingReader<'a>,
 }
 
-impl<'a> Lines<'a> {
-    pub(super) fn new(attempt: Attempt<'a>, reader: Box<dyn BufRead + 'a>, control: &'a LoadControl) -> Self {
-        let reader = Counted { ahead: Cursor::default(), reader, position: 0 };
+impl<'a> LegacyLines<'a> {
+    pub(super) fn new(
+        attempt: LoadContext<'a>,
+        reader: Box<dyn BufRead + 'a>,
+        control: &'a LoadControl,
+    ) -> Self {
+        let reader = CountingReader { ahead: Cursor::default(), reader, position: 0 };
         Self { attempt, control, reader }
     }
 
-    /// Where the next byte is.
+    /// Offset of the next byte in the content.
     pub(super) fn position(&self) -> u64 {
         self.reader.position
     }
 
-    /// The next line, without white space around it; `None` at the end of the file.
+    /// Reads the next line, without surrounding white space; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Result<Option<String>, LoadError> {
         self.control.check()?;
         let mut line = Vec::new();
-        let read = self.reader.by_ref().take(LONGEST_LINE_BYTES).read_until(b'\n', &mut line);
-        read.map_err(|error| broken(self.attempt, error))?;
+        let read = self.reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line);
+        read.map_err(|error| content_error(self.attempt, error))?;
         let text = String::from_utf8_lossy(&line);
-        if line.len() as u64 == LONGEST_LINE_BYTES && !line.ends_with(b"\n") {
-            let why = format!("a line is longer than {LONGEST_LINE_BYTES} bytes: {}", quoted(&text));
-            return Err(self.attempt.bad_input("lines", why, "check that it is a file of VTK's"));
+        if line.len() as u64 == MAX_LINE_BYTES && !line.ends_with(b"\n") {
+            let why = format!("a line is longer than {MAX_LINE_BYTES} bytes: {}", quoted(&text));
+            return Err(self.attempt.bad_input_error("lines", why, "check that it is a file of VTK's"));
         }
         Ok((!line.is_empty()).then(|| text.trim().to_owned()))
     }
 
-    /// The next line that is not blank.
-    pub(super) fn next_filled(&mut self) -> Result<Option<String>, LoadError> {
+    /// Reads the next line that is not blank.
+    pub(super) fn next_non_blank(&mut self) -> Result<Option<String>, LoadError> {
         loop {
             match self.next()? {
                 Some(line) if line.is_empty() => {}
@@ -51,12 +55,12 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Whether a word comes next, in any case of letters.
+    /// Returns true if a word comes next, ignoring case; it is not consumed.
     pub(super) fn begins_with(&mut self, word: &str) -> Result<bool, LoadError> {
         let mut seen = Vec::new();
         let position = self.reader.position;
         let read = self.reader.by_ref().take(word.len() as u64).read_to_end(&mut seen);
-        read.map_err(|error| broken(self.attempt, error))?;
+        read.map_err(|error| content_error(self.attempt, error))?;
         let is_it = seen.eq_ignore_ascii_case(word.as_bytes());
         let rest = std::mem::take(&mut self.reader.ahead);
         let (rest, at) = (rest.get_ref().as_slice(), rest.position() as usize);
@@ -66,7 +70,7 @@ impl<'a> Lines<'a> {
         Ok(is_it)
     }
 
-    /// Skips bytes; whether there were as many.
+    /// Skips bytes; returns false if the file ends before that.
     pub(super) fn skip_bytes(&mut self, bytes: u64) -> Result<bool, LoadError> {
         let mut left = bytes;
         while left > 0 {
@@ -81,7 +85,7 @@ impl<'a> Lines<'a> {
         Ok(true)
     }
 
-    /// Skips words with white space between them; whether there were as many.
+    /// Skips words separated by white space; returns false if the file ends before that.
     pub(super) fn skip_words(&mut self, words: u64) -> Result<bool, LoadError> {
         let mut left = words;
         let mut is_within = false;
@@ -109,24 +113,24 @@ impl<'a> Lines<'a> {
 
     fn block(&mut self) -> Result<&[u8], LoadError> {
         self.control.check()?;
-        self.reader.fill_buf().map_err(|error| broken(self.attempt, error))
+        self.reader.fill_buf().map_err(|error| content_error(self.attempt, error))
     }
 }
 
-/// A reader that knows where it is, and takes back what was looked at.
-struct Counted<'a> {
+/// Reader that counts its position, with a buffer for bytes that are put back.
+struct CountingReader<'a> {
     ahead: Cursor<Vec<u8>>,
     reader: Box<dyn BufRead + 'a>,
     position: u64,
 }
 
-impl Counted<'_> {
+impl CountingReader<'_> {
     fn is_ahead(&self) -> bool {
         self.ahead.position() < self.ahead.get_ref().len() as u64
     }
 }
 
-impl Read for Counted<'_> {
+impl Read for CountingReader<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let read = if self.is_ahead() { self.ahead.read(into) } else { self.reader.read(into) }?;
         self.position += read as u64;
@@ -134,7 +138,7 @@ impl Read for Counted<'_> {
     }
 }
 
-impl BufRead for Counted<'_> {
+impl BufRead for CountingReader<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         if self.is_ahead() { self.ahead.fill_buf() } else { self.reader.fill_buf() }
     }

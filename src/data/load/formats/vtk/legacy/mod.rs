@@ -1,48 +1,49 @@
-//! The older form: lines of text, and values after those that announce them, as text or as big-endian bytes.
+//! VTK images in the legacy format: lines of text, each followed by the values that it announces, as text or as
+//! big-endian bytes.
 //!
-//! Whoever writes it says nowhere how long the values are in the file: they are skipped one after the other to find all.
+//! The format does not give the length of the values in the file: all are skipped in turn to find the arrays.
 
 mod lines;
 mod scan;
 #[cfg(test)]
 mod tests;
 
-use super::super::reader::{Source, Start};
+use super::super::reader::{FileStart, VolumeSource};
 use super::super::text_numbers::TextNumbers;
 use super::super::{Endian, LoadError};
-use super::image::{check_room, choose, content_from};
+use super::image::{check_available, choose_array, open_content_at};
 use crate::data::Volume;
-use crate::data::attempt::Attempt;
-use lines::Lines;
-use scan::{Place, Scan};
+use crate::data::load_context::LoadContext;
+use lines::LegacyLines;
+use scan::{LegacyScan, LegacyValueLocation};
 
-/// Whether a file that begins like this is one.
-pub(super) fn is_legacy(start: &Start) -> bool {
-    start.has(b"# vtk DataFile Version", 0)
+/// Returns true if a file with this beginning is legacy VTK.
+pub(super) fn is_legacy(start: &FileStart) -> bool {
+    start.has_at(b"# vtk DataFile Version", 0)
 }
 
-pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
-    let attempt = Attempt { what: "read the VTK image", path: source.path };
+pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the VTK image", path: source.path };
     let (control, options) = (source.control, source.options);
-    let lines = Lines::new(attempt, content_from(attempt, &mut source, 0)?, control);
-    let Scan { title, is_text, grid, arrays, .. } = Scan::of(attempt, lines)?;
-    let chosen = choose(attempt, &grid, arrays, options, control)?;
+    let lines = LegacyLines::new(attempt, open_content_at(attempt, &mut source, 0)?, control);
+    let LegacyScan { title, is_text, grid, arrays, .. } = LegacyScan::read(attempt, lines)?;
+    let chosen = choose_array(attempt, &grid, arrays, options, control)?;
     let name = chosen.array.name.as_str();
-    let Place { start, are_shares } = chosen.array.place;
+    let LegacyValueLocation { start, are_fractions: are_shares } = chosen.array.location;
     let room = if source.start.is_gzip() { u64::MAX } else { source.input.len.saturating_sub(start) };
     let voxels = if is_text {
-        // A digit each and a space between.
-        check_room(attempt, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
-        let text = content_from(attempt, &mut source, start)?;
+        // At least a digit and a space each.
+        check_available(attempt, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
+        let text = open_content_at(attempt, &mut source, start)?;
         let mut numbers = if are_shares {
-            TextNumbers::of_shares(text, chosen.numbers())
+            TextNumbers::new_fractions(text, chosen.numbers())
         } else {
             TextNumbers::new(text, chosen.array.number, chosen.numbers())
         };
         chosen.read(attempt, &mut numbers, Endian::Little, control)?
     } else {
-        check_room(attempt, name, chosen.stored_bytes(), room, "bytes")?;
-        let mut bytes = content_from(attempt, &mut source, start)?;
+        check_available(attempt, name, chosen.stored_bytes(), room, "bytes")?;
+        let mut bytes = open_content_at(attempt, &mut source, start)?;
         chosen.read(attempt, &mut bytes, Endian::Big, control)?
     };
     chosen.volume(attempt, &grid, voxels, &title)

@@ -1,4 +1,4 @@
-//! Files of the older form from the outside: what is read and what is refused.
+//! Tests that load legacy VTK files through the public interface: supported and refused ones.
 
 use std::io::Write as _;
 
@@ -6,23 +6,23 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
 
-use crate::data::load::tests::shared::{self, assert_refused};
-use crate::data::load::{Choice, Dimension, LoadError, LoadErrorKind};
+use crate::data::load::tests::helpers::{self, assert_refused};
+use crate::data::load::{FileDimension, LoadError, LoadErrorKind, VolumeChoice};
 use crate::data::{Modality, Samples, Volume};
 
 const HEAD: &str = "# vtk DataFile Version 3.0\na head, CT\nASCII\n  \nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\n\
                     ORIGIN 1 2 3\nSPACING 0.5 1 2\n";
 const TEXT: &str = "POINT_DATA 8\nSCALARS a unsigned_char 1\nLOOKUP_TABLE default\n1 2 3 4\n5 6 7 8\n";
 
-fn load_bytes_as(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    shared::load_bytes("v.vtk", bytes, choice)
+fn load_bytes_as(bytes: &[u8], choice: VolumeChoice) -> Result<Volume, LoadError> {
+    helpers::load_bytes("v.vtk", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
-    load_bytes_as(bytes, Choice::default())
+    load_bytes_as(bytes, VolumeChoice::default())
 }
 
-/// A file of bytes: the head, and after it what is given.
+/// Builds a binary file: the header, followed by the given parts.
 fn binary(parts: &[&[u8]]) -> Vec<u8> {
     [HEAD.replace("ASCII", "BINARY").as_bytes(), &parts.concat()].concat()
 }
@@ -71,7 +71,7 @@ fn the_grid_lies_where_the_file_says() {
     assert_eq!(volume.spacing_mm(), DVec3::new(0.5, 1.0, 2.0));
     assert_eq!(volume.world_from_index().translation, DVec3::new(1.0, 2.0, 3.0));
     assert!(!volume.is_anatomical() && !volume.has_unknown_scale());
-    assert_eq!(volume.hints().modality, Modality::Ct);
+    assert_eq!(volume.metadata().modality, Modality::Ct);
     let old =
         format!("{HEAD}{TEXT}").replace("SPACING", "ASPECT_RATIO").replace("LOOKUP_TABLE default\n", "");
     assert_eq!(load_bytes(old.as_bytes()).unwrap().spacing_mm(), DVec3::new(0.5, 1.0, 2.0));
@@ -118,8 +118,9 @@ fn all_arrays_are_found() {
     for (bytes, is_text) in [(in_bytes, false), (in_text.into_bytes(), true)] {
         let listed = ["4 arrays", "0 \"c\" (1 x 1 x 1)", "2 \"v w\" (2 x 2 x 2)", "3 \"t\""];
         assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &listed);
-        let choose =
-            |key: &str| load_bytes_as(&bytes, Choice::default().with(Dimension::Array, key)).unwrap();
+        let choose = |key: &str| {
+            load_bytes_as(&bytes, VolumeChoice::default().with_selected(FileDimension::Array, key)).unwrap()
+        };
         assert_eq!(*choose("c").samples(), Samples::I16(vec![7]));
         assert_eq!(*choose("v w").samples(), Samples::F32(vec![5.0; 8]));
         assert_eq!(*choose("t").samples(), Samples::U8(vec![1, 2, 3, 4, 5, 6, 7, 8]));

@@ -1,47 +1,51 @@
-//! Bytes from base64 (RFC 4648, section 4), strictly: nothing but its characters, white space between them, and whole
-//! groups of four.
+//! Base64 decoder (RFC 4648, section 4), strict: only its alphabet, white space, and complete groups of four are
+//! accepted.
 //!
-//! Pieces may follow each other: VTK writes a header of its own before the data, each with its padding.
+//! Encoded parts may follow each other: VTK encodes a header and the data separately, each with its padding.
 
 use std::io::{self, BufRead, Cursor, Read};
 
-use super::super::image::invalid;
+use super::super::image::invalid_data;
 
-/// Reads what base64 text stands for.
-pub(super) struct Base64<R> {
+/// Reader that decodes base64 text.
+pub(super) struct Base64Reader<R> {
     reader: R,
     ready: Cursor<Vec<u8>>,
-    /// The bits of the group so far, …
+    /// Bits of the current group so far.
     bits: u32,
-    /// … of how many characters they are, …
+    /// Number of characters in the current group.
     characters: u32,
-    /// … and how many of those were padding.
+    /// Number of padding characters in the current group.
     padding: u32,
-    /// What is wrong behind the bytes that are ready.
-    wrong: Option<String>,
+    /// Error after the bytes that are ready.
+    pending_error: Option<String>,
 }
 
-impl<R: BufRead> Base64<R> {
+impl<R: BufRead> Base64Reader<R> {
     pub(super) fn new(reader: R) -> Self {
-        Self { reader, ready: Cursor::default(), bits: 0, characters: 0, padding: 0, wrong: None }
+        Self { reader, ready: Cursor::default(), bits: 0, characters: 0, padding: 0, pending_error: None }
     }
 
     fn refill(&mut self) -> io::Result<()> {
         self.ready.set_position(0);
         self.ready.get_mut().clear();
         while self.ready.get_ref().is_empty() {
-            if let Some(why) = self.wrong.take() {
-                return Err(invalid(why));
+            if let Some(why) = self.pending_error.take() {
+                return Err(invalid_data(why));
             }
             let block = self.reader.fill_buf()?.to_vec();
             if block.is_empty() {
                 let is_whole = self.characters == 0;
-                return if is_whole { Ok(()) } else { Err(invalid("the base64 text ends within a group")) };
+                return if is_whole {
+                    Ok(())
+                } else {
+                    Err(invalid_data("the base64 text ends within a group"))
+                };
             }
             for &byte in &block {
                 if let Err(why) = self.add(byte) {
-                    // The bytes before it are good, and may be all that is wanted.
-                    self.wrong = Some(why);
+                    // The bytes before it are valid, and may be all that is needed.
+                    self.pending_error = Some(why);
                     break;
                 }
             }
@@ -82,7 +86,7 @@ impl<R: BufRead> Base64<R> {
     }
 }
 
-impl<R: BufRead> Read for Base64<R> {
+impl<R: BufRead> Read for Base64Reader<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.ready.position() == self.ready.get_ref().len() as u64 {
             self.refill()?;
@@ -91,8 +95,8 @@ impl<R: BufRead> Read for Base64<R> {
     }
 }
 
-/// The most bytes that so much text stands for.
-pub(super) fn most_bytes(characters: u64) -> u64 {
+/// Upper bound of the decoded bytes of some text.
+pub(super) fn max_decoded_bytes(characters: u64) -> u64 {
     characters.div_ceil(4).saturating_mul(3)
 }
 
@@ -103,7 +107,7 @@ mod tests {
     fn decoded(text: &str) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let reader = io::BufReader::with_capacity(3, text.as_bytes());
-        Base64::new(reader).read_to_end(&mut bytes).map(|_count| bytes)
+        Base64Reader::new(reader).read_to_end(&mut bytes).map(|_count| bytes)
     }
 
     #[test]
@@ -130,7 +134,7 @@ mod tests {
             assert_eq!(decoded(text).unwrap_err().kind(), io::ErrorKind::InvalidData, "{text}");
         }
         let mut bytes = [0; 3];
-        Base64::new(&b"Zm9v</DataArray>"[..]).read_exact(&mut bytes).unwrap();
+        Base64Reader::new(&b"Zm9v</DataArray>"[..]).read_exact(&mut bytes).unwrap();
         assert_eq!(&bytes, b"foo", "what comes behind the wanted bytes does not matter");
     }
 }

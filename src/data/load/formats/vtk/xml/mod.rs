@@ -1,11 +1,11 @@
-//! The XML form: `<VTKFile type="ImageData">`.
+//! VTK images in XML: `<VTKFile type="ImageData">`.
 //!
-//! Values are numbers in text, or bytes in base64 or as they are; those lie in their elements, or together at the end of
-//! the file. Several pieces, as programs that run on many machines write them, are not put together.
+//! Values are numbers as text, or bytes, either in base64 or raw; they are inside their elements, or appended at the
+//! end of the file. Images of several pieces, as parallel programs write them, are not assembled.
 
 mod base64;
 mod blocks;
-mod skeleton;
+mod markup;
 #[cfg(test)]
 mod tests;
 
@@ -14,84 +14,96 @@ use std::io::Read;
 use glam::{DMat3, DVec3};
 use roxmltree::Node;
 
-use super::super::number::Number;
-use super::super::reader::{Source, Start};
+use super::super::number::FileNumberType;
+use super::super::reader::{FileStart, VolumeSource};
 use super::super::text_numbers::TextNumbers;
-use super::super::voxels::Voxels;
+use super::super::voxels::ReadVoxels;
 use super::super::{Endian, LoadControl, LoadError};
 use super::RESAMPLE;
 use super::image::{
-    Array, Chosen, Grid, MOST_ARRAYS, MOST_COMPONENTS, broken, check_room, choose, content_from,
+    ChosenVtkArray, MAX_ARRAYS, MAX_COMPONENTS, VtkArray, VtkGrid, check_available, choose_array,
+    content_error, open_content_at,
 };
-use crate::data::attempt::{Attempt, human_bytes, quoted};
-use crate::data::{Volume, plain, xml};
-use base64::{Base64, most_bytes};
-use blocks::{Blocks, Compressor, Words, check_length};
-use skeleton::Skeleton;
+use crate::data::load_context::{LoadContext, human_bytes, quoted};
+use crate::data::{Volume, sanitised, xml};
+use base64::{Base64Reader, max_decoded_bytes};
+use blocks::{CompressedBlocks, Compressor, HeaderWords, check_length};
+use markup::VtkMarkup;
 
-/// Arrays with which VTK marks what is missing or doubled; nobody wants to see them.
-const MARKS: [&str; 2] = ["vtkGhostType", "vtkValidPointMask"];
+/// Arrays with which VTK marks missing or duplicate points; they are not offered.
+const GHOST_ARRAYS: [&str; 2] = ["vtkGhostType", "vtkValidPointMask"];
 
-/// Whether a file that begins like this is one of VTK's in XML.
-pub(super) fn is_xml(start: &Start) -> bool {
+/// Returns true if a file with this beginning is VTK XML.
+pub(super) fn is_xml(start: &FileStart) -> bool {
     const MARK: &[u8] = b"<VTKFile";
     let bytes = start.bytes();
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes).trim_ascii_start();
     bytes.starts_with(b"<") && bytes.windows(MARK.len()).any(|window| window == MARK)
 }
 
-/// How a file writes its values.
+/// Encoding of the values in a file.
 #[derive(Debug, Clone)]
-struct Style {
-    words: Words,
-    /// Compressor of what is not text; the name of one that is not read is refused only where it has packed something.
+struct VtkEncoding {
+    words: HeaderWords,
+    /// Compressor of binary values; an unsupported one, by its name, is an error only where an array uses it.
     compressor: Option<Result<Compressor, String>>,
-    /// Whether what is appended is base64.
+    /// True if appended data are in base64.
     appends_text: bool,
 }
 
-/// Where the values of an array are.
+/// Location and encoding of an array's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
-    /// Numbers in text, at a byte of the file and so many.
+enum XmlValueLocation {
+    /// Numbers as text: offset in the file and length, in bytes.
     Ascii(u64, u64),
-    /// Base64, likewise.
+    /// Base64: offset in the file and length, in bytes.
     Base64(u64, u64),
-    /// From a byte of what is appended on.
+    /// Appended data: offset within them, in bytes.
     Appended(u64),
 }
 
-pub(super) fn load(mut source: Source<'_>) -> Result<Volume, LoadError> {
-    let attempt = Attempt { what: "read the VTK image", path: source.path };
+pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the VTK image", path: source.path };
     let control = source.control;
-    let skeleton = Skeleton::read(attempt, &mut content_from(attempt, &mut source, 0)?, control)?;
+    let skeleton = VtkMarkup::read(attempt, &mut open_content_at(attempt, &mut source, 0)?, control)?;
     let document = xml::parse(&skeleton.markup)
-        .map_err(|error| attempt.bad_input("markup", error.to_string(), "copy the file again"))?;
+        .map_err(|error| attempt.bad_input_error("markup", error.to_string(), "copy the file again"))?;
     let root = document.root_element();
-    let piece = image(attempt, root)?;
+    let piece = find_piece(attempt, root)?;
     let grid = grid(attempt, piece)?;
-    let style = style(attempt, root)?;
+    let style = value_encoding(attempt, root)?;
     let arrays = arrays(attempt, piece, &grid)?;
-    let chosen = choose(attempt, &grid, arrays, source.options, source.control)?;
+    let chosen = choose_array(attempt, &grid, arrays, source.options, source.control)?;
     let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
     chosen.volume(attempt, &grid, voxels, "")
 }
 
-/// The piece of the image.
-fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Node<'a, 'input>, LoadError> {
+/// Finds the single piece of the image.
+fn find_piece<'a, 'input>(
+    attempt: LoadContext<'_>,
+    root: Node<'a, 'input>,
+) -> Result<Node<'a, 'input>, LoadError> {
     let kind = root.attribute("type").unwrap_or_default();
     if root.tag_name().name() != "VTKFile" {
-        return Err(attempt.bad_input("VTKFile", "its root is another element", "check the file's format"));
+        return Err(attempt.bad_input_error(
+            "VTKFile",
+            "its root is another element",
+            "check the file's format",
+        ));
     }
     if kind == "PImageData" {
-        return Err(attempt.bad_input(
+        return Err(attempt.bad_input_error(
             "type",
             "it only names the files of its pieces",
             "open one of those, or open it in ParaView and save it as .vti",
         ));
     }
     if kind != "ImageData" {
-        return Err(attempt.bad_input("type", format!("{} is no regular grid", quoted(kind)), RESAMPLE));
+        return Err(attempt.bad_input_error(
+            "type",
+            format!("{} is no regular grid", quoted(kind)),
+            RESAMPLE,
+        ));
     }
     let pieces: Vec<_> = root
         .children()
@@ -101,8 +113,8 @@ fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Nod
         .collect();
     match pieces[..] {
         [piece] => Ok(piece),
-        [] => Err(attempt.bad_input("Piece", "it has no piece with values", "write the file again")),
-        [..] => Err(attempt.bad_input(
+        [] => Err(attempt.bad_input_error("Piece", "it has no piece with values", "write the file again")),
+        [..] => Err(attempt.bad_input_error(
             "Piece",
             format!("it is in {} pieces, and one is read", pieces.len()),
             "open it in ParaView and save it as one .vti",
@@ -110,12 +122,12 @@ fn image<'a, 'input>(attempt: Attempt<'_>, root: Node<'a, 'input>) -> Result<Nod
     }
 }
 
-/// The grid of a piece: what it has of the whole image.
-fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
+/// Grid of a piece, which may be a part of the whole image.
+fn grid(attempt: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadError> {
     let image = piece.parent().unwrap_or(piece);
     let whole = image.attribute("WholeExtent");
     let wrong = |field: &str, text: &str, what: &str| {
-        attempt.bad_input(
+        attempt.bad_input_error(
             field,
             format!("{what} were expected, {} was found", quoted(text)),
             "correct the file",
@@ -124,7 +136,7 @@ fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
     let text = piece.attribute("Extent").or(whole).unwrap_or_default();
     let extent: Option<Vec<i64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     let mut grid = extent
-        .and_then(|extent| Grid::of_extent(extent.try_into().ok()?))
+        .and_then(|extent| VtkGrid::from_extent(extent.try_into().ok()?))
         .ok_or_else(|| wrong("Extent", text, "the first and last index along x, y and z"))?;
     if whole.is_some_and(|whole| !whole.split_whitespace().eq(text.split_whitespace())) {
         attempt.warn("its piece is not the whole image");
@@ -145,16 +157,16 @@ fn grid(attempt: Attempt<'_>, piece: Node<'_, '_>) -> Result<Grid, LoadError> {
         grid.has_spacing = true;
     }
     if let Some(direction) = numbers("Direction", 9)? {
-        // Row by row.
+        // The file has the matrix row by row.
         grid.direction = DMat3::from_cols_slice(&direction).transpose();
     }
     Ok(grid)
 }
 
-/// How the file writes its values, by the attributes of its root.
-fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
+/// Encoding of the values, by the attributes of the root element.
+fn value_encoding(attempt: LoadContext<'_>, root: Node<'_, '_>) -> Result<VtkEncoding, LoadError> {
     let refused = |field: &str, text: &str, known: &str, help: &str| {
-        Err(attempt.bad_input(field, format!("{known} is read, {} is not", quoted(text)), help))
+        Err(attempt.bad_input_error(field, format!("{known} is read, {} is not", quoted(text)), help))
     };
     let endian = match root.attribute("byte_order") {
         None | Some("LittleEndian") => Endian::Little,
@@ -180,66 +192,77 @@ fn style(attempt: Attempt<'_>, root: Node<'_, '_>) -> Result<Style, LoadError> {
         Some("base64") => true,
         Some(other) => return refused("AppendedData", other, "raw or base64", "write it again as raw"),
     };
-    Ok(Style { words: Words { are_long, endian }, compressor, appends_text })
+    Ok(VtkEncoding { words: HeaderWords { are_64_bit: are_long, endian }, compressor, appends_text })
 }
 
-/// The arrays of numbers that have a value for each point or cell.
-fn arrays(attempt: Attempt<'_>, piece: Node<'_, '_>, grid: &Grid) -> Result<Vec<Array<Place>>, LoadError> {
+/// Numeric arrays with a value for each point or cell.
+fn arrays(
+    attempt: LoadContext<'_>,
+    piece: Node<'_, '_>,
+    grid: &VtkGrid,
+) -> Result<Vec<VtkArray<XmlValueLocation>>, LoadError> {
     let mut found = Vec::new();
     for (group, of_cells) in [("PointData", false), ("CellData", true)] {
         let groups = piece.children().filter(|node| node.has_tag_name(group));
         let nodes = groups.flat_map(|node| node.children()).filter(|node| node.has_tag_name("DataArray"));
-        for node in nodes.take(MOST_ARRAYS) {
-            let name = plain(node.attribute("Name").unwrap_or_default().trim(), 80);
+        for node in nodes.take(MAX_ARRAYS) {
+            let name = sanitised(node.attribute("Name").unwrap_or_default().trim(), 80);
             let Some(number) = node.attribute("type").and_then(number) else {
                 let kind = quoted(node.attribute("type").unwrap_or_default());
                 attempt.warn(format_args!("the array {} of type {kind} is not read", quoted(&name)));
                 continue;
             };
             let text = node.attribute("NumberOfComponents").unwrap_or("1");
-            let components = text.parse().ok().filter(|count| (1..=MOST_COMPONENTS).contains(count));
+            let components = text.parse().ok().filter(|count| (1..=MAX_COMPONENTS).contains(count));
             let components = components.ok_or_else(|| {
                 let why =
-                    format!("a number from 1 to {MOST_COMPONENTS} was expected, {} was found", quoted(text));
-                attempt.bad_input("NumberOfComponents", why, "correct the file")
+                    format!("a number from 1 to {MAX_COMPONENTS} was expected, {} was found", quoted(text));
+                attempt.bad_input_error("NumberOfComponents", why, "correct the file")
             })?;
             let tuples = node.attribute("NumberOfTuples").and_then(|text| text.parse::<u64>().ok());
             if tuples.is_some_and(|tuples| tuples != grid.count(of_cells)) {
                 attempt.warn(format_args!("the array {} is not one of the grid's", quoted(&name)));
                 continue;
             }
-            let place = place(attempt, node)?;
-            // As VTK shows them when nothing else is said.
-            let is_color = number == Number::U8 && (3..=4).contains(&components);
-            found.push(Array { name, number, components, of_cells, is_color, place });
+            let place = value_location(attempt, node)?;
+            // VTK's default mapping: such arrays are colours.
+            let is_color = number == FileNumberType::U8 && (3..=4).contains(&components);
+            found.push(VtkArray {
+                name,
+                number,
+                components,
+                is_cell_data: of_cells,
+                is_color,
+                location: place,
+            });
         }
     }
-    if found.iter().any(|array| !MARKS.contains(&array.name.as_str())) {
-        found.retain(|array| !MARKS.contains(&array.name.as_str()));
+    if found.iter().any(|array| !GHOST_ARRAYS.contains(&array.name.as_str())) {
+        found.retain(|array| !GHOST_ARRAYS.contains(&array.name.as_str()));
     }
     Ok(found)
 }
 
-/// The number type that a word stands for.
-fn number(word: &str) -> Option<Number> {
+/// Parses the name of a number type.
+fn number(word: &str) -> Option<FileNumberType> {
     Some(match word {
-        "Int8" => Number::I8,
-        "UInt8" => Number::U8,
-        "Int16" => Number::I16,
-        "UInt16" => Number::U16,
-        "Int32" => Number::I32,
-        "UInt32" => Number::U32,
-        "Int64" => Number::I64,
-        "UInt64" => Number::U64,
-        "Float32" => Number::F32,
-        "Float64" => Number::F64,
+        "Int8" => FileNumberType::I8,
+        "UInt8" => FileNumberType::U8,
+        "Int16" => FileNumberType::I16,
+        "UInt16" => FileNumberType::U16,
+        "Int32" => FileNumberType::I32,
+        "UInt32" => FileNumberType::U32,
+        "Int64" => FileNumberType::I64,
+        "UInt64" => FileNumberType::U64,
+        "Float32" => FileNumberType::F32,
+        "Float64" => FileNumberType::F64,
         _ => return None,
     })
 }
 
-/// Where the values of an element are.
-fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
-    // Skeleton has left two numbers in place of text; there is none where the element is empty.
+/// Location of the values of an element.
+fn value_location(attempt: LoadContext<'_>, node: Node<'_, '_>) -> Result<XmlValueLocation, LoadError> {
+    // The skeleton has two numbers in place of text, and nothing for an empty element.
     let inline = || {
         let texts = node.children().filter_map(|child| child.text().filter(|_| child.is_text()));
         let mut places = texts.filter_map(|text| {
@@ -249,16 +272,16 @@ fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
         places.next().unwrap_or((0, 0))
     };
     match node.attribute("format").unwrap_or("ascii") {
-        "ascii" => Ok(inline()).map(|(start, length)| Place::Ascii(start, length)),
-        "binary" => Ok(inline()).map(|(start, length)| Place::Base64(start, length)),
+        "ascii" => Ok(inline()).map(|(start, length)| XmlValueLocation::Ascii(start, length)),
+        "binary" => Ok(inline()).map(|(start, length)| XmlValueLocation::Base64(start, length)),
         "appended" => {
             let text = node.attribute("offset").unwrap_or_default();
-            text.parse().map(Place::Appended).map_err(|_no_number| {
+            text.parse().map(XmlValueLocation::Appended).map_err(|_no_number| {
                 let why = format!("a number of bytes was expected, {} was found", quoted(text));
-                attempt.bad_input("offset", why, "write the file again")
+                attempt.bad_input_error("offset", why, "write the file again")
             })
         }
-        other => Err(attempt.bad_input(
+        other => Err(attempt.bad_input_error(
             "format",
             format!("ascii, binary or appended was expected, {} was found", quoted(other)),
             "write the file again",
@@ -266,43 +289,47 @@ fn place(attempt: Attempt<'_>, node: Node<'_, '_>) -> Result<Place, LoadError> {
     }
 }
 
-/// Reads the values of the array that was chosen.
+/// Reads the values of the chosen array.
 fn read(
-    attempt: Attempt<'_>,
-    source: &mut Source<'_>,
-    chosen: &Chosen<Place>,
-    style: Style,
+    attempt: LoadContext<'_>,
+    source: &mut VolumeSource<'_>,
+    chosen: &ChosenVtkArray<XmlValueLocation>,
+    style: VtkEncoding,
     appended: Option<u64>,
-) -> Result<Voxels, LoadError> {
+) -> Result<ReadVoxels, LoadError> {
     let (control, budget) = (source.control, source.options.memory_budget_bytes);
     let name = chosen.array.name.as_str();
-    match chosen.array.place {
-        Place::Ascii(start, length) => {
-            // A digit each and a space between.
-            check_room(attempt, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
-            let text = content_from(attempt, source, start)?.take(length);
+    match chosen.array.location {
+        XmlValueLocation::Ascii(start, length) => {
+            // At least a digit and a space each.
+            check_available(attempt, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
+            let text = open_content_at(attempt, source, start)?.take(length);
             let mut numbers = TextNumbers::new(text, chosen.array.number, chosen.numbers());
-            // Text has no byte order: the numbers were made little-endian.
+            // Text has no byte order: the adapter yields little-endian numbers.
             chosen.read(attempt, &mut numbers, Endian::Little, control)
         }
-        Place::Base64(start, length) => {
-            let text = content_from(attempt, source, start)?.take(length);
-            let room = most_bytes(length);
-            read_binary(attempt, Base64::new(text), chosen, style, Some(room), budget, control)
+        XmlValueLocation::Base64(start, length) => {
+            let text = open_content_at(attempt, source, start)?.take(length);
+            let room = max_decoded_bytes(length);
+            read_binary(attempt, Base64Reader::new(text), chosen, style, Some(room), budget, control)
         }
-        Place::Appended(offset) => {
+        XmlValueLocation::Appended(offset) => {
             let start = appended.and_then(|appended| appended.checked_add(offset)).ok_or_else(|| {
-                attempt.bad_input("AppendedData", "the appended data are missing", "copy the file again")
+                attempt.bad_input_error(
+                    "AppendedData",
+                    "the appended data are missing",
+                    "copy the file again",
+                )
             })?;
             let room = (!source.start.is_gzip()).then(|| source.input.len.saturating_sub(start));
-            let content = content_from(attempt, source, start)?;
+            let content = open_content_at(attempt, source, start)?;
             if style.appends_text {
                 read_binary(
                     attempt,
-                    Base64::new(content),
+                    Base64Reader::new(content),
                     chosen,
                     style,
-                    room.map(most_bytes),
+                    room.map(max_decoded_bytes),
                     budget,
                     control,
                 )
@@ -313,33 +340,33 @@ fn read(
     }
 }
 
-/// Reads values in binary, where the file has room for so many bytes of them. The volume and a block of it may need
-/// `budget_bytes`.
+/// Reads binary values; `room` is the number of bytes left in the file, and `budget_bytes` the limit for the volume
+/// and one block.
 fn read_binary(
-    attempt: Attempt<'_>,
+    attempt: LoadContext<'_>,
     mut reader: impl Read,
-    chosen: &Chosen<Place>,
-    style: Style,
+    chosen: &ChosenVtkArray<XmlValueLocation>,
+    style: VtkEncoding,
     room: Option<u64>,
     budget_bytes: u64,
     control: &LoadControl,
-) -> Result<Voxels, LoadError> {
-    let Style { words, compressor, .. } = style;
+) -> Result<ReadVoxels, LoadError> {
+    let VtkEncoding { words, compressor, .. } = style;
     let expected = chosen.stored_bytes();
     let compressor = compressor.transpose().map_err(|other| {
         let why = format!("vtkZLibDataCompressor or vtkLZ4DataCompressor is read, {} is not", quoted(&other));
-        attempt.bad_input("compressor", why, "write it again with one of those, or uncompressed")
+        attempt.bad_input_error("compressor", why, "write it again with one of those, or uncompressed")
     })?;
     let Some(compressor) = compressor else {
-        check_length(&mut reader, words, expected).map_err(|error| broken(attempt, error))?;
-        check_room(attempt, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;
+        check_length(&mut reader, words, expected).map_err(|error| content_error(attempt, error))?;
+        check_available(attempt, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;
         return chosen.read(attempt, &mut reader, words.endian, control);
     };
-    let blocks = Blocks::open(reader, words, compressor, expected, room);
-    let mut blocks = blocks.map_err(|error| broken(attempt, error))?;
+    let blocks = CompressedBlocks::open(reader, words, compressor, expected, room);
+    let mut blocks = blocks.map_err(|error| content_error(attempt, error))?;
     let needed = chosen.extent.bytes.saturating_add(blocks.needed_bytes());
     if needed > budget_bytes {
-        return Err(attempt.limit(
+        return Err(attempt.limit_error(
             &chosen.array.name,
             format!(
                 "the volume and a compressed block of it need {}, {} are allowed",

@@ -1,4 +1,4 @@
-//! Images in XML from the outside: what is read and what is refused.
+//! Tests that load VTK XML images through the public interface: supported and refused ones.
 
 use std::io::Write as _;
 
@@ -6,22 +6,22 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
 
-use crate::data::load::tests::shared::{self, assert_refused, zlib};
-use crate::data::load::{Choice, Dimension, Endian, LoadError, LoadErrorKind};
+use crate::data::load::tests::helpers::{self, assert_refused, zlib};
+use crate::data::load::{Endian, FileDimension, LoadError, LoadErrorKind, VolumeChoice};
 use crate::data::xml::tests::{many_attributes, nested_namespaces, slow_texts};
 use crate::data::{Samples, Volume};
 
 const VOXELS: [u8; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 
-fn load_bytes_as(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    shared::load_bytes("v.vti", bytes, choice)
+fn load_bytes_as(bytes: &[u8], choice: VolumeChoice) -> Result<Volume, LoadError> {
+    helpers::load_bytes("v.vti", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
-    load_bytes_as(bytes, Choice::default())
+    load_bytes_as(bytes, VolumeChoice::default())
 }
 
-/// A file of 2 x 2 x 2 points, with attributes of its root, its arrays and what follows the image.
+/// Builds a file of 2 x 2 x 2 points from attributes of the root, arrays, and content after the image.
 fn file(root: &str, arrays: &str, end: &[u8]) -> Vec<u8> {
     let head = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" {root}>\n<ImageData WholeExtent=\"0 1 0 1 0 1\" \
@@ -34,7 +34,7 @@ fn points(attributes: &str, text: &str) -> String {
     format!("<PointData><DataArray Name=\"a\" {attributes}>{text}</DataArray></PointData>")
 }
 
-/// A file of one array of bytes in text.
+/// Builds a file with one array of bytes as text.
 fn plain_file() -> String {
     let arrays = points("type=\"UInt8\" format=\"ascii\"", "1 2 3 4\n5 6 7 8");
     String::from_utf8(file("", &arrays, b"")).unwrap()
@@ -53,12 +53,12 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// A block of LZ4 with nothing but literals; of at most 14 bytes.
+/// Encodes at most 14 bytes as an LZ4 block of literals.
 fn lz4(bytes: &[u8]) -> Vec<u8> {
     [&[(bytes.len() as u8) << 4], bytes].concat()
 }
 
-/// Numbers of a header, of 32 or 64 bits.
+/// Encodes numbers of a header, of 32 or 64 bits.
 fn words(are_long: bool, endian: Endian, words: &[u64]) -> Vec<u8> {
     let bytes = |&word: &u64| match (are_long, endian) {
         (true, Endian::Big) => word.to_be_bytes().to_vec(),
@@ -69,7 +69,7 @@ fn words(are_long: bool, endian: Endian, words: &[u64]) -> Vec<u8> {
     words.iter().flat_map(bytes).collect()
 }
 
-/// The header and the data of values in blocks of `size` bytes.
+/// Packs bytes in blocks of `size` bytes; returns the header and the data.
 fn blocks(
     are_long: bool,
     endian: Endian,
@@ -158,10 +158,10 @@ fn the_grid_lies_where_the_file_says() {
         load_bytes(text.as_bytes()).unwrap().world_from_index()
     };
     assert_eq!(place("", "").translation, DVec3::new(1.0, 2.0, 3.0));
-    // What has index 0 is at the origin.
+    // The point with index 0 is at the origin.
     let shifted = place("0 1 0 1 0 1", "4 5 -2 -1 0 1");
     assert_eq!(shifted.translation, DVec3::new(3.0, 0.0, 3.0));
-    // Rows of the matrix are written one after the other.
+    // The matrix is written row by row.
     let turned = place("Origin=", "Direction=\"0 -1 0 1 0 0 0 0 1\" Origin=");
     assert_eq!(turned.matrix3.x_axis, DVec3::new(0.0, 0.5, 0.0));
     assert_eq!(turned.matrix3.y_axis, DVec3::new(-1.0, 0.0, 0.0));
@@ -204,7 +204,7 @@ fn one_of_several_arrays_is_chosen() {
         LoadErrorKind::BadInput,
         &["3 arrays", "--array", "0 \"wind & rain\" (2 x 2 x 2)", "2 \"c\" (1 x 1 x 1)"],
     );
-    let choose = |key: &str| Choice::default().with(Dimension::Array, key);
+    let choose = |key: &str| VolumeChoice::default().with_selected(FileDimension::Array, key);
     let first = load_bytes_as(&bytes, choose("0")).unwrap();
     assert_eq!((first.samples(), first.name()), (&Samples::U8(VOXELS.to_vec()), "v wind & rain"));
     let second = load_bytes_as(&bytes, choose("b")).unwrap();
@@ -217,7 +217,7 @@ fn several_components_make_one_value() {
         let numbers: Vec<_> = (0..8 * components).map(|at| (3 + at % components).to_string()).collect();
         let text = numbers.join(" ");
         let attributes = format!("type=\"{kind}\" NumberOfComponents=\"{components}\" format=\"ascii\"");
-        let choice = Choice { component, ..Choice::default() };
+        let choice = VolumeChoice { component, ..VolumeChoice::default() };
         load_bytes_as(&file("", &points(&attributes, &text), b""), choice)
     };
     assert_eq!(*with("Float32", 2, None).unwrap().samples(), Samples::F32(vec![5.0; 8]));
@@ -229,7 +229,7 @@ fn several_components_make_one_value() {
 }
 
 #[test]
-fn a_compressor_that_is_not_read_matters_where_it_has_packed_something() {
+fn unsupported_compressor_is_refused_where_used() {
     let root = "compressor=\"vtkLZMADataCompressor\"";
     let text = points("type=\"UInt8\" format=\"ascii\"", "1 2 3 4\n5 6 7 8");
     assert_eq!(*load_bytes(&file(root, &text, b"")).unwrap().samples(), Samples::U8(VOXELS.to_vec()));
@@ -276,7 +276,7 @@ fn what_cannot_be_read_is_named() {
 }
 
 #[test]
-fn lying_headers_are_refused() {
+fn inconsistent_headers_are_refused() {
     let appended = points("type=\"UInt8\" format=\"appended\" offset=\"0\"", "");
     let read = |root: &str, bytes: &[u8]| {
         let data = [b"<AppendedData encoding=\"raw\">_", bytes].concat();
@@ -332,7 +332,7 @@ fn blocks_are_counted_with_the_volume() {
         let (header, data) = blocks(false, Endian::Little, &vec![7; 600_000], size, zlib);
         let data = [b"<AppendedData encoding=\"raw\">_", header.as_slice(), &data].concat();
         let whole = file("compressor=\"vtkZLibDataCompressor\"", &appended, &data);
-        // Bytes of blocks may be no text.
+        // On bytes, since the blocks are not UTF-8.
         let at = |from: &[u8]| whole.windows(from.len()).position(|part| part == from).unwrap();
         let (extent, end) = (at(b"WholeExtent"), at(b"Origin"));
         let piece = at(b"<Piece Extent");
@@ -346,20 +346,20 @@ fn blocks_are_counted_with_the_volume() {
         load_bytes(&image.concat())
     };
     assert_eq!(*read(32 << 10).unwrap().samples(), Samples::U8(vec![7; 600_000]));
-    // Of the budget of 1 MiB 586 KiB are the volume.
+    // Of the budget of 1 MiB, the volume takes 586 KiB.
     assert_refused(read(600_000), LoadErrorKind::Limit, &["compressed block", "1.1 MiB", "smaller blocks"]);
 }
 
 #[test]
 fn xml_that_would_take_long_is_refused() {
-    // Alone, and inside an image that is whole otherwise.
+    // As the whole file, and inside an otherwise valid image.
     let both = |text: &str| {
         let arrays = points("type=\"UInt8\" format=\"ascii\"", "1 2 3 4 5 6 7 8") + text;
         [text.as_bytes().to_vec(), file("", &arrays, b"")]
     };
     for (_, text) in slow_texts("VTKFile") {
         for bytes in both(&text) {
-            // Deep elements and long marks are refused while the file is read.
+            // Deep nesting and long markup are refused while the file is scanned.
             let said = load_bytes(&bytes).unwrap_err().to_string();
             assert!(
                 ["1 MiB", "deep", "attributes and namespaces"].iter().any(|why| said.contains(why)),

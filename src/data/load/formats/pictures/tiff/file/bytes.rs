@@ -1,37 +1,37 @@
-//! The bytes of a TIFF file, by their places: numbers in its byte order.
+//! Random access to the bytes of a TIFF file, and numbers in its byte order.
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 
 use crate::data::load::Endian;
 
-/// Bytes that are read around a small piece: what belongs together lies together.
+/// Bytes that are read at a time around a small piece: related entries lie close together.
 const WINDOW_BYTES: u64 = 1 << 13;
 
-/// The content of a file, any part of it at a time.
-pub(in super::super) struct Bytes {
+/// Content of a file with random access through a small window.
+pub(crate) struct TiffBytes {
     file: File,
     len: u64,
-    pub(in super::super) endian: Endian,
+    pub(crate) endian: Endian,
     window: Vec<u8>,
     window_at: u64,
 }
 
-impl Bytes {
-    /// A file of so many bytes; little-endian until it is known better.
-    pub(in super::super) fn of(file: File, len: u64) -> Self {
+impl TiffBytes {
+    /// Wraps a file of `len` bytes; little-endian until the header has been read.
+    pub(crate) fn new(file: File, len: u64) -> Self {
         Self { file, len, endian: Endian::Little, window: Vec::new(), window_at: 0 }
     }
 
-    pub(in super::super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.len
     }
 
-    /// Fills `out` with what stands at a place.
+    /// Fills `out` with the bytes at offset `at`.
     ///
     /// # Errors
-    /// `UnexpectedEof` where the file has no such bytes; nothing is read then.
-    pub(in super::super) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
+    /// `UnexpectedEof` where the file is shorter; nothing is read then.
+    pub(crate) fn read(&mut self, at: u64, out: &mut [u8]) -> io::Result<()> {
         let wanted = out.len() as u64;
         if at.checked_add(wanted).is_none_or(|end| end > self.len) {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -52,17 +52,17 @@ impl Bytes {
         Ok(())
     }
 
-    /// A whole number of 1, 2, 4 or 8 bytes.
-    pub(in super::super) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
+    /// Reads an integer of 1, 2, 4 or 8 bytes.
+    pub(crate) fn number(&mut self, at: u64, bytes: usize) -> io::Result<u64> {
         let mut found = [0; 8];
         let found = &mut found[..bytes.min(8)];
         self.read(at, found)?;
-        Ok(whole(found, self.endian))
+        Ok(decode_integer(found, self.endian))
     }
 }
 
-/// A whole number of at most eight bytes.
-pub(in super::super) fn whole(bytes: &[u8], endian: Endian) -> u64 {
+/// Decodes an integer of at most eight bytes.
+pub(crate) fn decode_integer(bytes: &[u8], endian: Endian) -> u64 {
     let join = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
     match endian {
         Endian::Big => bytes.iter().fold(0, join),

@@ -1,18 +1,18 @@
-//! The compressions of TIFF: from the bytes of a strip or tile to those that were compressed.
+//! Decoders of the TIFF compression schemes, for the bytes of a strip or tile.
 
 use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 use weezl::{BitOrder, LzwStatus, decode};
 
-use super::jpeg::{self, Picture};
+use super::jpeg::{self, JpegPart};
 use super::zstd;
 use crate::data::load::LoadControl;
-use crate::data::load::reading::samples::{BLOCK_BYTES, Fault, fill};
+use crate::data::load::reading::samples::{BLOCK_BYTES, ReadFault, read_until_full};
 
-/// How the bytes of a part are compressed.
+/// Compression scheme of a strip or tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Codec {
+pub(super) enum TiffCodec {
     None,
     Lzw,
     Deflate,
@@ -21,9 +21,9 @@ pub(super) enum Codec {
     Jpeg,
 }
 
-impl Codec {
-    /// By the number that the tag "Compression" has.
-    pub(super) fn of(compression: u64) -> Option<Self> {
+impl TiffCodec {
+    /// Returns the scheme by its number in the tag "Compression".
+    pub(super) fn from_tag(compression: u64) -> Option<Self> {
         Some(match compression {
             1 => Self::None,
             5 => Self::Lzw,
@@ -31,59 +31,62 @@ impl Codec {
             8 | 32946 => Self::Deflate,
             32773 => Self::PackBits,
             50000 => Self::Zstd,
-            // With an older number where the picture is whole.
+            // 6 is the older number, which is supported where each picture is complete.
             6 | 7 => Self::Jpeg,
             _ => return None,
         })
     }
 
-    /// The most bytes that so many compressed ones can stand for.
-    pub(super) fn most(self, packed: u64) -> u64 {
+    /// Upper bound of the uncompressed size of `packed` bytes.
+    pub(super) fn max_expanded(self, packed: u64) -> u64 {
         let times = match self {
             Self::None => 1,
-            // A code of at least 9 bits stands for one of 4096 strings, each a byte longer than another.
+            // A code of at least 9 bits expands to one of 4096 strings, each one byte longer than another.
             Self::Lzw => 4096,
-            // 258 bytes by two codes of a bit each, as zlib's authors say: <https://zlib.net/zlib_tech.html>.
+            // 258 bytes from two codes of one bit each, after the authors of zlib: <https://zlib.net/zlib_tech.html>.
             Self::Deflate => 1032,
-            // 128 bytes by two.
+            // 128 bytes from two.
             Self::PackBits => 64,
-            // A block of 128 KiB of the same byte takes four (RFC 8878, 3.1.1.2).
+            // A block of 128 KiB of one repeated byte takes four bytes (RFC 8878, 3.1.1.2).
             Self::Zstd => 32 << 10,
-            // A block of 64 pixels takes a bit at least, and may stand for four times as many of each of three numbers, of
-            // which it is one of six.
+            // A block takes at least one bit. With 4:2:0 subsampling six blocks decode to 256 pixels of three
+            // components, 128 bytes per bit.
             Self::Jpeg => 1024,
         };
         packed.saturating_mul(times)
     }
 
-    /// Fills `out` as far as the compressed bytes go; how far that is. What would come after is not looked at. What the
-    /// page says of a `picture` counts where it is one.
+    /// Decompresses into `out` until it is full or the input ends; returns the number of bytes. Further input is
+    /// ignored. `picture` has the parameters of JPEG and Zstandard.
     pub(super) fn expand(
         self,
         packed: &[u8],
-        picture: Picture<'_>,
+        picture: JpegPart<'_>,
         out: &mut [u8],
         control: &LoadControl,
-    ) -> Result<usize, Fault> {
+    ) -> Result<usize, ReadFault> {
         match self {
-            Self::None => fill(&mut &packed[..], out, control),
+            Self::None => read_until_full(&mut &packed[..], out, control),
             Self::Lzw => expand_lzw(packed, out, control),
-            Self::Deflate => fill(&mut ZlibDecoder::new(packed), out, control),
-            Self::PackBits => fill(&mut PackBits { packed, left: 0, repeated: None }, out, control),
-            Self::Zstd => zstd::expand(packed, picture.whole, out, control),
+            Self::Deflate => read_until_full(&mut ZlibDecoder::new(packed), out, control),
+            Self::PackBits => {
+                read_until_full(&mut PackBits { packed, left: 0, repeated: None }, out, control)
+            }
+            Self::Zstd => zstd::expand(packed, picture.full_bytes, out, control),
             Self::Jpeg => jpeg::expand(picture, packed, out),
         }
     }
 }
 
-/// LZW as TIFF has it: the highest bits first, and codes that grow one early (TIFF 6.0, section 13).
-fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, Fault> {
+/// Decodes LZW in the TIFF variant: most significant bit first, with an early change of the code width (TIFF 6.0,
+/// section 13).
+fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Result<usize, ReadFault> {
     let mut decoder = decode::Configuration::with_tiff_size_switch(BitOrder::Msb, 8)
         .with_yield_on_full_buffer(true)
         .build();
     let mut filled = 0;
     while filled < out.len() {
-        control.check().map_err(Fault::Stopped)?;
+        control.check().map_err(ReadFault::Stopped)?;
         let end = out.len().min(filled + BLOCK_BYTES);
         let step = decoder.decode_bytes(packed, &mut out[filled..end]);
         packed = packed.get(step.consumed_in..).unwrap_or_default();
@@ -91,16 +94,16 @@ fn expand_lzw(mut packed: &[u8], out: &mut [u8], control: &LoadControl) -> Resul
         match step.status {
             Ok(LzwStatus::Ok) if step.consumed_in > 0 || step.consumed_out > 0 => {}
             Ok(_) => break,
-            Err(error) => return Err(Fault::Io(std::io::Error::other(error))),
+            Err(error) => return Err(ReadFault::Io(std::io::Error::other(error))),
         }
     }
     Ok(filled)
 }
 
-/// Runs of bytes (TIFF 6.0, section 9).
+/// `PackBits` decoder: run-length encoding of bytes (TIFF 6.0, section 9).
 struct PackBits<'a> {
     packed: &'a [u8],
-    /// Bytes of the run that are still to come.
+    /// Bytes of the current run that are still to be read.
     left: usize,
     repeated: Option<u8>,
 }
@@ -111,7 +114,7 @@ impl Read for PackBits<'_> {
             let Some((&head, rest)) = self.packed.split_first() else { return Ok(0) };
             self.packed = rest;
             match head as i8 {
-                // Says nothing.
+                // No operation.
                 -128 => {}
                 count @ 0.. => (self.left, self.repeated) = (count as usize + 1, None),
                 count => {
@@ -139,50 +142,55 @@ impl Read for PackBits<'_> {
 mod tests {
     use super::*;
 
-    fn expanded(codec: Codec, packed: &[u8], most: usize) -> Result<Vec<u8>, Fault> {
+    fn expanded(codec: TiffCodec, packed: &[u8], most: usize) -> Result<Vec<u8>, ReadFault> {
         let mut out = vec![0; most];
-        let count = codec.expand(packed, Picture::default(), &mut out, &LoadControl::new())?;
+        let count = codec.expand(packed, JpegPart::default(), &mut out, &LoadControl::new())?;
         out.truncate(count);
         Ok(out)
     }
 
     #[test]
     fn runs_are_repeated_and_others_taken() {
-        // The example of TIFF 6.0, page 42.
+        // Example of TIFF 6.0, page 42.
         let packed =
             [0xFE, 0xAA, 0x02, 0x80, 0x00, 0x2A, 0x80, 0xFD, 0xAA, 0x03, 0x80, 0x00, 0x2A, 0x22, 0xF7, 0xAA];
         let mut whole =
             vec![0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0x22];
         whole.extend([0xAA; 10]);
-        assert_eq!(expanded(Codec::PackBits, &packed, 100).unwrap(), whole);
-        assert_eq!(expanded(Codec::PackBits, &packed, 5).unwrap(), whole[..5]);
-        assert_eq!(expanded(Codec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
-        assert_eq!(expanded(Codec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed, 100).unwrap(), whole);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed, 5).unwrap(), whole[..5]);
+        assert_eq!(expanded(TiffCodec::PackBits, &packed[..4], 100).unwrap(), whole[..4], "cut off in a run");
+        assert_eq!(expanded(TiffCodec::PackBits, &[0xFE], 100).unwrap(), [0u8; 0]);
     }
 
     #[test]
-    fn what_cannot_be_in_so_few_bytes_is_known() {
+    fn expansion_is_bounded() {
         let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
         std::io::Write::write_all(&mut encoder, &vec![0; 1 << 22]).unwrap();
         let packed = encoder.finish().unwrap().len() as u64;
-        assert!(Codec::Deflate.most(packed) >= 1 << 22 && Codec::Deflate.most(packed) < 5 << 20);
-        assert_eq!(Codec::None.most(20), 20);
+        assert!(
+            TiffCodec::Deflate.max_expanded(packed) >= 1 << 22
+                && TiffCodec::Deflate.max_expanded(packed) < 5 << 20
+        );
+        assert_eq!(TiffCodec::None.max_expanded(20), 20);
     }
 
     #[test]
-    fn no_codec_gives_more_than_asked_for_and_all_bear_nonsense() {
+    fn codecs_are_bounded_and_survive_garbage() {
         let bytes: Vec<u8> = (0..4000u32).map(|at| (at * at % 251) as u8).collect();
         let mut lzw = weezl::encode::Encoder::with_tiff_size_switch(BitOrder::Msb, 8);
         let lzw = lzw.encode(&bytes).unwrap();
         let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
-        for (codec, packed) in [(Codec::None, bytes.clone()), (Codec::Lzw, lzw), (Codec::Zstd, zstd)] {
+        for (codec, packed) in
+            [(TiffCodec::None, bytes.clone()), (TiffCodec::Lzw, lzw), (TiffCodec::Zstd, zstd)]
+        {
             assert_eq!(expanded(codec, &packed, 4000).unwrap(), bytes, "{codec:?}");
             assert_eq!(expanded(codec, &packed, 70).unwrap(), bytes[..70], "{codec:?}");
             let rest = expanded(codec, &packed[..packed.len() / 2], 4000);
             assert!(rest.is_err() || rest.is_ok_and(|rest| rest.len() < 4000), "{codec:?}");
         }
-        for codec in [Codec::Lzw, Codec::Deflate, Codec::PackBits, Codec::Zstd] {
-            // An error or few bytes: both end.
+        for codec in [TiffCodec::Lzw, TiffCodec::Deflate, TiffCodec::PackBits, TiffCodec::Zstd] {
+            // An error, or few bytes: both terminate.
             let _either = expanded(codec, &bytes, 100_000);
             let _nothing = expanded(codec, &[], 10);
         }

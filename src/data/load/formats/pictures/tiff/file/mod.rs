@@ -1,4 +1,4 @@
-//! A TIFF file: its pages, and the numbers of each.
+//! TIFF file: its pages, and the decoding of their samples.
 
 pub(super) mod bytes;
 mod codec;
@@ -6,7 +6,7 @@ pub(super) mod directory;
 mod jpeg;
 pub(super) mod page;
 mod parts;
-mod unpack;
+mod predictor;
 mod zstd;
 
 use std::io;
@@ -14,135 +14,143 @@ use std::io;
 use bytemuck::allocation::try_zeroed_vec;
 use rayon::prelude::*;
 
-use super::fault::{HELP, unreadable};
-use crate::data::attempt::Attempt;
-use crate::data::load::reading::input::Input;
-use crate::data::load::reading::number::Number;
-use crate::data::load::reading::samples::Fault;
+use super::messages::{HELP, unreadable_error};
+use crate::data::load::reading::input::InputFile;
+use crate::data::load::reading::number::FileNumberType;
+use crate::data::load::reading::samples::ReadFault;
 use crate::data::load::{Endian, LoadControl, LoadError};
-use bytes::Bytes;
-use codec::Codec;
-use directory::{Directory, Entry, walk};
-use page::{Offsets, Page};
-use unpack::{restore, widen};
+use crate::data::load_context::LoadContext;
+use bytes::TiffBytes;
+use codec::TiffCodec;
+use directory::{TiffDirectory, TiffDirectoryEntry, for_each_directory};
+use page::{PartOffsets, TiffPage};
+use predictor::{undo_predictor, unpack_bits};
 
-/// Most strips or tiles of a page: those of 256 x 256 pixels are so many in a page of a quarter of a million squared.
-const MOST_PARTS: u64 = 1 << 20;
+/// Maximum number of strips or tiles of a page: tiles of 256 x 256 pixels reach it in a page of 262144 x 262144.
+const MAX_PARTS: u64 = 1 << 20;
 
-/// Tiles that show nothing may be the same bytes. As many bytes as this are read again, beyond those of the file.
-const MOST_SHARED_BYTES: u64 = 32 << 20;
+/// Maximum number of bytes that are read more than once: blank tiles may share the same bytes.
+const MAX_SHARED_BYTES: u64 = 32 << 20;
 
-/// Tables of JPEG: four for quantising and eight for codes have 2.7 KiB.
-const MOST_TABLES_BYTES: u64 = 64 << 10;
+/// Maximum size of JPEG tables: four quantisation and eight Huffman tables have 2.7 KiB.
+const MAX_TABLES_BYTES: u64 = 64 << 10;
 
-/// A file whose pages are known.
-pub(super) struct Tiff {
-    pub(super) bytes: Bytes,
-    /// All of them, in the order of the file.
-    pub(super) pages: Vec<Page>,
-    /// What is said of the first.
-    pub(super) first: Directory,
+/// TIFF file whose pages have been listed.
+pub(super) struct TiffFile {
+    pub(super) bytes: TiffBytes,
+    /// All pages in file order.
+    pub(super) pages: Vec<TiffPage>,
+    /// Directory of the first page.
+    pub(super) first: TiffDirectory,
 }
 
-/// The parts of a page as they lie in the file.
-pub(super) struct Packed {
-    page: Page,
+/// Strips or tiles of a page, compressed as in the file.
+pub(super) struct CompressedPage {
+    page: TiffPage,
     endian: Endian,
-    /// By sample, where each has its own; then by row and column of parts. An empty one was never written.
+    /// Compressed data by sample, where each sample has its own, then by row and column. Empty where a strip or tile
+    /// was never written.
     parts: Vec<Vec<u8>>,
     samples: usize,
-    /// What its pictures of JPEG share.
+    /// JPEG tables that the strips or tiles share.
     tables: Vec<u8>,
 }
 
-impl Tiff {
-    /// Goes through the pages of a file.
+impl TiffFile {
+    /// Reads the directories of all pages.
     ///
     /// # Errors
-    /// `BadInput` for what is no TIFF file, or a broken one.
-    pub(super) fn open(attempt: Attempt<'_>, input: Input, control: &LoadControl) -> Result<Self, LoadError> {
+    /// `BadInput` for a file that is not TIFF, or is broken.
+    pub(super) fn open(
+        attempt: LoadContext<'_>,
+        input: InputFile,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
         let len = input.len;
-        let mut bytes = Bytes::of(input.reader.into_inner(), len);
+        let mut bytes = TiffBytes::new(input.reader.into_inner(), len);
         let (mut pages, mut first) = (Vec::new(), None);
-        walk(attempt, &mut bytes, control, |bytes, directory| {
+        for_each_directory(attempt, &mut bytes, control, |bytes, directory| {
             let field = format!("page {}", pages.len());
-            pages.push(Page::of(bytes, &directory).map_err(|error| unreadable(attempt, &field, error))?);
+            pages.push(
+                TiffPage::parse(bytes, &directory)
+                    .map_err(|error| unreadable_error(attempt, &field, error))?,
+            );
             first.get_or_insert(directory);
             Ok(())
         })?;
         Ok(Self { bytes, pages, first: first.unwrap_or_default() })
     }
 
-    /// A number of the first page's directory.
-    pub(super) fn said(&mut self, tag: u16) -> Option<f64> {
-        self.first.get(tag)?.first(&mut self.bytes)
+    /// Number in an entry of the first page's directory.
+    pub(super) fn number_entry(&mut self, tag: u16) -> Option<f64> {
+        self.first.get(tag)?.first_number(&mut self.bytes)
     }
 
-    /// The text of an entry of the first page's directory, at most so many bytes of it.
-    pub(super) fn text(&mut self, tag: u16, most: u64) -> Option<String> {
+    /// Text in an entry of the first page's directory, at most `most` bytes of it.
+    pub(super) fn text_entry(&mut self, tag: u16, most: u64) -> Option<String> {
         self.first.get(tag)?.text(&mut self.bytes, most).ok()
     }
 
-    /// The text of an entry of any page, at most so many bytes of it.
-    pub(super) fn text_of(&mut self, entry: Entry, most: u64) -> Option<String> {
+    /// Text in an entry of any page, at most `most` bytes of it.
+    pub(super) fn text_of(&mut self, entry: TiffDirectoryEntry, most: u64) -> Option<String> {
         entry.text(&mut self.bytes, most).ok()
     }
 
-    /// Fetches the parts of a page: all, or those of one sample where each sample has its own.
+    /// Reads the strips or tiles of a page: all, or those of one sample where samples are separate.
     ///
     /// # Errors
-    /// As [`Self::check_room`]; `Limit` where the memory is not there.
+    /// As [`Self::check_parts`]; `Limit` where memory is exhausted.
     pub(super) fn fetch(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
-    ) -> Result<Packed, LoadError> {
+    ) -> Result<CompressedPage, LoadError> {
         let field = format!("page {number}");
-        let fault = |error| unreadable(attempt, &field, error);
-        let (page, places) = self.places(attempt, number, sample, control)?;
+        let fault = |error| unreadable_error(attempt, &field, error);
+        let (page, places) = self.part_locations(attempt, number, sample, control)?;
         let mut parts = Vec::new();
-        for Place { offset, count } in places {
+        for PartLocation { offset, count } in places {
             control.check()?;
-            let mut part = zeroed(attempt, &field, count)?;
+            let mut part = alloc_zeroed_bytes(attempt, &field, count)?;
             self.bytes.read(offset, &mut part).map_err(fault)?;
             parts.push(part);
         }
-        let tables = page.jpeg_tables.map(|entry| entry.raw(&mut self.bytes, MOST_TABLES_BYTES));
+        let tables = page.jpeg_tables.map(|entry| entry.raw(&mut self.bytes, MAX_TABLES_BYTES));
         let tables = tables.transpose().map_err(fault)?.unwrap_or_default();
         let samples = if page.is_planar { 1 } else { page.samples };
-        Ok(Packed { page, endian: self.bytes.endian, parts, samples, tables })
+        Ok(CompressedPage { page, endian: self.bytes.endian, parts, samples, tables })
     }
 
-    /// Checks that the file has room for the parts of a page, and they for its pixels.
+    /// Checks that the strips or tiles of a page lie within the file, and that they can hold its pixels.
     ///
     /// # Errors
-    /// `BadInput` where they are not in the file, too short, or not of a kind that is read.
-    pub(super) fn check_room(
+    /// `BadInput` where they do not, or where their encoding is not supported.
+    pub(super) fn check_parts(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        self.places(attempt, number, sample, control).map(drop)
+        self.part_locations(attempt, number, sample, control).map(drop)
     }
 
-    /// A page, and where the parts lie that [`Self::fetch`] fetches.
-    fn places(
+    /// Returns a page, and the locations of the strips or tiles that [`Self::fetch`] reads.
+    fn part_locations(
         &mut self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
-    ) -> Result<(Page, Vec<Place>), LoadError> {
+    ) -> Result<(TiffPage, Vec<PartLocation>), LoadError> {
         let field = format!("page {number}");
-        let fault = |error| unreadable(attempt, &field, error);
+        let fault = |error| unreadable_error(attempt, &field, error);
         let page = *self.pages.get(number).ok_or_else(|| {
-            attempt.bad_input(&field, format!("the file has only {} pages", self.pages.len()), HELP)
+            attempt.bad_input_error(&field, format!("the file has only {} pages", self.pages.len()), HELP)
         })?;
-        page.check(attempt, &field)?;
+        page.check_supported(attempt, &field)?;
         let [across, down] = page.grid();
         let per_sample = across.checked_mul(down).ok_or_else(|| fault(io::ErrorKind::InvalidData.into()))?;
         let samples = if page.is_planar { 1 } else { page.samples };
@@ -151,23 +159,23 @@ impl Tiff {
             (true, None) => 0..page.samples,
             (false, _) => 0..1,
         };
-        // Each part that is listed takes some bytes of the file, so that this is no more than the file is long.
+        // Each listed strip or tile takes some bytes of the file, so that the count is bounded by the file's length.
         let listed = match page.offsets {
-            Offsets::At(_) => 1,
-            Offsets::Listed(entry) => entry.count,
+            PartOffsets::At(_) => 1,
+            PartOffsets::Listed(entry) => entry.count,
         };
         let needed = per_sample.saturating_mul(wanted.end as u64);
         if needed > listed {
             let why = format!("{per_sample} strips or tiles are needed and {listed} are listed");
-            return Err(attempt.bad_input(&field, why, HELP));
+            return Err(attempt.bad_input_error(&field, why, HELP));
         }
-        if needed > MOST_PARTS {
-            let why = format!("it has {needed} strips or tiles, {MOST_PARTS} are allowed");
-            return Err(attempt.limit(&field, why, "save it with larger tiles"));
+        if needed > MAX_PARTS {
+            let why = format!("it has {needed} strips or tiles, {MAX_PARTS} are allowed");
+            return Err(attempt.limit_error(&field, why, "save it with larger tiles"));
         }
         let offsets = match page.offsets {
-            Offsets::At(at) => vec![at],
-            Offsets::Listed(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
+            PartOffsets::At(at) => vec![at],
+            PartOffsets::Listed(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
         };
         let counts = match page.counts {
             Some(entry) => entry.numbers(&mut self.bytes, needed).map_err(fault)?,
@@ -179,15 +187,15 @@ impl Tiff {
             control.check()?;
             // Never written: all 0, as other readers have it.
             if offset == 0 {
-                places.push(Place { offset, count: 0 });
+                places.push(PartLocation { offset, count: 0 });
                 continue;
             }
             let row = at as u64 % per_sample / across;
             let whole = page.part_bytes(samples, row);
             let count = match counts.get(at).copied() {
-                // Programs that write more than 4 GiB as one part cannot say so.
+                // Uncompressed strips over 4 GiB have a wrong count, since it is a 32-bit number.
                 _ if page.compression == 1 => whole,
-                // No compression makes things longer than this.
+                // No compression scheme expands data beyond this.
                 Some(count) => count.min(whole.saturating_mul(2).saturating_add(1 << 16)),
                 None => return Err(fault(io::ErrorKind::InvalidData.into())),
             };
@@ -195,67 +203,71 @@ impl Tiff {
                 return Err(fault(io::ErrorKind::UnexpectedEof.into()));
             }
             sum += count;
-            if sum > self.bytes.len().saturating_add(MOST_SHARED_BYTES) {
+            if sum > self.bytes.len().saturating_add(MAX_SHARED_BYTES) {
                 let why = "its strips or tiles are the same bytes over and over";
-                return Err(attempt.bad_input(&field, why, HELP));
+                return Err(attempt.bad_input_error(&field, why, HELP));
             }
-            let room = Codec::of(page.compression).map_or(0, |codec| codec.most(count));
+            let room = TiffCodec::from_tag(page.compression).map_or(0, |codec| codec.max_expanded(count));
             if room < whole && count > 0 {
                 let why =
                     format!("a strip or tile ends too early: {whole} bytes expected, room for {room} found");
-                return Err(attempt.bad_input(&field, why, HELP));
+                return Err(attempt.bad_input_error(&field, why, HELP));
             }
-            places.push(Place { offset, count });
+            places.push(PartLocation { offset, count });
         }
         Ok((page, places))
     }
 }
 
-/// Where a part lies in the file; of no bytes where it was never written.
-struct Place {
+/// Location of a strip or tile in the file; of no bytes where it was never written.
+struct PartLocation {
     offset: u64,
     count: u64,
 }
 
-/// So many bytes of zero, which take memory only as they are written: a page that holds less than it announces takes no
-/// more than it holds.
-pub(super) fn zeroed(attempt: Attempt<'_>, field: &str, count: u64) -> Result<Vec<u8>, LoadError> {
+/// Allocates `count` zero bytes, whose pages are committed only as they are written: a page with less data than it
+/// announces takes only the memory for those.
+pub(super) fn alloc_zeroed_bytes(
+    attempt: LoadContext<'_>,
+    field: &str,
+    count: u64,
+) -> Result<Vec<u8>, LoadError> {
     let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
         let why = format!("the memory for {count} bytes is not there");
-        attempt.limit(field, why, "close other programs or load a smaller volume")
+        attempt.limit_error(field, why, "close other programs or load a smaller volume")
     })
 }
 
-impl Packed {
-    /// Bytes of its parts.
+impl CompressedPage {
+    /// Compressed bytes of all strips or tiles.
     pub(super) fn len(&self) -> u64 {
         self.parts.iter().map(|part| part.len() as u64).sum()
     }
 
-    /// The numbers of the page, little-endian, those of a pixel beside each other.
+    /// Decodes the page to little-endian samples, interleaved by pixel.
     ///
     /// # Errors
-    /// `BadInput` where a part is broken or too short.
+    /// `BadInput` where a strip or tile is broken or too short.
     pub(super) fn unpack(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         number: usize,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
         let field = format!("page {number}");
         let page = &self.page;
         let [across, down] = page.grid().map(|count| count as usize);
-        let size = page.number().map_or(1, Number::bytes);
+        let size = page.number().map_or(1, FileNumberType::bytes);
         let planes = (self.parts.len() / (across * down).max(1)).max(1);
         let row_bytes = page.width as usize * self.samples * size;
         let bytes = (row_bytes as u64).saturating_mul(page.height).saturating_mul(planes as u64);
-        let mut all = zeroed(attempt, &field, bytes)?;
+        let mut all = alloc_zeroed_bytes(attempt, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
-            // Rows of parts on all cores.
+            // Rows of strips or tiles in parallel.
             let rows = plane
-                .par_chunks_mut(row_bytes.saturating_mul(page.part[1] as usize))
+                .par_chunks_mut(row_bytes.saturating_mul(page.part_size[1] as usize))
                 .zip(parts.par_chunks(across));
             rows.enumerate().try_for_each(|(row, (band, parts))| {
                 parts.iter().enumerate().try_for_each(|(column, part)| {
@@ -263,13 +275,13 @@ impl Packed {
                 })
             })?;
         }
-        Ok(if planes > 1 { woven(&all, planes, size) } else { all })
+        Ok(if planes > 1 { interleave_planes(&all, planes, size) } else { all })
     }
 
-    /// Puts what a part holds where it belongs among some rows.
+    /// Decodes a strip or tile into a band of rows of the page.
     fn unpack_part(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         field: &str,
         [column, row]: [usize; 2],
         packed: &[u8],
@@ -283,21 +295,21 @@ impl Packed {
         let page = &self.page;
         let packed_row = page.row_bytes(self.samples) as usize;
         let whole = page.part_bytes(self.samples, row as u64);
-        let size = page.number().map_or(1, Number::bytes);
+        let size = page.number().map_or(1, FileNumberType::bytes);
         let pixel = self.samples * size;
         let row_bytes = page.width as usize * pixel;
         let is_direct = !page.is_tiled && page.bits.is_multiple_of(8);
         if is_direct {
             self.expand(attempt, field, packed, band, control)?;
-            restore(page, self.endian, self.samples, packed_row, band);
+            undo_predictor(page, self.endian, self.samples, packed_row, band);
             return Ok(());
         }
-        let mut part = zeroed(attempt, field, whole)?;
+        let mut part = alloc_zeroed_bytes(attempt, field, whole)?;
         self.expand(attempt, field, packed, &mut part, control)?;
-        restore(page, self.endian, self.samples, packed_row, &mut part);
-        // What of a row lies within the page.
-        let first = column * page.part[0] as usize;
-        let pixels = (page.part[0] as usize).min(page.width as usize - first);
+        undo_predictor(page, self.endian, self.samples, packed_row, &mut part);
+        // Part of a row that lies within the page.
+        let first = column * page.part_size[0] as usize;
+        let pixels = (page.part_size[0] as usize).min(page.width as usize - first);
         let mut wide = Vec::new();
         for (target, packed) in band.chunks_exact_mut(row_bytes).zip(part.chunks_exact(packed_row)) {
             let target = &mut target[first * pixel..(first + pixels) * pixel];
@@ -305,7 +317,7 @@ impl Packed {
                 target.copy_from_slice(&packed[..pixels * pixel]);
             } else {
                 wide.clear();
-                widen(packed, page.bits, pixels * self.samples, &mut wide);
+                unpack_bits(packed, page.bits, pixels * self.samples, &mut wide);
                 target.copy_from_slice(&wide);
             }
         }
@@ -314,52 +326,52 @@ impl Packed {
 
     fn expand(
         &self,
-        attempt: Attempt<'_>,
+        attempt: LoadContext<'_>,
         field: &str,
         packed: &[u8],
         out: &mut [u8],
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        let Some(codec) = Codec::of(self.page.compression) else { return Ok(()) };
+        let Some(codec) = TiffCodec::from_tag(self.page.compression) else { return Ok(()) };
         let reversed: Vec<u8>;
-        let packed = if self.page.is_reversed {
+        let packed = if self.page.is_lsb_first {
             reversed = packed.iter().copied().map(u8::reverse_bits).collect();
             &reversed
         } else {
             packed
         };
         let wanted = out.len();
-        let picture = jpeg::Picture {
+        let picture = jpeg::JpegPart {
             tables: &self.tables,
-            size: self.page.part,
-            whole: self.page.row_bytes(self.samples).saturating_mul(self.page.part[1]) as usize,
+            size: self.page.part_size,
+            full_bytes: self.page.row_bytes(self.samples).saturating_mul(self.page.part_size[1]) as usize,
             samples: self.samples,
-            is_ybr: self.page.is_ybr && self.samples == 3,
+            is_ycbcr: self.page.is_ycbcr && self.samples == 3,
         };
         match codec.expand(packed, picture, out, control) {
             Ok(found) if found == wanted => Ok(()),
-            Ok(found) => Err(attempt.bad_input(
+            Ok(found) => Err(attempt.bad_input_error(
                 field,
                 format!("a strip or tile ends too early: {wanted} bytes expected, {found} found"),
                 HELP,
             )),
-            Err(Fault::Stopped(error)) => Err(error),
-            Err(Fault::Long) => {
+            Err(ReadFault::Stopped(error)) => Err(error),
+            Err(ReadFault::Long) => {
                 let why =
                     format!("a compressed strip or tile goes on beyond the {wanted} bytes of its pixels");
-                Err(attempt.bad_input(field, why, HELP))
+                Err(attempt.bad_input_error(field, why, HELP))
             }
-            Err(Fault::Io(error)) => {
+            Err(ReadFault::Io(error)) => {
                 let why = format!("a compressed strip or tile is broken: {error}");
-                Err(attempt.bad_input(field, crate::data::plain(&why, 200), HELP))
+                Err(attempt.bad_input_error(field, crate::data::sanitised(&why, 200), HELP))
             }
-            Err(_) => Err(attempt.bad_input(field, "a compressed strip or tile is broken", HELP)),
+            Err(_) => Err(attempt.bad_input_error(field, "a compressed strip or tile is broken", HELP)),
         }
     }
 }
 
-/// Numbers of several planes beside each other.
-fn woven(planes: &[u8], count: usize, size: usize) -> Vec<u8> {
+/// Interleaves the samples of several planes.
+fn interleave_planes(planes: &[u8], count: usize, size: usize) -> Vec<u8> {
     let plane = planes.len() / count;
     let mut woven = Vec::with_capacity(planes.len());
     for at in (0..plane).step_by(size) {

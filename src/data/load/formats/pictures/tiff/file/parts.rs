@@ -1,37 +1,37 @@
-//! The strips or tiles of a page: how many there are, how long each is, and whether they are of a kind that is read.
+//! Strips and tiles of a TIFF page: their number and lengths, and whether their encoding is supported.
 
-use super::super::fault::{HELP, compression_name};
-use super::codec::Codec;
-use super::page::{Meaning, Page};
-use crate::data::attempt::Attempt;
+use super::super::messages::{HELP, compression_name};
+use super::codec::TiffCodec;
+use super::page::{SampleMeaning, TiffPage};
 use crate::data::load::LoadError;
+use crate::data::load_context::LoadContext;
 
-/// A tile may be larger than its page by so much: pages are rounded up to whole tiles, of 256 x 256 pixels mostly.
-const MOST_TILE_EXCESS: u64 = 64 << 20;
+/// Maximum excess of a tile over its page, in bytes: pages are rounded up to whole tiles, mostly of 256 x 256 pixels.
+const MAX_TILE_EXCESS: u64 = 64 << 20;
 
-impl Page {
-    /// Parts across and down.
+impl TiffPage {
+    /// Number of strips or tiles across and down.
     pub(super) fn grid(&self) -> [u64; 2] {
-        [self.width.div_ceil(self.part[0]), self.height.div_ceil(self.part[1])]
+        [self.width.div_ceil(self.part_size[0]), self.height.div_ceil(self.part_size[1])]
     }
 
-    /// Bytes of a row of a part, as it is before it is compressed.
+    /// Bytes of a row of a strip or tile, uncompressed.
     pub(super) fn row_bytes(&self, samples: usize) -> u64 {
-        (u128::from(self.part[0]) * samples as u128 * u128::from(self.bits)).div_ceil(8) as u64
+        (u128::from(self.part_size[0]) * samples as u128 * u128::from(self.bits)).div_ceil(8) as u64
     }
 
-    /// Bytes of a part in a row of parts; the last strip may be shorter.
+    /// Uncompressed bytes of a strip or tile in row `row`; the last strip may be shorter.
     pub(super) fn part_bytes(&self, samples: usize, row: u64) -> u64 {
-        let left = self.height - row * self.part[1];
-        let rows = if self.is_tiled { self.part[1] } else { self.part[1].min(left) };
+        let left = self.height - row * self.part_size[1];
+        let rows = if self.is_tiled { self.part_size[1] } else { self.part_size[1].min(left) };
         self.row_bytes(samples).saturating_mul(rows)
     }
 
-    /// Whether it is of a kind that is read, and its sizes can be.
-    pub(in super::super) fn check(&self, attempt: Attempt<'_>, field: &str) -> Result<(), LoadError> {
-        let refuse = |why: String, help: &str| Err(attempt.bad_input(field, why, help));
+    /// Checks that the page's encoding is supported and its sizes are plausible.
+    pub(crate) fn check_supported(&self, attempt: LoadContext<'_>, field: &str) -> Result<(), LoadError> {
+        let refuse = |why: String, help: &str| Err(attempt.bad_input_error(field, why, help));
         let bits = self.bits;
-        if let Meaning::Foreign(photometric) = self.meaning {
+        if let SampleMeaning::Unsupported(photometric) = self.meaning {
             let kind = match photometric {
                 4 => "a mask",
                 5 => "CMYK",
@@ -57,14 +57,14 @@ impl Page {
                 "save it with unsigned or signed numbers of 8, 16 or 32 bits, or floating point of 32",
             );
         }
-        if Codec::of(self.compression).is_none() {
+        if TiffCodec::from_tag(self.compression).is_none() {
             let name = compression_name(self.compression);
             return refuse(
                 format!("it is compressed {name} (number {}), which is not read", self.compression),
                 "save it uncompressed, or with LZW, Deflate, PackBits or Zstandard",
             );
         }
-        if Codec::of(self.compression) == Some(Codec::Jpeg) && (bits != 8 || self.format == 2) {
+        if TiffCodec::from_tag(self.compression) == Some(TiffCodec::Jpeg) && (bits != 8 || self.format == 2) {
             return refuse(
                 format!("JPEG is read where numbers have 8 bits and no sign, they have {bits}"),
                 "save it uncompressed, or with LZW, Deflate, PackBits or Zstandard",
@@ -86,8 +86,11 @@ impl Page {
         let part = self.part_bytes(samples, 0);
         // Unpacked numbers are at least as long as packed ones.
         match self.bytes() {
-            Some(whole) if part <= whole.saturating_add(MOST_TILE_EXCESS) => Ok(()),
-            _ => refuse(format!("tiles of {} x {} pixels cannot be meant", self.part[0], self.part[1]), HELP),
+            Some(whole) if part <= whole.saturating_add(MAX_TILE_EXCESS) => Ok(()),
+            _ => refuse(
+                format!("tiles of {} x {} pixels cannot be meant", self.part_size[0], self.part_size[1]),
+                HELP,
+            ),
         }
     }
 }

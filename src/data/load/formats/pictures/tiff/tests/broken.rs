@@ -1,17 +1,17 @@
-//! Files that are cut off, that lie, or that are of kinds that are not read.
+//! Tests of TIFF files that are truncated, inconsistent, or of unsupported kinds.
 
-use super::writer::{LITTLE, LONG, Leaf, SHORT, Writer};
+use super::writer::{LITTLE, LONG, SHORT, TiffLeaf, TiffWriter};
 use super::{assert_refused, load_bytes};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 use crate::data::load::{Endian, LoadControl, LoadErrorKind, LoadOptions, load};
 
-fn leaf() -> Leaf {
+fn leaf() -> TiffLeaf {
     LITTLE.leaf([2, 2], 8, &[1, 2, 3, 4])
 }
 
 #[test]
 fn files_that_end_anywhere_are_refused() {
-    for writer in [LITTLE, Writer { endian: Endian::Big, is_big: true }] {
+    for writer in [LITTLE, TiffWriter { endian: Endian::Big, is_big: true }] {
         let page = writer.leaf([2, 2], 8, &[1, 2, 3, 4]);
         let whole = writer.file(&[page.clone().with_text(tag::DESCRIPTION, "some words"), page]);
         load_bytes(&whole).unwrap();
@@ -102,7 +102,7 @@ fn a_part_that_was_never_written_is_empty() {
 
 #[test]
 fn the_same_bytes_over_and_over_are_no_strips() {
-    // 4 MiB that each of 64 strips claims: 256 MiB, of a page of 64 MiB.
+    // 4 MiB that all of 64 strips share: 128 MiB to read, for a page of 64 MiB.
     let bytes = vec![0x55; 4 << 20];
     let file = {
         let leaf = LITTLE.leaf([1 << 20, 64], 8, &bytes).with(tag::COMPRESSION, SHORT, &[8]);

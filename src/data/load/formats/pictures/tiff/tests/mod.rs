@@ -1,4 +1,4 @@
-//! TIFF files from the outside: what is read and what is refused.
+//! Tests that load TIFF files through the public interface: supported and refused ones.
 
 mod broken;
 mod numbers;
@@ -7,17 +7,17 @@ mod shaped;
 mod stacks;
 mod writer;
 
-use crate::data::load::tests::shared::{self, assert_refused, load_path as load_with};
-use crate::data::load::{Choice, LoadError};
+use crate::data::load::tests::helpers::{self, assert_refused, load_path as load_with};
+use crate::data::load::{LoadError, VolumeChoice};
 use crate::data::{Samples, Volume};
 
-fn load_chosen(bytes: &[u8], choice: Choice) -> Result<Volume, LoadError> {
-    // Without its ending: it is told by how it begins.
-    shared::load_bytes("stack.bin", bytes, choice)
+fn load_chosen(bytes: &[u8], choice: VolumeChoice) -> Result<Volume, LoadError> {
+    // Without its extension, so that it is detected by its first bytes.
+    helpers::load_bytes("stack.bin", bytes, choice)
 }
 
 fn load_bytes(bytes: &[u8]) -> Result<Volume, LoadError> {
-    load_chosen(bytes, Choice::default())
+    load_chosen(bytes, VolumeChoice::default())
 }
 
 #[track_caller]

@@ -1,21 +1,21 @@
-//! Numbers of all types, however they are stored.
+//! Tests of all number types, storage layouts and compression schemes.
 
 use std::io::Write as _;
 
-use super::writer::{LITTLE, Leaf, SHORT, Writer};
+use super::writer::{LITTLE, SHORT, TiffLeaf, TiffWriter};
 use super::{assert_refused, load_bytes, load_chosen, samples_of};
 use crate::data::Samples;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Choice, Endian, LoadErrorKind};
+use crate::data::load::{Endian, LoadErrorKind, VolumeChoice};
 
-const WRITERS: [Writer; 4] = [
+const WRITERS: [TiffWriter; 4] = [
     LITTLE,
-    Writer { endian: Endian::Big, is_big: false },
-    Writer { endian: Endian::Little, is_big: true },
-    Writer { endian: Endian::Big, is_big: true },
+    TiffWriter { endian: Endian::Big, is_big: false },
+    TiffWriter { endian: Endian::Little, is_big: true },
+    TiffWriter { endian: Endian::Big, is_big: true },
 ];
 
-/// Twelve pixels, 4 x 3, in the order of a writer.
+/// Encodes twelve pixels, 4 x 3, in the byte order of a writer.
 macro_rules! pixels {
     ($writer:expr, $values:expr) => {
         $values
@@ -57,7 +57,7 @@ fn all_types_in_both_orders_and_sizes_of_places() {
     }
 }
 
-fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
+fn compress(compression: u64, bytes: &[u8]) -> Vec<u8> {
     match compression {
         5 => {
             let mut encoder = weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8);
@@ -74,8 +74,8 @@ fn packed(compression: u64, bytes: &[u8]) -> Vec<u8> {
     }
 }
 
-/// Rows of 16-bit numbers as differences, in the order of a writer.
-fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
+/// Encodes rows of 16-bit numbers with horizontal differencing, in the byte order of a writer.
+fn differences(writer: TiffWriter, rows: &[u16], width: usize, samples: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width * samples) {
         let at = |at: usize| row[at].wrapping_sub(if at < samples { 0 } else { row[at - samples] });
@@ -85,8 +85,8 @@ fn differences(writer: Writer, rows: &[u16], width: usize, samples: usize) -> Ve
     out
 }
 
-/// Rows of floating point numbers as bytes by weight, as differences.
-fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
+/// Encodes rows of floating-point numbers with the floating-point predictor.
+fn float_differences(rows: &[f32], width: usize) -> Vec<u8> {
     let mut out = Vec::new();
     for row in rows.chunks(width) {
         let bytes: Vec<u8> =
@@ -100,7 +100,7 @@ fn by_weight(rows: &[f32], width: usize) -> Vec<u8> {
 
 #[test]
 fn all_compressions_with_strips_and_tiles_and_predictors() {
-    // 5 x 4 pixels: the last strip of 3 rows has one, tiles of 4 x 3 reach beyond on two sides.
+    // 5 x 4 pixels: the last of the strips of 3 rows has one row, tiles of 4 x 3 reach beyond the page on two sides.
     let value = |x: u16, y: u16| 40_000u16.wrapping_add(x * 1_003).wrapping_add(y * 20_011);
     let all: Vec<u16> = (0..20).map(|at| value(at % 5, at / 5)).collect();
     let tile = |x0: u16, y0: u16| -> Vec<u16> {
@@ -118,7 +118,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
                     } else {
                         pixels!(writer, values)
                     };
-                    packed(compression, &bytes)
+                    compress(compression, &bytes)
                 };
                 let leaf = || {
                     let leaf = writer.leaf([5, 4], 16, &[]);
@@ -137,7 +137,7 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
             }
         }
         let floats: Vec<f32> = (0..6).map(|at| at as f32 * -0.37).collect();
-        let leaf = writer.leaf([3, 2], 32, &packed(8, &by_weight(&floats, 3)));
+        let leaf = writer.leaf([3, 2], 32, &compress(8, &float_differences(&floats, 3)));
         let leaf = leaf.with(tag::SAMPLE_FORMAT, SHORT, &[3]).with(tag::COMPRESSION, SHORT, &[8]).with(
             tag::PREDICTOR,
             SHORT,
@@ -147,8 +147,8 @@ fn all_compressions_with_strips_and_tiles_and_predictors() {
     }
 }
 
-/// Two pixels of red, green, blue.
-fn colors(photometric: u64, samples: u64) -> Leaf {
+/// Page of two RGB pixels.
+fn colors(photometric: u64, samples: u64) -> TiffLeaf {
     LITTLE
         .leaf([2, 1], 8, &[255, 0, 0, 10, 20, 30])
         .with(tag::BITS, SHORT, &[8; 3])
@@ -165,18 +165,18 @@ fn colours_are_luminance_or_a_component() {
         let volume = load_bytes(&file).unwrap();
         assert_eq!(*volume.samples(), Samples::U8(vec![54, 19]));
         assert!(volume.remarks().iter().any(|remark| remark.contains("luminance")));
-        let choice = Choice { component: Some(2), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(2), ..VolumeChoice::default() };
         let volume = load_chosen(&file, choice).unwrap();
         assert_eq!((volume.samples(), volume.remarks().len()), (&Samples::U8(vec![0, 30]), 0));
-        let choice = Choice { component: Some(3), ..Choice::default() };
+        let choice = VolumeChoice { component: Some(3), ..VolumeChoice::default() };
         assert_refused(load_chosen(&file, choice), LoadErrorKind::BadInput, &["component 3", "its 3"]);
     }
-    // Numbers that are no colours are channels.
+    // Several samples without a colour space are channels.
     let file = LITTLE.file(&[colors(1, 3)]);
     assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["3 channels", "--channel"]);
-    let choice = Choice { channel: Some(1), ..Choice::default() };
+    let choice = VolumeChoice { channel: Some(1), ..VolumeChoice::default() };
     assert_eq!(*load_chosen(&file, choice).unwrap().samples(), Samples::U8(vec![0, 20]));
-    // Grey and its opacity.
+    // Grey with opacity.
     let leaf = LITTLE.leaf([2, 1], 8, &[7, 255, 9, 0]).with(tag::SAMPLES, SHORT, &[2]);
     let file = LITTLE.file(&[leaf.with(tag::EXTRA_SAMPLES, SHORT, &[2])]);
     assert_eq!(samples_of(&file), Samples::U8(vec![7, 9]));
@@ -212,7 +212,7 @@ fn numbers_of_few_bits_are_widened() {
 
 #[test]
 fn labels_have_the_colours_of_their_table() {
-    // Red, green and blue of 256 numbers.
+    // Red, green and blue of 256 entries.
     let table: Vec<u64> = (0..768).map(|at| if at < 256 { 257 * at } else { 0 }).collect();
     let read = |number: fn(usize, usize) -> u8| {
         let pixels: Vec<u8> = (0..64 * 64).map(|at| number(at % 64, at / 64)).collect();
@@ -221,10 +221,10 @@ fn labels_have_the_colours_of_their_table() {
     };
     let labels = read(|x, y| [0, 90, 20, 60, 120, 30, 0, 150, 10][x / 22 + 3 * (y / 22)]);
     assert!(labels.remarks()[0].contains("table of colours"));
-    let found = &labels.hints().labels;
+    let found = &labels.metadata().labels;
     assert_eq!(found.get(90).and_then(|label| label.color), Some([90.0 / 255.0, 0.0, 0.0]));
     assert_eq!(found.get(91), None, "no voxel has it");
-    // What is no label map has numbers alone.
+    // An image that is not a label map keeps its numbers only.
     let smooth = read(|x, y| (x * 2 + y) as u8);
-    assert!(smooth.hints().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
+    assert!(smooth.metadata().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
 }

@@ -1,18 +1,18 @@
-//! OME-TIFF: which page is which slice, and how large voxels are.
+//! Tests of OME-TIFF: the order of pages, and the size of voxels.
 
-use super::writer::{LITTLE, Leaf};
+use super::writer::{LITTLE, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen, load_with};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 use crate::data::xml::tests::slow_texts;
 use crate::data::{Modality, Volume};
 
-fn page(value: u8) -> Leaf {
+fn page(value: u8) -> TiffLeaf {
     LITTLE.leaf([2, 1], 8, &[value, value])
 }
 
 fn file(xml: &str, count: u8) -> Vec<u8> {
-    let pages: Vec<Leaf> = (0..count)
+    let pages: Vec<TiffLeaf> = (0..count)
         .map(|at| if at == 0 { page(0).with_text(tag::DESCRIPTION, xml) } else { page(at) })
         .collect();
     LITTLE.file(&pages)
@@ -48,7 +48,7 @@ fn pages_are_in_the_order_that_is_said() {
         let pixels = format!("DimensionOrder=\"{order}\" SizeZ=\"3\" SizeC=\"2\" SizeT=\"2\"");
         for data in ["", "<TiffData/>", "<TiffData IFD=\"0\" PlaneCount=\"12\"/>"] {
             let bytes = file(&document(&image("a", &pixels, data)), 12);
-            let choice = Choice { channel: Some(1), frame: Some(1), ..Choice::default() };
+            let choice = VolumeChoice { channel: Some(1), frame: Some(1), ..VolumeChoice::default() };
             assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), expected, "{order} {data}");
         }
     }
@@ -65,14 +65,14 @@ fn sizes_channels_and_light_are_understood() {
         "<Channel ID=\"c0\" Name=\"DAPI\" EmissionWavelength=\"460\"/><Channel ID=\"c1\" Name=\"GFP\"/>";
     let bytes = file(&document(&image("cells", pixels, channels)), 4);
     assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["0 \"DAPI\" (2 x 1 x 2)", "1 \"GFP\""]);
-    let volume = load_chosen(&bytes, Choice { channel: Some(1), ..Choice::default() }).unwrap();
+    let volume = load_chosen(&bytes, VolumeChoice { channel: Some(1), ..VolumeChoice::default() }).unwrap();
     assert_eq!((firsts(&volume), volume.name()), (vec![2.0, 3.0], "cells"));
     assert!((volume.spacing_mm() - glam::DVec3::new(0.5e-3, 0.5e-3, 2e-3)).length() < 1e-12);
-    assert_eq!(volume.hints().modality, Modality::LightMicroscopy);
-    assert_eq!(volume.hints().acquisition(), Some("GFP"));
+    assert_eq!(volume.metadata().modality, Modality::LightMicroscopy);
+    assert_eq!(volume.metadata().acquisition(), Some("GFP"));
     let flat = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"1\" PhysicalSizeY=\"1\"";
     let volume = load_bytes(&file(&document(&image("", flat, "")), 2)).unwrap();
-    assert!(volume.has_unknown_scale() && volume.hints().is_empty() && volume.name() == "stack");
+    assert!(volume.has_unknown_scale() && volume.metadata().is_empty() && volume.name() == "stack");
     assert!(volume.remarks().is_empty());
     let wrong = format!("{flat} PhysicalSizeZ=\"-2\"");
     let volume = load_bytes(&file(&document(&image("", &wrong, "")), 2)).unwrap();
@@ -87,7 +87,7 @@ fn several_images_are_series() {
     let bytes = file(&document(&(first + &second)), 5);
     assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["2 series", "\"two\" (2 x 1 x 3)"]);
     for key in ["1", "two"] {
-        let choice = Choice { series: Some(key.to_owned()), ..Choice::default() };
+        let choice = VolumeChoice { series: Some(key.to_owned()), ..VolumeChoice::default() };
         assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [2.0, 3.0, 4.0]);
     }
 }
@@ -111,27 +111,31 @@ fn pages_may_lie_in_files_beside() {
         std::fs::write(folder.path().join(name), LITTLE.file(&[page(30), page(31), page(32)])).unwrap();
     }
     write(&set("c.tif"));
-    assert_eq!(firsts(&load_with(&path, Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
-    // The folder says the same.
-    assert_eq!(firsts(&load_with(folder.path(), Choice::default()).unwrap()), [0.0, 31.0, 32.0]);
+    assert_eq!(firsts(&load_with(&path, VolumeChoice::default()).unwrap()), [0.0, 31.0, 32.0]);
+    // Opening the folder gives the same volume.
+    assert_eq!(firsts(&load_with(folder.path(), VolumeChoice::default()).unwrap()), [0.0, 31.0, 32.0]);
     write(&set("missing.tif"));
-    let volume = load_with(&path, Choice::default()).unwrap();
+    let volume = load_with(&path, VolumeChoice::default()).unwrap();
     assert_eq!(firsts(&volume), [0.0, 31.0], "what is there is shown");
     let remarks = volume.remarks().join("; ");
     assert!(remarks.contains("3 slices are said, and there are pages for the first 2"), "{remarks}");
     assert!(remarks.contains("\"missing.tif\" is not there"), "{remarks}");
     write(&set("../c.tif"));
-    assert_refused(load_with(&path, Choice::default()), LoadErrorKind::BadInput, &["../c.tif", "FileName"]);
-    // XML in a file of its own.
+    assert_refused(
+        load_with(&path, VolumeChoice::default()),
+        LoadErrorKind::BadInput,
+        &["../c.tif", "FileName"],
+    );
+    // XML in a companion file.
     std::fs::write(folder.path().join("set.companion.ome"), set("c.tif")).unwrap();
     write(
         "<?xml version=\"1.0\"?><OME UUID=\"urn:uuid:own\"><BinaryOnly MetadataFile=\"set.companion.ome\"/></OME>",
     );
-    let of_tiff = load_with(&path, Choice::default()).unwrap();
+    let of_tiff = load_with(&path, VolumeChoice::default()).unwrap();
     assert_eq!(firsts(&of_tiff), [0.0, 31.0, 32.0]);
-    // Opened itself.
+    // The companion file itself is opened.
     let companion = folder.path().join("set.companion.ome");
-    let of_xml = load_with(&companion, Choice::default()).unwrap();
+    let of_xml = load_with(&companion, VolumeChoice::default()).unwrap();
     assert_eq!(firsts(&of_xml), [31.0, 32.0], "the file that was renamed is not known");
 }
 
@@ -155,22 +159,22 @@ fn xml_beside_its_files_is_opened_as_they_are() {
         std::fs::write(tiff(z), LITTLE.file(&[page(10 * z as u8).with_text(tag::DESCRIPTION, &xml)]))
             .unwrap();
     }
-    let of_tiff = load_with(&tiff(1), Choice::default()).unwrap();
+    let of_tiff = load_with(&tiff(1), VolumeChoice::default()).unwrap();
     for path in [companion.as_path(), folder.path()] {
-        let volume = load_with(path, Choice::default()).unwrap();
+        let volume = load_with(path, VolumeChoice::default()).unwrap();
         assert_eq!(firsts(&volume), [0.0, 10.0, 20.0]);
         assert_eq!(volume.spacing_mm(), of_tiff.spacing_mm());
     }
     // Without the first file, and without any.
     std::fs::remove_file(tiff(0)).unwrap();
-    let volume = load_with(&companion, Choice::default()).unwrap();
+    let volume = load_with(&companion, VolumeChoice::default()).unwrap();
     assert_eq!(firsts(&volume), [10.0, 20.0]);
     assert!(volume.remarks().join("; ").contains("pages for 1 to 2 of them"), "{:?}", volume.remarks());
     for z in 1..3 {
         std::fs::remove_file(tiff(z)).unwrap();
     }
     assert_refused(
-        load_with(&companion, Choice::default()),
+        load_with(&companion, VolumeChoice::default()),
         LoadErrorKind::Io,
         &["no such file", "p0.ome.tif"],
     );
@@ -181,7 +185,7 @@ fn xml_beside_its_files_is_opened_as_they_are() {
         (xml[..xml.len() / 2].to_owned(), LoadErrorKind::BadInput, "it is no XML"),
     ] {
         std::fs::write(&companion, xml).unwrap();
-        assert_refused(load_with(&companion, Choice::default()), kind, &[words]);
+        assert_refused(load_with(&companion, VolumeChoice::default()), kind, &[words]);
     }
 }
 
@@ -194,32 +198,32 @@ fn recordings_that_stopped_show_what_is_there() {
         assert_eq!(firsts(&volume), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "{data}");
         assert!(volume.remarks()[0].contains("10 slices are said, and there are pages for the first 6"));
     }
-    // In the second of four times: two are offered, and the second is short.
+    // Stopped in the second of four time steps: two are offered, and the second is short.
     let stopped = file(&document(&image("a", &pixels(3, 1, 4), "")), 5);
     assert_refused(load_bytes(&stopped), LoadErrorKind::BadInput, &["2 time steps"]);
-    let second = load_chosen(&stopped, Choice { frame: Some(1), ..Choice::default() }).unwrap();
+    let second = load_chosen(&stopped, VolumeChoice { frame: Some(1), ..VolumeChoice::default() }).unwrap();
     assert_eq!(firsts(&second), [3.0, 4.0]);
     let remarks = second.remarks().join("; ");
     assert!(remarks.contains("4 time steps are said, and there are pages for the first 2"), "{remarks}");
     assert_refused(
-        load_chosen(&stopped, Choice { frame: Some(3), ..Choice::default() }),
+        load_chosen(&stopped, VolumeChoice { frame: Some(3), ..VolumeChoice::default() }),
         LoadErrorKind::BadInput,
         &["\"3\" is none of its 2 time steps"],
     );
-    // Of one slice over time what was recorded is its depth.
+    // For one slice over time, the recorded steps are its depth.
     let times = load_bytes(&file(&document(&image("a", &pixels(1, 1, 9), "")), 4)).unwrap();
     assert_eq!(firsts(&times), [0.0, 1.0, 2.0, 3.0]);
-    // A gap between keeps its place.
+    // A gap in between keeps its place.
     let data: String = [0, 1, 3].map(|z| format!("<TiffData FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
     let gap = load_bytes(&file(&document(&image("a", &pixels(5, 1, 1), &data)), 4)).unwrap();
     assert_eq!(firsts(&gap), [0.0, 1.0, 0.0, 3.0]);
     let remarks = gap.remarks().join("; ");
     assert!(remarks.contains("slices 2: they are empty") && remarks.contains("the first 4"), "{remarks}");
-    // Nothing at all for what is chosen, and what there is.
+    // No page at all for the chosen channel; the error lists the others.
     let data: String =
         [0, 1].map(|z| format!("<TiffData FirstC=\"1\" FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
     let other = file(&document(&image("a", &pixels(2, 2, 1), &data)), 2);
-    let refused = load_chosen(&other, Choice { channel: Some(0), ..Choice::default() });
+    let refused = load_chosen(&other, VolumeChoice { channel: Some(0), ..VolumeChoice::default() });
     assert_refused(
         refused,
         LoadErrorKind::BadInput,
@@ -236,7 +240,7 @@ fn channels_are_called_by_their_dye_or_light_where_they_have_no_name() {
 }
 
 #[test]
-fn lies_are_told() {
+fn inconsistent_metadata_are_refused() {
     let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
     for (xml, words) in [
         (document(""), "no image"),
@@ -267,7 +271,7 @@ fn xml_that_would_take_long_is_refused() {
 
 #[test]
 fn a_recording_of_many_planes_is_read() {
-    // Each plane with all that the schema knows of it.
+    // Each plane with all attributes of the schema.
     let planes = (0..20_000)
         .map(|at| {
             format!(
@@ -281,13 +285,13 @@ fn a_recording_of_many_planes_is_read() {
     let sizes = "DimensionOrder=\"XYZCT\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"20000\"";
     let bytes = file(&document(&image("a", sizes, &planes)), 2);
     for (frame, value) in [(0, 0.0), (1, 1.0), (19_998, 0.0), (19_999, 1.0)] {
-        let choice = Choice { frame: Some(frame), ..Choice::default() };
+        let choice = VolumeChoice { frame: Some(frame), ..VolumeChoice::default() };
         assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [value], "{frame}");
     }
 }
 
 #[test]
-fn images_that_nobody_could_choose_from_are_refused() {
+fn too_many_images_are_refused() {
     let sizes = "DimensionOrder=\"XYZCT\" SizeZ=\"1\" SizeC=\"1\" SizeT=\"1\"";
     let bytes = file(&document(&image("a", sizes, "").repeat(20_000)), 1);
     assert_refused(load_bytes(&bytes), LoadErrorKind::Limit, &["20000 images", "split"]);

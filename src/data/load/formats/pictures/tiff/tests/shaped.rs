@@ -1,14 +1,14 @@
-//! Files that say the shape of their arrays, as tifffile writes them.
+//! Tests of files that give the shape of their arrays, as tifffile writes them.
 
-use super::writer::{LITTLE, LONG, Leaf, SHORT};
+use super::writer::{LITTLE, LONG, SHORT, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen};
 use crate::data::Volume;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::{Choice, LoadErrorKind};
+use crate::data::load::{LoadErrorKind, VolumeChoice};
 
-/// Pages of 2 x 1 pixels with their number as value, of which the first says something.
-fn array(json: &str, numbers: std::ops::Range<u8>) -> Vec<Leaf> {
-    let mut pages: Vec<Leaf> = numbers.map(|number| LITTLE.leaf([2, 1], 8, &[number, number])).collect();
+/// Creates pages of 2 x 1 pixels whose value is their number, the first with a description.
+fn array(json: &str, numbers: std::ops::Range<u8>) -> Vec<TiffLeaf> {
+    let mut pages: Vec<TiffLeaf> = numbers.map(|number| LITTLE.leaf([2, 1], 8, &[number, number])).collect();
     if let Some(first) = pages.first_mut() {
         *first = first.clone().with_text(tag::DESCRIPTION, json);
     }
@@ -23,16 +23,16 @@ fn firsts(volume: &Volume) -> Vec<f64> {
     (0..volume.dims()[2]).map(|z| volume.value(0, 0, z)).collect()
 }
 
-fn channel(channel: usize) -> Choice {
-    Choice { channel: Some(channel), ..Choice::default() }
+fn channel(channel: usize) -> VolumeChoice {
+    VolumeChoice { channel: Some(channel), ..VolumeChoice::default() }
 }
 
-fn frame(frame: usize) -> Choice {
-    Choice { frame: Some(frame), ..Choice::default() }
+fn frame(frame: usize) -> VolumeChoice {
+    VolumeChoice { frame: Some(frame), ..VolumeChoice::default() }
 }
 
-fn series(series: usize) -> Choice {
-    Choice { series: Some(series.to_string()), ..Choice::default() }
+fn series(series: usize) -> VolumeChoice {
+    VolumeChoice { series: Some(series.to_string()), ..VolumeChoice::default() }
 }
 
 #[test]
@@ -57,10 +57,10 @@ fn axes_are_channels_times_and_slices() {
     }
     let bytes = file("shape=(2, 3, 1, 2)", 6);
     assert_eq!(firsts(&load_chosen(&bytes, frame(1)).unwrap()), [3.0, 4.0, 5.0]);
-    // Five axes.
+    // Five axes, with and without letters.
     for (axes, both) in [("\"axes\": \"TCZYX\", ", true), ("", false)] {
         let bytes = file(&format!("{{{axes}\"shape\": [2, 2, 3, 1, 2]}}"), 12);
-        let choice = Choice { frame: Some(1), ..channel(0) };
+        let choice = VolumeChoice { frame: Some(1), ..channel(0) };
         assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [6.0, 7.0, 8.0], "{both}");
     }
 }
@@ -91,9 +91,9 @@ fn colours_and_samples_are_parts_of_pages() {
         LITTLE.file(&[first, page(10), page(20), page(30)])
     };
     let bytes = color("{\"shape\": [2, 2, 1, 2, 3], \"axes\": \"TZYXS\"}");
-    let volume = load_chosen(&bytes, Choice { component: Some(0), ..frame(1) }).unwrap();
+    let volume = load_chosen(&bytes, VolumeChoice { component: Some(0), ..frame(1) }).unwrap();
     assert_eq!(firsts(&volume), [20.0, 30.0]);
-    // Planes of what several detectors have seen.
+    // Channels of several detectors in separate planes.
     let planes = |number: u8| {
         let leaf = LITTLE.leaf([2, 1], 8, &[]).with(tag::SAMPLES, SHORT, &[2]).with(tag::PLANAR, SHORT, &[2]);
         leaf.with(tag::BITS, SHORT, &[8, 8]).with_parts(vec![vec![number; 2], vec![number + 5; 2]])
@@ -116,9 +116,9 @@ fn several_arrays_are_series() {
     );
     assert_eq!(firsts(&load_chosen(&bytes, series(0)).unwrap()), [0.0, 1.0, 2.0]);
     assert_refused(load_chosen(&bytes, series(1)), LoadErrorKind::BadInput, &["2 channels"]);
-    let choice = Choice { channel: Some(1), ..series(1) };
+    let choice = VolumeChoice { channel: Some(1), ..series(1) };
     assert_eq!(firsts(&load_chosen(&bytes, choice).unwrap()), [12.0, 13.0]);
-    // Pages that were written one by one are slices, as they were.
+    // Pages that were written one by one are slices, as without descriptions.
     let single = |number: u8| array("{\"shape\": [1, 2]}", number..number + 1);
     let volume = load_bytes(&LITTLE.file(&[single(0), single(1), single(2)].concat())).unwrap();
     assert_eq!((firsts(&volume), volume.remarks().len()), (vec![0.0, 1.0, 2.0], 0));
@@ -165,7 +165,7 @@ fn recordings_that_stopped_and_shapes_that_lie() {
     assert_refused(late, LoadErrorKind::BadInput, &["\"1\" is none of its 1 time steps"]);
     let none = load_chosen(&file("{\"shape\": [2, 4, 1, 2], \"axes\": \"RZYX\"}", 3), series(1));
     assert_refused(none, LoadErrorKind::BadInput, &["8 pages are said, and 3 are there"]);
-    // What no page is a part of says nothing: pages are slices.
+    // A shape that the pages do not match is ignored: pages are slices.
     for shape in
         ["[3, 2, 3]", "[0, 1, 2]", "[3, 1, 3]", "[2]", "[18446744073709551615, 18446744073709551615, 1, 2]"]
     {

@@ -1,21 +1,21 @@
-//! Pages that are slices: plain ones, and those that programs for microscopes describe.
+//! Tests of pages that are slices: without metadata, and with that of microscope software.
 
-use super::writer::{LITTLE, LONG, Leaf, SHORT};
+use super::writer::{LITTLE, LONG, SHORT, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen};
 use crate::data::load::formats::pictures::tiff::file::page::tag;
-use crate::data::load::formats::pictures::tiff::said::names::tests::entries;
-use crate::data::load::{Choice, Endian, LoadErrorKind};
+use crate::data::load::formats::pictures::tiff::metadata::imagej_names::tests::entries;
+use crate::data::load::{Endian, LoadErrorKind, VolumeChoice};
 use crate::data::{Modality, Samples, Volume};
 
-fn page(value: u8) -> Leaf {
+fn page(value: u8) -> TiffLeaf {
     LITTLE.leaf([2, 1], 8, &[value, value + 1])
 }
 
-fn pages(count: u8) -> Vec<Leaf> {
+fn pages(count: u8) -> Vec<TiffLeaf> {
     (0..count).map(|at| page(at * 10)).collect()
 }
 
-fn described(mut pages: Vec<Leaf>, description: &str) -> Vec<u8> {
+fn described(mut pages: Vec<TiffLeaf>, description: &str) -> Vec<u8> {
     if let Some(first) = pages.first_mut() {
         let first_page = first.clone().with_text(tag::DESCRIPTION, description);
         *first = first_page.with_rational(tag::X_RESOLUTION, 2, 1).with_rational(tag::Y_RESOLUTION, 4, 1);
@@ -23,7 +23,7 @@ fn described(mut pages: Vec<Leaf>, description: &str) -> Vec<u8> {
     LITTLE.file(&pages)
 }
 
-/// The first pixel of each slice.
+/// First pixel of each slice.
 fn firsts(volume: &Volume) -> Vec<f64> {
     (0..volume.dims()[2]).map(|z| volume.value(0, 0, z)).collect()
 }
@@ -57,13 +57,13 @@ fn hyperstacks_have_channels_slices_and_times() {
         "ImageJ=1.53t\nimages=12\nchannels=2\nslices=3\nframes=2\nunit=\\u00B5m\nspacing=1.5\n",
     );
     assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["2 channels", "--channel"]);
-    let channel = Choice { channel: Some(1), ..Choice::default() };
+    let channel = VolumeChoice { channel: Some(1), ..VolumeChoice::default() };
     assert_refused(
         load_chosen(&file, channel.clone()),
         LoadErrorKind::BadInput,
         &["2 time steps", "--frame"],
     );
-    let volume = load_chosen(&file, Choice { frame: Some(1), ..channel }).unwrap();
+    let volume = load_chosen(&file, VolumeChoice { frame: Some(1), ..channel }).unwrap();
     assert_eq!(firsts(&volume), [70.0, 90.0, 110.0]);
     assert!((volume.spacing_mm() - glam::DVec3::new(0.5e-3, 0.25e-3, 1.5e-3)).length() < 1e-12);
     assert!(!volume.has_unknown_scale() && !volume.is_anatomical());
@@ -85,7 +85,7 @@ fn channels_are_called_as_imagej_calls_their_slices() {
 }
 
 #[test]
-fn what_imagej_leaves_out_is_what_it_takes_for_granted() {
+fn imagej_defaults_apply() {
     let of = |lines: &str| {
         load_bytes(&described(pages(2), &format!("ImageJ=1.53t\nimages=2\nslices=2\n{lines}"))).unwrap()
     };
@@ -96,9 +96,9 @@ fn what_imagej_leaves_out_is_what_it_takes_for_granted() {
     assert!(of("").has_unknown_scale());
     let signed = of("cf=0\nc0=-5\nc1=2\nvunit=Gray Value\nmin=1\nmax=11\n");
     assert_eq!(*signed.samples(), Samples::I16(vec![-5, -3, 15, 17]));
-    assert_eq!((signed.hints().window, signed.hints().unit()), (Some([-3.0, 17.0]), None));
-    assert_eq!(of("cf=0\nc0=0\nc1=1\nvunit=HU\n").hints().unit(), Some("HU"));
-    // Counts that do not fit are not believed.
+    assert_eq!((signed.metadata().window, signed.metadata().unit()), (Some([-3.0, 17.0]), None));
+    assert_eq!(of("cf=0\nc0=0\nc1=1\nvunit=HU\n").metadata().unit(), Some("HU"));
+    // Counts that do not match the pages are ignored.
     let volume = load_bytes(&described(pages(3), "ImageJ=1\nimages=99\nslices=50\nchannels=2\n")).unwrap();
     assert!(volume.dims()[2] == 3 && volume.remarks()[0].contains("50 slices"));
 }
@@ -108,7 +108,7 @@ fn more_channels_than_are_shown_together_are_slices() {
     let file = described(pages(8), "ImageJ=1.11a\nimages=8\nchannels=8\n");
     let volume = load_bytes(&file).unwrap();
     assert!(volume.dims()[2] == 8 && volume.remarks()[0].contains("8 channels"));
-    let one = load_chosen(&file, Choice { channel: Some(3), ..Choice::default() }).unwrap();
+    let one = load_chosen(&file, VolumeChoice { channel: Some(3), ..VolumeChoice::default() }).unwrap();
     assert_eq!(firsts(&one), [30.0]);
     let seven = load_bytes(&described(pages(7), "ImageJ=1.11a\nimages=7\nchannels=7\n"));
     assert_refused(seven, LoadErrorKind::BadInput, &["7 channels"]);
@@ -130,7 +130,7 @@ fn times_of_one_slice_are_a_volume() {
     let volume = load_bytes(&file).unwrap();
     assert_eq!(firsts(&volume), [0.0, 10.0, 20.0]);
     assert!(volume.has_unknown_scale() && volume.remarks().iter().any(|remark| remark.contains("time")));
-    let one = load_chosen(&file, Choice { frame: Some(2), ..Choice::default() }).unwrap();
+    let one = load_chosen(&file, VolumeChoice { frame: Some(2), ..VolumeChoice::default() }).unwrap();
     assert_eq!(firsts(&one), [20.0]);
 }
 
@@ -152,8 +152,8 @@ fn laser_scanning_microscopes_say_their_sizes() {
     let first = slice(0).with_bytes(tag::LSM_INFO, &info);
     let file = LITTLE.file(&[first, thumbnail(), slice(10), thumbnail()]);
     assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["2 channels"]);
-    let volume = load_chosen(&file, Choice { channel: Some(1), ..Choice::default() }).unwrap();
+    let volume = load_chosen(&file, VolumeChoice { channel: Some(1), ..VolumeChoice::default() }).unwrap();
     assert_eq!((firsts(&volume), volume.remarks().len()), (vec![5.0, 15.0], 0));
     assert!((volume.spacing_mm() - glam::DVec3::new(1e-4, 2e-4, 5e-4)).length() < 1e-12);
-    assert_eq!(volume.hints().modality, Modality::LightMicroscopy);
+    assert_eq!(volume.metadata().modality, Modality::LightMicroscopy);
 }

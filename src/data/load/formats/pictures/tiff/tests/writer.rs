@@ -1,9 +1,9 @@
-//! TIFF files of a few pixels, byte by byte.
+//! Writer of TIFF files of a few pixels, for tests.
 
 use crate::data::load::Endian;
 use crate::data::load::formats::pictures::tiff::file::page::tag;
 
-/// Types of values.
+/// Types of directory values.
 pub(super) const ASCII: u16 = 2;
 const BYTE: u16 = 1;
 pub(super) const SHORT: u16 = 3;
@@ -11,37 +11,37 @@ pub(super) const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 const LONG8: u16 = 16;
 
-/// An entry: type, count, and the bytes of its values.
+/// Directory entry: type, count, and the bytes of its values.
 #[derive(Clone)]
-struct Field {
+struct TiffField {
     kind: u16,
     count: u64,
     bytes: Vec<u8>,
 }
 
-/// A page, as it is described and as it is stored.
+/// Page to write: its directory entries and its data.
 #[derive(Clone)]
-pub(super) struct Leaf {
-    fields: Vec<(u16, Field)>,
+pub(super) struct TiffLeaf {
+    fields: Vec<(u16, TiffField)>,
     parts: Vec<Vec<u8>>,
     is_tiled: bool,
     endian: Endian,
     is_big: bool,
 }
 
-/// A file in the making.
+/// Byte order and flavour (classic or `BigTIFF`) of a file to write.
 #[derive(Clone, Copy)]
-pub(super) struct Writer {
+pub(super) struct TiffWriter {
     pub(super) endian: Endian,
     pub(super) is_big: bool,
 }
 
-pub(super) const LITTLE: Writer = Writer { endian: Endian::Little, is_big: false };
+pub(super) const LITTLE: TiffWriter = TiffWriter { endian: Endian::Little, is_big: false };
 
-impl Writer {
-    /// A page of one strip.
-    pub(super) fn leaf(self, [width, height]: [u64; 2], bits: u64, pixels: &[u8]) -> Leaf {
-        let leaf = Leaf {
+impl TiffWriter {
+    /// Creates a page of one strip.
+    pub(super) fn leaf(self, [width, height]: [u64; 2], bits: u64, pixels: &[u8]) -> TiffLeaf {
+        let leaf = TiffLeaf {
             fields: Vec::new(),
             parts: vec![pixels.to_vec()],
             is_tiled: false,
@@ -61,8 +61,8 @@ impl Writer {
         }
     }
 
-    /// The file.
-    pub(super) fn file(self, leaves: &[Leaf]) -> Vec<u8> {
+    /// Writes a file of these pages.
+    pub(super) fn file(self, leaves: &[TiffLeaf]) -> Vec<u8> {
         let place = if self.is_big { 8 } else { 4 };
         let mut file = match self.endian {
             Endian::Little => b"II".to_vec(),
@@ -73,7 +73,7 @@ impl Writer {
         } else {
             file.extend(self.number(42, 2));
         }
-        // Where the place of the next directory is to be written.
+        // Where the offset of the next directory is to be written.
         let mut link = file.len();
         file.extend(vec![0; place]);
         for leaf in leaves {
@@ -91,7 +91,7 @@ impl Writer {
             };
             let mut leaf = leaf.clone();
             for (tag, numbers) in [(at, offsets), (of, counts)] {
-                // One that the test has put there itself stays.
+                // An entry that the test has set itself is kept.
                 if leaf.fields.iter().all(|(found, _)| *found != tag) {
                     leaf = leaf.with(tag, kind, &numbers);
                 }
@@ -120,18 +120,18 @@ impl Writer {
     }
 }
 
-impl Leaf {
-    fn writer(&self) -> Writer {
-        Writer { endian: self.endian, is_big: self.is_big }
+impl TiffLeaf {
+    fn writer(&self) -> TiffWriter {
+        TiffWriter { endian: self.endian, is_big: self.is_big }
     }
 
-    fn put(mut self, tag: u16, field: Field) -> Self {
+    fn put(mut self, tag: u16, field: TiffField) -> Self {
         self.fields.retain(|(found, _)| *found != tag);
         self.fields.push((tag, field));
         self
     }
 
-    /// Whole numbers.
+    /// Sets an entry of integers.
     pub(super) fn with(self, tag: u16, kind: u16, values: &[u64]) -> Self {
         let size = match kind {
             BYTE => 1,
@@ -141,30 +141,30 @@ impl Leaf {
         };
         let writer = self.writer();
         let bytes = values.iter().flat_map(|&value| writer.number(value, size)).collect();
-        self.put(tag, Field { kind, count: values.len() as u64, bytes })
+        self.put(tag, TiffField { kind, count: values.len() as u64, bytes })
     }
 
     pub(super) fn with_rational(self, tag: u16, over: u64, under: u64) -> Self {
         let writer = self.writer();
         let bytes = [writer.number(over, 4), writer.number(under, 4)].concat();
-        self.put(tag, Field { kind: RATIONAL, count: 1, bytes })
+        self.put(tag, TiffField { kind: RATIONAL, count: 1, bytes })
     }
 
     pub(super) fn with_text(self, tag: u16, text: &str) -> Self {
         let bytes = [text.as_bytes(), &[0]].concat();
-        self.put(tag, Field { kind: ASCII, count: bytes.len() as u64, bytes })
+        self.put(tag, TiffField { kind: ASCII, count: bytes.len() as u64, bytes })
     }
 
-    /// Another text of a tag that the page has already, before that.
+    /// Inserts another text of a tag before the one that the page has.
     pub(super) fn with_second_text(mut self, tag: u16, text: &str) -> Self {
         let bytes = [text.as_bytes(), &[0]].concat();
-        let field = Field { kind: ASCII, count: bytes.len() as u64, bytes };
+        let field = TiffField { kind: ASCII, count: bytes.len() as u64, bytes };
         self.fields.insert(0, (tag, field));
         self
     }
 
     pub(super) fn with_bytes(self, tag: u16, bytes: &[u8]) -> Self {
-        self.put(tag, Field { kind: BYTE, count: bytes.len() as u64, bytes: bytes.to_vec() })
+        self.put(tag, TiffField { kind: BYTE, count: bytes.len() as u64, bytes: bytes.to_vec() })
     }
 
     pub(super) fn with_parts(self, parts: Vec<Vec<u8>>) -> Self {

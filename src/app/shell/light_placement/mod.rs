@@ -1,0 +1,302 @@
+//! Automatic light placement at the end of a first look.
+//!
+//! A background search for the light whose shadows show most starts when the first picture is on screen, and its
+//! result is eased in. A look that the user has edited by then is left alone. Times are in seconds of any monotonic
+//! clock.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use eframe::egui;
+use glam::DVec3;
+
+use super::easing::{eased_progress, interpolate_factor, is_user_active};
+use crate::app::App;
+use crate::app::shell::history::HistoryStep;
+use crate::app::worker::background_task::BackgroundTask;
+use crate::gpu::{GpuError, LightSearch, LightSearchResult, SearchedLight};
+use crate::model::{LightSettings, Settings};
+
+/// Pause between two candidate positions: long enough for another thread to take the device.
+const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
+
+/// State of the window in one frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LightPlacementFrame<'a> {
+    /// Time of the frame, in seconds.
+    pub now_s: f64,
+    /// Settings of the look in this frame.
+    pub settings: &'a Settings,
+    /// True if the full-quality picture of the look is on screen.
+    pub picture_complete: bool,
+    /// True while the user holds a pointer button or a key, or edits text.
+    pub user_active: bool,
+}
+
+/// Action that the window has to take.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum LightPlacementAction {
+    /// Do nothing until something else happens.
+    Nothing,
+    /// Search for the lights of the settings.
+    Search,
+    /// Apply these settings, and ask again in the next frame.
+    Set(Box<Settings>),
+}
+
+/// Progress of the light placement.
+#[derive(Debug, Clone, Default)]
+enum LightPlacementPhase {
+    /// Finished, or not a first look.
+    #[default]
+    Done,
+    /// Search is due and not yet started.
+    Due,
+    Searching,
+    /// Search has found lights, and the user holds a button or a key.
+    Waiting(Box<LightSearchResult>),
+    Easing {
+        from: Box<Settings>,
+        to: Box<Settings>,
+        since_s: f64,
+    },
+}
+
+/// State machine that decides when to search and which settings to apply.
+#[derive(Debug, Default)]
+pub(crate) struct LightPlacement {
+    phase: LightPlacementPhase,
+    /// Settings of the opened look, with the changes made automatically since.
+    expected: Settings,
+}
+
+impl LightPlacement {
+    /// Starts with a first look that the user has not edited.
+    pub(crate) fn new(settings: &Settings) -> Self {
+        Self { phase: LightPlacementPhase::Due, expected: settings.clone() }
+    }
+
+    /// Returns true if the look is going to change automatically.
+    pub(crate) fn is_due(&self) -> bool {
+        !matches!(self.phase, LightPlacementPhase::Done)
+    }
+
+    /// Stops the placement, since the user has edited the look.
+    pub(crate) fn stop(&mut self) {
+        self.phase = LightPlacementPhase::Done;
+    }
+
+    /// Takes note of another automatic change of the look, which does not count as an edit by the user.
+    pub(crate) fn accept_change(&mut self, before: &Settings, after: &Settings) {
+        if self.is_due() && differs_in_view_only(before, &self.expected) {
+            self.expected.clone_from(after);
+        }
+    }
+
+    /// Returns the state for a successor window: with an unfinished search or easing due again, since its clock has
+    /// another origin.
+    #[must_use]
+    pub(crate) fn restarted(self) -> Self {
+        let phase = match self.phase {
+            LightPlacementPhase::Searching | LightPlacementPhase::Easing { .. } => LightPlacementPhase::Due,
+            other => other,
+        };
+        Self { phase, ..self }
+    }
+
+    /// Takes the result of a search; without one, the lights stay.
+    pub(crate) fn set_result(&mut self, found: Result<Option<LightSearchResult>, GpuError>) {
+        if !matches!(self.phase, LightPlacementPhase::Searching) {
+            return;
+        }
+        self.phase = match found {
+            Ok(Some(found)) => LightPlacementPhase::Waiting(Box::new(found)),
+            Ok(None) => LightPlacementPhase::Done,
+            Err(err) => {
+                // The search is optional: the reason of its failure matters only to developers.
+                log::warn!("no light was found: {err}");
+                // After the loss of the device, a successor window searches again.
+                if matches!(err, GpuError::DeviceLost(_)) {
+                    LightPlacementPhase::Searching
+                } else {
+                    LightPlacementPhase::Done
+                }
+            }
+        };
+    }
+
+    /// Decides on the action for this frame.
+    pub(crate) fn next_action(&mut self, moment: LightPlacementFrame<'_>) -> LightPlacementAction {
+        let LightPlacementFrame { now_s, settings, picture_complete: complete, user_active: held } = moment;
+        if !self.is_due() {
+            return LightPlacementAction::Nothing;
+        }
+        if !differs_in_view_only(settings, &self.expected) {
+            // The result would no longer fit the picture, or would override a choice of the user.
+            self.stop();
+            return LightPlacementAction::Nothing;
+        }
+        match std::mem::take(&mut self.phase) {
+            LightPlacementPhase::Due if complete && !held => {
+                self.phase = LightPlacementPhase::Searching;
+                LightPlacementAction::Search
+            }
+            LightPlacementPhase::Waiting(found) if !held => {
+                let (from, to) = (Box::new(settings.clone()), Box::new(found.apply(settings)));
+                if from == to {
+                    return LightPlacementAction::Nothing;
+                }
+                self.phase = LightPlacementPhase::Easing { from, to, since_s: now_s };
+                self.ease(settings, now_s)
+            }
+            easing @ LightPlacementPhase::Easing { .. } => {
+                self.phase = easing;
+                self.ease(settings, now_s)
+            }
+            other => {
+                self.phase = other;
+                LightPlacementAction::Nothing
+            }
+        }
+    }
+
+    /// Interpolates the settings towards the search result.
+    fn ease(&mut self, settings: &Settings, now_s: f64) -> LightPlacementAction {
+        let LightPlacementPhase::Easing { from, to, since_s } = &self.phase else {
+            return LightPlacementAction::Nothing;
+        };
+        let share = eased_progress(*since_s, now_s);
+        let mut next = settings.clone();
+        let is_last = share >= 1.0;
+        if is_last {
+            next.lights.clone_from(&to.lights);
+            next.floor.clone_from(&to.floor);
+            next.shadows.balance = to.shadows.balance;
+            next.output.exposure = to.output.exposure;
+        } else {
+            next.lights = interpolate_lights(&from.lights, &to.lights, share);
+            next.shadows.balance = interpolate_factor(from.shadows.balance, to.shadows.balance, share);
+            next.output.exposure = interpolate_factor(from.output.exposure, to.output.exposure, share);
+        }
+        self.expected.clone_from(&next);
+        if is_last {
+            self.phase = LightPlacementPhase::Done;
+        }
+        LightPlacementAction::Set(Box::new(next))
+    }
+}
+
+/// Interpolates between two sets of lights, each light along a circle around the centre.
+fn interpolate_lights(from: &[LightSettings], to: &[LightSettings], share: f64) -> Vec<LightSettings> {
+    let pairs = to.iter().enumerate();
+    pairs
+        .map(|(at, target)| {
+            let before = from.get(at).map_or(target.position, |light| light.position);
+            let place = DVec3::from(before).slerp(DVec3::from(target.position), share);
+            LightSettings { position: place.into(), ..target.clone() }
+        })
+        .collect()
+}
+
+/// Running light search. Dropping this value cancels the search at its next step and discards the result.
+pub(crate) struct LightSearchTask {
+    work: BackgroundTask<Result<Option<LightSearchResult>, GpuError>>,
+    is_cancelled: Arc<AtomicBool>,
+}
+
+impl Drop for LightSearchTask {
+    fn drop(&mut self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+impl App {
+    /// Finishes the first look of the volume with the lights found, unless the user has edited it.
+    pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
+        if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take_result()) {
+            self.light_search = None;
+            self.first_lights.set_result(result.unwrap_or_else(|panic| {
+                log::error!("no light was found: {panic}");
+                Ok(None)
+            }));
+        }
+        if !self.first_lights.is_due() {
+            self.light_search = None;
+        }
+        let now_s = ctx.input(|input| input.time);
+        let moment = LightPlacementFrame {
+            now_s,
+            settings: &self.settings,
+            // The search refers to the picture with the final balance, so a pending change comes first.
+            picture_complete: self.is_complete() && !self.keep_balanced.is_due(&self.settings),
+            user_active: is_user_active(ctx),
+        };
+        match self.first_lights.next_action(moment) {
+            LightPlacementAction::Nothing => {}
+            LightPlacementAction::Search => self.start_light_search(ctx),
+            LightPlacementAction::Set(next) => {
+                let before = self.history_step();
+                self.settings = *next;
+                // Part of the first look: there is nothing to undo, even if the view has changed since, and resets
+                // lead here.
+                self.history.merge_into_all(now_s, &before, |step| {
+                    with_automatic_lights(step, &before, &self.settings)
+                });
+                let Settings { lights, floor, shadows, output, .. } = &self.settings;
+                self.defaults.lights.clone_from(lights);
+                self.defaults.floor.clone_from(floor);
+                self.defaults.shadows.balance = shadows.balance;
+                self.defaults.output.exposure = output.exposure;
+                self.keep_balanced.accept(&self.settings);
+                ctx.request_repaint();
+            }
+        }
+    }
+
+    /// Starts a light search on a thread, on the render device, whose pipelines are compiled already.
+    fn start_light_search(&mut self, ctx: &egui::Context) {
+        let Some(dataset) = self.viewport.dataset() else { return self.first_lights.stop() };
+        let (shaders, settings) = (self.loader.shaders().clone(), self.settings.clone());
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&is_unwanted);
+        let task = move || -> Result<Option<LightSearchResult>, GpuError> {
+            let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
+            while search.step()? {
+                if asked.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+                // Lets pictures that were requested meanwhile go first.
+                std::thread::sleep(CANDIDATE_PAUSE);
+            }
+            Ok(search.finish())
+        };
+        match BackgroundTask::start("light-search", ctx, task) {
+            Ok(work) => self.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted }),
+            Err(err) => {
+                log::warn!("no light was sought: {err}");
+                self.first_lights.stop();
+            }
+        }
+    }
+}
+
+/// Applies the automatic lights to a step of the history, if the step shows that look from any view.
+fn with_automatic_lights(step: &HistoryStep, before: &HistoryStep, after: &Settings) -> HistoryStep {
+    if step.treated_as != before.treated_as || !differs_in_view_only(&step.settings, &before.settings) {
+        return step.clone();
+    }
+    let Settings { camera, kept, .. } = step.settings.clone();
+    HistoryStep { settings: Settings { camera, kept, ..after.clone() }, ..*step }
+}
+
+/// Returns true if two looks differ in the view and the saved views at most.
+fn differs_in_view_only(a: &Settings, b: &Settings) -> bool {
+    let mut seen = a.clone();
+    seen.camera.clone_from(&b.camera);
+    seen.kept.clone_from(&b.kept);
+    seen == *b
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,160 @@
+//! Treatment of the volume as another kind of data than was detected, with the first look for that kind.
+//!
+//! A thread makes the look in a pass over all voxels.
+
+use std::sync::Arc;
+
+use eframe::egui;
+
+use crate::app::shell::light_placement::LightPlacement;
+use crate::app::worker::background_task::BackgroundTask;
+use crate::app::{App, text};
+use crate::data::KindName;
+use crate::model::{LabelTable, Settings, TransferFunction, first_look};
+
+/// Result of a pass over all voxels.
+#[derive(Debug)]
+enum KindTaskResult {
+    /// First look for a kind of data.
+    Look(Option<KindName>, Box<Settings>),
+    /// Transfer function or table of labels.
+    Transfer(TransferFunction, LabelTable),
+}
+
+/// Kind of data as which the volume is treated, and the first looks for the other kinds.
+#[derive(Debug, Default)]
+pub(crate) struct KindOverride {
+    kind: Option<KindName>,
+    /// Values of the reset buttons for other kinds of data, one look for each.
+    other_looks: Vec<(Option<KindName>, Settings)>,
+    task: Option<BackgroundTask<KindTaskResult>>,
+}
+
+impl KindOverride {
+    /// Returns the kind chosen for the current look; `None` is the volume's own.
+    pub(crate) fn kind(&self) -> Option<KindName> {
+        self.kind
+    }
+
+    /// Returns true while a look is being made.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.task.is_some()
+    }
+
+    /// Changes the kind, and with it the values of the reset buttons, if they have been made for it.
+    pub(crate) fn change(&mut self, kind: Option<KindName>, defaults: &mut Settings) {
+        let before = std::mem::replace(&mut self.kind, kind);
+        if before == kind {
+            return;
+        }
+        let known = self.other_looks.iter().position(|(other, _)| *other == kind);
+        let known = known.map(|at| self.other_looks.swap_remove(at).1);
+        self.other_looks.push((before, defaults.clone()));
+        if let Some(look) = known {
+            *defaults = look;
+        }
+    }
+}
+
+impl App {
+    /// Makes a first look for a kind of data, or for the volume's own kind if `None`.
+    pub(crate) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
+        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
+        let (histogram, up) = (Arc::clone(&facts.histogram), self.settings.camera.up);
+        let task = move || {
+            KindTaskResult::Look(
+                kind,
+                Box::new(first_look::first_look_as_kind(dataset.volume(), &histogram, kind, up)),
+            )
+        };
+        self.start_kind_task(task, ctx);
+    }
+
+    /// Makes the automatic transfer function or table of labels for the current kind of data.
+    pub(crate) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
+        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
+        let (histogram, kind) = (Arc::clone(&facts.histogram), self.kind_override.kind);
+        let task = move || {
+            let volume = dataset.volume();
+            KindTaskResult::Transfer(
+                first_look::transfer_for_kind(volume, &histogram, kind),
+                first_look::labels_for_kind(volume, kind),
+            )
+        };
+        self.start_kind_task(task, ctx);
+    }
+
+    /// Starts a task; the result of one in progress is dropped.
+    fn start_kind_task(
+        &mut self,
+        task: impl FnOnce() -> KindTaskResult + Send + 'static,
+        ctx: &egui::Context,
+    ) {
+        match BackgroundTask::start("first-look", ctx, task) {
+            Ok(work) => self.kind_override.task = Some(work),
+            Err(err) => self.messages.error(text::messages::LOOK_NOT_MADE, err.to_string()),
+        }
+    }
+
+    /// Takes over the result of a task from its thread.
+    pub(crate) fn finish_kind_task(&mut self, ctx: &egui::Context) {
+        let Some(made) = self.kind_override.task.as_ref().and_then(BackgroundTask::take_result) else {
+            return;
+        };
+        self.kind_override.task = None;
+        match made {
+            Ok(KindTaskResult::Look(kind, look)) => self.use_first_look(kind, *look, ctx),
+            Ok(KindTaskResult::Transfer(transfer, labels)) => {
+                (self.settings.transfer, self.settings.labels) = (transfer, labels);
+            }
+            Err(panic) => self.messages.error(text::messages::LOOK_NOT_MADE, panic),
+        }
+    }
+
+    /// Applies a first look for a kind of data.
+    fn use_first_look(&mut self, kind: Option<KindName>, look: Settings, ctx: &egui::Context) {
+        if look.camera.up != self.settings.camera.up {
+            // The object was turned meanwhile.
+            return self.treat_as(kind, ctx);
+        }
+        let look = first_look::replace_look(look, &self.settings);
+        self.kind_override.change(kind, &mut self.defaults);
+        self.selected_light = self.selected_light.min(look.lights.len().saturating_sub(1));
+        // Starts a light search, as for any first look.
+        self.first_lights = LightPlacement::new(&look);
+        self.light_search = None;
+        self.defaults = look.clone();
+        self.settings = look;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kind_has_one_first_look_to_which_steps_lead_back() {
+        let look = |ambient: f64| {
+            let mut settings = Settings::default();
+            settings.shading.ambient = ambient;
+            settings
+        };
+        let (mut treated, mut defaults) = (KindOverride::default(), look(0.1));
+        for round in 0..50 {
+            for (at, kind) in KindName::choices().enumerate() {
+                treated.change(kind, &mut defaults);
+                if round == 0 && kind.is_some() {
+                    defaults = look(f64::from(at as u32 + 2) / 10.0);
+                }
+            }
+        }
+        assert!(treated.other_looks.len() < KindName::choices().count());
+        for (at, kind) in KindName::choices().enumerate() {
+            treated.change(kind, &mut defaults);
+            let ambient = if kind.is_some() { f64::from(at as u32 + 2) / 10.0 } else { 0.1 };
+            assert_eq!((treated.kind(), &defaults), (kind, &look(ambient)));
+            treated.change(kind, &mut defaults);
+            assert_eq!(defaults, look(ambient));
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Dropped files and folders, and the next and previous file of a folder.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use eframe::egui;
+
+use super::PendingLook;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::windows::file_dialogs;
+use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::loader::ReadChoices;
+use crate::app::{App, text};
+use crate::data::Volume;
+use crate::data::load::{LoadControl, neighbour_volume};
+
+/// File extensions of possible slices of one volume; DICOM files often have none.
+const SLICE_EXTENSIONS: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
+
+/// Running search for the next or previous file.
+#[derive(Debug)]
+pub(crate) struct NeighbourSearch {
+    control: Arc<LoadControl>,
+    work: BackgroundTask<Option<PathBuf>>,
+    is_forward: bool,
+}
+
+impl Drop for NeighbourSearch {
+    fn drop(&mut self) {
+        self.control.cancel();
+    }
+}
+
+/// Similarity of the next volume to the open one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum VolumeSimilarity {
+    /// Same kind of data in the same grid: even the view is worth keeping.
+    SameGrid,
+    /// Same kind of data in another grid.
+    SameKind,
+    /// Different data, for which the look is useless.
+    Different,
+}
+
+impl VolumeSimilarity {
+    /// Compares the next volume with the open one. Looks refer to values: with another range, a look would show
+    /// nothing of the next volume.
+    pub(super) fn between(open: &VolumeFacts, next: &Volume) -> Self {
+        let is_same_kind = std::mem::discriminant(&open.kind) == std::mem::discriminant(&next.kind().kind);
+        let (a, b) = (open.ranges.robust, next.ranges().robust);
+        let shared = a.high.min(b.high) - a.low.max(b.low);
+        // Half of the longer range: usual between scans of one protocol, rare between scans of two protocols.
+        let are_same_values = 2.0 * shared >= a.span().max(b.span());
+        let spacing: [f64; 3] = next.spacing_mm().into();
+        match is_same_kind && are_same_values {
+            false => Self::Different,
+            true if open.dims == next.dims() && open.spacing_mm == spacing => Self::SameGrid,
+            true => Self::SameKind,
+        }
+    }
+}
+
+impl App {
+    /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
+    /// of other files the first is opened.
+    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
+        let Some(first) = paths.first() else { return };
+        if let Some(folder) = slice_folder(paths) {
+            if is_complete_folder(folder, paths) {
+                self.open(folder, ctx);
+                self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+                return;
+            }
+            // The message was about another file.
+            self.messages.dismiss();
+            let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
+            if self.start_loading(folder, reading, ctx) {
+                self.pending_look = None;
+                self.messages.note(text::opening::part_of_folder(paths.len(), folder));
+            }
+            return;
+        }
+        self.open(first, ctx);
+        if paths.len() > 1 {
+            self.messages.note(text::opening::first_of_dropped(paths.len(), first));
+        }
+    }
+
+    /// Searches the folder for the file after or before the open one.
+    pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
+        // Pressing the key again goes on from the file that is being opened.
+        let opening = self.loader.progress().map(|progress| progress.source.to_owned());
+        let from = opening.or_else(|| self.volume.as_ref().map(|volume| volume.source.clone()));
+        let Some(from) = from.filter(|from| from.exists()) else {
+            return self.messages.note(text::opening::NO_FOLDER);
+        };
+        let control = Arc::new(LoadControl::new());
+        let watched = Arc::clone(&control);
+        // Pictures with an embedded look are no volumes.
+        let task =
+            move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
+        match BackgroundTask::start("next-file", ctx, task) {
+            Ok(work) => self.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
+            Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
+        }
+    }
+
+    /// Opens the file that the search has found.
+    pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
+        let Some(neighbour) = &self.next_file_search else { return };
+        let Some(found) = neighbour.work.take_result() else { return };
+        let is_forward = neighbour.is_forward;
+        self.next_file_search = None;
+        match found {
+            Ok(Some(path)) => {
+                if self.start_loading(&path, ReadChoices::default(), ctx) {
+                    self.pending_look = Some(PendingLook::CurrentIfSimilar);
+                }
+            }
+            Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),
+            Err(panic) => self.messages.error(text::opening::NOT_OPENED, panic),
+        }
+    }
+}
+
+/// File extension in lower case, without the dot.
+fn lowercase_extension(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+}
+
+/// Returns true if a folder has no further files of the same type, apart from hidden ones.
+fn is_complete_folder(folder: &Path, paths: &[PathBuf]) -> bool {
+    let Some(kind) = paths.first().map(|path| lowercase_extension(path)) else { return false };
+    let is_other = |path: &Path| {
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        !is_hidden && lowercase_extension(path) == kind && path.is_file()
+    };
+    let found = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    // Large folders: one file more than these is enough.
+    found.filter(|path| is_other(path)).take(paths.len() + 1).count() <= paths.len()
+}
+
+/// Returns the folder of files that may be slices of one volume: all of one type, in one folder.
+fn slice_folder(paths: &[PathBuf]) -> Option<&Path> {
+    let (first, others) = paths.split_first()?;
+    let is_slice =
+        lowercase_extension(first).is_none_or(|ending| SLICE_EXTENSIONS.contains(&ending.as_str()));
+    let is_like = |other: &PathBuf| {
+        lowercase_extension(other) == lowercase_extension(first) && other.parent() == first.parent()
+    };
+    let are_slices = !others.is_empty() && is_slice && others.iter().all(is_like);
+    are_slices.then(|| first.parent()).flatten().filter(|_| paths.iter().all(|path| path.is_file()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Dataset, Samples};
+    use glam::DVec3;
+
+    #[test]
+    fn slices_are_of_one_kind_and_in_one_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = |names: &[&str]| -> Vec<PathBuf> {
+            names
+                .iter()
+                .map(|name| {
+                    let path = folder.path().join(name);
+                    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+                    std::fs::write(&path, "x").unwrap();
+                    path
+                })
+                .collect()
+        };
+        assert_eq!(slice_folder(&files(&["1.dcm", "2.DCM"])), Some(folder.path()));
+        assert_eq!(slice_folder(&files(&["IM1", "IM2"])), Some(folder.path()));
+        let all = files(&["1.png", "2.png", "3.png"]);
+        assert!(is_complete_folder(folder.path(), &all) && !is_complete_folder(folder.path(), &all[..2]));
+        for others in [&["1.dcm"][..], &["1.dcm", "2.png"], &["a.nrrd", "b.nrrd"], &["1.dcm", "s/2.dcm"]] {
+            assert_eq!(slice_folder(&files(others)), None, "{others:?}");
+        }
+    }
+
+    #[test]
+    fn looks_are_kept_for_what_is_alike() {
+        let volume = |dims: [usize; 3], high: u8| {
+            let values = (0..dims.iter().product::<usize>()).map(|at| (at % usize::from(high)) as u8);
+            Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(values.collect())).unwrap()
+        };
+        let open =
+            VolumeFacts::new("a".into(), ReadChoices::default(), &Dataset::new(volume([8, 8, 8], 200)));
+        assert_eq!(VolumeSimilarity::between(&open, &volume([8, 8, 8], 190)), VolumeSimilarity::SameGrid);
+        assert_eq!(VolumeSimilarity::between(&open, &volume([9, 8, 8], 190)), VolumeSimilarity::SameKind);
+        assert_eq!(
+            VolumeSimilarity::between(&open, &volume([8, 8, 8], 60)),
+            VolumeSimilarity::Different,
+            "other values"
+        );
+    }
+}

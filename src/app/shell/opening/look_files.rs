@@ -1,0 +1,243 @@
+//! Opening of looks from files: applied to the open volume, or to the volume that they name, which is opened first.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+
+use super::{DEFAULT_SOURCE, PendingLook};
+use crate::app::shell::file_tasks::ReadPurpose;
+use crate::app::shell::session::SessionFile;
+use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
+use crate::app::windows::untrusted_path::UntrustedPathAnswer;
+use crate::app::{App, text};
+use crate::data::ValueRanges;
+use crate::model::{LookRecord, Settings, VolumeLocation, VolumeRecord};
+
+impl App {
+    /// Opens the look of a session, a preset or a picture. A volume that it names is opened first, unless it is open;
+    /// a preset fits any volume.
+    pub(crate) fn open_record(&mut self, path: &Path, ctx: &egui::Context) {
+        let of = path.to_owned();
+        self.read_file(ReadPurpose::Open, path, ctx, file_dialogs::load_record, move |app, read, ctx| {
+            match read {
+                Ok(record) => app.open_look(record, &of, ctx),
+                Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
+            }
+        });
+    }
+
+    /// Opens a file that is either a volume or a look.
+    pub(super) fn open_volume_or_look(&mut self, path: &Path, ctx: &egui::Context) {
+        let of = path.to_owned();
+        let read = |path: &Path| {
+            if file_dialogs::is_volume_path(path) {
+                Ok(None)
+            } else {
+                file_dialogs::load_record(path).map(Some)
+            }
+        };
+        self.read_file(ReadPurpose::Open, path, ctx, read, move |app, read, ctx| match read {
+            Ok(Some(record)) => app.open_look(record, &of, ctx),
+            Ok(None) => app.open_volume(&of, ctx),
+            Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
+        });
+    }
+
+    /// Opens a volume with the look of a file.
+    pub(super) fn open_look_with(&mut self, look: &Path, volume: &Path, ctx: &egui::Context) {
+        let volume = volume.to_owned();
+        self.read_file(ReadPurpose::Open, look, ctx, file_dialogs::load_record, move |app, read, ctx| {
+            match read {
+                Ok(record) => app.open_with(&volume, record, ctx),
+                Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
+            }
+        });
+    }
+
+    /// Applies a look that was read from a file.
+    fn open_look(&mut self, record: LookRecord, path: &Path, ctx: &egui::Context) {
+        let open = self.volume_record().map(|(_, content_id)| content_id);
+        match record.volume.clone() {
+            Some(volume) if open.is_none_or(|open| !volume.matches_content(open)) => {
+                match self.locate_volume(&volume, path) {
+                    VolumeLocation::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
+                    VolumeLocation::InRecordFolder(path) => self.open_with(&path, record, ctx),
+                    VolumeLocation::OtherFolder(path) => self.untrusted_path_dialog.open(path, record),
+                    VolumeLocation::Refused(why) => {
+                        self.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                    }
+                }
+            }
+            Some(_) => drop(self.apply_record(&record, &self.value_ranges(), self.opened_id())),
+            None => self.apply_look(record, ctx),
+        }
+    }
+
+    /// Returns the location of a record's volume; `InRecordFolder` includes files that may be opened without a
+    /// confirmation.
+    pub(super) fn locate_volume(&self, volume: &VolumeRecord, record: &Path) -> VolumeLocation {
+        match volume.location(record.parent()) {
+            VolumeLocation::OtherFolder(path) if self.is_trusted(record, &path) => {
+                VolumeLocation::InRecordFolder(path)
+            }
+            place => place,
+        }
+    }
+
+    /// Returns true if a record may open a file outside its own folder: records of this program may, and others may
+    /// open what the user has opened before.
+    fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
+        let is_known = || self.memory.recent().iter().any(|known| known.path == volume);
+        self.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
+    }
+
+    /// Applies a look to the volume that is open or being opened.
+    fn apply_look(&mut self, record: LookRecord, ctx: &egui::Context) {
+        if self.loader.progress().is_some() {
+            // The user will see it on the volume that is being opened.
+            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+        } else if self.volume_record().is_none() {
+            self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
+        } else {
+            self.apply_record(&record, &self.value_ranges(), self.opened_id());
+        }
+    }
+
+    /// Opens a volume with a look.
+    pub(super) fn open_with(&mut self, source: &Path, record: LookRecord, ctx: &egui::Context) {
+        let choice = record.volume.as_ref().map(|volume| volume.choice.clone()).unwrap_or_default();
+        if self.start_loading(source, self.reading_options(&choice), ctx) {
+            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+        }
+    }
+
+    /// Asks for confirmation before a look opens its volume, and handles the answer.
+    pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+        let Some(answer) = self.untrusted_path_dialog.ui(ctx) else { return };
+        if answer == UntrustedPathAnswer::ChooseOther {
+            // The dialog stays open, since choosing may be cancelled.
+            return self.files.open_dialog(FileDialogPurpose::VolumeOfLook, frame, ctx);
+        }
+        match self.untrusted_path_dialog.close() {
+            Some((record, Some(path))) if answer == UntrustedPathAnswer::Open => {
+                self.open_with(&path, record, ctx);
+            }
+            Some((record, _)) => self.apply_look(record, ctx),
+            None => {}
+        }
+    }
+
+    /// Opens the file that the user has chosen for the look in question.
+    pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
+        match self.untrusted_path_dialog.close() {
+            Some((record, _)) => self.open_with(path, record, ctx),
+            None => self.open(path, ctx),
+        }
+    }
+
+    /// Applies the look of a file to the open volume, even if it was made for another one.
+    pub(crate) fn load_settings(&mut self, path: &Path, ctx: &egui::Context) {
+        self.read_file(
+            ReadPurpose::Look,
+            path,
+            ctx,
+            file_dialogs::load_record,
+            |app, read, _ctx| match read {
+                Ok(record) => {
+                    let open = app.volume_record().map(|(_, content_id)| content_id);
+                    if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.matches_content(open)) {
+                        app.messages.note(text::opening::OTHER_VOLUME);
+                    }
+                    app.apply_record(&record, &app.value_ranges(), app.opened_id());
+                }
+                Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
+            },
+        );
+    }
+
+    /// Compares the look of the window with that of a file.
+    pub(crate) fn compare_with_file(&mut self, path: &Path, ctx: &egui::Context) {
+        self.read_file(ReadPurpose::Comparison, path, ctx, file_dialogs::load_record, |app, read, _ctx| {
+            match read {
+                Ok(record) => match app.settings_with_record(&record, &app.value_ranges()) {
+                    Ok(look) => app.compare.start_with(look),
+                    Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+                },
+                Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
+            }
+        });
+    }
+
+    /// Returns the ranges of values of the open volume.
+    pub(crate) fn value_ranges(&self) -> ValueRanges {
+        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
+    }
+
+    /// Applies a record to a copy of the settings, for a volume with these ranges of values.
+    pub(crate) fn settings_with_record(
+        &mut self,
+        record: &LookRecord,
+        ranges: &ValueRanges,
+    ) -> Result<Settings, String> {
+        let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
+        if !warnings.is_empty() {
+            self.messages.note(warnings.join("; "));
+        }
+        let mut settings = settings;
+        // A look without saved views leaves the existing ones.
+        if settings.kept.is_empty() {
+            settings.kept.clone_from(&self.settings.kept);
+        }
+        Ok(settings)
+    }
+
+    /// Applies a record to the settings and returns true if it succeeded. Its corrections are applied only to the
+    /// volume for which they were made.
+    pub(super) fn apply_record(
+        &mut self,
+        record: &LookRecord,
+        ranges: &ValueRanges,
+        opened_id: Option<u64>,
+    ) -> bool {
+        match self.settings_with_record(record, ranges) {
+            Ok(settings) => {
+                self.settings = settings;
+                if let Some(by) = opened_id.and_then(|open| record.corrections_for(open)) {
+                    self.settings.volume = by;
+                    self.corrections_task.accept(by);
+                }
+                if record.has_balance() {
+                    self.keep_balanced.accept(&self.settings);
+                }
+                true
+            }
+            Err(err) => {
+                self.messages.error(text::opening::SETTINGS_NOT_LOADED, err);
+                false
+            }
+        }
+    }
+
+    /// Returns path and identifier of the open volume, for records.
+    pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
+        Some((&self.volume.as_ref()?.source, self.opened_id()?))
+    }
+
+    /// Returns the path to which Ctrl+S writes; if the file is protected, shows the reason and returns `None`.
+    pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
+        let session = self.session.as_ref()?;
+        let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
+        self.messages.note(text::persistence::session_protected(path, why));
+        None
+    }
+
+    pub(crate) fn save_settings(&mut self, path: &Path) {
+        let record = self.volume.as_ref().zip(self.opened_id()).map(|(volume, opened_id)| {
+            VolumeRecord::new(&volume.source, opened_id, path.parent()).with_choice(volume.held.choice())
+        });
+        match SessionFile::save(&mut self.session, path, &self.settings, record.as_ref()) {
+            Ok(()) => self.messages.note(text::opening::session_saved(path)),
+            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
+        }
+    }
+}

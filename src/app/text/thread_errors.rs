@@ -1,0 +1,6 @@
+//! Error texts of background threads that fail.
+
+/// Error of a thread that ended without a result.
+pub(crate) const NO_RESULT: &str = "the thread ended without a result";
+/// Text in place of the message of a panic without one.
+pub(crate) const NO_REASON: &str = "for no stated reason";

@@ -1,0 +1,174 @@
+//! Scheduling of the render thread: a preview at once, full quality when nothing has changed for a moment.
+
+use std::time::{Duration, Instant};
+
+use super::mailbox::Mailbox;
+use super::quality::QualityLevel;
+use super::request::{FrameRequest, RenderScene};
+use crate::data::Dataset;
+
+/// Debounce interval: time without changes after which the picture is refined.
+const REFINEMENT_DELAY: Duration = Duration::from_millis(150);
+
+/// Reason for rendering a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RenderPurpose {
+    /// Response to a change in progress; it is finished in any case.
+    Preview,
+    /// Full quality at rest; it is dropped when something else is requested.
+    Refinement,
+}
+
+/// Time at which the next picture is due.
+#[derive(Debug)]
+pub(super) enum NextRender {
+    /// Immediately, with its purpose and request.
+    Now(RenderPurpose, Box<FrameRequest>),
+    /// Once nothing has changed for this time.
+    After(Duration),
+    /// Not before the window changes the mailbox.
+    OnMailboxChange,
+}
+
+/// Schedule of the render thread: the window's requests, and what of them is already on screen.
+#[derive(Debug)]
+pub(super) struct RenderSchedule {
+    /// New scene that replaces the present one.
+    pub next_scene: Option<RenderScene>,
+    /// New dataset that replaces the present one.
+    pub next_dataset: Option<Dataset>,
+    /// True if the window has closed.
+    pub is_closed: bool,
+    frame_request: Option<FrameRequest>,
+    last_change: Instant,
+    /// True while the look is about to change automatically.
+    holds_refinement: bool,
+    /// Request whose light volumes were filled while refinement was held.
+    prepared_request: Option<FrameRequest>,
+    /// True if a picture was published that the window had not taken when the mailbox was last read.
+    is_frame_pending: bool,
+    /// Request and quality of the last published picture.
+    published: Option<(FrameRequest, QualityLevel)>,
+    /// Request that could not be rendered and is not retried.
+    failed_request: Option<FrameRequest>,
+}
+
+impl RenderSchedule {
+    /// Creates an empty schedule.
+    pub(super) fn new() -> Self {
+        Self {
+            next_scene: None,
+            next_dataset: None,
+            is_closed: false,
+            frame_request: None,
+            last_change: Instant::now(),
+            holds_refinement: false,
+            prepared_request: None,
+            is_frame_pending: false,
+            published: None,
+            failed_request: None,
+        }
+    }
+
+    /// Takes the window's new requests out of the mailbox.
+    pub(super) fn read(&mut self, mailbox: &mut Mailbox) {
+        self.is_closed = mailbox.closed;
+        self.holds_refinement = mailbox.holds_refinement;
+        if let Some(scene) = mailbox.scene.take() {
+            (self.next_scene, self.next_dataset) = (Some(scene), None);
+            self.frame_request = None;
+        }
+        if let Some(dataset) = mailbox.dataset.take() {
+            self.next_dataset = Some(dataset);
+            self.frame_request = None;
+        }
+        if let Some(frame_request) = mailbox.frame_request.take() {
+            self.last_change = Instant::now();
+            self.frame_request = Some(frame_request);
+        }
+        // Until the window takes a picture, its next request is unknown: refining might only delay it.
+        if self.is_frame_pending {
+            self.last_change = Instant::now();
+            self.is_frame_pending = mailbox.frame.is_some();
+        }
+    }
+
+    /// Returns true if the mailbox contains anything that was not read yet.
+    pub(super) fn has_news(&self, mailbox: &Mailbox) -> bool {
+        mailbox.has_changes(self.is_frame_pending) || mailbox.holds_refinement != self.holds_refinement
+    }
+
+    /// Takes the scene that replaces the present one, and resets what is on screen.
+    pub(super) fn take_scene(&mut self) -> Option<RenderScene> {
+        let scene = self.next_scene.take()?;
+        (self.published, self.failed_request, self.prepared_request) = (None, None, None);
+        Some(scene)
+    }
+
+    /// Takes the dataset that replaces the present one, and resets what is on screen.
+    pub(super) fn take_dataset(&mut self) -> Option<Dataset> {
+        let dataset = self.next_dataset.take()?;
+        (self.published, self.failed_request, self.prepared_request) = (None, None, None);
+        Some(dataset)
+    }
+
+    /// Returns true if a picture must be dropped: the window has closed or shows another volume, or a refinement
+    /// belongs to an outdated request.
+    pub(super) fn is_obsolete(&self, purpose: RenderPurpose, frame_request: &FrameRequest) -> bool {
+        let is_other =
+            purpose == RenderPurpose::Refinement && Some(frame_request) != self.frame_request.as_ref();
+        self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
+    }
+
+    /// Returns true if a picture waits until the look has changed; its light volumes are filled meanwhile.
+    pub(super) fn is_on_hold(&self, purpose: RenderPurpose) -> bool {
+        purpose == RenderPurpose::Refinement && self.holds_refinement
+    }
+
+    /// Records that everything a picture needs before it is drawn is complete.
+    pub(super) fn mark_prepared(&mut self, frame_request: FrameRequest) {
+        self.prepared_request = Some(frame_request);
+    }
+
+    /// Returns the time at which the next picture is due.
+    pub(super) fn due(&self) -> NextRender {
+        let Some(frame_request) = &self.frame_request else { return NextRender::OnMailboxChange };
+        let shown = self.published.as_ref().filter(|(shown, _)| shown == frame_request);
+        let is_finished = shown.is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
+        let waits =
+            shown.is_some() && self.holds_refinement && self.prepared_request.as_ref() == Some(frame_request);
+        if is_finished || waits || self.failed_request.as_ref() == Some(frame_request) {
+            return NextRender::OnMailboxChange;
+        }
+        let rest = REFINEMENT_DELAY.saturating_sub(self.last_change.elapsed());
+        if shown.is_none() {
+            // A first picture takes precedence over the pause.
+            NextRender::Now(RenderPurpose::Preview, Box::new(frame_request.clone()))
+        } else if rest.is_zero() {
+            NextRender::Now(RenderPurpose::Refinement, Box::new(frame_request.clone()))
+        } else if self.is_frame_pending {
+            NextRender::OnMailboxChange
+        } else {
+            NextRender::After(rest)
+        }
+    }
+
+    /// Returns true if nothing is to be drawn, now or soon.
+    pub(super) fn is_idle(&self) -> bool {
+        matches!(self.due(), NextRender::OnMailboxChange)
+            && !self.is_frame_pending
+            && self.next_scene.is_none()
+            && self.next_dataset.is_none()
+    }
+
+    /// Records that a picture was published to the window.
+    pub(super) fn publish(&mut self, frame_request: FrameRequest, quality: QualityLevel) {
+        self.published = Some((frame_request, quality));
+        self.is_frame_pending = true;
+    }
+
+    /// Records that the present request cannot be rendered.
+    pub(super) fn mark_failed(&mut self) {
+        self.failed_request.clone_from(&self.frame_request);
+    }
+}

@@ -1,0 +1,33 @@
+//! Infrastructure shared by readers and built-in volumes: memory limits, errors with advice, and a control for
+//! progress and cancellation.
+
+mod choice;
+mod control;
+mod error;
+mod extent;
+mod file_contents;
+mod free_memory;
+mod limits;
+mod memory_estimate;
+mod offer;
+mod portion;
+mod resolved_portion;
+
+pub use choice::VolumeChoice;
+pub use control::LoadControl;
+pub use error::{ErrorExplanation, LoadError, LoadErrorKind};
+pub(super) use error::{LoadContext, quoted};
+#[cfg(test)]
+pub(super) use extent::with_forced_averaging;
+pub(super) use extent::{GridExtent, ReadContext};
+pub use file_contents::{
+    ChoiceAspect, ContentsRecorder, DefaultComponent, FileContents, VolumeAlternatives, VoxelComponents,
+};
+pub(crate) use free_memory::address_bytes_left;
+pub(crate) use limits::default_budget_bytes as memory_budget_bytes;
+pub(crate) use limits::human_bytes;
+pub(super) use limits::{is_usable_affine, is_usable_spacing, spacing_ratio_error};
+pub use memory_estimate::VolumeSize;
+pub use offer::{FileDimension, VolumeOffer};
+pub use portion::{Downsampling, Portion, VoxelRegion, VoxelSpan};
+pub(super) use resolved_portion::ResolvedPortion;

@@ -1,0 +1,11 @@
+//! Multiple scattering: light that is scattered by the material and illuminates other parts of it.
+//!
+//! Extinction and scattering are averaged over blocks of voxels, for each colour. Blocks scatter the direct light;
+//! that light is swept through the blocks in many directions, like a sky's, and gathered, bounce by bounce. With
+//! three or more bounces, the rest of the series is extrapolated geometrically from two of them.
+
+pub(super) mod fill;
+mod source_variant;
+pub(super) mod steps;
+mod textures;
+pub(super) mod volume;

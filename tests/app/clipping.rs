@@ -1,0 +1,103 @@
+//! Tests of the crop box and clip plane dragged in the picture, and of the slices beside it.
+
+use chiaroscuro::app::App;
+use eframe::egui::{self, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::{
+    click, click_at, drag, picture, turn_wheel, wait_until_idle, window, window_without_overlays,
+};
+
+#[test]
+fn box_and_plane_are_dragged_in_the_picture() {
+    let mut harness = window_without_overlays();
+    let (whole, _) = picture(&mut harness);
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    let camera = harness.state().settings().camera.clone();
+    harness.hover_at(rect.center());
+    harness.key_press(egui::Key::K);
+    harness.run_steps(3);
+    let place = |harness: &Harness<'_, App>, name: &str| harness.get_by_label(name).rect().center();
+    let (top, bottom) = (place(&harness, "Crop box, side +z"), place(&harness, "Crop box, side −z"));
+    drag(&mut harness, top, (bottom - top) * 0.4);
+    harness.run_steps(2);
+    let crop = harness.state().settings().cuts.crop.clone();
+    assert!(crop.on && (0.5..0.7).contains(&crop.high[2]), "{crop:?}");
+    assert_eq!((crop.low, crop.high[0], crop.high[1]), ([0.0; 3], 1.0, 1.0));
+    assert!(place(&harness, "Crop box, side +z").distance(top + (bottom - top) * 0.4) < 3.0);
+    wait_until_idle(&mut harness);
+    assert!(picture(&mut harness).0 != whole);
+
+    harness.key_press(egui::Key::K);
+    harness.key_press(egui::Key::X);
+    harness.run_steps(3);
+    let (middle, tip) = (place(&harness, "Clip plane, place"), place(&harness, "Clip plane, direction"));
+    drag(&mut harness, middle, (tip - middle) * 0.5);
+    let moved = harness.state().settings().cuts.plane.clone();
+    assert!(moved.on && moved.offset > 0.1 && moved.normal == [0.0, -1.0, 0.0], "{moved:?}");
+    harness.run_steps(2);
+    // The drag is as long as the arrow appears, so that its tip can follow at any magnification.
+    let (middle, tip) = (place(&harness, "Clip plane, place"), place(&harness, "Clip plane, direction"));
+    let by = vec2(-0.6, -0.8) * 0.6 * (tip - middle).length();
+    drag(&mut harness, tip, by);
+    let turned = harness.state().settings().cuts.plane.clone();
+    assert!(turned.normal[2] > 0.2 && turned.normal != moved.normal, "{turned:?}");
+    harness.run_steps(2);
+    assert!(place(&harness, "Clip plane, direction").distance(tip + by) < 3.0);
+    let middle = place(&harness, "Clip plane, place");
+    harness.hover_at(middle);
+    harness.run_steps(2);
+    turn_wheel(&harness, 50.0);
+    harness.run_steps(30);
+    let wheeled = harness.state().settings().cuts.plane.clone();
+    assert!(wheeled.offset > turned.offset + 0.005, "{wheeled:?}");
+    assert_eq!(harness.state().settings().camera, camera, "neither drags nor wheel reached the camera");
+
+    // Across the line of sight; then all changes are undone step by step.
+    harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::X);
+    harness.run_steps(3);
+    let plane = &harness.state().settings().cuts.plane;
+    assert!(plane.unit_normal().dot(camera.scene_from_view().z_axis) > 0.999, "{plane:?}");
+    wait_until_idle(&mut harness);
+    for _ in 0..12 {
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(2);
+    }
+    assert_eq!(harness.state().settings().cuts, chiaroscuro::model::Clipping::default());
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(picture(&mut harness).0 == whole, "as it was");
+}
+
+#[test]
+fn slices_and_picture_share_a_cursor() {
+    let mut harness = window();
+    let camera = harness.state().settings().camera.clone();
+    harness.key_press(egui::Key::D);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("16, 16, 16").is_some(), "in the middle");
+    let slice = harness.get_by_label("Slice across z").rect();
+    let (at, by) = (slice.center(), vec2(slice.width() / 4.0, -slice.height() / 4.0));
+    drag(&mut harness, at, by);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("24, 24, 16").is_some(), "a quarter to the right and up");
+    harness.hover_at(at);
+    harness.step();
+    // A notch of the wheel is 50 points.
+    turn_wheel(&harness, 110.0);
+    harness.run_steps(30);
+    assert!(harness.query_by_label("24, 24, 18").is_some(), "two slices further");
+    click(&mut harness, "As in the picture");
+
+    // The slices go to the point that is seen under the pointer; the seat is below the window with the slices.
+    let (rect, _) = harness.state().viewport_rect().expect("a picture");
+    let seat = rect.center() + vec2(20.0, 30.0);
+    harness.get_by_label("Slices").rect();
+    let title = harness.get_by_label("Slices").rect().center();
+    drag(&mut harness, title, vec2(0.0, rect.height() / 2.0 + 60.0));
+    click_at(&mut harness, seat, 1);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("24, 24, 18").is_none(), "the cursor went where the picture was clicked");
+    assert_eq!(harness.state().settings().camera, camera);
+}

@@ -1,0 +1,11 @@
+//! Effects of single settings on a picture: combined lights, cuts, the floor, stretched kernels, shadow algorithms.
+
+mod clipping;
+mod combine;
+mod floor;
+mod narrow_peaks;
+mod near_field;
+mod phantom;
+mod shadow_algorithms;
+mod stretched_kernels;
+mod surface_sides;
