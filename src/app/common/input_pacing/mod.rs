@@ -8,6 +8,7 @@
 //! the focus or stands for a command. Later events wait for the next frame, which is requested at once. Nothing is
 //! dropped, and where frames are fast nothing waits. Positions are in points, times in seconds.
 
+mod held_keys;
 #[cfg(test)]
 mod tests;
 
@@ -15,6 +16,7 @@ use std::collections::VecDeque;
 
 use eframe::egui::{self, Event, InputOptions, Key, Modifiers, PointerButton, Pos2};
 
+use self::held_keys::HeldKeys;
 use super::shortcuts::{are_letters_reserved, is_function_key};
 
 /// Duration from which a frame is slow, in seconds: about half of the toolkit's limit between the clicks of a double
@@ -31,6 +33,7 @@ const FRAME_DECAY: f32 = 0.8;
 #[derive(Debug)]
 pub(crate) struct InputPacing {
     waiting: VecDeque<Event>,
+    held_keys: HeldKeys,
     /// True if events of the previous frame may move the focus in this one: characters wait until it has moved.
     focus_settles: bool,
     /// Distance that the pointer may move during a click, in points.
@@ -43,6 +46,7 @@ impl Default for InputPacing {
     fn default() -> Self {
         Self {
             waiting: VecDeque::new(),
+            held_keys: HeldKeys::default(),
             focus_settles: false,
             click_distance: InputOptions::default().max_click_dist,
             frame_s: 0.0,
@@ -239,6 +243,7 @@ impl egui::Plugin for InputPacing {
         if ctx.current_pass_index() > 0 {
             return;
         }
+        self.held_keys.rename_events(&mut input.events);
         self.stretch_clicks(ctx);
         // Letters without a text field need no frames of their own.
         let is_typing = ctx.text_edit_focused() || are_letters_reserved(ctx);

@@ -215,3 +215,22 @@ fn two_clicks_are_a_double_click_where_frames_are_slow() {
     window.run([click.clone(), click].concat(), &mut add);
     assert_eq!((clicks, doubles), (2, 1));
 }
+
+/// A colon is pressed with Shift, which is released first, so that the release is named by the unshifted character.
+#[test]
+fn a_released_key_is_named_as_it_was_pressed() {
+    let key = |key, pressed| Event::Key {
+        key,
+        physical_key: Some(Key::Semicolon),
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let mut held = super::HeldKeys::default();
+    let mut events = [key(Key::Colon, true), key(Key::Semicolon, false), key(Key::Semicolon, true)];
+    held.rename_events(&mut events);
+    assert_eq!(events, [key(Key::Colon, true), key(Key::Colon, false), key(Key::Semicolon, true)]);
+    let mut events = [Event::WindowFocused(false), key(Key::Colon, true)];
+    held.rename_events(&mut events);
+    assert_eq!(events[1], key(Key::Colon, true), "nothing is held after the focus was lost");
+}
