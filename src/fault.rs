@@ -134,7 +134,7 @@ pub(crate) fn is_due(count: &FaultCounter, fault: impl Fn(u64) -> InjectedFault)
 /// Panics if that was chosen for this thread.
 #[cfg(any(feature = "window", test))]
 pub(crate) fn panic_if_injected(place: FaultThread) {
-    assert!(!is_on(InjectedFault::Panic(place)), "a fault was asked for: panic in {place:?}");
+    assert!(!is_on(InjectedFault::Panic(place)), "a fault was injected: panic in {place:?}");
 }
 
 /// Sums the durations that `of` returns for the chosen faults.

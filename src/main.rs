@@ -50,7 +50,7 @@ fn set_runtime_dir() {}
 #[cfg(target_os = "linux")]
 #[expect(
     unsafe_code,
-    reason = "nothing that is safe runs before the runtime, and afterwards nothing can be told"
+    reason = "safe code cannot run before the runtime, which hides that the output is closed"
 )]
 mod before_main {
     extern "C" fn look_at_output() {

@@ -141,7 +141,7 @@ fn texts_outside_are_detected() {
         "ui.label(format!(\"{count} of {total} parts\"));",
         "log::warn!(\"no window\"); ui.label(\"no window\");",
         "ui.button(\"Say \\\"yes\\\"\");",
-        "interact(ui, Id::unique(\"side\"), \"Clip plane, place\");",
+        "interact(ui, Id::unique(\"side\"), \"Clip plane, position\");",
         "let quote = '\"'; ui.label(\"casts shadows\");",
     ] {
         assert_eq!(shown(source), 1, "{source}");

@@ -79,7 +79,7 @@ install_wanted() {
     apt)
         need_root "apt-get install $*"
         [ -n "$packages_refreshed" ] || apt update ||
-            warn "the list of packages could not be refreshed; going on with the one that is here"
+            warn "the list of packages could not be refreshed; the present one is used"
         packages_refreshed=yes
         apt install -y --no-install-recommends "$@" || die "could not install: $*"
         ;;
@@ -122,7 +122,7 @@ need_rust() {
         is_linux || die "there is no linker; run: xcode-select --install"
         want_package gcc gcc "Rust links programs with it"
         if [ "$(package_manager)" = apt ]; then
-            want_package libc6-dev glibc-devel "what the linker needs from the C library"
+            want_package libc6-dev glibc-devel "files of the C library for the linker"
         fi
         install_wanted
     fi
@@ -131,9 +131,9 @@ need_rust() {
 # Installs the Vulkan loader and a driver if they are missing. macOS has Metal instead.
 need_vulkan() {
     is_linux || return 0
-    want_library libvulkan.so.1 libvulkan1 vulkan-loader "the Vulkan loader, through which pictures are computed"
+    want_library libvulkan.so.1 libvulkan1 vulkan-loader "the Vulkan loader, for rendering"
     has_vulkan_driver ||
-        want_package mesa-vulkan-drivers mesa-vulkan-drivers "there is no Vulkan driver; this has one in software"
+        want_package mesa-vulkan-drivers mesa-vulkan-drivers "there is no Vulkan driver; this is one in software"
     install_wanted
 }
 

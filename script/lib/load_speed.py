@@ -169,8 +169,8 @@ def main():
     rounds = int(sys.argv[3]) if len(sys.argv) > 3 else 5
     make(folder)
     versions = f"pydicom {pydicom.__version__} with pylibjpeg, tifffile {tifffile.__version__} with imagecodecs"
-    print(f"{versions} {imagecodecs.__version__}, {os.cpu_count()} cores; medians of {rounds} runs in turns")
-    print(f"{'file':<36} {'ours ms':>9} {'theirs ms':>10} {'':<10} {'ratio':>6} {'limit':>6}")
+    print(f"{versions} {imagecodecs.__version__}, {os.cpu_count()} cores; medians of {rounds} alternating runs")
+    print(f"{'file':<36} {'viewer ms':>9} {'other ms':>10} {'':<10} {'ratio':>6} {'limit':>6}")
     is_within = True
     for what, path, options, other, call, limit in cases(folder):
         call()

@@ -18,7 +18,7 @@ place() {
 must_rest() {
     local deadline=$((SECONDS + 30)) quiet=0 before='' now
     while [ "$quiet" -lt 8 ]; do
-        [ "$SECONDS" -lt "$deadline" ] || { say "$1 is not there, or moves: $now"; break; }
+        [ "$SECONDS" -lt "$deadline" ] || { say "$1 is missing, or still moves: $now"; break; }
         now=$(look ".places[\"$1\"] // empty | tostring")
         if [ -n "$now" ] && [ "$now" = "$before" ]; then quiet=$((quiet + 1)); else quiet=0; fi
         before=$now
@@ -41,7 +41,7 @@ slow_flicks() {
         sleep 2
         camera=$(kept .camera) lights=$(kept .lights)
         read -r -a handle < <(look '.light_handles[0] // empty | [.x, .y] | join(" ")') ||
-            abort "the status tells where a light's handle is"
+            abort "the status contains the position of the light's handle"
         handle=($((handle[0] + window_x)) $((handle[1] + window_y)))
         # shellcheck disable=SC2086 # two numbers
         set -- $by
@@ -89,7 +89,7 @@ slow_dialogs() {
             title='Open volume'
             [ "$key" = o ] || title='Save session'
             go key "ctrl+$key"
-            if await 10 asks_for_path "$title"; then well=$((well + 1)); else say "Ctrl+$key, time $at: nothing"; fi
+            if await 10 asks_for_path "$title"; then well=$((well + 1)); else say "Ctrl+$key, attempt $at: no dialog"; fi
             go key Escape
             await 10 asks_for_path null || true
         done
@@ -114,7 +114,7 @@ slow_sections() {
         if [ $((y - below)) -ge 0 ] && { [ $((y - below)) -le 24 ] || [ "$end" -lt "$window_height" ]; }; then
             well=$((well + 1))
         else
-            say "$title: its title is $((y - below)) points below the drawings"
+            say "$title: its title is $((y - below)) points below the diagram"
         fi
         import -window root "$out/section-${title%% *}.png" 2>/dev/null || true
     done
@@ -140,5 +140,5 @@ slow_frames() {
     ! panicked && running || well=0
     keep slow-frames
     end
-    row "what comes within slow frames" "$tried" "$well" "frames of 300 ms"
+    row "input during slow frames" "$tried" "$well" "frames of 300 ms"
 }

@@ -12,7 +12,7 @@ need_component() {
 }
 
 need_shellcheck() {
-    want_command shellcheck shellcheck ShellCheck "reads the scripts"
+    want_command shellcheck shellcheck ShellCheck "checks the scripts"
     install_wanted
     has shellcheck || die "shellcheck was not found; install it (macOS: brew install shellcheck)"
 }

@@ -49,7 +49,7 @@ finish() {
         fail "the script itself stopped early"
     fi
     [ "$failed" -eq 0 ] || [ "$code" -ne 0 ] || code=1
-    printf 'seen in %s\n' "$out"
+    printf 'logs and screenshots: %s\n' "$out"
     printf '%s passed, %s failed\n' "$passed" "$failed"
     exit "$code"
 }
@@ -66,7 +66,7 @@ wait_for() {
     local deadline=$((SECONDS + $1))
     shift
     until "$@"; do
-        running || abort "the program goes on running"
+        running || abort "the program keeps running"
         [ "$SECONDS" -lt "$deadline" ] || return 1
         sleep 0.2
     done
@@ -76,7 +76,7 @@ wait_for() {
 settled() {
     local deadline=$((SECONDS + 120)) quiet=0 before='' now
     while [ "$quiet" -lt 5 ]; do
-        running || abort "the program goes on running"
+        running || abort "the program keeps running"
         [ "$SECONDS" -lt "$deadline" ] || return 1
         now=$(cat "$status" 2>/dev/null || true)
         if [ "$(look .state)" = idle ] && [ "$now" = "$before" ]; then
@@ -119,7 +119,7 @@ viewport() {
     # The numbers are integers, but JSON may contain them as 12.0.
     read -r left top width height < <(look \
         '.viewport // empty | [.x, .y, .width, .height] | map(. + 0.5 | floor | tostring) | join(" ")') ||
-        abort "the status tells where the picture is"
+        abort "the status contains the position of the picture"
     left=$((left + window_x)) top=$((top + window_y))
 }
 
@@ -159,7 +159,7 @@ need_window_tools() {
     need_window_libraries
     want_command Xvfb xvfb xorg-x11-server-Xvfb "the virtual X server that the window opens on"
     want_command xdotool xdotool xdotool "moves the mouse and presses keys"
-    want_command jq jq jq "reads what the program reports"
+    want_command jq jq jq "reads the status of the program"
     install_wanted
 }
 

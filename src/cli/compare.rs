@@ -28,10 +28,10 @@ pub(super) struct CompareArgs {
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
-    /// Pixels of each picture
+    /// Width and height of each picture in pixels
     #[arg(long, value_name = "WxH", default_value = "400x400", value_parser = parse_size)]
     size: [u32; 2],
-    /// What to show, from the left
+    /// Looks to render, from left to right
     #[arg(long, value_parser = variant_names(), value_delimiter = ',', default_value = "off,splat")]
     looks: Vec<String>,
 }
@@ -54,7 +54,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
         let first = pictures.first().unwrap_or(&picture);
         let PictureDistance { rmse, max: largest } =
             PictureDistance::between_bytes(&first.display, &picture.display);
-        print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest {largest}"))?;
+        print_line(&format!("{name:<12} RMSE {rmse:6.2} of 255, largest difference {largest}"))?;
         pictures.push(picture);
     }
     if pictures.iter().all(|picture| is_empty_light(&picture.linear)) {

@@ -23,25 +23,26 @@ pub(super) struct ConvertArgs {
     input: PathBuf,
     #[arg(help = "File to write: .nrrd, .mha, .nii, .nii.gz, .tif, .npy or .vti; - is standard output")]
     output: PathBuf,
-    /// Format of standard output: an ending of those of files
-    #[arg(long, value_name = "ENDING", value_parser = parse_format)]
+    /// Format of standard output, as a file extension such as nii.gz; NRRD if it is not given
+    #[arg(long, value_name = "EXTENSION", value_parser = parse_format)]
     format: Option<VolumeFormat>,
     /// Number type to write: uint8, int8, uint16, int16, uint32, int32, float32 or float64
     #[arg(long = "type", value_name = "T", value_parser = parse_voxel_type, id = "written_type")]
     written_type: Option<VoxelType>,
-    /// Values that become the lowest and the highest number of a whole --type, those beyond with them
+    /// Range of values to map to the full range of an integer --type; values outside are clamped
     #[arg(long, value_name = "LOW:HIGH", value_parser = parse_value_range, allow_hyphen_values = true)]
     rescale: Option<ValueRange>,
-    /// Number for voxels that hold nothing: not finite, or what the file declares as padding
+    /// Number to write for missing voxels: those that are not finite or have the padding value of the file
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     padding: Option<f64>,
-    /// Sides of the body towards which the axes are to go, fastest first: RAS, LPS or another of the 48
+    /// Orientation to write: the sides of the body that the axes point to, fastest axis first, as RAS, LPS or another
+    /// of the 48
     #[arg(long, value_name = "LETTERS")]
     orient: Option<AnatomicalAxes>,
-    /// Compress the voxels within .nrrd (gzip) or .mha (zlib); .nii.gz always is
+    /// Compress the voxels in .nrrd (gzip) or .mha (zlib); .nii.gz is always compressed
     #[arg(long)]
     compress: bool,
-    /// Replace files that this program has not made
+    /// Replace files that were not written by this program
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -88,13 +89,14 @@ impl ConvertArgs {
             (false, Some(by_name), Some(format)) if by_name == format => by_name,
             (false, ..) if self.format.is_some() => {
                 return Err(CliError::Usage(
-                    "--format is for standard output; files have the format of their ending (command line, --format)"
+                    "--format applies to standard output; files have the format of their extension (command line, \
+                     --format)"
                         .to_owned(),
                 ));
             }
             (false, ..) => {
                 return Err(CliError::Usage(format!(
-                    "{}: volumes are written as {}, and the name says as which",
+                    "{}: volumes are written as {}, depending on the file extension",
                     self.output.display(),
                     all_extensions()
                 )));
@@ -102,7 +104,7 @@ impl ConvertArgs {
         };
         if self.compress && !format.may_be_compressed() && format != VolumeFormat::NiftiGzip {
             return Err(CliError::Usage(format!(
-                "--compress: voxels in .{} stay as they are; .nrrd, .mha or .nii.gz helps (command line, --compress)",
+                "--compress: .{} files are not compressed; choose .nrrd, .mha or .nii.gz (command line, --compress)",
                 format.extensions()[0]
             )));
         }
@@ -152,9 +154,9 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let lost = format.unsupported_metadata(&outgoing);
     if !lost.is_empty() {
         warn_line(&format!(
-            "warning: .{} has no place for {}; .nrrd has",
+            "warning: .{} does not store {}; .nrrd does",
             format.extensions()[0],
-            lost.join(", nor for ")
+            lost.join(", ")
         ));
     }
     finish_output(output)

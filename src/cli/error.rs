@@ -30,7 +30,7 @@ pub enum CliError {
         source: PresetError,
     },
     /// A file could not be read.
-    #[error("{what}: {source} ({path}); a file that exists and can be read helps")]
+    #[error("could not read the {what}: {source} ({path}); check that the file exists and can be read")]
     Read {
         /// Purpose of the file that was to be read.
         what: &'static str,
@@ -49,7 +49,7 @@ pub enum CliError {
     #[error(transparent)]
     Picture(#[from] ReadPictureError),
     /// A picture cannot be reproduced from its record.
-    #[error("{path}: {why}; a picture that was exported by this program, beside its volume, helps")]
+    #[error("{path}: {why}; expected a picture exported by this program, together with its volume")]
     Replay {
         /// Path of the picture.
         path: String,
@@ -69,7 +69,7 @@ pub enum CliError {
         help: &'static str,
     },
     /// Corrections would leave no valid volume.
-    #[error("{path} could not be corrected ({by}): {why}; other values of `volume.…` help")]
+    #[error("{path} could not be corrected ({by}): {why}; choose other values of `volume.…`")]
     InvalidCorrection {
         /// Path of the volume.
         path: String,
@@ -85,10 +85,12 @@ pub enum CliError {
     #[error(transparent)]
     Export(#[from] ExportError),
     /// Standard output could not be written.
-    #[error("could not write to standard output: {0}; room where it goes helps")]
+    #[error("could not write to standard output: {0}; check that its destination is open and has free space")]
     Output(std::io::Error),
     /// The system refused to start threads.
-    #[error("no thread could be started ({0}); fewer limits (`ulimit -u`, `ulimit -v`) help")]
+    #[error(
+        "threads could not be started ({0}); raise the limits of processes and memory (`ulimit -u`, `ulimit -v`)"
+    )]
     ThreadStart(String),
     /// The window could not be opened.
     #[error("{0}; `chiaroscuro render FILE -o OUT.png` needs no window")]

@@ -11,20 +11,19 @@ use crate::model::{Annotations, ImageSpec, MAX_SAMPLES_PER_EDGE, PixelFormat};
 /// Arguments of a still picture.
 #[derive(Debug, Args)]
 pub(super) struct ImageArgs {
-    /// Pixels; more than the adapter can draw at once are drawn in parts
+    /// Width and height in pixels; sizes beyond the limits of the adapter are rendered in tiles
     #[arg(long, value_name = "WxH", default_value = "1280x960", value_parser = parse_size)]
     size: [u32; 2],
     /// Leave the background out (straight alpha in PNG, premultiplied in EXR)
     #[arg(long)]
     transparent: bool,
-    /// Samples of each pixel along an edge: 2 means four
+    /// Samples along each edge of a pixel: 2 means 4 samples per pixel
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES_PER_EDGE)))]
     samples: u32,
-    /// Bits of each colour of a PNG file; EXR files hold linear light in 16-bit floats
+    /// Bits per colour channel of a PNG file; EXR files hold linear light in 16-bit floats
     #[arg(long, value_enum, default_value_t = BitDepthArg::Eight)]
     bits: BitDepthArg,
-    /// Write over the picture how long things are (`scale_bar`), which side of a body is where (`letters`), which
-    /// colour stands for which value (`legend`)
+    /// Annotations to draw over the picture: scale bar, orientation letters of a body, legend of colours and values
     #[arg(long, value_enum, value_delimiter = ',', value_name = "MARK")]
     marks: Vec<MarkArg>,
 }

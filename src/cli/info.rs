@@ -23,10 +23,10 @@ const LISTED_LABELS: usize = 20;
 pub(super) struct InfoArgs {
     #[arg(help = "Volume: a file, or builtin:NAME[:N]")]
     file: PathBuf,
-    /// Print a JSON object in place of lines of text
+    /// Print a JSON object instead of lines of text
     #[arg(long)]
     json: bool,
-    /// One correction of the volume by its path, for instance volume.spacing=0.5,0.5,2; may be repeated
+    /// Correct a property of the volume by its path, for instance volume.spacing=0.5,0.5,2; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
@@ -83,7 +83,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     }
     print_line(&spacing_line(&volume))?;
     print_line(&format!("  values       {low} … {high}"))?;
-    print_line(&format!("  robust       {} … {}", shown.low, shown.high))?;
+    print_line(&format!("  robust range {} … {}", shown.low, shown.high))?;
     let listed: Vec<_> = PERCENTILES.iter().map(|&p| format!("{p} %: {:.4}", percentile(p))).collect();
     print_line(&format!("  percentiles  {}", listed.join(", ")))?;
     print_line(&format!("  kind         {}: {}", volume.kind().kind.name().key(), volume.kind().reason))?;
@@ -110,7 +110,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
 fn spacing_line(volume: &Volume) -> String {
     let spacing: [f64; 3] = volume.spacing_mm().into();
     let (unit, symbol) = if volume.has_unknown_scale() {
-        (SpacingUnit::Voxels, "(nobody knows of what)")
+        (SpacingUnit::Voxels, "(unit unknown)")
     } else {
         let unit = SpacingUnit::suiting_spacing(spacing);
         (unit, unit.symbol())

@@ -20,10 +20,10 @@ pub(super) struct LightVolumeArgs {
     /// File to write: NRRD (float32, 0 dark to 1 fully lit), or with --slice a PNG in false colours
     #[arg(short, long, value_name = "OUT.nrrd|OUT.png")]
     output: PathBuf,
-    /// One slice of it, for instance z:40 (counted in voxels of the light volume)
+    /// Write one slice alone, for instance z:40 (counted in voxels of the light volume)
     #[arg(long, value_name = "AXIS:INDEX", value_parser = parse_slice)]
     slice: Option<LightVolumeSlice>,
-    /// Which light, counted from 0
+    /// Index of the light, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     light: usize,
 }
@@ -66,7 +66,8 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let request = RenderRequest { volume: loaded.volume().id(), settings, size, preview_resolution: None };
     let attenuation = renderer.attenuation(&request, args.light)?.ok_or_else(|| {
         CliError::Usage(format!(
-            "--light: light {} has no attenuation volume: it must be one of {lights}, be on and cast shadows, and shadows must be on (command line, --light)",
+            "--light: light {} has no attenuation volume; expected one of the {lights} lights, counted from 0, that \
+             is on and casts shadows, with shadows on (command line, --light)",
             args.light
         ))
     })?;
@@ -82,7 +83,8 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
         Some(LightVolumeSlice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {
                 CliError::Usage(format!(
-                    "--slice: there is no slice {index}: the light volume has {} along {} (command line, --slice)",
+                    "--slice: there is no slice {index}: the light volume has {} slices along {}, counted from 0 \
+                     (command line, --slice)",
                     attenuation.dims[axis], AXES[axis]
                 ))
             })?;

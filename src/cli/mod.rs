@@ -33,20 +33,20 @@ use crate::export::may_carry_record;
 struct CommandLine {
     #[command(subcommand)]
     command: Option<CliCommand>,
-    #[arg(help = "Volume to view: a file, or builtin:NAME[:N]")]
+    #[arg(help = "Volume, session or exported picture to open: a file, or builtin:NAME[:N]")]
     file: Option<PathBuf>,
     /// Session to continue; Ctrl+S saves to it
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
-    /// Volume of the look that FILE or --session is, if it is not where the look says
+    /// Volume of the session or picture (FILE or --session), if it is not at the recorded path
     #[arg(long, value_name = "FILE")]
     volume: Option<PathBuf>,
-    /// Open volumes wherever sessions and pictures say that they are, without asking
+    /// Open volumes at the paths recorded in sessions and pictures, without asking
     #[arg(long)]
     trust_paths: bool,
     #[command(flatten)]
     load: LoadArgs,
-    /// A fault on purpose, to see what the program does then; may be repeated
+    /// Inject a fault, for tests of error handling; may be repeated
     #[arg(long, value_name = "FAULT", global = true, hide = true)]
     fault: Vec<InjectedFault>,
 }
@@ -59,7 +59,7 @@ impl CommandLine {
             && !is_look(file)
         {
             return Err(CliError::Usage(format!(
-                "--volume: {} is a volume itself, so {} cannot be shown; a session or a picture goes with --volume",
+                "--volume: {} is a volume itself, so {} cannot be shown; use --volume with a session or a picture",
                 file.display(),
                 volume.display()
             )));
@@ -75,21 +75,21 @@ fn is_look(path: &Path) -> bool {
 
 #[derive(Debug, Subcommand)]
 enum CliCommand {
-    /// Render a picture to a PNG file
+    /// Render a picture to a PNG or EXR file
     Render(render::RenderArgs),
-    /// Render one turn of the camera or of a light
+    /// Render an animation of one turn of the camera or of a light
     Turntable(turntable::TurntableArgs),
-    /// Make an exported picture again from what it carries, and compare the two
+    /// Render an exported picture again from its embedded settings, and compare the two
     Replay(replay::ReplayArgs),
-    /// Render several looks side by side and say how far they are apart
+    /// Render several looks side by side, and print the distance of each from the first
     Compare(compare::CompareArgs),
-    /// Write a light's attenuation volume as NRRD
+    /// Write a light's attenuation volume as NRRD, or a slice of it as PNG
     LightVolume(light_volume::LightVolumeArgs),
-    /// Write a volume in another format, as a whole or in part
+    /// Convert a volume, or a part of it, to another file format
     Convert(convert::ConvertArgs),
-    /// Say what is in a volume
+    /// Print a volume's size, values, kind of data and metadata
     Info(info::InfoArgs),
-    /// Measure how long pictures and light volumes take
+    /// Measure the times of rendering, light volumes and loading
     Bench(bench::BenchArgs),
 }
 

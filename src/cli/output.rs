@@ -24,14 +24,15 @@ pub(super) fn check_overwrites(inputs: &[&Path], outputs: &[&Path], force: bool)
         if let Some(identity) = FileIdentity::from_path(output) {
             if let Some(input) = inputs.get(&identity) {
                 let input = input.display();
-                return refused(format!("would replace {input}, which is read; another name helps"));
+                return refused(format!("would replace {input}, which is read; choose another name"));
             }
             if !written.insert(identity) {
-                return refused("would be written twice; two names help".to_owned());
+                return refused("would be written twice; choose two different names".to_owned());
             }
         }
         if !force && *output != Path::new("-") && output.is_file() && !is_written_by_us(output) {
-            let why = "is there already, and this program has not made it; another name, or --force, helps";
+            let why =
+                "exists already, and was not written by this program; choose another name, or use --force";
             return refused(why.to_owned());
         }
     }

@@ -26,10 +26,10 @@ pub(super) struct RenderArgs {
     output: PathBuf,
     #[command(flatten)]
     image: ImageArgs,
-    /// Also write what it took, and all settings, as JSON: of the picture drawn at once, with a sample per pixel
+    /// Also write times, memory and all settings to a JSON file; timed without tiling, at one sample per pixel
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
-    /// Say what is being done
+    /// Print the progress on standard error
     #[arg(long)]
     progress: bool,
 }
@@ -54,7 +54,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let (loaded, context) = args.scene.load()?;
     let look = args.scene.look(&loaded)?;
     let mut renderer = Renderer::new(&context)?;
-    say("finding the look");
+    say("determining the look");
     let settings = look.settings(&mut renderer, &loaded)?;
     say("rendering");
     let mut report = None;

@@ -20,21 +20,21 @@ const MAX_PATH_CHARS: usize = 4096;
 /// Arguments of `replay`.
 #[derive(Debug, Args)]
 pub(super) struct ReplayArgs {
-    /// A PNG or EXR picture that this program has exported
+    /// PNG or EXR picture exported by this program
     picture: PathBuf,
-    /// The volume, if it is not where it was
+    /// Volume of the picture, if it is not at the recorded path
     #[arg(long, value_name = "FILE")]
     volume: Option<PathBuf>,
-    /// Open the volume wherever the picture says that it is
+    /// Open the volume at the recorded path, even outside the folder of the picture
     #[arg(long)]
     trust_paths: bool,
-    /// Write the new picture
+    /// Write the new picture to this file
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Replace a file that this program has not made
+    /// Replace a file that was not written by this program
     #[arg(long, requires = "output")]
     force: bool,
-    /// Fail (exit code 1) unless both pictures are the same byte for byte
+    /// Fail (exit code 1) unless all pixels of the two pictures are identical
     #[arg(long)]
     check: bool,
     #[command(flatten)]
@@ -52,10 +52,11 @@ fn trusted_volume_path(args: &ReplayArgs, volume_record: &VolumeRecord) -> Resul
         VolumeLocation::Builtin(name) => Ok(name.into()),
         VolumeLocation::InRecordFolder(path) => Ok(path),
         VolumeLocation::OtherFolder(path) if args.trust_paths => Ok(path),
-        VolumeLocation::OtherFolder(_) => {
-            refused("it is not in the picture's folder", "--trust-paths opens it, --volume FILE another")
-        }
-        VolumeLocation::Refused(why) => refused(why, "--volume FILE names one"),
+        VolumeLocation::OtherFolder(_) => refused(
+            "it is not in the picture's folder",
+            "--trust-paths opens it, --volume FILE opens another",
+        ),
+        VolumeLocation::Refused(why) => refused(why, "use --volume FILE to choose one"),
     }
 }
 
@@ -67,19 +68,19 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let preset = |source: PresetError| CliError::Preset { what: "picture", path: path.clone(), source };
     let record = LookRecord::parse(&text).map_err(preset)?;
     let picture_record =
-        record.image.clone().ok_or_else(|| unusable("it does not say how large it was".to_owned()))?;
+        record.image.clone().ok_or_else(|| unusable("it does not record its size".to_owned()))?;
     let stated = record.volume.as_ref();
     let source = match (&args.volume, stated) {
         (Some(volume), _) => volume.clone(),
         (None, Some(stated)) => trusted_volume_path(args, stated)?,
-        (None, None) => return Err(unusable("it does not say of which volume".to_owned())),
+        (None, None) => return Err(unusable("it does not record its volume".to_owned())),
     };
     if let Some(output) = &args.output {
         check_overwrites(&[&args.picture, &source], &[output], args.force)?;
     }
     let (volume, context) = args.load.open_chosen(&source, stated.map(|stated| &stated.choice))?;
     if stated.is_some_and(|of| !of.matches_content(volume.opened_id())) {
-        return Err(unusable(format!("{} is another volume than the one that it shows", source.display())));
+        return Err(unusable(format!("{} is another volume than that of the picture", source.display())));
     }
     let by = record.corrections_for(volume.opened_id()).unwrap_or_default();
     let volume = apply_corrections(&source, volume, &by)?;
@@ -90,11 +91,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     }
     let loaded = Dataset::new(volume);
     if picture_record.adapter != context.description() {
-        warn_line(&format!("made on {}, again on {}", picture_record.adapter, context.description()));
+        warn_line(&format!(
+            "originally rendered on {}, now on {}",
+            picture_record.adapter,
+            context.description()
+        ));
     }
     if picture_record.version != env!("CARGO_PKG_VERSION") {
         warn_line(&format!(
-            "made by version {}, again by {}",
+            "originally rendered by version {}, now by {}",
             picture_record.version,
             env!("CARGO_PKG_VERSION")
         ));
@@ -103,7 +108,10 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     // Checked before the picture is decoded.
     let size = picture_size(&args.picture)?;
     if size != image_spec.size {
-        return Err(unusable(format!("it is {size:?} pixels and not {:?}", image_spec.size)));
+        return Err(unusable(format!(
+            "its size is {size:?} pixels and not {:?} as recorded",
+            image_spec.size
+        )));
     }
     let (_, before) = read_picture(&args.picture)?;
     if let Some(output) = &args.output {

@@ -16,16 +16,16 @@ use crate::model::{ImageRecord, ImageSpec, LookRecord, VolumeRecord};
 pub(super) struct TurntableArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// A file that moves (PNG; GIF; MP4, which needs ffmpeg); or a folder for one PNG file per picture
+    /// Animated PNG, GIF or MP4 (needs ffmpeg) to write, or a folder for one PNG file per frame
     #[arg(short, long, value_name = "OUT.png|OUT.gif|OUT.mp4|FOLDER")]
     output: PathBuf,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_size)]
     size: [u32; 2],
-    /// Pictures for one turn
+    /// Frames in one turn
     #[arg(long, default_value_t = 72, value_parser = clap::value_parser!(u32).range(2..=3600))]
     frames: u32,
-    /// Pictures per second of a file that moves
+    /// Frames per second of an animated file
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(1..=120))]
     rate: u16,
     /// Turn this light around the vertical axis instead of the camera; 1 is the first
@@ -34,7 +34,7 @@ pub(super) struct TurntableArgs {
     /// Leave the background out (straight alpha)
     #[arg(long)]
     transparent: bool,
-    /// Say what is being done
+    /// Print the progress on standard error
     #[arg(long)]
     progress: bool,
 }
@@ -47,7 +47,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     }
     args.scene.keep_apart(&written.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     if args.output == Path::new("-") {
-        let why = "--output: a turn is written to a file or a folder; standard output takes single pictures";
+        let why = "--output: an animation is written to a file or a folder; only single pictures go to standard output";
         return Err(CliError::Usage(why.to_owned()));
     }
     let (loaded, context) = args.scene.load()?;
@@ -78,7 +78,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         is_empty = is_empty && renderer.is_picture_empty()?;
         file.add(&shown, &LookRecord::to_json(&settings, Some(&volume), Some(&how)))?;
         if args.progress {
-            warn_line(&format!("{} of {}", frame + 1, args.frames));
+            warn_line(&format!("frame {} of {}", frame + 1, args.frames));
         }
     }
     if is_empty {

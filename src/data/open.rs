@@ -51,5 +51,5 @@ pub fn open(
     volume
         .extract_portion(&ResolvedPortion::whole_grid(dims), &wanted)
         .map(|volume| volume.with_contents(held))
-        .map_err(|err| attempt.bad_input_error("voxels", err.to_string(), "load them all"))
+        .map_err(|err| attempt.bad_input_error("voxels", err.to_string(), "load the whole volume"))
 }

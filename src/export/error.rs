@@ -15,7 +15,7 @@ pub enum ExportError {
     #[error("the picture could not be encoded: {0}")]
     Gif(#[from] gif::EncodingError),
     /// The file system reported an error.
-    #[error("could not write: {source} ({path}); a folder that exists and can be written to helps")]
+    #[error("could not write: {source} ({path}); choose an existing, writable folder")]
     Write {
         /// Path of the file to be written.
         path: PathBuf,
@@ -69,7 +69,7 @@ impl ExportError {
 
 /// Reason why a picture could not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("could not read the picture: {why} ({path}); a PNG or EXR file that this program has exported helps")]
+#[error("could not read the picture: {why} ({path}); choose a PNG or EXR file exported by this program")]
 pub struct ReadPictureError {
     /// Path of the picture file.
     path: PathBuf,

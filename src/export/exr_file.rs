@@ -64,7 +64,9 @@ pub(super) fn write<E: From<ExportError>>(
                 match rows() {
                     Ok(Some(PixelRows::Floats(more))) => waiting.extend(more),
                     Ok(_) => {
-                        return Err(exr::error::Error::Invalid("rows are missing or have no light".into()));
+                        return Err(exr::error::Error::Invalid(
+                            "rows are missing or not of linear light".into(),
+                        ));
                     }
                     Err(err) => {
                         refused = Some(err);
@@ -157,10 +159,7 @@ pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureErro
     for piece in (0..).map_while(piece) {
         text.extend(piece.chars());
         if text.len() > MAX_LOOK_BYTES {
-            return Err(ReadPictureError::new(
-                path,
-                &"what it says of how it was made is longer than any look",
-            ));
+            return Err(ReadPictureError::new(path, &"its embedded settings are too long"));
         }
     }
     Ok(Some(text).filter(|text| !text.is_empty()))
@@ -184,7 +183,7 @@ pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     // A pixel has at least two bytes.
     let least = 2 * u64::from(size[0]) * u64::from(size[1]) / MAX_COMPRESSION_RATIO;
     if least > bytes {
-        return Err(failed(&format!("{bytes} bytes are less than {} × {} pixels have", size[0], size[1])));
+        return Err(failed(&format!("{bytes} bytes are too few for {} × {} pixels", size[0], size[1])));
     }
     Ok(size)
 }
@@ -193,7 +192,7 @@ pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
 pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
     let [width, height] = size(path)?.map(|edge| edge as usize);
     let mut room = Vec::new();
-    let no_room = |err| ReadPictureError::new(path, &format!("there is no memory for it: {err}"));
+    let no_room = |err| ReadPictureError::new(path, &format!("there is not enough memory for it: {err}"));
     room.try_reserve_exact(4 * width * height).map_err(no_room)?;
     room.resize(4 * width * height, 0.0);
     let room = RefCell::new(room);
@@ -265,7 +264,7 @@ mod tests {
         // The header claims a thousand times the pixels that its bytes can hold.
         std::fs::write(&path, claiming(&before, [16_384, 16_384])).unwrap();
         let refused = read(&path).unwrap_err().to_string();
-        assert!(refused.contains("bytes are less than"), "{refused}");
+        assert!(refused.contains("bytes are too few for"), "{refused}");
         // Records have a maximum length.
         let mut rows = Some(PixelRows::Floats(vec![0.0; 4]));
         let mut next = || Ok::<_, ExportError>(rows.take());
@@ -273,7 +272,7 @@ mod tests {
         let long = "x".repeat(MAX_LOOK_BYTES + 1);
         super::super::write_picture(&path, &image_spec, Some(&long), &mut next).unwrap();
         let refused = read_record(&path).unwrap_err().to_string();
-        assert!(refused.contains("longer than any look") && size(&path).is_ok(), "{refused}");
+        assert!(refused.contains("embedded settings are too long") && size(&path).is_ok(), "{refused}");
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_record(&path).is_err() && read(&path).is_err());
     }

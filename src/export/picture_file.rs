@@ -60,7 +60,7 @@ pub fn check_picture(path: &Path, image_spec: &ImageSpec) -> Result<(), ExportEr
     check_extension(
         path,
         &["png", "exr"],
-        "pictures are written as .png or .exr, and the name says as which",
+        "pictures are written as .png or .exr; the extension selects the format",
     )?;
     let format = PictureFormat::from_path(path);
     if format.supported_depth(image_spec.depth) != image_spec.depth {

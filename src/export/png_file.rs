@@ -133,7 +133,7 @@ pub(super) fn check_size(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPi
     if size.iter().all(|edge| (1..=MAX_IMAGE_EDGE).contains(edge)) {
         return Ok(size);
     }
-    let why = format!("it has {width} × {height} pixels, which none of this program has");
+    let why = format!("it has {width} × {height} pixels, a size that this program does not write");
     Err(ReadPictureError::new(path, &why))
 }
 
@@ -169,7 +169,7 @@ pub(super) fn read_record(path: &Path) -> Result<Option<String>, ReadPictureErro
     let Some(mut text) = found.cloned() else { return Ok(None) };
     // Decompression stops at this length.
     text.decompress_text_with_limit(MAX_LOOK_BYTES)
-        .map_err(|err| failed(&format!("what it says of how it was made cannot be read: {err}")))?;
+        .map_err(|err| failed(&format!("its embedded settings cannot be read: {err}")))?;
     text.get_text().map(Some).map_err(|err| failed(&err))
 }
 

@@ -32,20 +32,20 @@ fn box_and_plane_are_dragged_in_the_picture() {
     harness.key_press(egui::Key::K);
     harness.key_press(egui::Key::X);
     harness.run_steps(3);
-    let (middle, tip) = (place(&harness, "Clip plane, place"), place(&harness, "Clip plane, direction"));
+    let (middle, tip) = (place(&harness, "Clip plane, position"), place(&harness, "Clip plane, direction"));
     drag(&mut harness, middle, (tip - middle) * 0.5);
     let moved = harness.state().settings().cuts.plane.clone();
     assert!(moved.on && moved.offset > 0.1 && moved.normal == [0.0, -1.0, 0.0], "{moved:?}");
     harness.run_steps(2);
     // The drag is as long as the arrow appears, so that its tip can follow at any magnification.
-    let (middle, tip) = (place(&harness, "Clip plane, place"), place(&harness, "Clip plane, direction"));
+    let (middle, tip) = (place(&harness, "Clip plane, position"), place(&harness, "Clip plane, direction"));
     let by = vec2(-0.6, -0.8) * 0.6 * (tip - middle).length();
     drag(&mut harness, tip, by);
     let turned = harness.state().settings().cuts.plane.clone();
     assert!(turned.normal[2] > 0.2 && turned.normal != moved.normal, "{turned:?}");
     harness.run_steps(2);
     assert!(place(&harness, "Clip plane, direction").distance(tip + by) < 3.0);
-    let middle = place(&harness, "Clip plane, place");
+    let middle = place(&harness, "Clip plane, position");
     harness.hover_at(middle);
     harness.run_steps(2);
     turn_wheel(&harness, 50.0);

@@ -113,8 +113,8 @@ fn flicks_drag_the_pressed_item() {
     let place = |harness: &Harness<'_, App>, part| {
         harness.get_by_label(&format!("Clip plane, {part}")).rect().center()
     };
-    let along = place(&harness, "direction") - place(&harness, "place");
-    let (_, after) = flicks(&mut harness, "Clip plane, place", along * 0.8);
+    let along = place(&harness, "direction") - place(&harness, "position");
+    let (_, after) = flicks(&mut harness, "Clip plane, position", along * 0.8);
     assert!(after.cuts.plane.on && after.cuts.plane.offset > 0.1, "{:?}", after.cuts.plane);
     wait_until_idle(&mut harness);
 }

@@ -30,7 +30,7 @@ fn files_that_may_not_be_read_are_io_errors() {
     let path = folder.path("secret_8x8x8_uint8.raw");
     fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).expect("it is our file");
     if fs::File::open(&path).is_ok() {
-        println!("not checked: permissions, of which this user (root?) needs none");
+        println!("not checked: file permissions, which do not restrict this user (root?)");
         return;
     }
     folder.check_refused("secret_8x8x8_uint8.raw", &[6]);

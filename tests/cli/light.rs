@@ -20,7 +20,7 @@ fn an_attenuation_volume_can_be_loaded_back() {
     assert_eq!(facts["non_finite_voxels"], 0);
     let (low, high) = (facts["range"][0].as_f64(), facts["range"][1].as_f64());
     let (low, high) = (low.expect("a number"), high.expect("a number"));
-    assert!(0.0 <= low && high <= 1.0, "light is never more than all of it: {low} … {high}");
+    assert!(0.0 <= low && high <= 1.0, "attenuation lies between 0 and 1: {low} … {high}");
     assert!(low < 0.5 && high > 0.9, "the box casts a shadow: {low} … {high}");
 }
 

@@ -226,7 +226,8 @@ fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
     let base = folder.run("info builtin:box:16");
     let outcome = folder.run("info zeros.nrrd");
     assert_eq!((base.code, outcome.code), (Some(0), Some(0)), "{outcome:?}");
-    for words in ["of files unfold to 1024 × 1024 × 1024 voxels in 1.0 GiB", "of every 3", "--every 1"] {
+    for words in ["of files decompress to 1024 × 1024 × 1024 voxels (1.0 GiB)", "a stride of 3", "--every 1"]
+    {
         assert!(outcome.stderr.contains(words), "{words}: {outcome:?}");
     }
     assert!(outcome.stdout.contains("342 × 342 × 342, uint8"), "{outcome:?}");
@@ -234,6 +235,6 @@ fn files_that_unfold_to_a_gibibyte_are_spoken_of_and_thinned_for_a_glance() {
     // A user who states how much is read knows the size.
     let outcome = folder.run("info zeros.nrrd --every 64");
     assert_eq!(outcome.code, Some(0), "{outcome:?}");
-    assert!(!outcome.stderr.contains("unfold"), "{outcome:?}");
+    assert!(!outcome.stderr.contains("decompress"), "{outcome:?}");
     assert!(outcome.stdout.contains("16 × 16 × 16, uint8"), "{outcome:?}");
 }

@@ -115,7 +115,7 @@ fn start_animation(command: &mut Command, folder: &ProgramFolder) -> std::proces
         .expect("the program can be started");
     let begin = Instant::now();
     while folder.names().is_empty() {
-        assert!(begin.elapsed() < COMMAND_TIMEOUT, "nothing was begun");
+        assert!(begin.elapsed() < COMMAND_TIMEOUT, "no output file was created");
         std::thread::sleep(Duration::from_millis(20));
     }
     assert!(folder.names()[0].contains(".part"), "{:?}", folder.names());
@@ -144,7 +144,7 @@ fn temporary_files_are_removed() {
         let mut child = start_animation(Command::new("sh").args(ignoring), &folder);
         send("HUP", &child);
         std::thread::sleep(Duration::from_millis(300));
-        assert!(child.try_wait().expect("it can be asked").is_none(), "it was not to end");
+        assert!(child.try_wait().expect("its state is known").is_none(), "the signal must be ignored");
         send("TERM", &child);
         assert_eq!(child.wait().expect("it ends").code(), Some(143));
     }
@@ -154,7 +154,7 @@ fn temporary_files_are_removed() {
     assert_eq!(folder.names().len(), 2);
     child.kill().expect("it can be killed");
     child.wait().expect("it ends");
-    assert_eq!(folder.names().len(), 2, "nobody could tidy up");
+    assert_eq!(folder.names().len(), 2, "a killed process removes no files");
     folder.run_successfully(&format!("{RENDER} -o p.png"));
     assert_eq!(folder.names(), ["p.png"]);
 }

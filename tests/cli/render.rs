@@ -54,7 +54,7 @@ fn blocks_of_voxels_are_averaged_when_that_is_asked_for() {
     assert_eq!(report["volume_dims"], serde_json::json!([24, 24, 24]));
     assert_eq!(report["volume_file_dims"], serde_json::json!([48, 48, 48]));
     let replayed = folder.run("replay out.png --check --reduce 1");
-    assert_eq!(replayed.code, Some(3), "it is of other voxels: {replayed:?}");
+    assert_eq!(replayed.code, Some(3), "other voxels must be detected: {replayed:?}");
     // The picture records which portion of the volume it shows.
     folder.run_successfully("replay out.png --check");
     folder.run_failing("render builtin:sphere:48 --reduce 0 -o none.png", 2);
@@ -136,7 +136,7 @@ fn shadows_change_the_picture() {
     folder.run_successfully(&format!("{render} none.png --set shadows.algorithm=off"));
     folder.run_successfully(&format!("{render} splat.png --shadows splat"));
     assert_ne!(folder.read("with.png"), folder.read("off.png"));
-    assert_eq!(folder.read("off.png"), folder.read("none.png"), "two ways to say the same");
+    assert_eq!(folder.read("off.png"), folder.read("none.png"), "both options have the same effect");
     assert_eq!(folder.read("with.png"), folder.read("splat.png"), "splatting is the default");
 }
 
@@ -222,7 +222,7 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
     assert!(scalar != mask && mask != labels);
     assert!(points(&labels) > points(&mask), "a colour for every number");
     folder.run_successfully("render builtin:sphere:24 -o own.png --size 32x24 --report own.json");
-    assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "it is one");
+    assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "a scalar field is detected");
     folder.run_failing("render builtin:sphere:24 -o no.png --as something", 2);
 }
 

@@ -26,7 +26,7 @@ fn settings_of_a_report_restore_the_picture() {
         folder.run_successfully(&format!(
             "render builtin:chair:24 -o second.png --size 64x48 --report second.json {option} session.json"
         ));
-        assert!(folder.read("first.png") == folder.read("second.png"), "{option}: another picture");
+        assert!(folder.read("first.png") == folder.read("second.png"), "{option}: the pictures differ");
         let changed: Vec<_> = std::iter::zip(settings("first.json").lines(), settings("second.json").lines())
             .filter(|(before, after)| before != after)
             .map(|(before, after)| format!("{} became {}", before.trim(), after.trim()))
@@ -149,8 +149,8 @@ fn volumes_outside_the_pictures_folder_are_opened_only_when_the_user_says_so() {
     std::fs::create_dir(folder.path("pictures")).expect("the folder can be written to");
     folder.run_successfully("render x_8x8x8_uint8.raw -o pictures/shot.png --size 16x16");
     let said = folder.run_failing("replay pictures/shot.png", 3);
-    assert!(said.contains("--volume FILE") && said.contains("--trust-paths"), "what helps: {said}");
-    assert!(said.contains("x_8x8x8_uint8.raw") && said.contains("shot.png"), "which files: {said}");
+    assert!(said.contains("--volume FILE") && said.contains("--trust-paths"), "the options: {said}");
+    assert!(said.contains("x_8x8x8_uint8.raw") && said.contains("shot.png"), "both files: {said}");
     for trust in ["--trust-paths", "--volume x_8x8x8_uint8.raw"] {
         let said = folder.run_successfully(&format!("replay pictures/shot.png --check {trust}"));
         assert!(said.contains("identical"), "{trust}: {said}");

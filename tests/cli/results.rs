@@ -74,7 +74,7 @@ fn inputs_are_never_replaced() {
         ("light-volume builtin:sphere:16 --slice z:3 -o v.nrrd", 6),
     ] {
         let said = folder.run_failing(args, code);
-        assert!(said.contains("help") || said.contains("are written as"), "`{args}`: {said}");
+        assert!(said.contains("choose") || said.contains("are written as"), "`{args}`: {said}");
         assert_eq!(names.map(|name| folder.read(name)), before, "`{args}` changed a file");
     }
 }
@@ -91,7 +91,7 @@ fn only_files_are_replaced() {
         assert!(said.contains("socket") && said.contains(name), "{said}");
     }
     let kind = fs::metadata(folder.path("x.png")).expect("it is there").file_type();
-    assert!(kind.is_socket(), "it is what it was");
+    assert!(kind.is_socket(), "the socket must remain");
 }
 
 /// Exit code and standard error of a shell script, in which `$B` is the program.
@@ -189,7 +189,7 @@ fn names_from_files_cannot_talk_to_the_terminal() {
     let folder = ProgramFolder::new();
     folder.write("e.json", "{\"\\u001b]0;taken\\u0007\": 1, \"shadows\": {\"\\u001b[2J\": 2}}");
     let outcome = folder.run("render builtin:sphere:16 --size 16x16 -o out.png --session e.json");
-    assert!(outcome.stderr.contains("taken"), "what is unknown is named: {outcome:?}");
+    assert!(outcome.stderr.contains("taken"), "unknown settings must be named: {outcome:?}");
     assert!(!outcome.stderr.contains('\u{1b}') && !outcome.stderr.contains('\u{7}'), "{outcome:?}");
 }
 

@@ -50,11 +50,11 @@ fn unknown_settings_are_usage_errors_that_list_the_known_ones() {
     let folder = ProgramFolder::new();
     let render = "render builtin:sphere:16 -o out.png --size 16x16 --set";
     let said = folder.run_failing(&format!("{render} shadows.strenght=1"), 2);
-    assert!(said.contains("shadows.strenght"), "what was wrong: {said}");
+    assert!(said.contains("shadows.strenght"), "the unknown path: {said}");
     for known in ["strength", "gain", "bias"] {
         assert!(said.contains(known), "the known names: {said}");
     }
-    assert!(folder.run_failing(&format!("{render} schema=1"), 2).contains("at the top there are: "));
+    assert!(folder.run_failing(&format!("{render} schema=1"), 2).contains("at the top level there are: "));
     let said = folder.run_failing(&format!("{render} no_such=1"), 2);
     assert!(said.contains("shadows") && said.contains("camera"), "the known names: {said}");
     for assignment in ["shadows.strength", "shadows.strength=much", "lights.99.intensity=1", "=1", ""] {
@@ -98,7 +98,7 @@ fn settings_out_of_range_are_told_and_the_schema_is_not_set() {
     );
     assert_eq!(folder.json("r.json")["settings"]["shadows"]["strength"], 0.0);
     let outcome = folder.run(&format!("{render} --set shadows.strength=0.5"));
-    assert!(outcome.code == Some(0) && !outcome.stderr.contains("out of its range"), "{outcome:?}");
+    assert!(outcome.code == Some(0) && !outcome.stderr.contains("out of range"), "{outcome:?}");
     let said = folder.run_failing(&format!("{render} --set schema=99999"), 2);
     assert!(said.contains("no setting `schema`"), "{said}");
 }

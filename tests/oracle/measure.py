@@ -28,9 +28,9 @@ REFUSED = {
     "formats/dat/fuel.raw.dat": "there is no such file",
     "formats/dat/manix128.dat": "there is no such file",
     "formats/dat/tooth.raw.dat": "there is no such file",
-    "formats/nrrd/blaze/credits.txt": "its format is not one that is read",
+    "formats/nrrd/blaze/credits.txt": "its format is not supported",
     # Voxel data of headers beside them.
-    "formats/metaimage/frogtissue.zraw": "its format is not one that is read",
+    "formats/metaimage/frogtissue.zraw": "its format is not supported",
 } | dict.fromkeys(
     (
         "formats/metaimage/HeadMRVolume.raw",
@@ -41,7 +41,7 @@ REFUSED = {
         "formats/nrrd/odd/BallBinary30x30x30.raw",
         "formats/nrrd/silicium.raw.gz",
     ),
-    "does not say the dimensions and the type",
+    "does not state the dimensions and the type",
 )
 
 

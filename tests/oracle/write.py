@@ -39,7 +39,7 @@ def main():
             off = np.abs(found.astype(complex) - expected.astype(complex)).max()
             assert off <= reading.tolerance * 4 or np.isnan(off), f"{name}: off by {off}"
         rows.append(row(name, choice, reading))
-    save(HERE / "written.tsv", rows, ["Written by write.py, and read by the libraries that readers.py names."])
+    save(HERE / "written.tsv", rows, ["Written by write.py, and read by the libraries that readers/ uses."])
     phantom.write(HERE / "phantom")
     large = [path.name for path in HERE.rglob("*/*") if path.is_file() and path.stat().st_size > MOST_BYTES]
     large = [name for name in large if not name.endswith((".py", ".pyc"))]

@@ -144,7 +144,7 @@ impl App {
             && let Some(subject) = self.export_subject()
             && let Err(err) = self.kept_strip.thumbnails.start(wanted, subject, ctx)
         {
-            log::warn!("small pictures of what is kept are not made: {err}");
+            log::warn!("thumbnails of saved views and looks cannot be rendered: {err}");
         }
     }
 }

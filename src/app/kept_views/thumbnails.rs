@@ -87,7 +87,7 @@ impl KeptThumbnails {
                     Err(err) => Err(err.clone()),
                 };
                 if let Err(err) = &picture {
-                    log::warn!("a small picture of what is kept was not made: {err}");
+                    log::warn!("a thumbnail of a saved view or look was not rendered: {err}");
                 }
                 if sender.send((what, picture.ok())).is_err() {
                     return;

@@ -117,7 +117,7 @@ impl AutosaveShared {
             }
             let before = std::mem::replace(&mut *lock(&self.failure), failed.clone());
             if let Some(why) = failed.filter(|_| before.is_none()) {
-                log::warn!("the look was not kept: {why}");
+                log::warn!("the look was not autosaved: {why}");
                 self.wake.request_repaint();
             }
         }
@@ -125,24 +125,24 @@ impl AutosaveShared {
         if let Some(LookPicture { picture, source }) = picture {
             let kept = thumbnail::write(&picture, &self.look.with_extension("png"));
             if let Err(err) = kept.and_then(|()| recent_thumbnails::write(&self.folder, &source, &picture)) {
-                log::warn!("the small picture of the look was not kept: {err}");
+                log::warn!("the thumbnail of the look was not saved: {err}");
             }
         }
         if !opened.is_empty() {
             match recent_files::add(&self.folder, &opened) {
                 Ok(listed) => recent_thumbnails::remove_unlisted(&self.folder, &listed),
-                Err(err) => log::warn!("files that were opened were not noted: {err}"),
+                Err(err) => log::warn!("the list of recent files was not saved: {err}"),
             }
         }
         if !stood.is_empty()
             && let Err(err) = folder_orientation::add(&self.folder, stood)
         {
-            log::warn!("which way up the object stood was not noted: {err}");
+            log::warn!("the up axis of the object was not saved: {err}");
         }
         if !corrected.is_empty()
             && let Err(err) = corrected_files::add(&self.folder, corrected)
         {
-            log::warn!("how the file was corrected was not noted: {err}");
+            log::warn!("the corrections of the file were not saved: {err}");
         }
     }
 

@@ -8,23 +8,27 @@ pub(crate) const NOTHING: &str =
 pub(crate) const SAVE_VIEW: ControlText = control_text("+ View", "Save the camera position");
 pub(crate) const SAVE_LOOK: ControlText =
     control_text("+ Look", "Save transfer function, lights, shadows, cuts and the rest");
-pub(crate) const SHEET: ControlText = control_text("Contact sheet…", "Write all of them into one picture");
+pub(crate) const SHEET: ControlText =
+    control_text("Contact sheet…", "Write all saved views and looks into one picture");
 pub(crate) const CLOSE: ControlText = control_text("Close", "Hide the strip; saved views and looks stay");
 
 pub(crate) const NAME: &str = "Name";
 pub(crate) const REPLACE: ControlText =
-    control_text("Replace with current", "Save what is shown now in its place");
+    control_text("Replace with current", "Overwrite it with the current view or look");
 pub(crate) const WITH_VIEW: ControlText =
-    control_text("Go to it with its view", "Also take the camera position of that time");
-pub(crate) const COMPARE: ControlText =
-    control_text("Compare with the picture", "Left of a divider the picture, right of it this view or look");
+    control_text("Apply with its view", "Also restore the camera position saved with the look");
+pub(crate) const COMPARE: ControlText = control_text(
+    "Compare with the picture",
+    "Shows the current picture left of a divider, and this view or look right of it",
+);
 pub(crate) const MARK: ControlText = control_text(
     "Mark to compare",
-    "Two that are marked are compared; Ctrl (⌘ on a Mac) and a click does the same",
+    "Marks it for a comparison with another marked one; Ctrl-click (⌘-click on a Mac) does the same",
 );
 pub(crate) const REMOVE: ControlText = control_text("Remove", "Delete it from the list");
 pub(crate) const DIGIT: &str = "Key";
-pub(crate) const TOO_MANY: &str = "There is no room for it: at most 32 views and looks are saved, and a table of a thousand labels is too much for one";
+pub(crate) const TOO_MANY: &str = "Not saved: there is room for 32 views and looks, 256 KiB in all; a look with a \
+     table of a thousand labels is too large";
 
 /// Accessible name of a thumbnail in the strip.
 pub(crate) fn thumbnail_name(name: &str) -> String {
@@ -33,9 +37,9 @@ pub(crate) fn thumbnail_name(name: &str) -> String {
 
 /// Tooltip of a thumbnail: name, effect of a click and its key.
 pub(crate) fn tooltip(name: &str, is_look: bool, digit: Option<u8>) -> String {
-    let what = if is_look { "Take this look; the view stays" } else { "Look from here" };
+    let what = if is_look { "Apply this look; the view stays" } else { "Go to this view" };
     let key = digit.map_or_else(String::new, |digit| format!(" ({})", recall_view_keys(digit)));
-    format!("{name}\n{what}{key}\nDrag to another place; right click for more")
+    format!("{name}\n{what}{key}\nDrag to reorder; right-click for more")
 }
 
 /// Keyboard shortcut of a view or look with a digit.
@@ -60,12 +64,12 @@ pub(crate) fn saved(name: &str) -> String {
 
 /// Message after a view was saved under a digit.
 pub(crate) fn view_saved(digit: u8) -> String {
-    format!("Saved view {digit}: {} looks that way again", recall_view_keys(digit))
+    format!("Saved view {digit}: {} goes back to it", recall_view_keys(digit))
 }
 
 /// Message when a digit has no saved view.
 pub(crate) fn digit_is_empty(digit: u8) -> String {
-    format!("Nothing is saved under {digit}: {} saves a view there", store_view_keys(digit))
+    format!("No view is saved under {digit}: {} saves one", store_view_keys(digit))
 }
 
 /// Number of thumbnails that remain to be drawn.

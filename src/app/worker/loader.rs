@@ -147,7 +147,7 @@ impl Loader {
         if self.warm_up.thread_count() < 2
             && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_optional)
         {
-            log::warn!("pipelines will be made when they are needed: {err}");
+            log::warn!("pipelines cannot be created ahead of time: {err}");
         }
     }
 
@@ -310,7 +310,7 @@ fn apply_remembered_corrections(volume: Volume, known: Option<&CorrectedFile>, s
     match by.map(|by| volume.corrected(&by)) {
         Some(Ok(corrected)) => corrected,
         Some(Err(err)) => {
-            log::warn!("the volume is not corrected as it was: {err}");
+            log::warn!("the corrections of the last time could not be applied: {err}");
             volume
         }
         None => volume,

@@ -30,10 +30,10 @@ impl PipelineWarmUp {
         let thread = std::thread::Builder::new().name("warm-up".to_owned());
         self.threads.push(thread.spawn(move || {
             if let Err(err) = what(&shaders, &stop) {
-                log::error!("pipelines could not be made ahead of time: {err}");
+                log::error!("pipelines could not be created ahead of time: {err}");
             }
             if let Err(err) = shaders.save_cache() {
-                log::warn!("pipelines could not be kept for the next start: {err}");
+                log::warn!("pipelines could not be cached for the next start: {err}");
             }
         })?);
         Ok(())

@@ -71,7 +71,7 @@ pub(super) struct BenchArgs {
         long = "volume",
         value_name = "FILE",
         default_value = "builtin:chair:128",
-        help = "Volume: a file, or builtin:NAME[:N]; can be given several times"
+        help = "Volume: a file, or builtin:NAME[:N]; may be repeated"
     )]
     volumes: Vec<PathBuf>,
     /// Width and height in pixels
@@ -80,11 +80,11 @@ pub(super) struct BenchArgs {
     /// Timed frames per case
     #[arg(long, default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..=1000))]
     frames: u16,
-    /// Only the case of this name; growth, which takes minutes, first-look, read, sky, area and scattering run only
-    /// when asked for
+    /// Run only this case; growth (takes minutes), first-look, read, sky, area and scattering run only if they are
+    /// named here
     #[arg(long, value_name = "CASE", value_parser = CASES)]
     only: Option<String>,
-    /// Allow cases that are not rendered at full resolution and with an exact kernel
+    /// Allow cases that are not rendered at full resolution and quality
     #[arg(long)]
     reduced: bool,
     #[command(flatten)]
@@ -173,8 +173,8 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         && !args.reduced
     {
         return Err(CliError::Usage(format!(
-            "case {} was not rendered at full resolution and quality ({}): full settings help, or --reduced to \
-             time it all the same",
+            "case {} was not rendered at full resolution and quality ({}); use full settings, or --reduced to \
+             measure it anyway",
             case["name"], case["rendered"],
         )));
     }

@@ -28,7 +28,7 @@ fn exit_now(code: i32) -> ! {
 #[cfg(not(unix))]
 #[expect(
     clippy::exit,
-    reason = "whoever sent the signal waits for the process, and all that matters is on the disk"
+    reason = "the sender of the signal waits for the process, and all files have been saved"
 )]
 fn exit_now(code: i32) -> ! {
     std::process::exit(code)
@@ -37,7 +37,9 @@ fn exit_now(code: i32) -> ! {
 /// Starts a thread that listens for termination signals and runs `last_acts` before the process ends.
 pub(crate) fn listen_for_signals(last_acts: &'static [fn()]) {
     if let Err(err) = spawn_listener(last_acts) {
-        log::warn!("files that are being written will stay when this is interrupted: {err}");
+        log::warn!(
+            "signals cannot be handled, so temporary files remain if the program is interrupted: {err}"
+        );
     }
 }
 

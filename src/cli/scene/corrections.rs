@@ -39,7 +39,7 @@ fn rejected_value(path: &str, value: &str, taken: &Corrections) -> Option<&'stat
     let is_another = |taken: f64| value.parse::<f64>().is_ok_and(|number| number != taken);
     match path {
         "volume.spacing" if taken.spacing.is_none() && value != "null" => {
-            Some("three distances above 0 that are not too unlike, as 0.5,0.5,2")
+            Some("three positive spacings within a factor of 10000 of each other, such as 0.5,0.5,2")
         }
         "volume.value_scale.slope" if is_another(taken.value_scale.slope) => Some("a factor other than 0"),
         "volume.value_scale.intercept" if is_another(taken.value_scale.intercept) => Some("a finite number"),
@@ -56,7 +56,7 @@ pub(crate) fn apply_command_line_corrections(
     if let Some(other) = set.iter().find(|assignment| !is_correction(assignment) || !assignment.contains('='))
     {
         return Err(CliError::Usage(format!(
-            "--set: expected a correction of the volume, as volume.spacing=0.5,0.5,2, found {other:?} (command \
+            "--set: expected a correction of the volume, such as volume.spacing=0.5,0.5,2, found {other:?} (command \
              line, --set)"
         )));
     }

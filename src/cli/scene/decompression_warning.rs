@@ -37,7 +37,7 @@ pub(crate) fn open_with_size_warning(source: &Path, options: &LoadOptions) -> Re
             && !is_said.swap(true, Ordering::Relaxed)
         {
             let every = overview_stride(size)
-                .map_or_else(String::new, |step| format!("; --every {step} reads fewer"));
+                .map_or_else(String::new, |step| format!("; --every {step} reads a subsample"));
             warn_line(&format!("warning: {}{every}", size_text(stored, size)));
         }
         true
@@ -56,7 +56,7 @@ pub(crate) fn open_for_overview(source: &Path, options: &LoadOptions) -> Result<
             return true;
         };
         warn_line(&format!(
-            "warning: {}; of every {step} along each axis one is read, --every 1 reads all of them",
+            "warning: {}; they are read with a stride of {step} along each axis, --every 1 reads all of them",
             size_text(stored, size)
         ));
         *to.lock().unwrap_or_else(PoisonError::into_inner) = Some(step);
@@ -104,7 +104,7 @@ fn overview_stride(size: &VolumeSize) -> Option<usize> {
 fn size_text(stored: u64, size: &VolumeSize) -> String {
     let [x, y, z] = size.dims;
     let [stored, bytes] = [stored, size.bytes()].map(|bytes| human_bytes(bytes.into()));
-    format!("{stored} of files unfold to {x} × {y} × {z} voxels in {bytes}")
+    format!("{stored} of files decompress to {x} × {y} × {z} voxels ({bytes})")
 }
 
 #[cfg(test)]
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(decompression_exceeds(Some(10_000_000), &slices), Some(10_000_000));
         assert_eq!(overview_stride(&slices), Some(6));
         let words = size_text(10_000_000, &slices);
-        assert_eq!(words, "9.5 MiB of files unfold to 16000 × 16000 × 40 voxels in 9.5 GiB");
+        assert_eq!(words, "9.5 MiB of files decompress to 16000 × 16000 × 40 voxels (9.5 GiB)");
         // Poorly compressible data, small data, and files of unknown size.
         assert_eq!(decompression_exceeds(Some(1 << 30), &slices), None);
         assert_eq!(decompression_exceeds(Some(1000), &size([512, 512, 512])), None);

@@ -13,16 +13,16 @@ use crate::gpu::GpuContext;
 /// Arguments for reading a volume.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct LoadArgs {
-    /// Average blocks of N × N × N voxels into one, for less memory and quicker pictures; 1 is all of them
+    /// Average blocks of N × N × N voxels into one, for less memory and faster rendering; 1 keeps all voxels
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
     reduce: Option<u16>,
-    /// Read along each axis every Nth voxel alone, for less memory
+    /// Read only every Nth voxel along each axis, for less memory
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64), conflicts_with = "reduce")]
     every: Option<u16>,
-    /// Voxels to read, along each axis from the first to before the last, counted from 0; an end may be left out
+    /// Region of interest in voxels, counted from 0: first voxel and end (exclusive) along each axis, both optional
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
     region: Option<VoxelRegion>,
-    /// RAW input: voxels along x, y, z
+    /// RAW input: number of voxels along x, y and z
     #[arg(long, value_name = "WxHxD", global = false)]
     dims: Option<String>,
     /// RAW input: uint8, int8, uint16, int16, uint32, int32, float32 or float64
@@ -37,19 +37,19 @@ pub(crate) struct LoadArgs {
     /// RAW input: bytes before the voxels
     #[arg(long, value_name = "BYTES")]
     offset: Option<u64>,
-    /// Vectors and colours: the component that is shown, from 0, instead of their length or luminance
+    /// Component of vectors or colours to show, counted from 0, instead of their length or luminance
     #[arg(long, value_name = "N")]
     component: Option<usize>,
-    /// Several time steps: the one that is shown, from 0
+    /// Time step to show, counted from 0, if there are several
     #[arg(long, value_name = "N")]
     frame: Option<usize>,
-    /// Several channels: the one that is shown, from 0
+    /// Channel to show, counted from 0, if there are several
     #[arg(long, value_name = "N")]
     channel: Option<usize>,
-    /// Several series in a folder: the one that is shown, by its number or name
+    /// Series to show, by number or name, if a folder holds several
     #[arg(long, value_name = "NAME")]
     series: Option<String>,
-    /// Several arrays in a file: the one that is shown
+    /// Array to show, if a file holds several
     #[arg(long, value_name = "NAME")]
     array: Option<String>,
 }
@@ -72,13 +72,14 @@ impl LoadArgs {
             None => None,
             Some(text) => Some(
                 parse_triple::<usize>(text)
-                    .ok_or_else(|| usage("dims", text, "three whole numbers, 64x64x32"))?,
+                    .ok_or_else(|| usage("dims", text, "three whole numbers such as 64x64x32"))?,
             ),
         };
         let spacing_mm = match &self.spacing {
             None => None,
             Some(text) => Some(
-                parse_triple::<f64>(text).ok_or_else(|| usage("spacing", text, "three numbers, 1x1x1.5"))?,
+                parse_triple::<f64>(text)
+                    .ok_or_else(|| usage("spacing", text, "three numbers such as 1x1x1.5"))?,
             ),
         };
         let endian = self.endian.map(|endian| match endian {

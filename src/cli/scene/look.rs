@@ -62,8 +62,8 @@ fn determine_open_parts(
     }
     if renderer.context().is_software() && look.casts_rays_to_all_samples() {
         warn_line(
-            "warning: this driver, which draws with the processor, ends rays to lights that have a size before they \
-             arrive: such lights are too dark; --quality fine shows them as they are",
+            "warning: this software driver (CPU rendering) ends shadow rays to area lights too early, so that these \
+             lights are too dark; --quality fine renders them correctly",
         );
     }
     Ok(look)

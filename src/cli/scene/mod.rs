@@ -37,8 +37,8 @@ fn downsampled_to_fit(source: &Path, whole: Volume, context: &GpuContext) -> Res
     if volume.dims() != before {
         let ([x, y, z], [a, b, c]) = (before, volume.dims());
         warn_line(&format!(
-            "warning: {x} × {y} × {z} voxels were averaged to {a} × {b} × {c}: {} cannot hold more ({}); a \
-             crop of it can be shown with all of its voxels",
+            "warning: {x} × {y} × {z} voxels were averaged to {a} × {b} × {c}, because {} cannot hold more ({}); \
+             --region shows a part of the volume with all of its voxels",
             context.info.name,
             source.display()
         ));
@@ -58,31 +58,32 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
 /// Arguments that describe the look.
 #[derive(Debug, Clone, Args)]
 pub(super) struct LookArgs {
-    /// The look that is proposed under this number instead of the first; `info --json` lists them
+    /// Number of a suggested look to use instead of the first; `info --json` lists them
     #[arg(long, value_name = "N")]
     look: Option<usize>,
-    /// Preset to lay over the automatic look: a name or a JSON file
+    /// Preset to apply to the automatic look: a name or a JSON file
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<PathBuf>,
-    /// Session to restore: a JSON file, or a picture that was exported
+    /// Session to restore: a JSON file or an exported picture
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
-    /// Panorama to light the scene by (.hdr, .exr, .png, .jpg, twice as wide as high), over preset and session
+    /// Environment map that lights the scene: a panorama twice as wide as high (.hdr, .exr, .png, .jpg); overrides
+    /// preset and session
     #[arg(long, value_name = "FILE")]
     surroundings: Option<PathBuf>,
-    /// What kind of data the volume is shown as, whatever it seems to be
+    /// Kind of data to show the volume as, instead of the detected kind
     #[arg(long = "as", value_name = "KIND", value_enum)]
     treat_as: Option<KindArg>,
-    /// How truly light is computed; single settings and --shadows are laid over it
+    /// Accuracy of lighting; --set and --shadows override parts of it
     #[arg(long, value_enum)]
     quality: Option<QualityArg>,
-    /// One setting by its path, for instance shadows.strength=0.5; may be repeated
+    /// Set a single setting by its path, for instance shadows.strength=0.5; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// How shadows are made
+    /// Shadow algorithm
     #[arg(long, value_enum)]
     shadows: Option<ShadowArg>,
-    /// How sheets are filled
+    /// Method of filling the sheets
     #[arg(long, value_enum)]
     engine: Option<EngineArg>,
     #[command(flatten)]
@@ -102,7 +103,7 @@ pub(super) struct SceneArgs {
     file: PathBuf,
     #[command(flatten)]
     look: LookArgs,
-    /// Replace files that this program has not made
+    /// Replace files that were not written by this program
     #[arg(long)]
     force: bool,
 }
@@ -111,7 +112,7 @@ pub(super) struct SceneArgs {
 fn dataset_with_warning(volume: Volume) -> Dataset {
     let missing = volume.non_finite_voxels();
     if missing > 0 {
-        warn_line(&format!("warning: {missing} voxels are not finite and count as nothing"));
+        warn_line(&format!("warning: {missing} voxels are not finite and are treated as missing"));
     }
     Dataset::new(volume)
 }

@@ -8,35 +8,35 @@ use crate::model::QualityPreset;
 /// Shadow algorithm, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum ShadowArg {
-    /// Light reaches everything
+    /// No shadows: light is not attenuated
     Off,
-    /// A light volume filled by sheet-buffer splatting
+    /// Light volume filled by sheet-buffer splatting
     Splat,
-    /// A light volume filled by a ray from every voxel
+    /// Light volume filled by a ray from every voxel to the light
     Raycast,
-    /// A ray to the light from every sample
+    /// Ray to the light from every sample, without a light volume
     Direct,
 }
 
 /// Engine that fills the sheets, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum EngineArg {
-    /// Pixels gather what voxels would splat: the same sums, quickly
+    /// Each pixel sums the splats that reach it: the same sums, faster
     Gather,
-    /// Voxels are splatted, as the paper has it
+    /// Each voxel is splatted into the sheets, as in the paper
     Scatter,
 }
 
 /// Quality level of lighting, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum QualityArg {
-    /// Light volumes alone: soft shadows, quickest
+    /// Light volumes alone: soft shadows, fastest
     Fast,
-    /// Light volumes, and short rays near what is seen
+    /// Light volumes, and short rays from visible material towards the lights
     Standard,
-    /// Light volumes, and longer rays: for figures
+    /// Light volumes, longer rays and more accurate normals: for figures
     Fine,
-    /// Rays all the way and the thinnest slabs: slow
+    /// Rays all the way to the lights, and the thinnest slabs: slow
     Exact,
 }
 
@@ -54,17 +54,17 @@ impl From<QualityArg> for QualityPreset {
 /// Kind of data, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum KindArg {
-    /// More is more of something
+    /// Scalar field, such as density or intensity
     Scalar,
-    /// An object that is darker than what is around it
+    /// Object that is darker than its background
     DarkOnBright,
     /// Computed tomography, in Hounsfield units
     Ct,
-    /// Deviations to both sides of zero
+    /// Signed field: deviations above and below zero
     Signed,
-    /// Something or nothing
+    /// Binary mask: object and background
     Mask,
-    /// Numbers of what is there
+    /// Label map: each number is a structure
     Labels,
 }
 

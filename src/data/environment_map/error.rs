@@ -14,7 +14,7 @@ pub enum EnvironmentMapError {
         source: std::io::Error,
     },
     /// The picture cannot be decoded.
-    #[error("{}: no picture that can be read: {why}; expected Radiance HDR, OpenEXR, PNG or JPEG", path.display())]
+    #[error("{}: not a readable picture: {why}; expected Radiance HDR, OpenEXR, PNG or JPEG", path.display())]
     Broken {
         /// Path of the file.
         path: PathBuf,
@@ -35,7 +35,10 @@ pub enum EnvironmentMapError {
         height: usize,
     },
     /// The picture would take too much memory.
-    #[error("{}: {width} × {height} pixels are more than the {max_pixels} that are read; scale it down, which changes no light", path.display())]
+    #[error(
+        "{}: {width} × {height} pixels are more than the {max_pixels} that are supported; scale it down, which does \
+         not change the light", path.display()
+    )]
     TooLarge {
         /// Path of the file.
         path: PathBuf,
@@ -47,7 +50,7 @@ pub enum EnvironmentMapError {
         max_pixels: usize,
     },
     /// The picture contains no light.
-    #[error("{}: the picture is black, and lights nothing", path.display())]
+    #[error("{}: the picture is black, and gives no light", path.display())]
     Black {
         /// Path of the file.
         path: PathBuf,

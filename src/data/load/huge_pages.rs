@@ -17,7 +17,7 @@ pub(crate) fn advise_huge_pages<T>(start: *mut T, count: usize) {
 }
 
 #[cfg(target_os = "linux")]
-#[expect(unsafe_code, reason = "the system is told something of memory that is ours")]
+#[expect(unsafe_code, reason = "madvise is called for pages within the allocation of the caller")]
 fn advise(start: *mut u8, bytes: usize) {
     // SAFETY: the pages lie within one allocation of the caller, and MADV_HUGEPAGE changes neither their contents nor
     // their access rights.

@@ -117,8 +117,8 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     if start.is_packed_twice() && options.raw.dims.is_none() {
         return Err(attempt.bad_input_error(
             "format",
-            "it is compressed twice: what is in the gzip file is a gzip file again",
-            "unpack it once, with gunzip for example, and open what comes out",
+            "it is compressed twice: the gzip file contains another gzip file",
+            "unpack it once, with gunzip for example, and open the result",
         ));
     }
     let reader = match detect_format(path, &start, &mut input, options) {
@@ -128,7 +128,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
             let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
             return Err(attempt.bad_input_error(
                 "format",
-                format!("its format is not one that is read: {}", names.join(", ")),
+                format!("its format is not supported; supported formats: {}", names.join(", ")),
                 "convert it to NRRD, or describe its voxels with --dims and --type",
             ));
         }

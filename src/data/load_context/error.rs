@@ -156,7 +156,7 @@ impl LoadContext<'_> {
         let (option, plural, count) = (dimension.option(), dimension.plural(), offers.len());
         let why = match choice_error {
             ChoiceError::NotSelected => format!("it holds {count} {plural}"),
-            ChoiceError::Unknown(said) => format!("{} is none of its {count} {plural}", quoted(&said)),
+            ChoiceError::Unknown(said) => format!("{} is not one of its {count} {plural}", quoted(&said)),
         };
         let help = format!("choose one with {option}: {}", list.join(", "));
         Err(LoadError::Several { explanation: Box::new(self.explain(option, why, help)), dimension, offers })
@@ -209,14 +209,14 @@ impl LoadContext<'_> {
         } else {
             format!("leave {option} out; it has {}", available.join(" and "))
         };
-        let why = format!("{} is named, and it has no {plural} to choose from", quoted(&said));
+        let why = format!("{} was selected, but it has no {plural} to choose from", quoted(&said));
         Err(self.bad_input_error(option, why, help))
     }
 
     /// Error for a requested region that is empty or reaches beyond the grid.
     pub(crate) fn region_error(&self, [x, y, z]: [usize; 3]) -> LoadError {
-        let why = format!("there are {x} x {y} x {z} voxels");
-        self.bad_input_error("--region", why, "a region of at least one of them helps")
+        let why = format!("the region is empty, or reaches beyond the {x} x {y} x {z} voxels");
+        self.bad_input_error("--region", why, "give a region of at least one voxel within them")
     }
 
     /// Error for a path of the wrong kind, such as a folder in place of a file.

@@ -102,7 +102,7 @@ impl GridExtent {
         if dims.contains(&0) {
             return Err(attempt.bad_input_error(
                 field,
-                format!("{x} x {y} x {z} voxels are an empty volume"),
+                format!("a volume of {x} x {y} x {z} voxels is empty"),
                 "every dimension must be at least 1",
             ));
         }

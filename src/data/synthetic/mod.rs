@@ -73,7 +73,7 @@ impl UnitGrid {
         let mut values = Vec::new();
         let count = self.n.pow(3);
         if values.try_reserve_exact(count).is_err() {
-            return Err(attempt.limit_error("N", "the memory is not there", "choose fewer voxels"));
+            return Err(attempt.limit_error("N", "there is not enough memory", "choose fewer voxels"));
         }
         values.resize(count, T::default());
         control.start((count * size_of::<T>()) as u64);

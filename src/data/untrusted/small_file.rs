@@ -11,7 +11,7 @@ const MAX_SMALL_FILE_BYTES: u64 = 4 << 20;
 /// # Errors
 /// Fails if the file cannot be read, is not a regular file (but a folder or device), or is too large.
 pub fn read_small_file(path: &Path) -> std::io::Result<Vec<u8>> {
-    let too_large = || std::io::Error::other("larger than 4 MiB, which settings never are");
+    let too_large = || std::io::Error::other("larger than 4 MiB, the maximum for a settings file");
     read_bounded(path, MAX_SMALL_FILE_BYTES)?.ok_or_else(too_large)
 }
 

@@ -6,18 +6,16 @@
 pub enum VolumeError {
     #[error("the volume is empty ({dims:?} voxels): every dimension must be at least 1")]
     Empty { dims: [usize; 3] },
-    #[error("{dims:?} voxels were announced, {found} are there")]
+    #[error("{dims:?} voxels were expected, {found} were found")]
     WrongCount { dims: [usize; 3], found: usize },
-    #[error("the spacing or orientation is unusable ({what}): it must be finite and not flat")]
+    #[error("the spacing or orientation is unusable ({what}): it must be finite, with independent axes")]
     BadGeometry { what: String },
     #[error("the region is empty, or reaches beyond the {dims:?} voxels")]
     Outside { dims: [usize; 3] },
     #[error("no voxel has a finite value")]
     NothingFinite,
-    #[error(
-        "the values reach {range}, further than 64-bit numbers can count: they must span less than 1.8e308"
-    )]
+    #[error("the values reach {range}, beyond the range of 64-bit numbers: they must span less than 1.8e308")]
     TooWide { range: String },
-    #[error("the memory for other values is not there ({bytes} bytes): close other programs")]
+    #[error("there is not enough memory for the converted values ({bytes} bytes): close other programs")]
     NoMemory { bytes: u64 },
 }

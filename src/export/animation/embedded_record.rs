@@ -53,7 +53,7 @@ fn find_in_gif(file: impl Read) -> std::io::Result<Option<Vec<u8>>> {
     let mut head = [0; 13];
     file.read_exact(&mut head)?;
     if !head.starts_with(b"GIF8") {
-        return Err(std::io::Error::other("it is no GIF"));
+        return Err(std::io::Error::other("it is not a GIF"));
     }
     // Global colour table: 3 bytes for each of 2^(n + 1) colours.
     if head[10] & 0x80 != 0 {

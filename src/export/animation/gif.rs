@@ -77,7 +77,7 @@ impl AnimationEncoder for GifWriter {
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
         let Self { encoder, file, path, animation_spec, written, .. } = *self;
         if written != animation_spec.frames {
-            return Err(ExportError::UnsupportedByFormat { what: "pictures are missing", path });
+            return Err(ExportError::UnsupportedByFormat { what: "frames are missing", path });
         }
         encoder.into_inner()?.flush().map_err(ExportError::io_error_for(&path))?;
         rename_into_place(file, &path)

@@ -25,7 +25,7 @@ pub(super) struct ImageSequenceWriter {
 impl ImageSequenceWriter {
     pub(super) fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
         if path.join(frame_name(animation_spec.frames)).exists() {
-            let what = "the folder holds the pictures of a longer turn; another folder keeps them apart";
+            let what = "the folder contains the frames of a longer turntable; choose another folder";
             return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
         make_folder(path).map_err(ExportError::io_error_for(path))?;

@@ -48,7 +48,7 @@ impl Drop for FfmpegProcess {
         self.frames = None;
         // It has already ended, unless the video was abandoned.
         if let Err(err) = self.child.kill().and_then(|()| self.child.wait()) {
-            log::warn!("ffmpeg could not be ended: {err}");
+            log::warn!("ffmpeg could not be stopped: {err}");
         }
     }
 }
@@ -89,7 +89,7 @@ impl Mp4Writer {
         program: &OsStr,
     ) -> Result<Self, ExportError> {
         if animation_spec.transparent {
-            let what = "MP4 has no transparency; PNG and GIF have, or leave the background in";
+            let what = "MP4 has no transparency; use PNG or GIF, or keep the background";
             return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
         let not_there =
@@ -158,14 +158,14 @@ impl AnimationEncoder for Mp4Writer {
         match self.ffmpeg.frames.as_mut().map(|frames| frames.write_all(&rgb(shown))) {
             Some(Ok(())) => Ok(()),
             Some(Err(err)) => Err(self.ffmpeg.failure(&self.path, &err.to_string())),
-            None => Err(self.ffmpeg.failure(&self.path, "it takes no more pictures")),
+            None => Err(self.ffmpeg.failure(&self.path, "it accepts no more frames")),
         }
     }
 
     fn finish(self: Box<Self>) -> Result<(), ExportError> {
         let Self { mut ffmpeg, file, path, remaining_frames: missing, record } = *self;
         if missing > 0 {
-            return Err(ExportError::UnsupportedByFormat { what: "pictures are missing", path });
+            return Err(ExportError::UnsupportedByFormat { what: "frames are missing", path });
         }
         if let Some(Err(err)) = ffmpeg.frames.take().map(|mut frames| frames.flush()) {
             return Err(ffmpeg.failure(&path, &err.to_string()));

@@ -79,7 +79,9 @@ fn final_path(path: &Path) -> Result<PathBuf, ExportError> {
     // A link's target is relative to the link's folder.
     let target = path.parent().unwrap_or(Path::new("")).join(link);
     match std::fs::symlink_metadata(&target) {
-        Ok(found) if found.is_symlink() => unfit("it is a link to a link; the name of the file itself helps"),
+        Ok(found) if found.is_symlink() => {
+            unfit("it is a link to a link; choose the name of the file itself")
+        }
         Ok(found) => check_replaceable(&found).map_or_else(unfit, |()| Ok(target)),
         Err(err) if err.kind() == ErrorKind::NotFound => Ok(target),
         Err(err) => Err(ExportError::io_error_for(path)(err)),
@@ -93,10 +95,10 @@ fn check_replaceable(found: &std::fs::Metadata) -> Result<(), &'static str> {
         return Err("there is a folder of that name");
     }
     if !kind.is_file() {
-        return Err("it is a device, a pipe or a socket; the name of a file helps");
+        return Err("it is a device, a pipe or a socket; choose the name of a file");
     }
     if found.permissions().readonly() {
-        return Err("the file of that name may only be read; another name, or leave to write it, helps");
+        return Err("the file of that name is read-only; choose another name, or make it writable");
     }
     Ok(())
 }
@@ -137,7 +139,7 @@ pub(crate) fn rename_into_place(file: TemporaryFile, path: &Path) -> Result<(), 
         // Network shares may not support permissions, but hold files all the same.
         file.as_file()
             .set_permissions(old.permissions())
-            .inspect_err(|err| log::warn!("{}: who may read it could not be kept: {err}", place.display()))
+            .inspect_err(|err| log::warn!("{}: its permissions could not be kept: {err}", place.display()))
             .ok();
     }
     file.rename_to(&place).map_err(&failed)?;

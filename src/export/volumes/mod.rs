@@ -93,10 +93,10 @@ impl VolumeFormat {
             Self::Nifti | Self::NiftiGzip | Self::Npy | Self::Vti => (false, false),
         };
         let known = [
-            (scale || self == Self::Npy, "that nobody knows how large voxels are"),
-            (scale || self != Self::Npy, "how large voxels are"),
-            (place, "where it lies and which way its axes go"),
-            (self != Self::Vti || !volume.is_anatomical(), "which way a body lies"),
+            (scale || self == Self::Npy, "the fact that the voxel size is unknown"),
+            (scale || self != Self::Npy, "the voxel size"),
+            (place, "the position and axis directions"),
+            (self != Self::Vti || !volume.is_anatomical(), "the orientation of a body"),
             (padding || hints.padding.is_none(), "the padding value"),
             (unit || volume.unit().is_none(), "the unit of the values"),
             (self == Self::Nrrd || hints.labels.is_empty(), "names and colours of labels"),

@@ -19,30 +19,31 @@ pub struct NumberRequest {
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum ConvertError {
     #[error(
-        "its values reach from {} to {}, {voxel_type} from {} to {}; a wider --type, or --rescale {}:{}, helps",
+        "its values range from {} to {}, {voxel_type} from {} to {}; choose a wider --type, or --rescale {}:{}",
         found.low, found.high, allowed.low, allowed.high, found.low, found.high
     )]
     OutOfRange { voxel_type: &'static str, found: ValueRange, allowed: ValueRange },
     #[error(
-        "values such as {value} have fractions, which {voxel_type} has not; --type float32, or --rescale {}:{}, helps",
+        "values such as {value} have fractions, which {voxel_type} cannot store; choose --type float32, or \
+         --rescale {}:{}",
         found.low, found.high
     )]
     Fractions { voxel_type: &'static str, value: f64, found: ValueRange },
-    #[error("{value} is no number of float32, which counts to 16777216 one by one; --type float64 helps")]
+    #[error("float32 cannot store {value}: beyond 16777216 it skips whole numbers; choose --type float64")]
     Inexact { value: f64 },
     #[error(
-        "{count} voxels are not finite, and {voxel_type} has whole numbers alone; --padding VALUE says which they get"
+        "{count} voxels are not finite, and {voxel_type} has only whole numbers; --padding VALUE replaces them"
     )]
     NotFinite { voxel_type: &'static str, count: usize },
     #[error(
-        "--rescale spreads values over whole numbers, and {voxel_type} has others; --type uint8 or uint16 helps"
+        "--rescale maps values to whole numbers, and {voxel_type} has fractions; choose --type uint8 or uint16"
     )]
     RescaledToFloats { voxel_type: &'static str },
-    #[error("--padding {padding} is no number of {voxel_type}; one that it has helps")]
+    #[error("--padding {padding} is not a number that {voxel_type} can store; choose one that it can")]
     BadPadding { voxel_type: &'static str, padding: f64 },
     #[error(
-        "the file does not say which way a body lies, so that nothing is known to be left or right; --orient is for \
-         files that do"
+        "the file does not state the orientation of a body, so left and right are unknown; --orient is for files that \
+         do"
     )]
     NoOrientation,
 }

@@ -60,7 +60,7 @@ fn no_backend_error(asked: &str, enabled: wgpu::Backends) -> GpuError {
     let known: Vec<&str> =
         names.into_iter().filter(|(backend, _)| enabled.contains(*backend)).map(|(_, name)| name).collect();
     let reason = format!(
-        "{BACKEND_VARIABLE} is {:?}, and this program draws through {} alone",
+        "{BACKEND_VARIABLE} is {:?}, and this program supports only {}",
         sanitised(asked, MAX_NAME_BYTES),
         known.join(" and ")
     );
@@ -85,7 +85,7 @@ fn no_adapter_error(names: &[String], wanted: &str, backend: Option<&str>) -> Gp
         sanitised(wanted, MAX_NAME_BYTES),
         listed.join(", ")
     );
-    GpuError::NoAdapter { reason: why, help: "name a part of one of those, or unset WGPU_ADAPTER_NAME" }
+    GpuError::NoAdapter { reason: why, help: "give a part of one of these names, or unset WGPU_ADAPTER_NAME" }
 }
 
 #[cfg(test)]
@@ -97,12 +97,12 @@ mod tests {
         let names = ["llvmpipe (LLVM 15)".to_owned(), "Card\u{1b}[2J".to_owned()];
         let message = no_adapter_error(&names, "nothing", None).to_string();
         assert!(message.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME)"), "{message}");
-        assert!(message.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; name"), "{message}");
+        assert!(message.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; give"), "{message}");
         let said = no_adapter_error(&[], "nothing", Some("vulkan")).to_string();
         assert!(said.contains("no driver offers one (WGPU_BACKEND is \"vulkan\"); install"), "{said}");
         let said = no_backend_error("gl", wgpu::Backends::VULKAN).to_string();
         assert!(
-            said.contains("WGPU_BACKEND is \"gl\"") && said.contains("through vulkan alone; unset"),
+            said.contains("WGPU_BACKEND is \"gl\"") && said.contains("supports only vulkan; unset"),
             "{said}"
         );
     }

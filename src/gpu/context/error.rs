@@ -13,7 +13,8 @@ pub enum GpuError {
     },
     /// Graphics memory is exhausted, or has no free block of that size.
     #[error(
-        "out of graphics memory while making {what} ({mebibytes} MiB); a smaller picture, a lower light-volume resolution or a smaller volume helps"
+        "out of graphics memory while creating {what} ({mebibytes} MiB); choose a smaller picture, a lower \
+         light-volume resolution or a smaller volume"
     )]
     OutOfMemory {
         /// Resource that could not be allocated.
@@ -24,7 +25,8 @@ pub enum GpuError {
     /// A limit on the process (`ulimit -v`) leaves less address space than a driver needs; without it the driver
     /// would abort the process.
     #[error(
-        "{what} needs {needed_mebibytes} MiB of addresses and a limit of this process leaves {left_mebibytes}; `ulimit -v unlimited` helps"
+        "{what} needs {needed_mebibytes} MiB of address space, and a limit of this process leaves \
+         {left_mebibytes} MiB; `ulimit -v unlimited` removes it"
     )]
     AddressSpaceTooSmall {
         /// Component that needs the address space.
@@ -35,7 +37,7 @@ pub enum GpuError {
         left_mebibytes: u64,
     },
     /// A size exceeds a limit of the adapter.
-    #[error("{what} needs {size}, this adapter allows {limit}; {help}")]
+    #[error("{what} needs {size}, the limit is {limit}; {help}")]
     OverLimit {
         /// Resource that is too large.
         what: String,

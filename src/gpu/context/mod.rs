@@ -314,7 +314,7 @@ impl GpuContext {
             _ => (width.max(height), limit),
         };
         if size > limit {
-            let help = "a smaller picture or a volume with fewer voxels helps";
+            let help = "choose a smaller picture or a volume with fewer voxels";
             return Err(GpuError::OverLimit { what, size: u64::from(size), limit: u64::from(limit), help });
         }
         let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);

@@ -64,7 +64,7 @@ fn search_lights(
     let search = LightSearch::new(renderer.shaders(), dataset, settings, SearchedLight::KeyAndFill);
     match search.and_then(LightSearch::run) {
         Err(err @ (GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. })) => {
-            log::warn!("no light was sought: {err}");
+            log::warn!("the light search was skipped: {err}");
             Ok(None)
         }
         found => found,

@@ -56,7 +56,7 @@ fn read_checked(path: &Path) -> Option<Vec<u8>> {
     let mut bytes = read_bounded(path, MAX_CACHE_BYTES).ok()??;
     let (stated, data) = bytes.split_first_chunk::<8>()?;
     if u64::from_le_bytes(*stated) != fletcher_checksum(data) {
-        log::warn!("{} is damaged: pipelines are made anew", path.display());
+        log::warn!("{} is damaged: pipelines are compiled again", path.display());
         return None;
     }
     bytes.drain(..8);

@@ -43,7 +43,7 @@ pub fn shader_conditions() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// Returns an error if a condition has an unknown name, or if the lines are not balanced.
 pub(super) fn preprocess(source: &str, value: &dyn Fn(&str) -> f64) -> Result<String, GpuError> {
-    let refused = |line: &str| GpuError::Rejected(format!("a shader has a line {line:?} that means nothing"));
+    let refused = |line: &str| GpuError::Rejected(format!("a shader has an invalid line {line:?}"));
     // Results of the enclosing conditions, outermost first.
     let mut enclosing = Vec::new();
     let mut lines = String::with_capacity(source.len());

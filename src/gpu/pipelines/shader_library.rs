@@ -176,7 +176,7 @@ impl ShaderLibrary {
             source = source.replace(from, to);
         }
         if fault::is_on(InjectedFault::Shader) {
-            source.push_str("a fault was asked for");
+            source.push_str("a fault was injected");
         }
         let groups = self.bind_groups(shader, target)?;
         let device = &self.context.device;

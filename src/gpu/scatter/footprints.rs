@@ -70,7 +70,7 @@ impl FootprintPhases {
                 what: "the width of footprints, in bricks,".to_owned(),
                 size: u64::from(stride),
                 limit: 4,
-                help: "a larger picture, or another order of sheets, helps",
+                help: "choose a larger picture or another order of sheets",
             });
         }
         let edge = BRICK_EDGE as u32;

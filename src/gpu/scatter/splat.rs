@@ -329,10 +329,10 @@ pub(crate) fn sums(
     let limit = context.device.limits().max_storage_buffer_binding_size;
     if size > limit {
         return Err(GpuError::OverLimit {
-            what: "a buffer to scatter into".to_owned(),
+            what: "a buffer of the scattering engine".to_owned(),
             size,
             limit,
-            help: "the gathering engine makes the same picture without it",
+            help: "choose the gathering engine, which makes the same picture without it",
         });
     }
     Ok(context.uninitialised_buffer(&wgpu::BufferDescriptor {

@@ -58,7 +58,7 @@ impl ScatterVoxels {
                 what: "the list of voxels to be scattered".to_owned(),
                 size: bytes,
                 limit,
-                help: "the gathering engine makes the same picture without it",
+                help: "choose the gathering engine, which makes the same picture without it",
             });
         }
         let mut listed = Vec::with_capacity(bricks.max(1) * BRICK_WORDS);

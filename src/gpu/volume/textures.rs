@@ -34,7 +34,7 @@ pub(crate) fn create_volume_textures(
             what: "the volume".to_owned(),
             size: size as u64,
             limit: MAX_VOXELS as u64,
-            help: "a part of it, or fewer voxels, helps",
+            help: "open a part of it, or choose fewer voxels",
         });
     }
     let unorm = density_is_unorm(context, volume);

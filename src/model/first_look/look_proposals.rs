@@ -65,20 +65,20 @@ pub fn propose_looks(first: &Settings, volume: &Volume, histogram: &Histogram) -
         "a sky all around: dark hollows, and shadows with soft edges",
         soft_light_look(first),
     ));
-    all.push(proposal("Clay", "one neutral colour: form by light alone", clay_look(first)));
+    all.push(proposal("Clay", "one neutral colour: shape by light alone", clay_look(first)));
     let mut above = first.clone();
     above.camera.elevation_deg = FROM_ABOVE_DEG;
     above.floor.on = true;
     above.floor.color = floor_color(first.output.exposure);
     let above = reframed(above, first, volume);
-    all.push(proposal("From above", "looked down upon, on a floor that takes the shadow", above));
+    all.push(proposal("From above", "seen from above, on a floor that receives the shadow", above));
     let mut other = first.clone();
     other.camera.azimuth_deg += if volume.is_anatomical() { LEFT_PROFILE_DEG } else { BEHIND_DEG };
     all.push(proposal("Other side", "seen from the other side", reframed(other, first, volume)));
     let mut paper = first.clone();
     paper.output.background = Background { top: [1.0; 3], bottom: [0.94; 3] };
     paper.floor.shadow_only = true;
-    all.push(proposal("On paper", "before white, as in print", paper));
+    all.push(proposal("On paper", "on a white background, as in print", paper));
     let mut thin = first.clone();
     transfer::scale_opacity(&mut thin.transfer, TRANSLUCENT_OPACITY);
     thin.labels.modify_all(|_, look| look.opacity *= TRANSLUCENT_OPACITY);

@@ -7,10 +7,10 @@ pub enum PresetError {
     #[error("not valid JSON: {0}")]
     Syntax(#[source] serde_json::Error),
     /// Encoding error: the bytes are not UTF-8.
-    #[error("it is no text: {0}")]
+    #[error("it is not UTF-8 text: {0}")]
     Encoding(#[source] std::str::Utf8Error),
     /// Valid JSON with a field of the wrong type.
-    #[error("a setting has the wrong form: {0}")]
+    #[error("a setting has a wrong type or value: {0}")]
     WrongType(#[source] serde_json::Error),
     /// Valid JSON that is not an object.
     #[error("a preset must be a JSON object, for instance {{\"shadows\": {{\"strength\": 0.8}}}}")]
@@ -35,5 +35,5 @@ pub enum PresetError {
 
 /// Describes the position of a setting in words.
 fn describe_position(path: &str) -> String {
-    if path.is_empty() { "the top".to_owned() } else { format!("`{path}`") }
+    if path.is_empty() { "the top level".to_owned() } else { format!("`{path}`") }
 }

@@ -57,7 +57,8 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     result.sanitise();
     let left_out = result.drop_oversized_saved();
     warnings.extend(
-        (left_out > 0).then(|| format!("{left_out} kept looks were left out: there is too much of them")),
+        (left_out > 0)
+            .then(|| format!("{left_out} saved views or looks were left out: together they are too long")),
     );
     Ok((result, warnings))
 }
@@ -111,7 +112,7 @@ pub fn set_value(
         let known = match &*node {
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
-            _ => "nothing further".to_owned(),
+            _ => "no further settings".to_owned(),
         };
         let next = match node {
             Value::Object(fields) => fields.get_mut(key),
@@ -140,7 +141,7 @@ pub fn set_value(
         let [asked, used] =
             [requested, used].map(|value| value.map_or_else(|| "nothing".to_owned(), |v| v.to_string()));
         let [asked, used] = [asked, used].map(|value| sanitised(&value, MAX_NAME_CHARS));
-        format!("`{path}` is out of its range: {asked} was asked for, {used} is used")
+        format!("`{path}` is out of range: {asked} was requested, {used} is used")
     });
     Ok((result, warning))
 }
@@ -302,7 +303,7 @@ mod tests {
             assert!(matches!(refused, PresetError::UnknownPath { .. }), "{path}: {refused}");
         }
         let said = |path: &str| set(path, "1").unwrap_err().to_string();
-        assert!(said("schema").contains("; at the top there are: "), "{}", said("schema"));
+        assert!(said("schema").contains("; at the top level there are: "), "{}", said("schema"));
         assert!(said("shadows.x").contains("; at `shadows` there are: "), "{}", said("shadows.x"));
         for (path, text) in [("range.robuster", "1"), ("range.typed", "3"), ("lights.0.name.x", "1")] {
             assert!(set(path, text).is_err(), "{path}");
@@ -314,7 +315,7 @@ mod tests {
         let told = |path: &str, text: &str| set_value(&Settings::default(), path, text).unwrap().1;
         assert_eq!(
             told("shadows.strength", "-1e308").unwrap(),
-            "`shadows.strength` is out of its range: -1e+308 was asked for, 0.0 is used"
+            "`shadows.strength` is out of range: -1e+308 was requested, 0.0 is used"
         );
         assert_eq!(told("shadows.strength", "0.3"), None);
         assert_eq!(told("output.background.top", "[0.3,1,1]"), None, "32-bit numbers are what they are");

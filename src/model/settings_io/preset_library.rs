@@ -129,8 +129,9 @@ pub fn apply_relative(
         && !applied_corrections.is_none()
         && overlay.get("_volume").is_none()
     {
-        warnings
-            .push("corrections of a volume (`volume`) were ignored: a preset is of any volume".to_owned());
+        warnings.push(
+            "corrections of a volume (`volume`) were ignored: a preset applies to any volume".to_owned(),
+        );
     }
     let range = applied.range.resolve(ranges);
     if overlay.get("_values").and_then(Value::as_str) == Some("relative") {

@@ -14,7 +14,7 @@ pub(super) fn remove_unreadable_entries(overlay: &mut Value) -> Vec<String> {
         match serde_json::from_value::<SavedEntry>(entry.clone()) {
             Ok(_) => true,
             Err(err) => {
-                warnings.push(format!("the kept view or look {at} was left out: {err}"));
+                warnings.push(format!("the saved view or look {at} was left out: {err}"));
                 false
             }
         }

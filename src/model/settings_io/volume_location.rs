@@ -44,7 +44,7 @@ impl VolumeLocation {
         let folder = folder.and_then(absolute_folder);
         let path = normalise_path(&folder.as_deref().unwrap_or(Path::new("")).join(source));
         if is_system_path(&path) {
-            return Self::Refused("it leads to a device or into the system");
+            return Self::Refused("it leads to a device or a system folder");
         }
         match folder {
             Some(folder) if path.starts_with(&folder) => classify_in_folder(path, &folder),
@@ -79,7 +79,7 @@ fn classify_in_folder(path: PathBuf, folder: &Path) -> VolumeLocation {
         // Compared by component: as strings, /data would also contain /database.
         (Ok(real), Ok(folder)) if !real.starts_with(&folder) => {
             if is_system_path(&real) {
-                VolumeLocation::Refused("a link leads to a device or into the system")
+                VolumeLocation::Refused("a link leads to a device or a system folder")
             } else {
                 VolumeLocation::OtherFolder(real)
             }
@@ -109,9 +109,9 @@ fn refusal_reason(source: &str) -> Option<&'static str> {
     };
     let mut start = source.chars();
     if source.is_empty() || source.contains('\0') || source.chars().count() > MAX_PATH_CHARS {
-        Some("it is no path")
+        Some("it is not a valid path")
     } else if source.contains("://") {
-        Some("it is an address, and nothing is fetched from the network")
+        Some("it is a network address, and nothing is fetched from the network")
     } else if start.next().is_some_and(is_slash) && start.next().is_some_and(is_slash) {
         Some("it names a server or a device")
     } else if source.starts_with("\\??\\") {

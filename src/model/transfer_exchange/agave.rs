@@ -57,7 +57,9 @@ fn control_points(
             let place = at.get("x").and_then(Value::as_f64).filter(|n| n.is_finite());
             let place = place.ok_or_else(|| format_error("a control point has no number x"))?;
             let rgba = number_list(at.get("value"), "value")?;
-            let [_, _, _, alpha] = rgba[..] else { return Err(format_error("a value has four numbers")) };
+            let [_, _, _, alpha] = rgba[..] else {
+                return Err(format_error("a value must have four numbers"));
+            };
             Ok(point(place, alpha.clamp(0.0, 1.0)))
         })
         .collect()

@@ -34,7 +34,7 @@ pub(crate) fn from_clut(text: &str, range: ValueRange) -> Result<TransferFunctio
         let rgba: Option<Vec<f64>> = entry(&format!("nodergba{node}"))
             .map(|value| value.split('|').map_while(|part| part.trim().parse().ok()).collect());
         let Some(&[r, g, b, a]) = rgba.as_deref() else {
-            return Err(format_error(&format!("nodergba{node} must be four numbers with | between")));
+            return Err(format_error(&format!("nodergba{node} must be four numbers separated by |")));
         };
         let share = |byte: f64| (byte / 255.0).clamp(0.0, 1.0);
         points.push(ControlPoint::new(
@@ -84,8 +84,10 @@ pub(crate) fn to_clut(function: &TransferFunction, range: ValueRange) -> String 
 
 /// Reads an `ImageJ` colour table: 256 reds, 256 greens and 256 blues, optionally after a header.
 pub(crate) fn from_binary_lut(bytes: &[u8], range: ValueRange) -> Result<TransferFunction, ExchangeError> {
-    let first =
-        bytes.len().checked_sub(3 * TABLE_ENTRIES).ok_or_else(|| format_error("a table has 768 bytes"))?;
+    let first = bytes
+        .len()
+        .checked_sub(3 * TABLE_ENTRIES)
+        .ok_or_else(|| format_error("a table must have 768 bytes"))?;
     let table = &bytes[first..];
     let colors: Vec<_> = (0..TABLE_ENTRIES)
         .map(|at| [table[at], table[at + TABLE_ENTRIES], table[at + 2 * TABLE_ENTRIES]])
@@ -109,7 +111,7 @@ pub(crate) fn from_text_lut(text: &str, range: ValueRange) -> Result<TransferFun
     let colors: Vec<[u8; 3]> = text.lines().filter_map(row).collect();
     if colors.len() != TABLE_ENTRIES {
         return Err(format_error(&format!(
-            "{} rows of three bytes were found, a table has 256",
+            "{} rows of three bytes were found, a table must have 256",
             colors.len()
         )));
     }

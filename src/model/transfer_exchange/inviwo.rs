@@ -61,5 +61,5 @@ pub(crate) fn number_attribute(node: Node<'_, '_>, attribute: &str) -> Result<f6
     let name = node.tag_name().name();
     found
         .filter(|number: &f64| number.is_finite())
-        .ok_or_else(|| format_error(&format!("{attribute} of <{name}> is no number")))
+        .ok_or_else(|| format_error(&format!("{attribute} of <{name}> is not a number")))
 }

@@ -49,15 +49,18 @@ pub enum ExchangeError {
     #[error("not valid JSON: {0}")]
     Syntax(#[from] serde_json::Error),
     /// XML that is malformed or too costly to parse.
-    #[error("{0}; a file that Inviwo (.itf) or Voreen (.tfi) has written helps")]
+    #[error("{0}; choose a file written by Inviwo (.itf) or Voreen (.tfi)")]
     Xml(#[from] XmlError),
     /// Content that does not fit the format, with a description.
     #[error(
-        "{0}; a file that ParaView or AGAVE (.json), Slicer (.vp, .vp.json), Inviwo (.itf), Voreen (.tfi), MRIcroGL (.clut) or ImageJ (.lut) has written helps"
+        "{0}; choose a file written by ParaView or AGAVE (.json), Slicer (.vp, .vp.json), Inviwo (.itf), \
+         Voreen (.tfi), MRIcroGL (.clut) or ImageJ (.lut)"
     )]
     Format(String),
     /// File extension that [`export_transfer`] does not support.
-    #[error("{0} is no ending of a transfer function; .json, .vp, .vp.json, .itf, .clut and .lut are")]
+    #[error(
+        "{0} is not an extension of a transfer function; choose .json, .vp, .vp.json, .itf, .clut or .lut"
+    )]
     UnsupportedExtension(String),
 }
 
@@ -74,7 +77,8 @@ pub fn import_transfer(
     if ending == "lut" && !bytes.is_ascii() {
         return color_tables::from_binary_lut(bytes, range);
     }
-    let text = std::str::from_utf8(bytes).map_err(|err| format_error(&format!("it is no text: {err}")))?;
+    let text =
+        std::str::from_utf8(bytes).map_err(|err| format_error(&format!("it is not UTF-8 text: {err}")))?;
     let mut function = match ending.as_str() {
         "vp" => slicer::from_vp(text)?,
         "itf" => inviwo::from_itf(check_length(text, MAX_XML_BYTES)?, range)?,
@@ -84,10 +88,13 @@ pub fn import_transfer(
         _ => from_json(check_length(text, MAX_JSON_BYTES)?, range)?,
     };
     if function.points.len() > MAX_POINTS {
-        return Err(format_error(&format!("{} points are more than anybody has set", function.points.len())));
+        return Err(format_error(&format!(
+            "{} points are too many; the limit is {MAX_POINTS}",
+            function.points.len()
+        )));
     }
     if function.points.iter().any(|point| point.value.abs() > MAX_VALUE) {
-        return Err(format_error("a value is beyond all that data has"));
+        return Err(format_error("a value is beyond the range of 32-bit floats"));
     }
     function.sort();
     Ok(function)
@@ -95,7 +102,11 @@ pub fn import_transfer(
 
 /// Returns the text if it has at most `most` bytes; readers of such files are slow on large input.
 fn check_length(text: &str, most: usize) -> Result<&str, ExchangeError> {
-    if text.len() > most { Err(format_error("it is longer than any transfer function")) } else { Ok(text) }
+    if text.len() > most {
+        Err(format_error("it is longer than a transfer function can be"))
+    } else {
+        Ok(text)
+    }
 }
 
 /// Reads a JSON file; its content tells which program wrote it.
@@ -221,10 +232,10 @@ fn format_error(what: &str) -> ExchangeError {
 /// Reads a JSON array of finite numbers.
 fn number_list(list: Option<&Value>, name: &str) -> Result<Vec<f64>, ExchangeError> {
     let list =
-        list.and_then(Value::as_array).ok_or_else(|| format_error(&format!("there is no list {name}")))?;
+        list.and_then(Value::as_array).ok_or_else(|| format_error(&format!("the list {name} is missing")))?;
     let number = |value: &Value| value.as_f64().filter(|number| number.is_finite());
     let found: Option<Vec<f64>> = list.iter().map(number).collect();
-    found.ok_or_else(|| format_error(&format!("{name} holds something that is no number")))
+    found.ok_or_else(|| format_error(&format!("{name} contains something other than numbers")))
 }
 
 /// Converts RGB fractions to a colour, clamped to 0 … 1; missing components are 1.

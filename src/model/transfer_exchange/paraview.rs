@@ -14,14 +14,14 @@ pub(crate) fn from_paraview(tree: &Value) -> Result<TransferFunction, ExchangeEr
         map.and_then(Value::as_object).ok_or_else(|| format_error("there is no colour map in the file"))?;
     let colors = number_list(map.get("RGBPoints"), "RGBPoints")?;
     if colors.len() < 4 || !colors.len().is_multiple_of(4) {
-        return Err(format_error("RGBPoints does not hold a value and three colours for each point"));
+        return Err(format_error("RGBPoints must hold a value, red, green and blue for each point"));
     }
     let colors: Vec<_> = colors.chunks_exact(4).map(|at| (at[0], rgb_from_fractions(&at[1..]))).collect();
     let opacities = match map.get("Points").filter(|points| !points.is_null()) {
         Some(points) => {
             let points = number_list(Some(points), "Points")?;
             if points.is_empty() || !points.len().is_multiple_of(4) {
-                return Err(format_error("Points does not hold four numbers for each point"));
+                return Err(format_error("Points must hold four numbers for each point"));
             }
             points.chunks_exact(4).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect()
         }

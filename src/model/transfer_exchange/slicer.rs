@@ -16,17 +16,17 @@ pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     for line in text.lines() {
         let numbers: Option<Vec<f64>> =
             line.split_whitespace().map(|word| word.parse().ok().filter(|n: &f64| n.is_finite())).collect();
-        let numbers = numbers.ok_or_else(|| format_error("a line holds something that is no number"))?;
+        let numbers = numbers.ok_or_else(|| format_error("a line contains something other than numbers"))?;
         if numbers.len() > 1 {
             if numbers[0] != (numbers.len() - 1) as f64 {
-                return Err(format_error("a list does not hold as many numbers as it says"));
+                return Err(format_error("a list is not as long as its first number states"));
             }
             lists.push(numbers[1..].to_vec());
         }
     }
     let [opacities, _by_gradient, colors] = &lists[..] else {
         return Err(format_error(
-            "a volume property has three lists: opacities, opacities by gradient, and colours",
+            "a volume property must have three lists: opacities, opacities by gradient, and colours",
         ));
     };
     if opacities.is_empty() || opacities.len() % 2 != 0 || colors.is_empty() || colors.len() % 4 != 0 {

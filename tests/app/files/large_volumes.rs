@@ -11,7 +11,7 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{DroppedFile, SCENE, adjusted_window, click, wait_until, wait_until_idle};
 
-const QUESTION: &str = "A large volume: how much of it?";
+const QUESTION: &str = "Large volume: how much to open?";
 
 /// Writes 64³ voxels of a byte: 340 KB with their brick data, and 1.6 MB on the adapter.
 fn write_large_volume(folder: &Path) -> PathBuf {

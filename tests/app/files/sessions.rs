@@ -51,7 +51,7 @@ fn other_files_are_not_overwritten_as_sessions() {
     for name in written.map(|(name, _)| name).into_iter().chain(["picture.png"]) {
         let before = std::fs::read(path(name)).unwrap();
         let harness = changed_and_saved(&path(name));
-        assert!(harness.query_by_label_contains("stays as it is").is_some(), "{name}");
+        assert!(harness.query_by_label_contains("was not overwritten").is_some(), "{name}");
         assert!(std::fs::read(path(name)).unwrap() == before, "{name}");
         assert!(!backup(&path(name)).exists());
     }
@@ -166,7 +166,7 @@ fn after_three_failed_starts_the_file_is_left_out() {
     let harness = start();
     assert_eq!(harness.state().volume_name(), Some("chair"));
     assert!(
-        harness.query_by_label_contains("Something is not as it was: ").is_some(),
+        harness.query_by_label_contains("Not everything works as usual: ").is_some(),
         "with the reason in the row"
     );
     drop(harness);

@@ -180,7 +180,7 @@ fn dropped_files_open_by_content() {
         harness.input_mut().dropped_files.push(std::sync::Arc::new(DroppedFile(slice.clone())));
     }
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("those that were dropped").is_some());
+    assert!(harness.query_by_label_contains("Only the 2 dropped slices of the folder ").is_some());
     let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
     wait_until(&mut harness, "never opened", |app| app.volume_name() == Some(name.as_str()));
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());

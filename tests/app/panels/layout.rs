@@ -215,20 +215,20 @@ fn the_probe_names_a_cause_offers_cures_and_measures() {
     let middle = picture_rect(&harness).center();
     harness.hover_at(middle);
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("Click for what helps").is_some());
+    assert!(harness.query_by_label_contains("Click for remedies").is_some());
     click_at(&mut harness, middle, 1);
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("Click for what helps").is_none(), "it was clicked");
+    assert!(harness.query_by_label_contains("Click for remedies").is_none(), "it was clicked");
     assert_eq!(settings(&harness), first, "asking changes nothing");
     // A second point, a little further away: their distance is shown.
     let other = middle + vec2(-24.0, -10.0);
     click_at(&mut harness, other, 1);
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("from the previous place").is_some());
+    assert!(harness.query_by_label_contains("from the previous point").is_some());
     harness.key_press(Key::Escape);
     harness.remove_cursor();
     harness.run_steps(4);
-    assert!(harness.query_by_label_contains("from the previous place").is_none());
+    assert!(harness.query_by_label_contains("from the previous point").is_none());
     // Without light there is a cause and a remedy.
     harness.key_press(Key::M);
     harness.run_steps(2);

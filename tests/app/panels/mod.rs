@@ -93,10 +93,10 @@ fn voxels_are_averaged_and_the_look_stays() {
     assert_eq!(after.lights, before.lights);
     // The opacity unit of the chair is in millimetres already.
     assert_eq!(after.opacity_unit, before.opacity_unit);
-    harness.get_by_label("Read of");
+    harness.get_by_label("In file");
     choose(&mut harness, "Every second", "16×16×16");
     choose(&mut harness, "All", "32×32×32");
-    assert!(harness.query_by_label("Read of").is_none());
+    assert!(harness.query_by_label("In file").is_none());
 }
 
 #[test]

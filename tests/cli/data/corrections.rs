@@ -23,8 +23,8 @@ fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
     folder.run_successfully("render said.nrrd -o said.png --size 48x36");
     folder.run_successfully("render meant.nrrd -o meant.png --size 48x36");
     folder.run_successfully("render said.nrrd -o corrected.png --size 48x36 --set volume.spacing=0.5,0.5,2");
-    assert!(pixels(&folder, "corrected.png") == pixels(&folder, "meant.png"), "another picture");
-    assert!(pixels(&folder, "corrected.png") != pixels(&folder, "said.png"), "nothing was corrected");
+    assert!(pixels(&folder, "corrected.png") == pixels(&folder, "meant.png"), "the pictures differ");
+    assert!(pixels(&folder, "corrected.png") != pixels(&folder, "said.png"), "the correction had no effect");
     folder.run_successfully("render small.nrrd -o small.png --size 48x36");
     folder.run_successfully(
         "render said.nrrd -o in_um.png --size 48x36 --set volume.spacing=0.5,0.5,2 --set volume.unit=um",
@@ -48,7 +48,7 @@ fn a_corrected_volume_makes_the_picture_of_a_file_that_says_so() {
     assert_eq!(folder.json("report.json")["settings"]["volume"]["spacing"], json!([0.5, 0.5, 2.0]));
     assert!(
         pixels(&folder, "undone.png") != pixels(&folder, "corrected.png"),
-        "the command line counts last"
+        "the command line takes precedence"
     );
 }
 

@@ -297,7 +297,7 @@ fn damaged_files_are_put_aside_and_said_once() {
     assert!(memory.recent().is_empty() && memory.earlier_runs().is_empty());
     let notices = memory.take_notices();
     assert_eq!(notices.len(), 3, "{notices:?}");
-    assert!(notices.iter().all(|notice| notice.contains("put aside")), "{notices:?}");
+    assert!(notices.iter().all(|notice| notice.contains("renamed")), "{notices:?}");
     assert!(memory.take_notices().is_empty());
     drop(memory);
     assert!(remember(folder.path()).take_notices().is_empty());

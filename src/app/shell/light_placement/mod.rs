@@ -115,7 +115,7 @@ impl LightPlacement {
             Ok(None) => LightPlacementPhase::Done,
             Err(err) => {
                 // The search is optional: the reason of its failure matters only to developers.
-                log::warn!("no light was found: {err}");
+                log::warn!("the search for a light position failed: {err}");
                 // After the loss of the device, a successor window searches again.
                 if matches!(err, GpuError::DeviceLost(_)) {
                     LightPlacementPhase::Searching
@@ -217,7 +217,7 @@ impl App {
         if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take_result()) {
             self.light_search = None;
             self.first_lights.set_result(result.unwrap_or_else(|panic| {
-                log::error!("no light was found: {panic}");
+                log::error!("the search for a light position failed: {panic}");
                 Ok(None)
             }));
         }
@@ -274,7 +274,7 @@ impl App {
         match BackgroundTask::start("light-search", ctx, task) {
             Ok(work) => self.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted }),
             Err(err) => {
-                log::warn!("no light was sought: {err}");
+                log::warn!("the search for a light position could not start: {err}");
                 self.first_lights.stop();
             }
         }

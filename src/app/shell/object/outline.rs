@@ -85,7 +85,7 @@ impl App {
             match found {
                 Ok(outline) => self.outline_task.known = Some((of, Arc::new(outline))),
                 Err(panic) => {
-                    log::warn!("the outline of the object was not found: {panic}");
+                    log::warn!("the search for the outline of the object failed: {panic}");
                     self.outline_task.failed = Some(of.content_id);
                 }
             }
@@ -115,7 +115,7 @@ impl App {
                     Some((OutlineInputs { content_id, transfer, labels, range, cuts }, work));
             }
             Err(err) => {
-                log::warn!("the outline of the object is not sought: {err}");
+                log::warn!("the search for the outline of the object could not start: {err}");
                 self.outline_task.failed = Some(content_id);
             }
         }

@@ -3,42 +3,49 @@
 use crate::app::text::{ControlText, control_text};
 use crate::model::SceneAxis;
 
-pub(crate) const PROJECTION: ControlText = control_text("Projection", "How the picture is projected");
-pub(crate) const PERSPECTIVE: ControlText = control_text("Perspective", "Near things are larger: natural");
+pub(crate) const PROJECTION: ControlText = control_text("Projection", "Perspective or parallel projection");
+pub(crate) const PERSPECTIVE: ControlText =
+    control_text("Perspective", "Near objects look larger, as in a photograph");
 pub(crate) const ORTHOGRAPHIC: ControlText =
-    control_text("Orthographic", "Lengths compare across the picture: for measuring by eye");
+    control_text("Orthographic", "The same scale at every depth, so that lengths can be compared by eye");
 
 pub(crate) const UP: ControlText = control_text(
     "Up",
-    "Which axis of the data points up: the object stands up, lies down or stands on its head",
+    "The axis of the data that points up: the object stands upright, lies down or is upside down",
 );
 
 /// Name and tooltip of an axis that can point up.
 pub(crate) const fn axis(axis: SceneAxis) -> ControlText {
     match axis {
-        SceneAxis::PlusX => control_text("+x", "What is at high x is at the top"),
-        SceneAxis::MinusX => control_text("−x", "What is at low x is at the top"),
-        SceneAxis::PlusY => control_text("+y", "What is at high y is at the top"),
-        SceneAxis::MinusY => control_text("−y", "What is at low y is at the top"),
-        SceneAxis::PlusZ => control_text("+z", "What is at high z is at the top"),
-        SceneAxis::MinusZ => control_text("−z", "What is at low z is at the top"),
+        SceneAxis::PlusX => control_text("+x", "High x is at the top"),
+        SceneAxis::MinusX => control_text("−x", "Low x is at the top"),
+        SceneAxis::PlusY => control_text("+y", "High y is at the top"),
+        SceneAxis::MinusY => control_text("−y", "Low y is at the top"),
+        SceneAxis::PlusZ => control_text("+z", "High z is at the top"),
+        SceneAxis::MinusZ => control_text("−z", "Low z is at the top"),
     }
 }
 
 pub(crate) const AZIMUTH: ControlText =
-    control_text("Azimuth", "Around the vertical axis; drag the picture sideways");
+    control_text("Azimuth", "Angle around the vertical axis; drag the picture sideways");
 pub(crate) const ELEVATION: ControlText =
-    control_text("Elevation", "Above the horizontal plane; drag the picture up or down");
-pub(crate) const ROLL: ControlText = control_text("Roll", "Turns the picture");
-pub(crate) const DISTANCE: ControlText =
-    control_text("Distance", "From the eye to the middle of the view. The wheel does the same");
-pub(crate) const FIELD_OF_VIEW: ControlText =
-    control_text("Field of view", "Vertical angle of view, of what it is fitted to: wide exaggerates depth");
-pub(crate) const FIT: ControlText =
-    control_text("Fit to", "What the field of view belongs to: it matters in pictures narrower than 4:3");
+    control_text("Elevation", "Angle above the horizontal plane; drag the picture up or down");
+pub(crate) const ROLL: ControlText = control_text("Roll", "Rotates the picture about the line of sight");
+pub(crate) const DISTANCE: ControlText = control_text(
+    "Distance",
+    "Distance from the camera to the middle of the view; the mouse wheel changes it, too",
+);
+pub(crate) const FIELD_OF_VIEW: ControlText = control_text(
+    "Field of view",
+    "Vertical angle of view of the part chosen under Fit to; a wide angle exaggerates depth",
+);
+pub(crate) const FIT: ControlText = control_text(
+    "Fit to",
+    "Part of the picture that the field of view spans: matters in pictures narrower than 4:3",
+);
 pub(crate) const FRAME: ControlText = control_text(
     "4:3 frame",
-    "A frame in the middle that is always seen whole: narrow pictures show more above and below",
+    "A frame in the middle that is always fully visible: narrow pictures show more above and below",
 );
 pub(crate) const HEIGHT: ControlText =
     control_text("Height", "The picture's height: narrow pictures show less at the sides");

@@ -8,26 +8,26 @@ pub(crate) const TITLE: &str = "Corrections";
 pub(crate) const CORRECTION_FAILED: &str = "The volume was not corrected";
 
 pub(crate) const SPACING: ControlText =
-    control_text("Spacing", "How far voxels are apart along the three axes of the file, in the unit below");
+    control_text("Spacing", "Distance between voxels along the three axes of the file, in the unit below");
 pub(crate) const UNIT: ControlText =
-    control_text("Unit", "The unit of these distances. Where the file says none, voxels have no known size");
+    control_text("Unit", "Unit of the spacing. If the file states none, the size of voxels is unknown");
 pub(crate) const FLIP: ControlText = control_text(
     "Flip",
-    "Along these axes of the file voxels run the other way: a mirrored object is righted by one of them",
+    "Reverses the voxels along these axes of the file; flipping one axis corrects a mirrored object",
 );
 pub(crate) const AXIS_ORDER: ControlText =
-    control_text("Axes", "Where the first, the second and the third axis of the file run");
+    control_text("Axes", "Directions of the first, second and third axis of the file");
 pub(crate) const ORIENTATION: ControlText = control_text(
     "Orientation",
-    "Towards which part of a body the three axes of the file run: right or left, anterior or posterior, superior or \
-     inferior",
+    "Anatomical directions of the three axes of the file: right or left, anterior or posterior, superior \
+     or inferior",
 );
 pub(crate) const PADDING: ControlText =
-    control_text("Padding", "The value of voxels that hold nothing: they are neither seen nor counted");
+    control_text("Padding", "Value of voxels without data, which are neither shown nor counted");
 pub(crate) const PADDING_VALUE: ControlText = control_text("Padding value", "In the units of the values");
 pub(crate) const VALUE_SCALE: ControlText = control_text(
     "Values",
-    "What the numbers of the file mean: they are multiplied by the first number, and the second is added",
+    "The values of the file are multiplied by the first number (slope), and the second (intercept) is added",
 );
 pub(crate) const SLOPE: &str = "Slope of the values";
 pub(crate) const INTERCEPT: &str = "Intercept of the values";
@@ -44,7 +44,7 @@ pub(crate) const NO_PADDING: &str = "None";
 /// Choice of a padding value that is typed.
 pub(crate) const PADDING_TYPED: &str = "Value";
 pub(crate) const RESET: ControlText =
-    control_text("All as in the file", "Takes all corrections back; they are forgotten for this file, too");
+    control_text("All as in the file", "Removes all corrections, also those remembered for this file");
 
 /// Names of the axes of the file.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -76,10 +76,10 @@ pub(crate) fn tooltip_with_metadata(named: ControlText, in_file: &str) -> String
 
 /// Text in place of metadata that the file lacks.
 pub(crate) const NO_METADATA: &str = "nothing";
-/// Text for values without a scale in the file: stored numbers are the values.
-pub(crate) const NO_SCALE: &str = "they are what they are";
+/// Text for the scale of the values as opened: they are neither multiplied nor shifted.
+pub(crate) const NO_SCALE: &str = "slope 1, intercept 0";
 
 /// Message after a reopened volume was given the corrections of the last time.
 pub(crate) fn restored(corrections: &[String]) -> String {
-    format!("Corrected as last time: {}. Undo shows it as the file says", corrections.join("; "))
+    format!("Corrected as last time: {}. Undo removes the corrections", corrections.join("; "))
 }

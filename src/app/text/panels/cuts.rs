@@ -9,10 +9,10 @@ pub(crate) const NOTHING_OPEN: &str = "Nothing is open";
 /// Names of the axes of the volume.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
-const EFFECT_TIP: &str = "What becomes of the part that is cut away";
+const EFFECT_TIP: &str = "Whether the part that is cut away is visible, and whether it casts shadows";
 
 pub(crate) const CROP: ControlText =
-    control_text("Crop box", "Leaves out what lies outside a box; its sides are dragged in the picture");
+    control_text("Crop box", "Cuts away everything outside a box; drag its sides in the picture");
 pub(crate) const EXTENT_TIP: &str = "First and last voxel that remain";
 /// Separator between the first and the last voxel.
 pub(crate) const RANGE_SEPARATOR: &str = "–";
@@ -21,14 +21,15 @@ pub(crate) const OUTSIDE: ControlText = control_text("Outside", EFFECT_TIP);
 
 pub(crate) const PLANE: ControlText = control_text(
     "Clip plane",
-    "Leaves out what lies in front of a plane; drag its square to move it and the arrow to turn it",
+    "Cuts away everything in front of a plane; drag its square to move it and the arrow to turn it",
 );
 pub(crate) const OFFSET: ControlText =
-    control_text("Offset", "From the middle of the volume, in the direction in which the plane looks");
+    control_text("Offset", "Distance from the middle of the volume, in the direction that the plane faces");
 pub(crate) const FACING: ControlText =
-    control_text("Facing", "Where the plane looks; what lies in front of it is cut away");
+    control_text("Facing", "Direction that the plane faces; everything in front of it is cut away");
 pub(crate) const FLIP: ControlText = control_text("Flip", "Cuts the other side away");
-pub(crate) const TOWARDS_EYE: ControlText = control_text("Towards the eye", "Across the line of sight");
+pub(crate) const TOWARDS_EYE: ControlText =
+    control_text("Towards the eye", "Turns the plane perpendicular to the line of sight");
 /// Effect on the part in front of the clip plane.
 pub(crate) const IN_FRONT: ControlText = control_text("In front", EFFECT_TIP);
 
@@ -64,7 +65,7 @@ pub(crate) fn length(length_mm: f64, unit: LengthUnit) -> String {
 
 /// Tooltip of the button that turns the clip plane across an axis.
 pub(crate) fn across_tooltip(axis: &str) -> String {
-    format!("Across the {axis} axis")
+    format!("Perpendicular to the {axis} axis")
 }
 
 /// Accessible name of the list of effects on a part: outside the box or in front of the plane.

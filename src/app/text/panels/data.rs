@@ -12,7 +12,7 @@ pub(crate) const NAME: &str = "Name";
 pub(crate) const SOURCE: &str = "Source";
 pub(crate) const DIMENSIONS: &str = "Voxels";
 /// Labels for a volume of which a part was read: the dimensions of the file, and the region.
-pub(crate) const READ_OF: &str = "Read of";
+pub(crate) const READ_OF: &str = "In file";
 pub(crate) const REGION: &str = "Region";
 pub(crate) const VOXEL_TYPE: &str = "Type";
 pub(crate) const KIND: &str = "Kind";
@@ -23,26 +23,26 @@ pub(crate) const NOT_FINITE: &str = "Not finite";
 
 pub(crate) const SUBSAMPLE: ControlText = control_text(
     "Subsample",
-    "Shows fewer voxels, each one of several or the mean of a block: quicker pictures and less memory, without the \
-     finest details. The volume is read again, the look stays",
+    "Shows fewer voxels, each one of several or the mean of a block: faster pictures and less memory, \
+     without the finest details. The volume is read again; the look stays",
 );
 
 /// Name and tooltip of a subsampling.
 pub(crate) fn subsampling(thinning: Downsampling) -> ControlText {
     match thinning {
         Downsampling::Every(2) => {
-            control_text("Every second", "An eighth of the voxels, as the file has them")
+            control_text("Every second", "An eighth of the voxels, with unchanged values")
         }
         Downsampling::Every(4) => {
-            control_text("Every fourth", "A sixty-fourth of the voxels, as the file has them")
+            control_text("Every fourth", "A sixty-fourth of the voxels, with unchanged values")
         }
         Downsampling::Average(2) => {
-            control_text("Means of 2 × 2 × 2", "An eighth of the voxels, each a mean")
+            control_text("Means of 2 × 2 × 2", "An eighth of the voxels, each the mean of a block")
         }
         Downsampling::Average(4) => {
-            control_text("Means of 4 × 4 × 4", "A sixty-fourth of the voxels, each a mean")
+            control_text("Means of 4 × 4 × 4", "A sixty-fourth of the voxels, each the mean of a block")
         }
-        Downsampling::Every(2..) => control_text("Every few", "Of several voxels along each axis one"),
+        Downsampling::Every(2..) => control_text("Every few", "One of several voxels along each axis"),
         Downsampling::Average(2..) => {
             control_text("Means of blocks", "Each voxel is the mean of a larger block")
         }
@@ -78,27 +78,29 @@ pub(crate) fn region(region: &VoxelRegion, grid: [usize; 3]) -> String {
 
 pub(crate) const TREAT_AS: ControlText = control_text(
     "Treat as",
-    "Makes the first look anew, for data of another kind: transfer function, view and lights. It can be undone",
+    "Makes a new first look for another kind of data: transfer function, view and lights. It can be undone",
 );
 
 /// Name and tooltip of a kind of data that the volume can be treated as; `None` is the automatic choice.
 pub(crate) fn kind_choice(kind: Option<KindName>) -> ControlText {
     match kind {
-        None => control_text("Automatic", "As what the file says, or else the values"),
+        None => control_text("Automatic", "As the metadata of the file say, or else the values"),
         Some(KindName::Scalar) => {
-            control_text("Scalar", "More is more of something: what is bright is shown")
+            control_text("Scalar", "A quantity: bright objects on a dark background are shown")
         }
         Some(KindName::DarkOnBright) => {
-            control_text("Dark on bright", "What is darker than all around it is shown")
+            control_text("Dark on bright", "Objects darker than their background are shown")
         }
         Some(KindName::HounsfieldCt) => {
             control_text("CT", "Hounsfield units: bone and contrast agent are shown")
         }
         Some(KindName::Signed) => {
-            control_text("Signed", "Strong values on both sides of zero are shown, in two colours")
+            control_text("Signed", "Large positive and negative values are shown, in two colours")
         }
-        Some(KindName::Mask) => control_text("Mask", "Something or nothing: a surface halfway between"),
-        Some(KindName::LabelMap) => control_text("Labels", "Every number is shown, in a colour of its own"),
+        Some(KindName::Mask) => {
+            control_text("Mask", "Object and background: a surface halfway between them is shown")
+        }
+        Some(KindName::LabelMap) => control_text("Labels", "Every label is shown in its own colour"),
     }
 }
 
@@ -117,13 +119,13 @@ pub(crate) fn kind(kind: DataKind) -> String {
 
 pub(crate) const RANGE: ControlText = control_text(
     "Range",
-    "The values among which the picture tells differences; what lies outside looks like the nearest of them. Control \
-     points beyond it widen it",
+    "The values that the picture distinguishes; values outside look like the nearest end of the range. \
+     Control points outside widen it",
 );
 pub(crate) const ROBUST: ControlText =
-    control_text("Robust", "The values that matter: without padding and without a few outliers");
+    control_text("Robust", "The range of most values: without padding and without a few outliers");
 pub(crate) const FULL: ControlText = control_text("Full", "All values of the file");
-pub(crate) const TYPED_RANGE: ControlText = control_text("Typed", "From one value to another");
+pub(crate) const TYPED_RANGE: ControlText = control_text("Typed", "Between two values that you enter");
 pub(crate) const LOW: ControlText = control_text(
     "Lowest value shown",
     "In the units of the file. It stops below the highest value: raise that first",
@@ -147,7 +149,7 @@ pub(crate) const OPACITY_UNIT: ControlText = control_text(
 /// Accessible name of the list of units for the opacity unit.
 pub(crate) const UNITS: &str = "Unit of the opacity unit";
 pub(crate) const MILLIMETRES: ControlText =
-    control_text("mm", "Stays the same for every volume of the same thing");
+    control_text("mm", "The same for every volume of the same object, whatever its resolution");
 pub(crate) const VOXELS: ControlText = control_text("voxels", "Follows the resolution of the data");
 pub(crate) const EXTENT: ControlText = control_text("extent", "A share of the longest edge of the volume");
 
@@ -186,5 +188,5 @@ pub(crate) fn memory_size(mebibytes: f64) -> String {
 
 /// Number of voxels that are NaN or infinite.
 pub(crate) fn non_finite_voxels(voxels: usize) -> String {
-    format!("{voxels} voxels, shown as the smallest value")
+    format!("{voxels} voxels, treated as missing")
 }

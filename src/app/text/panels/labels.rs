@@ -4,17 +4,17 @@ use crate::app::text::{ControlText, control_text};
 
 pub(crate) const FILTER: ControlText = control_text(
     "Filter labels",
-    "Lists only those whose number or name has this in it; empties with Escape",
+    "Lists only labels whose number or name contains this text; Escape clears it",
 );
 pub(crate) const FILTER_HINT: &str = "number or name";
 pub(crate) const SHOW_ALL: ControlText = control_text(
     "Show listed",
-    "Shows every label of the list; not 0 and what is below, which is around them",
+    "Shows every label of the list, except 0 and negative numbers, which are background",
 );
 pub(crate) const HIDE_ALL: ControlText =
     control_text("Hide listed", "Hides every label of the list, and its shadow");
-pub(crate) const ONLY_TIP: &str = "Shows this one alone";
-pub(crate) const VISIBLE_TIP: &str = "Whether it is there at all, for the eye and for light";
+pub(crate) const ONLY_TIP: &str = "Shows only this label";
+pub(crate) const VISIBLE_TIP: &str = "Whether the label is visible and casts shadows";
 pub(crate) const OPACITY_TIP: &str = "Per opacity unit";
 pub(crate) const NAME_HINT: &str = "unnamed";
 
@@ -23,18 +23,19 @@ pub(crate) const TITLE: &str = "Labels";
 
 /// Headings of the columns, with their tooltips.
 pub(crate) const SHOW_COLUMN: ControlText = control_text("Show", VISIBLE_TIP);
-pub(crate) const COLOR_COLUMN: ControlText = control_text("Colour", "What it looks like");
+pub(crate) const COLOR_COLUMN: ControlText = control_text("Colour", "Colour of the label");
 pub(crate) const NUMBER_COLUMN: ControlText =
-    control_text("Label", "What voxels hold; a click shows that one alone");
-pub(crate) const NAME_COLUMN: ControlText =
-    control_text("Name", "That of the file, until you give it another");
-pub(crate) const VOXELS_COLUMN: ControlText = control_text("Voxels", "How many hold it");
+    control_text("Label", "Number stored in the voxels; a click shows only this label");
+pub(crate) const NAME_COLUMN: ControlText = control_text("Name", "Name in the file, until you change it");
+pub(crate) const VOXELS_COLUMN: ControlText = control_text("Voxels", "Number of voxels with this label");
 pub(crate) const OPACITY_COLUMN: ControlText = control_text("Opacity", OPACITY_TIP);
 
 pub(crate) const AUTOMATIC: ControlText =
-    control_text("Automatic", "Puts back the looks with which the labels were opened");
-pub(crate) const USE_CURVE: ControlText =
-    control_text("Use a curve", "Shows numbers as values, by a curve; Automatic brings the table back");
+    control_text("Automatic", "Restores the label table with which the volume was opened");
+pub(crate) const USE_CURVE: ControlText = control_text(
+    "Use a curve",
+    "Shows label numbers as values, with a transfer function; Automatic restores the table",
+);
 
 /// Accessible names of the controls in a row.
 pub(crate) fn visible(number: i64) -> String {
@@ -80,7 +81,7 @@ pub(crate) fn voxels(count: u64) -> String {
 /// labels than classes.
 pub(crate) fn tooltip(name: &str, voxels: u64, shares_with: Option<i64>) -> String {
     let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
-    let shares = shares_with.map_or_else(String::new, |other| format!(", with the look of label {other}"));
+    let shares = shares_with.map_or_else(String::new, |other| format!(", shown like label {other}"));
     format!("{name}{voxels} voxels{shares}")
 }
 

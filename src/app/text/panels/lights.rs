@@ -2,10 +2,12 @@
 
 use crate::app::text::{ControlText, control_text};
 
-pub(crate) const PARALLEL: ControlText =
-    control_text("Directional", "Parallel rays, like the sun: shadows have the size of what casts them");
+pub(crate) const PARALLEL: ControlText = control_text(
+    "Directional",
+    "Parallel rays, as from the sun: shadows are as large as the object that casts them",
+);
 pub(crate) const PERSPECTIVE: ControlText =
-    control_text("Positional", "From a place, like a lamp: shadows grow with the distance");
+    control_text("Positional", "Rays from one point, as from a lamp: shadows grow with the distance");
 
 pub(crate) const WITH_VOLUME: ControlText =
     control_text("The volume", "The light stays where it is: turning the camera rebuilds no shadows");
@@ -13,54 +15,58 @@ pub(crate) const WITH_CAMERA: ControlText =
     control_text("The camera", "The light turns with the camera, like a lamp on the photographer's shoulder");
 
 pub(crate) const ADD: ControlText = control_text("Add light", "Adds a light beside the camera; up to eight");
-pub(crate) const REMOVE: ControlText =
-    control_text("Remove light", "Takes this light away; undo brings it back");
+pub(crate) const REMOVE: ControlText = control_text("Remove light", "Removes this light; undo restores it");
 
 /// Name shown for a light that has none.
 pub(crate) const UNNAMED: &str = "Light";
 pub(crate) const ON_TIP: &str = "Switches this light on or off; its shadows are kept";
 pub(crate) const SELECT_TIP: &str = "Select; its handle in the picture is marked";
 
-pub(crate) const NAME: ControlText = control_text("Name", "What this light is called in the list");
+pub(crate) const NAME: ControlText = control_text("Name", "Name of this light in the list");
 pub(crate) const NAME_HINT: &str = "Name of the light";
-pub(crate) const KIND: ControlText = control_text("Kind", "How the light's rays run");
+pub(crate) const KIND: ControlText = control_text("Kind", "Parallel rays, or rays from one point");
 pub(crate) const INTENSITY: ControlText =
     control_text("Intensity", "How bright this light is; costs no new shadows");
 pub(crate) const DISTANCE: ControlText =
     control_text("Distance", "From the middle of the volume; near lights spread their shadows");
-pub(crate) const LOCK: ControlText =
-    control_text("Attached to", "What the light keeps its place to while the camera turns");
+pub(crate) const LOCK: ControlText = control_text(
+    "Attached to",
+    "Whether the light stays with the volume or with the camera when the camera turns",
+);
 pub(crate) const HEADLIGHT: ControlText = control_text(
     "Headlight",
-    "Puts this light where the eye is, and keeps it there: everything seen is lit, shadows hide",
+    "Places this light at the camera and keeps it there: everything visible is lit, and shadows are out of \
+     sight",
 );
 pub(crate) const SUGGEST: ControlText = control_text(
     "Suggest…",
-    "Seeks places for this light that make the most of shadows, and shows the best three",
+    "Searches for positions of this light whose shadows show the shape best, and shows the best three",
 );
 pub(crate) const DENSITY: ControlText = control_text(
     "Density",
     "Multiplies how strongly material attenuates this light alone; refills its light volume",
 );
 pub(crate) const CASTS_SHADOWS: ControlText =
-    control_text("Casts shadows", "Whether material attenuates this light; a fill light does without");
+    control_text("Casts shadows", "Whether material attenuates this light; a fill light casts no shadows");
 
 pub(crate) const SHAPE: ControlText = control_text(
     "Light shape",
-    "What shines: the larger it looks from the volume, the softer the borders of its shadows",
+    "Shape of the light source: the larger it appears from the volume, the softer the edges of its shadows",
 );
-pub(crate) const POINT: ControlText = control_text("Point", "Shadows are as sharp as the volume");
+pub(crate) const POINT: ControlText =
+    control_text("Point", "Shadows are as sharp as the resolution of the volume allows");
 pub(crate) const DISC: ControlText =
     control_text("Disc", "A round plate that faces the volume, like a studio lamp");
-pub(crate) const RECTANGLE: ControlText = control_text("Rectangle", "A soft box, or a window");
+pub(crate) const RECTANGLE: ControlText = control_text("Rectangle", "A softbox, or a window");
 pub(crate) const SPHERE: ControlText =
     control_text("Ball", "Looks the same from everywhere, like a paper lantern or the sun");
 pub(crate) const ANGLE: ControlText = control_text(
     "Width",
-    "How wide the light looks from the volume: the sun has half a degree; its border can be dragged in the picture",
+    "Angular width of the light as seen from the volume (the sun: half a degree); its edge can be dragged \
+     in the picture",
 );
 pub(crate) const SIZE: ControlText =
-    control_text("Width", "How wide the light is; its border can be dragged in the picture");
+    control_text("Width", "Width of the light; its edge can be dragged in the picture");
 pub(crate) const ASPECT: ControlText =
     control_text("Width by height", "1 is a square, 2 twice as wide as high");
 pub(crate) const ROTATION: ControlText =
@@ -71,9 +77,9 @@ pub(crate) const SPOTLIGHT: ControlText = control_text(
     "The light shines only within a cone around the line to the middle of the volume",
 );
 pub(crate) const CONE: ControlText =
-    control_text("Cone", "From the middle of the cone to where no light is left");
+    control_text("Cone", "Angle from the axis of the cone to its edge, where the light ends");
 pub(crate) const FALLOFF: ControlText =
-    control_text("Falloff", "How far inside that the light begins to fade; 0 is a hard edge");
+    control_text("Falloff", "Angle inside the edge over which the light fades; 0 is a hard edge");
 
 /// Caption of the chip that adds a light.
 pub(crate) const ADD_CHIP: &str = "+";
@@ -112,7 +118,7 @@ pub(crate) fn chip(name: &str, on: bool) -> String {
 pub(crate) fn chip_tip(name: &str, intensity: f64, shadows: &str) -> String {
     format!(
         "{name}: intensity {intensity:.2}, {shadows}\n\
-         Click selects, drag its handle or use the arrow keys; right click for more"
+         Click to select, drag its handle or use the arrow keys; right-click for more"
     )
 }
 

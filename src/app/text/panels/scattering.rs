@@ -2,23 +2,26 @@
 
 use crate::app::text::{ControlText, control_text};
 
-pub(crate) const BOUNCES: ControlText =
-    control_text("Bounces", "How often light bounces inside: none is off, and some four already glow");
+pub(crate) const BOUNCES: ControlText = control_text(
+    "Bounces",
+    "Number of times that light is scattered inside: 0 is off, and about four already glow",
+);
 pub(crate) const ALBEDO: ControlText = control_text(
     "Albedo",
-    "What a bounce keeps of the light: near 1 matter is milky and glows, near 0 it is dark",
+    "Share of the light that a bounce keeps: near 1 material is milky and glows, near 0 it is dark",
 );
 pub(crate) const DENSITY: ControlText = control_text(
     "Bounce density",
-    "How much this light meets of the material: less lets it in deeper, as into wax",
+    "How strongly material attenuates bounced light: less lets it in deeper, as in wax",
 );
 pub(crate) const STRENGTH: ControlText =
-    control_text("Bounced light", "What is shown of light that has bounced");
+    control_text("Bounced light", "Brightness of bounced light in the picture");
 pub(crate) const ANISOTROPY: ControlText = control_text(
     "Anisotropy",
-    "Clouds and smoke scatter light on as it came, and glow before it; below 0 they throw it back",
+    "Above 0, light is scattered forward, as by clouds and smoke, which glow in front of it; below 0, \
+     backward",
 );
 pub(crate) const DIRECTIONS: ControlText = control_text(
     "Bounce directions",
-    "To how many sides light is followed on its last bounce: more is smoother, and takes longer",
+    "Number of directions of light on its last bounce: more is smoother, and takes longer",
 );

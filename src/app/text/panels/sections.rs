@@ -20,5 +20,5 @@ pub(crate) fn tab_name(title: &str) -> String {
 
 /// Accessible name of the dot beside a title, shown while the section has an effect.
 pub(crate) fn active_name(title: &str) -> String {
-    format!("{title}: something is on")
+    format!("{title}: active")
 }

@@ -6,22 +6,22 @@ pub(crate) const EMISSION: ControlText =
     control_text("Emission", "Light that material gives off by itself; for glowing data");
 pub(crate) const AMBIENT: ControlText = control_text(
     "Ambient",
-    "Light from everywhere, never shadowed: too much of it flattens the shape; a sky takes its place",
+    "Light from everywhere, never shadowed: too much of it flattens the shape; a sky replaces it",
 );
 pub(crate) const DIFFUSE: ControlText =
-    control_text("Diffuse", "Light that a surface scatters evenly: shows how it is turned");
+    control_text("Diffuse", "Light that a surface scatters evenly: shows its orientation");
 pub(crate) const SPECULAR: ControlText =
     control_text("Specular", "Highlights; for surfaces that should look polished");
-pub(crate) const SHININESS: ControlText = control_text("Shininess", "How small highlights are");
+pub(crate) const SHININESS: ControlText = control_text("Shininess", "Higher makes highlights smaller");
 pub(crate) const SURFACE_GRADIENT: ControlText = control_text(
     "Surface gradient",
     "The density step at which material counts as a surface; higher makes noise and haze look soft",
 );
 
 pub(crate) const SIDES: ControlText =
-    control_text("Lit sides", "Which sides of a surface shadowed light falls on");
+    control_text("Lit sides", "Sides of a surface that receive light from lights with shadows");
 pub(crate) const ONE_SIDE: ControlText =
-    control_text("Outer", "The side that opacity falls to: clean edges, dark backs");
+    control_text("Outer", "The side towards lower opacity: clean edges, dark backs");
 pub(crate) const BOTH_SIDES: ControlText =
     control_text("Both", "Light reaches through surfaces, as in the paper");
 
@@ -30,12 +30,12 @@ pub(crate) const EXPOSURE: ControlText = control_text(
     "How bright the volume and its floor are shown; the background and the shadows stay",
 );
 pub(crate) const TONE_MAP: ControlText =
-    control_text("Tone map", "What happens to light that is brighter than the screen");
+    control_text("Tone map", "How light brighter than the screen is shown");
 pub(crate) const NEUTRAL: ControlText =
     control_text("Neutral", "Keeps colours up to 80 %, then rolls off smoothly");
-pub(crate) const CLIP: ControlText = control_text("Clip", "Cuts at full brightness; exact below");
+pub(crate) const CLIP: ControlText = control_text("Clip", "Clips at full brightness; exact below");
 
 pub(crate) const BACKGROUND: ControlText =
-    control_text("Background", "Behind the volume, from the top to the bottom");
+    control_text("Background", "Colours behind the volume, at the top and at the bottom");
 pub(crate) const BACKGROUND_TOP: &str = "Background top";
 pub(crate) const BACKGROUND_BOTTOM: &str = "Background bottom";

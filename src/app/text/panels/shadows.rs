@@ -16,8 +16,8 @@ pub(crate) const DIRECT: ControlText = control_text(
 );
 
 /// Warning on software rasterisers, which end shadow rays to area lights early.
-pub(crate) const SOFTWARE_RAYS_WARNING: &str = "This driver, which draws with the processor, ends rays to lights that have a size before they \
-                                    arrive: such lights are too dark. Fine shows them as they are";
+pub(crate) const SOFTWARE_RAYS_WARNING: &str = "This software graphics driver ends rays to area lights too early, \
+     so that such lights are too dark. The quality Fine shows them correctly";
 
 pub(crate) const STRENGTH: ControlText =
     control_text("Strength", "0 shows no shadows, 1 shows them fully; between, they are mixed");
@@ -26,10 +26,10 @@ pub(crate) const AMBIENT_OFFSET: ControlText = control_text(
     "Light that reaches everything: lifts black interiors without touching bright parts",
 );
 pub(crate) const GAIN: ControlText =
-    control_text("Gain", "Multiplies the light that is left, up to full light: brightens half-shadows");
+    control_text("Gain", "Multiplies the transmittance, up to full light: brightens half-shadows");
 pub(crate) const LIGHT_BIAS: ControlText = control_text(
     "Shadow bias",
-    "Looks up the light a little nearer to its source: takes self-shadowing off surfaces",
+    "Looks up the light a little nearer to its source: removes self-shadowing of surfaces",
 );
 
 pub(crate) const BALANCE: ControlText = control_text(
@@ -42,14 +42,14 @@ pub(crate) const MEASURE_BALANCE: ControlText =
 /// Checkbox that keeps the balance up to date automatically.
 pub(crate) const KEEP_BALANCED: ControlText = control_text(
     "Keep balanced",
-    "Balances the brightness again when a change of lights, opacities or shadows has come to rest; a balance set \
-     by hand switches it off",
+    "Balances the brightness again after each change of lights, opacities or shadows; a balance set by \
+     hand switches it off",
 );
 
 pub(crate) const NEARLY_BLACK: ControlText = control_text(
     "Nearly black",
-    "Share of what is seen that is nearly black. Light opacity below 1 lets light pass thin parts, a \
-     narrow Gaussian or a shadow bias frees surfaces from their own shadow, an ambient offset lifts all",
+    "Share of the visible pixels that are nearly black. Light opacity below 1 lets light pass thin parts, \
+     a narrow Gaussian or a shadow bias removes self-shadowing, an ambient offset brightens everything",
 );
 /// Text in place of a share that is not measured yet.
 pub(crate) const UNKNOWN: &str = "–";
@@ -61,13 +61,14 @@ pub(crate) const LIGHT_OPACITY: ControlText = control_text(
 );
 pub(crate) const LINKED: ControlText = control_text(
     "Same opacity for light and eye",
-    "Light meets the opacity that the eye sees. Unlinked, it gets a curve of its own in the editor below",
+    "Light uses the eye's opacity curve. Unlinked, it has a separate one in the transfer function editor",
 );
 
 pub(crate) const TRANSMISSION: ControlText = control_text(
     "Shadow colour",
-    "Coloured shadows: how much of the light of its own hue a material lets through, as coloured glass does: 0 leaves shadows grey. Colours \
-     are those of the curve, or of a lighting curve of its own. Light volumes take four times the memory",
+    "Coloured shadows: share of the light of its own hue that a material lets through, as coloured glass \
+     does; 0 leaves shadows grey. Colours are those of the eye's curve, or of a separate curve for light. \
+     Light volumes take four times the memory",
 );
 
 pub(crate) const RESOLUTION: ControlText =
@@ -83,67 +84,74 @@ pub(crate) const FIRST_TOUCH: ControlText = control_text(
      with faint steps",
 );
 
-pub(crate) const PRECISION: ControlText = control_text("Precision", "How light volumes are kept");
-pub(crate) const SIXTEEN_BITS: ControlText = control_text("16 bits", "Even in the dark, and under gain");
+pub(crate) const PRECISION: ControlText = control_text("Precision", "Bits per value in light volumes");
+pub(crate) const SIXTEEN_BITS: ControlText =
+    control_text("16 bits", "Smooth in dark parts, too, and with gain");
 pub(crate) const EIGHT_BITS: ControlText =
     control_text("8 bits", "Half the memory; shows steps where gain lifts dark parts");
 
 pub(crate) const STORAGE: ControlText =
     control_text("Light volumes", "A light volume for each light, or one for all");
-pub(crate) const AUTO: ControlText =
-    control_text("Auto", "One for all from five lights on, where nothing shines");
+pub(crate) const AUTO: ControlText = control_text(
+    "Auto",
+    "One for all with five or more lights (two with shadow colour), if there are no highlights or \
+     contact shadows",
+);
 pub(crate) const PER_LIGHT: ControlText =
     control_text("Each", "A volume for each light: highlights, and colours that change at once");
 pub(crate) const COMBINED: ControlText = control_text(
     "One",
-    "The diffuse light of all in one volume: quick pictures under many lights, without their highlights",
+    "The diffuse light of all lights in one volume: fast pictures with many lights, without highlights",
 );
 
 pub(crate) const QUALITY: ControlText = control_text(
     "Quality",
-    "How truly light is computed; sets slabs, rays and the way light gets to the volume",
+    "Accuracy of the light; sets the method, contact shadows, slabs, kernels and normals",
 );
 pub(crate) const FAST: ControlText = control_text("Fast", "Light volumes alone: soft shadows, quickest");
 pub(crate) const STANDARD: ControlText =
-    control_text("Standard", "Light volumes, and short rays near what is seen");
+    control_text("Standard", "Light volumes, and short rays near visible material");
 pub(crate) const FINE: ControlText = control_text("Fine", "Light volumes, and longer rays: for figures");
 pub(crate) const EXACT: ControlText =
-    control_text("Exact", "Rays all the way and the thinnest slabs: true, and slow");
+    control_text("Exact", "Rays all the way and the thinnest slabs: accurate, and slow");
 
 pub(crate) const NEAR_FIELD: ControlText = control_text(
     "Contact shadows",
-    "What shades a point from close by: found by a short ray, which shows relief, contact and thin things sharply",
+    "Shadows of nearby material, found by a short ray: relief, contacts and thin structures are sharp",
 );
 pub(crate) const CONTACT_OFF: ControlText =
     control_text("Off", "The light volume alone, as in the paper: soft, and quickest");
 pub(crate) const CONTACT_SHORT: ControlText =
     control_text("3 voxels", "Sharp where it matters most, at little cost");
-pub(crate) const CONTACT_LONG: ControlText = control_text("8 voxels", "Truer yet, and slower: for figures");
+pub(crate) const CONTACT_LONG: ControlText =
+    control_text("8 voxels", "More accurate, and slower: for figures");
 
 pub(crate) const REVERSE_KERNEL: ControlText =
-    control_text("Reverse kernel", "With which kernel light gets from the sheets into the light volume");
+    control_text("Reverse kernel", "Kernel that carries light from the sheets into the light volume");
 pub(crate) const TENT: ControlText = control_text("Tent", "Narrow: sharper shadows, filled in less time");
 pub(crate) const FORWARD_KERNEL: ControlText =
-    control_text("Kernel", "That of the light pass, as in the paper: softer shadows");
+    control_text("Kernel", "The kernel of the light pass, as in the paper: softer shadows");
 
-pub(crate) const DEPOSIT: ControlText = control_text("Deposit", "Which light a sheet leaves in its voxels");
+pub(crate) const DEPOSIT: ControlText =
+    control_text("Deposit", "The light that a sheet stores in its voxels");
 pub(crate) const SLAB_MEAN: ControlText =
     control_text("Mean", "The mean over the slab: hardly depends on its thickness");
 pub(crate) const SLAB_FRONT: ControlText =
-    control_text("Front", "What arrives in front of the slab: a little brighter; the paper's equation");
+    control_text("Front", "The light in front of the slab: a little brighter; the paper's equation");
 
 pub(crate) const AREA_SAMPLES: ControlText = control_text(
-    "Points of lights",
-    "From how many points a light that has a size is followed: fewer show as several edges of a shadow",
+    "Light samples",
+    "Number of points that sample an area light: too few show as several edges of a shadow",
 );
 pub(crate) const AREA_RESOLUTION: ControlText = control_text(
     "Soft resolution",
-    "Resolution of the light volumes of lights that have a size, whose shadows have less detail",
+    "Resolution of the light volumes of area lights, whose shadows have less detail",
 );
 
 pub(crate) const MIN_BLOCKS: ControlText = control_text(
     "Minimum blocks",
-    "In how many blocks along the longest edge light of wide lights, of the sky and of bounces is found at least: small volumes are lit as finely as large ones",
+    "Least number of blocks along the longest edge in which light of wide lights, of the sky and of \
+     bounces is computed: small volumes are lit as finely as large ones",
 );
 
 /// Percentage of the visible pixels that are nearly black.
@@ -164,7 +172,7 @@ pub(crate) fn volume_cost(cost: &str) -> String {
 
 /// Estimated cost of each area light.
 pub(crate) fn area_cost(cost: &str) -> String {
-    format!("Each light that has a size takes about {cost}")
+    format!("Each area light takes about {cost}")
 }
 
 /// Estimated cost of an effect that exists once, as the sky.

@@ -10,7 +10,7 @@ pub(crate) const LIGHT_DISTANCE: &str = "position near far closer farther lamp";
 pub(crate) const SPOTLIGHT: &str = "spot cone hood lampshade beam barn doors theatre";
 pub(crate) const CONE: &str = "spotlight spot hood beam angle opening";
 pub(crate) const RIM: &str = "spotlight spot hood rim soft edge feather fade penumbra";
-pub(crate) const AREA_LIGHT: &str = "area light soft shadows penumbra disc softbox window size";
+pub(crate) const AREA_LIGHT: &str = "area light soft shadows penumbra disc softbox window size points";
 pub(crate) const WIDTH: &str = "area light soft shadows penumbra softbox size diameter radius angle sun";
 pub(crate) const ASPECT: &str = "area light aspect ratio rectangle softbox window proportions";
 pub(crate) const LIGHT_ROTATION: &str = "area light rotate rotation rectangle softbox angle";
@@ -42,13 +42,15 @@ pub(crate) const KERNEL: &str =
 pub(crate) const SIGMA: &str = "gaussian kernel width sharpness blur";
 pub(crate) const SLAB: &str = "sample distance step size sampling rate slice thickness sheet";
 pub(crate) const QUADRATURE: &str = "samples per slab points oversampling supersampling sampling accuracy";
-pub(crate) const SLABS: &str = "adaptive sampling weave wood grain banding stripes artefacts quality";
+pub(crate) const SLABS: &str =
+    "adaptive sampling weave wood grain banding stripes artefacts quality by need even";
 pub(crate) const CLASSIFICATION: &str = "pre post classification transfer function labels";
 pub(crate) const ENGINE: &str = "splatting gather scatter algorithm engine";
 pub(crate) const ORDER: &str = "image volume aligned sheets splats compositing popping";
 pub(crate) const NORMALS: &str = "gradient gradients relief bump surface direction shading";
 
-pub(crate) const SKY: &str = "ambient occlusion ao environment hdri dome sky light panorama surroundings";
+pub(crate) const SKY: &str =
+    "ambient occlusion ao environment map hdri hdr dome sky light panorama surroundings";
 pub(crate) const SKY_COLOR: &str = "sky colour color gradient zenith nadir ground dome hemisphere tint";
 pub(crate) const SKY_TILT: &str = "sky tilt tipped window direction angle";
 pub(crate) const SKY_TURN: &str =

@@ -49,7 +49,7 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         with(*sampling != after.sampling, "change sampling"),
         with(*output != after.output, describe_output(output, &after.output)),
         with(*kept != after.kept, describe_saved_views(kept, &after.kept)),
-        with(*volume != after.volume, "correct the file"),
+        with(*volume != after.volume, "correct file metadata"),
     ];
     let changed: Vec<String> = parts.into_iter().flatten().collect();
     match &changed[..] {

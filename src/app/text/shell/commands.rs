@@ -8,7 +8,7 @@ pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";
 pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
-pub(crate) const OPEN_DROPPED: &str = "Open what was dropped";
+pub(crate) const OPEN_DROPPED: &str = "Open dropped files";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// Name of the command, and title of the submenu of built-in volumes.
 pub(crate) const OPEN_BUILT_IN: &str = "Open built-in";
@@ -72,7 +72,7 @@ pub(crate) fn reveal(section: &str, row: Option<&str>) -> String {
 
 pub(crate) const CANCEL_EXPORT: &str = "Stop exporting";
 pub(crate) const SUGGEST_LIGHT: &str = "Suggest a light…";
-pub(crate) const USE_ENVIRONMENT_MAP: &str = "Light by surroundings in a picture…";
+pub(crate) const USE_ENVIRONMENT_MAP: &str = "Light from environment map…";
 pub(crate) const TRY_LIGHTS: &str = "Try lights…";
 pub(crate) const NEXT_LIGHT: &str = "Next light";
 pub(crate) const PREVIOUS_LIGHT: &str = "Previous light";

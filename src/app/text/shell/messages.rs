@@ -5,11 +5,11 @@ use std::path::Path;
 /// Texts of the window that lists all messages.
 pub(crate) const LIST: &str = "Messages";
 pub(crate) const LIST_TIP: &str = "All messages since the start";
-pub(crate) const NO_MESSAGES: &str = "Nothing has been said yet";
+pub(crate) const NO_MESSAGES: &str = "No messages yet";
 pub(crate) const DETAILS: &str = "Details";
 pub(crate) const DISMISS: &str = "Dismiss";
 /// Title of the window of error details.
-pub(crate) const DETAILS_TITLE: &str = "What happened";
+pub(crate) const DETAILS_TITLE: &str = "Error details";
 
 pub(crate) const NO_SESSION_TO_REOPEN: &str = "There is no session to reopen";
 pub(crate) const PICTURE_ONLY: &str = "Picture only: Escape brings the panels back";
@@ -34,15 +34,16 @@ pub(crate) const LIGHT_VOLUME_NOT_EXPORTED: &str = "The light volume was not exp
 
 pub(crate) const NOT_RENDERED: &str = "The picture could not be rendered";
 pub(crate) const DEVICE_LOST: &str = "the graphics device was lost";
-pub(crate) const DEVICE_REPLACED: &str = "The graphics device was lost; everything is here again";
+pub(crate) const DEVICE_REPLACED: &str = "The graphics device was lost and has been restored";
 /// Question after the graphics device was lost twice within a minute.
 pub(crate) const DEVICE_LOST_AGAIN: &str = "The graphics device was lost again";
-pub(crate) const LOST_AGAIN_WHY: &str = "Twice within a minute. The look is kept; how shall it go on?";
+pub(crate) const LOST_AGAIN_WHY: &str =
+    "It was lost twice within a minute. The look is kept. How do you want to continue?";
 pub(crate) const TRY_AGAIN: &str = "Try again";
 pub(crate) const LOWER_QUALITY: &str = "Lower quality";
 pub(crate) const USE_CPU: &str = "Use the processor instead";
 /// Reason why rendering cannot fall back to a software rasteriser.
-pub(crate) const NO_CPU_ADAPTER: &str = "no driver draws with the processor";
+pub(crate) const NO_CPU_ADAPTER: &str = "no software graphics driver was found";
 /// Error of a start without a graphics device.
 pub(crate) const NO_DEVICE: &str = "the window has no graphics device";
 
@@ -67,13 +68,16 @@ pub(crate) fn undone(is_back: bool, what: &str) -> String {
     format!("{verb}: {what}")
 }
 
-pub(crate) const ENVIRONMENT_MAP_NOT_READ: &str = "The surroundings were not read";
+pub(crate) const ENVIRONMENT_MAP_NOT_READ: &str = "The environment map was not read";
 
 /// Message after an environment map was applied.
 pub(crate) fn environment_map_applied(name: &str, has_light: bool) -> String {
     if has_light {
-        format!("Lit by {name}: its gradient, and its brightest light as the light “Surroundings”")
+        format!(
+            "Lit by {name}: its colour gradient as the sky, and its brightest light as the light \
+             “Surroundings”"
+        )
     } else {
-        format!("Lit by {name}: its gradient; no light stands out in it")
+        format!("Lit by {name}: its colour gradient as the sky; it has no distinct bright light")
     }
 }

@@ -10,7 +10,7 @@ pub(crate) const PROGRAM: &str = "Chiaroscuro";
 
 /// Phases of opening a volume, in this order.
 pub(crate) const READING: &str = "Reading";
-pub(crate) const MEASURING_ADAPTER: &str = "Trying what the graphics adapter can hold";
+pub(crate) const MEASURING_ADAPTER: &str = "Testing the capacity of the graphics adapter";
 pub(crate) const COUNTING: &str = "Counting values";
 pub(crate) const UPLOADING: &str = "Uploading";
 pub(crate) const FIRST_LOOK: &str = "Finding a first look";
@@ -23,7 +23,8 @@ pub(crate) const SETTINGS_NOT_SAVED: &str = "The session was not saved";
 pub(crate) const SESSION_NOT_LOADED: &str = "The session was not loaded";
 
 /// Warnings about settings that were loaded nevertheless.
-pub(crate) const OTHER_VOLUME: &str = "The settings were made for another volume: Open… opens that one";
+pub(crate) const OTHER_VOLUME: &str =
+    "The settings were made for another volume; File › Open… with the same file opens that volume";
 pub(crate) const OTHER_VALUES: &str = "The settings were made for other values than the file has now";
 
 /// Desktop message when no window opens: the failure, then in a second paragraph the reason and the remedy.
@@ -79,7 +80,7 @@ pub(crate) fn first_of_several(several: &VolumeAlternatives) -> String {
         None => format!("The first of {count} {plural} is shown{first}: the section Data offers the others"),
         Some(said) => {
             let said = sanitised(said, 60);
-            format!("{said} is none of the {count} {plural} that there are now: the first is shown{first}")
+            format!("{said} is none of the {count} {plural} in the file: the first is shown{first}")
         }
     }
 }
@@ -93,7 +94,7 @@ pub(crate) fn folder_of_dropped(count: usize, folder: &Path) -> String {
 /// Message that some slices of a folder were dropped, and only these are opened.
 pub(crate) fn part_of_folder(count: usize, folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    format!("{count} slices of the folder {} are opened, those that were dropped", sanitised(&name, 60))
+    format!("Only the {count} dropped slices of the folder {} are opened", sanitised(&name, 60))
 }
 
 /// Message that unrelated files were dropped, and the first is opened.
@@ -103,7 +104,7 @@ pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
 }
 
 /// Message when the open volume does not lie in a folder.
-pub(crate) const NO_FOLDER: &str = "The open volume is in no folder";
+pub(crate) const NO_FOLDER: &str = "The open volume is not in a folder";
 
 /// Message when the folder has no further file in this direction.
 pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
@@ -116,5 +117,5 @@ pub(crate) fn no_neighbour(is_forward: bool) -> &'static str {
 
 /// Error when the loader thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
-    format!("no thread for the loader: {err}")
+    format!("could not start the loader thread: {err}")
 }

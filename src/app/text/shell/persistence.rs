@@ -9,15 +9,15 @@ pub(crate) const RECOVERY_TITLE: &str = "Reopen the last session?";
 pub(crate) const RECOVERY_WHY: &str = "Chiaroscuro did not close properly. This is how it looked:";
 pub(crate) const REOPEN: &str = "Reopen";
 pub(crate) const NOT_NOW: &str = "Not now";
-pub(crate) const NOT_NOW_TIP: &str = "It stays in File, Earlier looks";
+pub(crate) const NOT_NOW_TIP: &str = "The look stays available under File › Earlier looks";
 
 /// Message of a safe start, after three starts failed.
-pub(crate) const SAFE_START: &str = "The program did not get to a picture three times. It has started without the \
-     file and the session that were named, and with quick light: File, Open… opens the file, and Quality in Shadows has \
-     the better light";
+pub(crate) const SAFE_START: &str = "The program failed three times to show a picture. It has started without the \
+     requested file and session, and with the quality Fast: File › Open… opens the file, and Shadows › \
+     Quality improves the light";
 
 /// Headline of a message whose details list start-up notices.
-pub(crate) const STARTUP_NOTICES: &str = "Something is not as it was";
+pub(crate) const STARTUP_NOTICES: &str = "Not everything works as usual";
 
 /// Window that asks for confirmation before a running export is discarded.
 pub(crate) const EXPORTING: &str = "Quit while a picture is being exported?";
@@ -27,14 +27,14 @@ pub(crate) const QUIT_NOW: &str = "Discard and quit";
 pub(crate) const STAY: &str = "Stay";
 
 /// Reasons why Ctrl+S asks for another file instead of overwriting the session.
-pub(crate) const NOT_A_SESSION: &str = "it is no session of this program";
-pub(crate) const NEWER_SESSION: &str = "a newer version has written it";
-pub(crate) const UNKNOWN_CONTENT: &str = "not all of it was understood";
+pub(crate) const NOT_A_SESSION: &str = "it is not a session of this program";
+pub(crate) const NEWER_SESSION: &str = "it was written by a newer version";
+pub(crate) const UNKNOWN_CONTENT: &str = "some of its content could not be read";
 pub(crate) const NOT_READ_YET: &str = "it has not been read yet";
 
 /// Message for a session file that Ctrl+S does not overwrite.
 pub(crate) fn session_protected(file: &Path, why: &str) -> String {
-    format!("{} stays as it is: {why}. Choose another file", file.display())
+    format!("{} was not overwritten: {why}. Choose another file", file.display())
 }
 
 /// Menu entry of an autosaved look: name of its volume, and its age.
@@ -57,22 +57,22 @@ pub(crate) fn age(ago: Duration) -> String {
 /// Notice that a corrupt state file was quarantined under another name.
 pub(crate) fn quarantined(file: &Path, aside: &Path) -> String {
     let name = aside.file_name().unwrap_or_default().to_string_lossy();
-    format!("{} could not be read, and was put aside as {name}", file.display())
+    format!("{} could not be read, and was renamed to {name}", file.display())
 }
 
 /// Notice that a corrupt state file could not even be renamed.
 pub(crate) fn quarantine_failed(file: &Path, why: impl Display) -> String {
-    format!("{} cannot be read, nor put aside: {why}", file.display())
+    format!("{} could not be read or renamed: {why}", file.display())
 }
 
 /// Notice that the storage folder is unusable, so nothing will be autosaved.
 pub(crate) fn storage_failed(folder: &Path, why: impl Display) -> String {
-    format!("looks cannot be kept in {}: {why}", folder.display())
+    format!("looks cannot be autosaved in {}: {why}", folder.display())
 }
 
 /// Notice that the autosave of the look failed.
 pub(crate) fn autosave_failed(why: &str) -> String {
-    format!("the look cannot be kept: {why}")
+    format!("the look cannot be autosaved: {why}")
 }
 
 #[cfg(test)]

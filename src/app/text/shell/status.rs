@@ -91,7 +91,7 @@ pub(crate) fn statistics(figures: &RenderStatisticsText<'_>) -> Vec<(&'static st
         ("Preview", ms(figures.preview_ms)),
         (
             "Light volumes",
-            format!("{} kept, filled {} times", figures.cached_light_volumes, figures.light_rebuilds),
+            format!("{} cached, filled {} times", figures.cached_light_volumes, figures.light_rebuilds),
         ),
         ("Graphics memory", format!("{:.0} MiB", figures.gpu_mebibytes)),
         ("Graphics device", format!("{}{software}", figures.adapter)),

@@ -7,10 +7,10 @@ pub(crate) const ON: ControlText =
     control_text("Compare two looks", "Shows two looks in one picture: drag the line between them (C)");
 pub(crate) const DIFFERENCE: ControlText = control_text(
     "Show the difference",
-    "What lies between the two, eight times as bright; grey where they differ evenly",
+    "The absolute difference of the two, eight times as bright; black where they are equal",
 );
 
-const SIDE_TIP: &str = "Which look is on this side";
+const SIDE_TIP: &str = "The look on this side";
 
 pub(crate) const LEFT: ControlText = control_text("Left", SIDE_TIP);
 pub(crate) const RIGHT: ControlText = control_text("Right", SIDE_TIP);
@@ -22,7 +22,7 @@ pub(crate) const KEEP: ControlText = control_text(
 pub(crate) const WITH_FILE: ControlText =
     control_text("Compare with a file…", "Settings or a preset, laid over the look as it is now");
 pub(crate) const TAKE_RIGHT: ControlText =
-    control_text("Take the right look", "Makes the right look the current one");
+    control_text("Take the right look", "Makes the look on the right the current one");
 
 /// Accessible name of the list of looks for a side.
 pub(crate) fn look_list_name(side: &str) -> String {

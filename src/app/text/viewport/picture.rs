@@ -9,15 +9,15 @@ pub(crate) const DIVIDER: &str = "Divider";
 
 /// Message over a picture in which nothing is visible.
 pub(crate) const NOTHING_VISIBLE: &str =
-    "Nothing of the volume is visible: it is transparent, too small, or outside of the picture";
+    "No part of the volume is visible: it is transparent, too small, or outside the picture";
 pub(crate) const SHOW_SOMETHING: ControlText = control_text(
     "Show something",
-    "Takes a transfer function that shows the twentieth of the voxels with the highest values, the robust range, and \
-     light that follows the eye's curve",
+    "Sets the robust range, and a transfer function for eye and light that shows the twentieth of the voxels with the \
+     highest values",
 );
 pub(crate) const RESET_TRANSFER: ControlText = control_text(
     "Reset transfer function",
-    "Takes back the transfer function with which the volume was opened",
+    "Restores the transfer function with which the volume was opened",
 );
 
 /// Caption of the row of common CT presets.
@@ -27,7 +27,7 @@ pub(crate) const CLOSE_CT_LOOKS_SIGN: &str = "×";
 
 /// Caption of the difference image of two looks.
 pub(crate) fn difference(left: &str, right: &str) -> String {
-    format!("{left} − {right}, eight times")
+    format!("{left} − {right}, × 8")
 }
 
 /// Error metrics between two looks, on a scale of 255.

@@ -3,7 +3,7 @@
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{ControlText, control_text};
 
-pub(crate) const NOTHING: &str = "Nothing is seen here";
+pub(crate) const NOTHING: &str = "Nothing is visible here";
 
 /// Reasons why a light does not reach a point or is not attenuated, shown behind the light's name.
 pub(crate) const OFF: &str = "off";
@@ -11,7 +11,7 @@ pub(crate) const OUTSIDE_CONE: &str = "outside its spotlight cone";
 pub(crate) const FACES_AWAY: &str = "the surface faces away from it";
 pub(crate) const CASTS_NO_SHADOWS: &str = "casts no shadows";
 pub(crate) const SKY: &str = "Sky";
-pub(crate) const IN_ITS_WAY: &str = "nothing arrives: something stands in its way";
+pub(crate) const IN_ITS_WAY: &str = "no light arrives: material blocks it";
 
 /// Value, opacity and position of the probed sample.
 pub(crate) fn sample(value: f64, decimals: usize, opacity: f64, place: &str) -> String {
@@ -61,7 +61,7 @@ pub(crate) fn arrival(through: &str, angle_deg: Option<f64>) -> String {
 }
 
 /// Hint below the verdict while the pointer moves.
-pub(crate) const CLICK: &str = "Click for what helps; a second click measures a distance";
+pub(crate) const CLICK: &str = "Click for remedies; a second click measures a distance";
 
 pub(crate) const ALL_OFF: &str = "Dark: no light is on";
 
@@ -82,7 +82,7 @@ pub(crate) fn verdict_outside_cone(name: &str) -> String {
 
 /// Verdict for a light at grazing incidence.
 pub(crate) fn verdict_grazing(name: &str, angle_deg: f64) -> String {
-    format!("Dim: {name} falls in at only {angle_deg:.0}° to the surface")
+    format!("Dim: {name} meets the surface at only {angle_deg:.0}°")
 }
 
 /// Verdict for a light that material absorbs before it arrives.
@@ -103,17 +103,17 @@ pub(crate) fn length(length_mm: f64, unit: LengthUnit) -> String {
 
 /// Distance to the point that was clicked before.
 pub(crate) fn distance_to_previous(length: &str) -> String {
-    format!("{length} from the previous place")
+    format!("{length} from the previous point")
 }
 
 pub(crate) const LET_THROUGH: ControlText =
-    control_text("Let light through", "Halves what light meets: scale of the light opacity, in Shadows");
+    control_text("Let light through", "Halves the opacity that light meets: light opacity, in Shadows");
 pub(crate) const LIFT_SHADOWS: ControlText =
     control_text("Lift shadows", "Adds 0.15 to the light in all shadows: ambient offset, in Shadows");
 pub(crate) const MORE_AMBIENT: ControlText =
-    control_text("More ambient light", "Adds 0.1 to the light from everywhere, in Shading");
+    control_text("More ambient light", "Adds 0.1 to the ambient light, in Shading");
 pub(crate) const CAST_NO_SHADOWS: ControlText =
-    control_text("No shadows of it", "This light goes through everything");
+    control_text("No shadows from it", "This light passes through everything");
 pub(crate) const HEADLIGHT: ControlText =
     control_text("Add a headlight", "Adds a weak light at the eye, which casts no shadows");
 /// Default name of the light that is added.
@@ -121,14 +121,14 @@ pub(crate) const HEADLIGHT_NAME: &str = "Headlight";
 pub(crate) const BOTH_SIDES: ControlText =
     control_text("Light both sides", "Surfaces are lit from behind as well, in Shading");
 pub(crate) const TURN_TO_EYE: ControlText =
-    control_text("Turn it to the eye", "The light goes half of the way to where you look from");
+    control_text("Turn it to the eye", "The light moves half of the way to the direction of view");
 pub(crate) const WIDEN_CONE: ControlText =
     control_text("Widen the cone", "The cone of the spotlight becomes 30° wider");
-pub(crate) const NO_CONE: ControlText = control_text("No spotlight", "It shines in all directions");
-pub(crate) const SWITCH_ON: ControlText = control_text("Switch it on", "The first light shines");
+pub(crate) const NO_CONE: ControlText = control_text("No spotlight", "The light shines in all directions");
+pub(crate) const SWITCH_ON: ControlText = control_text("Switch it on", "Switches on the first light");
 
 /// Verdict where only the sky shines, with the sky visibility from 0 to 1.
 pub(crate) fn verdict_sky_only(open: f64) -> String {
     let how = if open < 0.4 { "Dim" } else { "Lit" };
-    format!("{how}: no light is on but the sky, of which {:.0} % is seen", 100.0 * open)
+    format!("{how}: the sky is the only light, and {:.0} % of it is visible", 100.0 * open)
 }

@@ -7,21 +7,21 @@ use crate::data::load::{ChoiceAspect, DefaultComponent, FileDimension, VoxelComp
 pub(crate) fn row(aspect: ChoiceAspect) -> ControlText {
     match aspect {
         ChoiceAspect::Dimension(FileDimension::Series) => {
-            control_text("Series", "The scans that the folder or the file holds: one at a time is shown")
+            control_text("Series", "The scans in the folder or file: one is shown at a time")
         }
         ChoiceAspect::Dimension(FileDimension::Array) => {
-            control_text("Array", "The arrays that the file holds: one at a time is shown")
+            control_text("Array", "The arrays in the file: one is shown at a time")
         }
         ChoiceAspect::Dimension(FileDimension::Channel) => control_text(
             "Channel",
-            "What several dyes or detectors have seen at once: one at a time is shown",
+            "Simultaneous recordings of several dyes or detectors: one is shown at a time",
         ),
         ChoiceAspect::Dimension(FileDimension::Frame) => {
-            control_text("Time step", "The moments that the file holds: one at a time is shown")
+            control_text("Time step", "The time steps in the file: one is shown at a time")
         }
         ChoiceAspect::Component => control_text(
             "Component",
-            "What is shown of voxels of several numbers: one of them, or what all make",
+            "For voxels with several values: one of them, or one value computed from all",
         ),
     }
 }
@@ -123,7 +123,7 @@ pub(crate) fn size([x, y, z]: [u64; 3]) -> String {
 pub(crate) const SHOWN_MARK: &str = "shown";
 
 /// Note for colours, which are shown as luminance.
-pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one of them";
+pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one component";
 
 /// Keyboard hint below the list.
 pub(crate) const KEYS: &str = "Arrow keys and Enter choose, Esc closes";

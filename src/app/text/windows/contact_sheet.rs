@@ -21,7 +21,7 @@ pub(crate) const CLICK_HINT: &str = "Click to apply";
 pub(crate) const USE_TIP: &str = "Use it";
 
 /// Reason why no light can be suggested.
-pub(crate) const NO_LIGHT: &str = "There is no light to be placed: add one, or select one";
+pub(crate) const NO_LIGHT: &str = "There is no light to place: add or select one";
 
 /// Name of the unchanged picture beside the suggestions.
 pub(crate) const UNCHANGED: &str = "As it is";
@@ -48,5 +48,5 @@ pub(crate) fn clock_position(light: &str, hour: u32) -> String {
 
 /// Error when the thumbnail thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
-    format!("no thread for the pictures: {err}")
+    format!("could not start the preview thread: {err}")
 }

@@ -9,20 +9,20 @@ pub(crate) const TITLE: &str = "Export picture or turntable";
 /// Annotations drawn over an exported picture.
 pub(crate) const ANNOTATIONS: &str = "Marks";
 pub(crate) const SCALE_BAR: ControlText =
-    control_text("Scale bar", "How long things are, at the middle of the view");
+    control_text("Scale bar", "Shows lengths, exact at the depth of the view's centre");
 pub(crate) const LETTERS: ControlText =
-    control_text("Orientation letters", "Which side of a body is where, if the file says it");
+    control_text("Orientation letters", "Name the sides of a body, if the file states its orientation");
 /// Tooltip where the orientation of the body is unknown.
-pub(crate) const NO_LETTERS_TIP: &str = "The file does not say which side of a body is where";
-pub(crate) const LEGEND: ControlText = control_text("Legend", "Which colour stands for which value or label");
+pub(crate) const NO_LETTERS_TIP: &str = "The file does not state the orientation of a body";
+pub(crate) const LEGEND: ControlText = control_text("Legend", "The colours of the values or labels");
 pub(crate) const SHOW_IN_FOLDER: &str = "Show in folder";
 pub(crate) const COPY_PATH: &str = "Copy path";
 pub(crate) const NO_FOLDER: &str = "The folder cannot be shown";
-pub(crate) const EMPTY_PICTURE: &str = "the picture has no bytes";
+pub(crate) const EMPTY_PICTURE: &str = "the picture has no 8-bit colours";
 pub(crate) const EXPORT: &str = "Export";
 
 /// Subject of the export: a picture or an animation.
-pub(crate) const STILL: ControlText = control_text("Picture", "What the window shows, at any size");
+pub(crate) const STILL: ControlText = control_text("Picture", "The view in the window, at any size");
 pub(crate) const TURNTABLE: ControlText =
     control_text("Turntable", "The camera goes once around the volume; the light stays");
 pub(crate) const LIGHT_TURN: ControlText =
@@ -35,12 +35,12 @@ pub(crate) const PNG_16: ControlText = control_text(
     "For prints and for changing colours afterwards: smooth shading stays smooth",
 );
 pub(crate) const EXR: ControlText =
-    control_text("EXR", "Light before the tone map, linear, for programs that grade and composite");
+    control_text("EXR", "Linear light, before tone mapping, for grading and compositing");
 
 /// File formats of a turntable, with their tooltips.
 pub(crate) const APNG: ControlText =
-    control_text("Animated PNG", "Every colour, and transparency; browsers show it");
-pub(crate) const GIF: ControlText = control_text("GIF", "256 colours; everything shows it");
+    control_text("Animated PNG", "All colours, and transparency; for browsers");
+pub(crate) const GIF: ControlText = control_text("GIF", "256 colours; works everywhere");
 pub(crate) const MP4: ControlText = control_text("MP4", "A video for slides; needs ffmpeg on this computer");
 pub(crate) const FOLDER: ControlText =
     control_text("Image sequence", "A folder of PNG files, for video programs");
@@ -60,7 +60,7 @@ pub(crate) const ULTRA_HD_8K: &str = "7680 × 4320";
 
 pub(crate) const SAMPLES: ControlText = control_text(
     "Samples per pixel",
-    "More samples smooth edges and thin structures, and take as many times longer",
+    "More samples smooth edges and thin structures; twice as many take twice as long",
 );
 
 /// Number of frames of a turntable.
@@ -111,12 +111,12 @@ pub(crate) fn frames_done(done: u32, total: u32) -> String {
 
 /// Error when the export thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
-    format!("no thread for the export: {err}")
+    format!("could not start the export thread: {err}")
 }
 
 /// Path of the file that will be written.
 pub(crate) fn target_path(path: &std::path::Path) -> String {
-    format!("Goes to {}", path.display())
+    format!("Saves as {}", path.display())
 }
 
 /// Estimated remaining time of an export.

@@ -28,7 +28,7 @@ pub(crate) const VOLUME_OF_LOOK: FileRequest =
     FileRequest { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: FileRequest = FileRequest {
     title: "Load session or settings",
-    hint: "a .json file, or a .png or .exr picture that was exported",
+    hint: "a .json file, or an exported .png, .exr, .gif or .mp4",
     verb: "Load",
 };
 pub(crate) const COMPARE_SETTINGS: FileRequest =
@@ -36,7 +36,7 @@ pub(crate) const COMPARE_SETTINGS: FileRequest =
 pub(crate) const SAVE_SETTINGS: FileRequest =
     FileRequest { title: "Save session", hint: "a .json file", verb: "Save" };
 pub(crate) const OPEN_ENVIRONMENT_MAP: FileRequest = FileRequest {
-    title: "Light by surroundings",
+    title: "Light from environment map",
     hint: "a panorama of all directions: .hdr, .exr, .png, .jpg",
     verb: "Use",
 };
@@ -50,16 +50,16 @@ pub(crate) const IMPORT_TRANSFER: FileRequest = FileRequest {
 pub(crate) const EXPORT_TRANSFER: FileRequest = FileRequest {
     title: "Export transfer function",
     hint: "ParaView .json, Slicer .vp or .vp.json, Inviwo .itf, MRIcroGL .clut, ImageJ .lut, \
-           our own .preset.json",
+           .preset.json of this program",
     verb: "Write",
 };
 pub(crate) const EXPORT_PICTURE: FileRequest = FileRequest {
     title: "Export picture",
-    hint: ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turn",
+    hint: ".png or .exr for a picture; .png, .gif, .mp4 or a folder for a turntable",
     verb: "Use",
 };
 pub(crate) const EXPORT_CONTACT_SHEET: FileRequest =
-    FileRequest { title: "Contact sheet of what is kept", hint: "a .png file", verb: "Export" };
+    FileRequest { title: "Contact sheet of saved views and looks", hint: "a .png file", verb: "Export" };
 pub(crate) const EXPORT_LIGHT: FileRequest = FileRequest {
     title: "Export light volume",
     hint: "a .nrrd file for the volume, a .png file for the slice",
@@ -93,7 +93,7 @@ pub(crate) const READING_CANCELLED: &str = "Reading was cancelled";
 
 /// Error when the reader thread cannot be spawned.
 pub(crate) fn no_thread(err: impl Display) -> String {
-    format!("no thread to read the file: {err}")
+    format!("could not start the thread that reads files: {err}")
 }
 
 /// Label of the field for typing a path.
@@ -101,7 +101,7 @@ pub(crate) const PATH: &str = "Path";
 
 /// Error for a picture without embedded settings.
 pub(crate) fn no_settings(picture: &Path) -> String {
-    format!("the picture carries no settings ({}); export it from this program", picture.display())
+    format!("the picture contains no settings ({}); pictures exported by this program do", picture.display())
 }
 
 /// Error when a settings file cannot be read.

@@ -6,27 +6,27 @@ pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
 /// Mouse actions in the picture and in the editor, each with its effect.
 pub(crate) const MOUSE: [(&str, &str); 22] = [
     ("Drag the picture", "Orbit"),
-    ("Double click on the volume", "Turn about what is there"),
+    ("Double click on the volume", "Orbit about that point"),
     ("Hold L and drag", "Turn the selected light"),
-    ("Arrow keys, with Shift ten times", "Turn it by a degree"),
-    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "Keep a view, look that way again"),
+    ("Arrow keys, or with Shift", "Turn it by 1°, or by 10°"),
+    ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "Save a view, return to it"),
     ("Shift-drag or middle drag", "Pan"),
-    ("Right-drag the picture", "Level and window of the curve"),
-    ("Wheel", "Nearer to the pointer, or further"),
+    ("Right-drag the picture", "Level and window"),
+    ("Wheel", "Zoom in or out at the pointer"),
     ("Drag a light's handle", "Move the light"),
-    ("Wheel on a positional light's handle", "Its distance"),
+    ("Wheel on a positional light's handle", "Change its distance"),
     ("Drag the square on a spotlight's cone", "Widen or narrow the cone"),
-    ("Drag the sides of the crop box", "See less, or more again"),
+    ("Drag the sides of the crop box", "Crop more or less"),
     ("Drag or wheel on the clip plane's square", "Move it; turn it by the arrow"),
     ("Drag the line between two looks", "See more of one of them"),
     ("Click in the transfer function", "Add a point"),
     ("Drag around points, or click with Shift", "Select several"),
-    ("Drag a point, or arrow keys", "Move what is selected"),
-    ("Double click, or Delete", "Remove it"),
+    ("Drag a point, or arrow keys", "Move the selected points"),
+    ("Double click, or Delete", "Remove points"),
     ("Draw, then drag", "Draw the transfer function by hand"),
-    ("Click with the probe on", "Keep what it says; two clicks measure"),
-    ("Drag saved views and looks", "Put them in another order"),
-    ("Escape while dragging", "Back to where it was"),
+    ("Click with the probe on", "Keep the readout; two clicks measure"),
+    ("Drag saved views and looks", "Reorder them"),
+    ("Escape while dragging", "Cancel the drag"),
 ];
 
 /// Title of the about window, and name of its command.
@@ -40,7 +40,7 @@ pub(crate) const SOFTWARE_ADAPTER: &str =
 /// Hints over the picture on the first use of the program, each an action and its result.
 pub(crate) const HINTS: [(&str, &str); 3] = [
     ("Drag a light's disc", "The shadows follow your hand"),
-    ("Drag the picture, turn the wheel", "To look from elsewhere, and nearer"),
+    ("Drag the picture, turn the wheel", "To orbit, and to zoom"),
     ("Drop a file on the window", "Ctrl+O opens one, Ctrl+P finds everything else"),
 ];
 pub(crate) const CLOSE_HINTS: &str = "Close the hints";
@@ -57,5 +57,5 @@ pub(crate) fn adapter(name: &str) -> String {
 
 /// Graphics API and driver in use.
 pub(crate) fn interface(driver: &str) -> String {
-    format!("Interface {driver}")
+    format!("Graphics API {driver}")
 }

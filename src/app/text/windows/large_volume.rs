@@ -3,7 +3,7 @@
 use crate::app::text::data::{dimensions, ordinal};
 use crate::data::load::{VolumeSize, human_bytes};
 
-pub(crate) const TITLE: &str = "A large volume: how much of it?";
+pub(crate) const TITLE: &str = "Large volume: how much to open?";
 
 /// Name, dimensions, voxel type and size of the volume.
 pub(crate) fn volume_size(source: &str, size: &VolumeSize) -> String {
@@ -13,7 +13,11 @@ pub(crate) fn volume_size(source: &str, size: &VolumeSize) -> String {
 
 /// Host memory that the whole volume would take, and the free memory.
 pub(crate) fn host_memory(needed: u64, free: u64) -> String {
-    format!("Memory: all of it takes {}, {} are free", human_bytes(needed.into()), human_bytes(free.into()))
+    format!(
+        "Memory: the whole volume takes {}, {} are free",
+        human_bytes(needed.into()),
+        human_bytes(free.into())
+    )
 }
 
 /// GPU memory that the whole volume would take, and the dimensions that fit, if fewer.
@@ -21,9 +25,9 @@ pub(crate) fn gpu_memory(needed: u64, held: Option<[usize; 3]>) -> String {
     let needed = human_bytes(needed.into());
     match held {
         Some(held) => {
-            format!("Graphics adapter: all of it takes {needed}, it holds {} voxels", dimensions(held))
+            format!("Graphics adapter: the whole volume takes {needed}, {} voxels fit", dimensions(held))
         }
-        None => format!("Graphics adapter: all of it takes {needed}, which it holds"),
+        None => format!("Graphics adapter: the whole volume takes {needed}, which fits"),
     }
 }
 
@@ -35,8 +39,8 @@ pub(crate) fn part_size(dims: [usize; 3], bytes: u64, but: Option<&str>) -> Stri
 
 /// Caveats of a part: exceeds the memory, takes most of it, or exceeds the graphics adapter.
 pub(crate) const TOO_MUCH: &str = "too much";
-pub(crate) const MOST_OF_MEMORY: &str = "most of what is free";
-pub(crate) const DOWNSAMPLED_BY_ADAPTER: &str = "the graphics adapter shows means of it";
+pub(crate) const MOST_OF_MEMORY: &str = "most of the free memory";
+pub(crate) const DOWNSAMPLED_BY_ADAPTER: &str = "the graphics adapter shows averages";
 
 pub(crate) fn average(block: usize) -> String {
     format!("Average {block} × {block} × {block}")
@@ -46,14 +50,14 @@ pub(crate) fn subsample(step: usize) -> String {
     format!("Every {} voxel", ordinal(step))
 }
 
-pub(crate) const AVERAGE_TIP: &str = "Each voxel is the mean of a block; of labels the most frequent one";
+pub(crate) const AVERAGE_TIP: &str = "Each voxel is the mean of a block; for labels, the most frequent one";
 pub(crate) const EVERY_TIP: &str =
-    "Along each axis the voxels between are left out: values stay as the file has them";
+    "The voxels in between are skipped along each axis: values stay as in the file";
 pub(crate) const REGION: &str = "Region";
 pub(crate) const REGION_TIP: &str =
-    "A part with all of its voxels, from the first to before the last, counted from 0";
-pub(crate) const WHOLE: &str = "Whole all the same";
-pub(crate) const WHOLE_TIP: &str = "Other programs may have to wait, or lose their memory";
+    "A box with all of its voxels, from the first up to but without the end, counted from 0";
+pub(crate) const WHOLE: &str = "Whole volume anyway";
+pub(crate) const WHOLE_TIP: &str = "Other programs may become slow, or be ended for lack of memory";
 pub(crate) const OPEN: &str = "Open this much";
 pub(crate) const CANCEL: &str = "Do not open";
 

@@ -11,13 +11,14 @@ pub(crate) const SLICE: &str = "Slice";
 /// Text in place of a light volume that is being filled, and over one that is out of date.
 pub(crate) const FILLING: &str = "filling…";
 pub(crate) const NO_LIGHT_VOLUME: &str =
-    "No light volume: shadows must be on, splatting or per voxel, and a light must cast them";
+    "No light volume: it needs shadows by splatting or per voxel, and a light that casts them";
 
 /// Labels of the ends of the colour scale.
 pub(crate) const DARK: &str = "dark";
 pub(crate) const FULLY_LIT: &str = "fully lit";
 
-pub(crate) const EXPORT: ControlText = control_text("Export…", "The whole as .nrrd, or this slice as .png");
+pub(crate) const EXPORT: ControlText =
+    control_text("Export…", "The whole volume as .nrrd, or this slice as .png");
 
 /// Errors of an export with nothing to write.
 pub(crate) const NOTHING_TO_EXPORT: &str = "there is no light volume";

@@ -39,7 +39,7 @@ pub(crate) const ANIMATION: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const MEASURE: PaletteSynonyms = synonyms_with_note(
     "measure measurement measuring ruler distance length caliper",
-    "two clicks: how far apart",
+    "two clicks measure a distance",
 );
 pub(crate) const ANNOTATIONS: PaletteSynonyms = synonyms("scale bar cube axes letters orientation marker");
 pub(crate) const SKY: PaletteSynonyms = synonyms("ambient occlusion ao skylight");
@@ -50,7 +50,7 @@ pub(crate) const LABELS: PaletteSynonyms = synonyms("segmentation segments label
 
 pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
     "play playing playback player time lapse timelapse slider",
-    "Time steps are not played; these go through them",
+    "Time steps are not played; these commands step through them",
 );
 pub(crate) const NO_COMPOSITE: PaletteSynonyms = synonyms_with_note(
     "composite compositing merge merged channels multichannel rgb",
@@ -58,7 +58,7 @@ pub(crate) const NO_COMPOSITE: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const NO_PROJECTION: PaletteSynonyms = synonyms_with_note(
     "mip minip maximum minimum mean intensity projection",
-    "There is no maximum intensity projection; its nearest is the look Translucent",
+    "There is no maximum intensity projection; the look Translucent comes closest",
 );
 pub(crate) const NO_ANNOTATION: PaletteSynonyms = synonyms_with_note(
     "annotation annotate arrow caption callout",
@@ -66,7 +66,7 @@ pub(crate) const NO_ANNOTATION: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const NO_FILTER: PaletteSynonyms = synonyms_with_note(
     "denoise denoising noise smooth smoothing filter blur median",
-    "Values are not filtered; these make noise less visible",
+    "Values are not filtered; these settings make noise less visible",
 );
 pub(crate) const NO_STEREO: PaletteSynonyms =
     synonyms_with_note("stereo stereoscopic anaglyph 3d glasses vr headset", "There is no stereo picture");
@@ -76,13 +76,13 @@ pub(crate) const NO_FUSION: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const NO_DEPTH_OF_FIELD: PaletteSynonyms = synonyms_with_note(
     "depth of field dof bokeh lens focus",
-    "There is no depth of field: all of the picture is sharp",
+    "There is no depth of field: the whole picture is sharp",
 );
 pub(crate) const NO_OBJECTS: PaletteSynonyms = synonyms_with_note(
     "remove table hide object holder bed couch island islands largest connected component",
-    "Nothing is removed by object; a box or a plane leaves out what lies beyond it",
+    "Single objects are not removed; a crop box or clip plane hides all that lies beyond it",
 );
 pub(crate) const NO_SEGMENTATION: PaletteSynonyms = synonyms_with_note(
     "segmentation segment segments labels label region growing",
-    "Nothing is segmented here; label maps of other programs can be opened",
+    "There is no segmentation; label maps of other programs can be opened",
 );

@@ -12,20 +12,22 @@ pub(crate) const VOXELS: &str = "Voxels";
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Axis order behind the fields of the dimensions.
 pub(crate) const FASTEST_AXIS: &str = "x, y, z; x fastest";
-pub(crate) const FASTEST_AXIS_TIP: &str = "Width and height of a slice, and how many slices; voxels that lie side by side in the file are neighbours along x";
+pub(crate) const FASTEST_AXIS_TIP: &str = "Width and height of a slice, and number of slices; consecutive voxels of the file \
+                                            are neighbours along x";
 
 pub(crate) const NUMBER_TYPE: &str = "Number type";
 
 pub(crate) const BYTE_ORDER: &str = "Byte order";
-pub(crate) const LITTLE: ControlText = control_text("Little-endian", "Lowest byte first: usual");
+pub(crate) const LITTLE: ControlText = control_text("Little-endian", "Lowest byte first: the usual order");
 pub(crate) const BIG: ControlText = control_text("Big-endian", "Highest byte first");
 /// Text in place of the byte order for one-byte numbers.
-pub(crate) const NO_ORDER: &str = "Numbers of one byte have no order";
+pub(crate) const NO_ORDER: &str = "One-byte numbers have no order";
 
 pub(crate) const SPACING: &str = "Spacing";
 /// Accessible name of the list of spacing units.
 pub(crate) const SPACING_UNIT: &str = "Unit of the spacing";
-pub(crate) const SPACING_UNIT_TIP: &str = "The file does not say how far apart its voxels are; without that, they are taken for cubes of unknown size";
+pub(crate) const SPACING_UNIT_TIP: &str =
+    "The file does not state its voxel spacing; without it, voxels are taken for cubes of unknown size";
 
 pub(crate) const HEADER: &str = "Header";
 /// Accessible name of the header's length.
@@ -33,10 +35,10 @@ pub(crate) const HEADER_BYTES: &str = "Bytes before the first voxel";
 /// Suffix of the header's length.
 pub(crate) const HEADER_UNIT: &str = "bytes before the first voxel";
 pub(crate) const HEADER_TIP: &str =
-    "A small NRRD header that says all this: opened in place of the file, here and in other programs";
+    "A small NRRD header with this layout: open it instead of the raw file, here and in other programs";
 
 /// Verdicts on the length of the file.
-pub(crate) const COMPRESSED: &str = "The file is compressed: how long it is inside is not known yet";
+pub(crate) const COMPRESSED: &str = "The file is compressed: its uncompressed length is not known yet";
 pub(crate) const TOO_MANY: &str = "That is more than any file can hold";
 /// Button that adds the surplus bytes to the header.
 pub(crate) const SKIP_SURPLUS: &str = "Skip them as a header";
@@ -44,7 +46,7 @@ pub(crate) const SKIP_SURPLUS: &str = "Skip them as a header";
 pub(crate) const WITHOUT_HEADER: &str = "No header";
 
 /// Heading of the list of likely layouts.
-pub(crate) const PROPOSALS: &str = "What its bytes suggest";
+pub(crate) const PROPOSALS: &str = "Likely layouts";
 pub(crate) const ANALYSING: &str = "Comparing neighbouring voxels…";
 
 /// Captions of the three preview slices.
@@ -123,9 +125,9 @@ pub(crate) fn rewrite_header(header: &str) -> String {
 pub(crate) fn length_matches(bytes: u64, is_exact: bool) -> String {
     let bytes = group_thousands(bytes);
     if is_exact {
-        format!("Bytes fit: the file has just these {bytes}")
+        format!("Bytes fit: the file has exactly {bytes}")
     } else {
-        format!("Bytes fit: the file ends by saying that it has {bytes}")
+        format!("Bytes fit: the end of the file states {bytes}")
     }
 }
 
@@ -185,7 +187,7 @@ pub(crate) fn evidence_summary(
         (false, false) => "neither rows nor slices agree clearly".to_owned(),
     };
     let fits = length.zip(layout.file_bytes()).is_some_and(|(length, bytes)| length.bytes == bytes);
-    let name = if evidence.is_named { "as its name says; " } else { "" };
+    let name = if evidence.is_named { "as in the file name; " } else { "" };
     let fit = match (fits, layout.offset) {
         (true, 0) => "bytes fit",
         (true, _) => "bytes fit with the header",
@@ -197,12 +199,12 @@ pub(crate) fn evidence_summary(
 /// Confidence in the first proposal.
 pub(crate) fn confidence(first: Option<LayoutEvidence>) -> &'static str {
     match first {
-        None => "Nothing that would fit was found",
-        Some(LayoutEvidence { is_clear: true, .. }) => "The first stands out; click one to take it over",
+        None => "No layout that fits was found",
+        Some(LayoutEvidence { is_clear: true, .. }) => "The first stands out; click one to use it",
         Some(LayoutEvidence { rows_agree: false, slices_agree: false, .. }) => {
-            "None stands out: these are guesses by size alone"
+            "None stands out: these are guesses from the length alone"
         }
-        Some(_) => "Several are alike: look at the slices; click one to take it over",
+        Some(_) => "Several are equally likely: compare the slices; click one to use it",
     }
 }
 

@@ -16,14 +16,14 @@ pub(crate) const RAS_TIP: &str = "RAS: from left to right, from back to front an
 
 pub(crate) const LEVEL: ControlText = control_text(
     "Level",
-    "The value that is a middle grey; drag a slice with the right button, up for brighter",
+    "The value shown as middle grey; drag a slice with the right button, up for brighter",
 );
 pub(crate) const WIDTH: ControlText = control_text(
     "Window",
     "The width of the window: values from black to white; drag a slice with the right button, to the right for less contrast",
 );
 pub(crate) const COLORED: ControlText =
-    control_text("As in the picture", "Where the transfer function shows something, in its colours");
+    control_text("As in the picture", "Adds the colours of the transfer function, by their opacity");
 pub(crate) const HINT: &str = "Drag: move the cursor\nWheel: next slice\nRight drag: window and level";
 
 /// Display conventions for left and right of a body.

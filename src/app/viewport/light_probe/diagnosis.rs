@@ -250,7 +250,7 @@ mod tests {
         let outside = LightArrival { hood: 0.0, ..LIT };
         assert_eq!(words(&settings, vec![outside]), "Dark: outside the spotlight cone of Key");
         let low = LightArrival { facing: Some(0.2), ..LIT };
-        assert_eq!(words(&settings, vec![low]), "Dim: Key falls in at only 12° to the surface");
+        assert_eq!(words(&settings, vec![low]), "Dim: Key meets the surface at only 12°");
         settings.lights[0].on = false;
         assert_eq!(words(&settings, vec![LIT]), "Dark: no light is on");
         let under_sky = Probe { sky: Some(0.8), ..found(vec![LIT]) };

@@ -339,7 +339,10 @@ mod tests {
         assert_eq!(light_explanation(&LightSettings { on: false, ..key.clone() }, &lit), "off");
         assert_eq!(light_explanation(&key, &LightArrival { hood: 0.0, ..lit }), "outside its spotlight cone");
         assert!(light_explanation(&key, &LightArrival { facing: Some(-0.2), ..lit }).contains("faces away"));
-        assert!(light_explanation(&key, &LightArrival { transmittance: 1e-4, ..lit }).contains("in its way"));
+        assert!(
+            light_explanation(&key, &LightArrival { transmittance: 1e-4, ..lit })
+                .contains("material blocks it")
+        );
         let fill = LightSettings { casts_shadows: false, ..key };
         assert!(light_explanation(&fill, &LightArrival { facing: None, ..lit }).contains("no shadows"));
     }

@@ -275,7 +275,7 @@ mod tests {
         let settings = load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0;
         assert_eq!(settings.shadows.gain, 2.0);
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
-        assert!(load_record(&path).unwrap_err().contains("no text"));
+        assert!(load_record(&path).unwrap_err().contains("not UTF-8 text"));
         assert!(load_record(folder.path()).unwrap_err().contains("regular"));
         assert!(import_transfer_file(&folder.path().join("none.json"), ValueRange::UNIT).is_err());
     }

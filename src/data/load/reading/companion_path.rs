@@ -99,7 +99,7 @@ fn path_escape_reason(name: &str) -> Option<&'static str> {
     } else if name.contains('\0') {
         Some("contains a zero byte")
     } else if name.contains("://") {
-        Some("is an address, and nothing is fetched from the network")
+        Some("is a network address, and nothing is fetched from the network")
     } else if name.starts_with(['/', '\\']) || Path::new(name).is_absolute() {
         Some("is an absolute path")
     } else if bytes.len() >= 2 && bytes[0].is_ascii_alphabetic() && bytes[1] == b':' {

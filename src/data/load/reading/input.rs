@@ -133,7 +133,7 @@ impl FileChangeGuard {
         }
         Err(attempt.not_a_file_error(
             "the file has changed while it was being read",
-            "open it again when whatever writes it has finished",
+            "open it again when the program that writes it has finished",
         ))
     }
 }

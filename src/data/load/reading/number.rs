@@ -296,7 +296,7 @@ impl ScalarReduction {
             attempt.bad_input_error(
                 "--component",
                 format!(
-                    "component {} is not among its {components} components, of which the first is 0",
+                    "component {} is not among its {components} components, which are numbered from 0",
                     component.unwrap_or_default()
                 ),
                 format!("give a number from 0 to {}", components.saturating_sub(1)),
@@ -308,7 +308,7 @@ impl ScalarReduction {
     pub(crate) fn remark(self) -> Option<&'static str> {
         match self {
             Self::Component(_) => None,
-            Self::Magnitude => Some("vectors are shown by their length"),
+            Self::Magnitude => Some("vectors are shown as their magnitude"),
             Self::Luminance => Some("colours are shown as their luminance"),
         }
     }

@@ -58,7 +58,7 @@ impl GridPlacement {
         let mut placement = Self::from_spacing(lengths);
         placement
             .remarks
-            .push("the file's axes are unusable: they are taken for those of the grid".to_owned());
+            .push("the file's axis directions are unusable: the axes of the grid are used".to_owned());
         placement
     }
 
@@ -104,9 +104,7 @@ fn repair_spacing(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
     if usable != spacing_mm {
         let [x, y, z] = spacing_mm;
         let [a, b, c] = usable;
-        remarks.push(format!(
-            "distances of {x} x {y} x {z} mm between voxels cannot be: {a} x {b} x {c} are taken"
-        ));
+        remarks.push(format!("a voxel spacing of {x} x {y} x {z} mm is unusable: {a} x {b} x {c} is used"));
     }
     DVec3::from(usable)
 }

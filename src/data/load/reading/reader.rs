@@ -84,7 +84,7 @@ impl VolumeSource<'_> {
             let most = max_inflated_bytes(self.input.len).saturating_sub(at);
             if most < needed {
                 let why =
-                    format!("the data are truncated: {needed} bytes expected {grid}, room for {most} found");
+                    format!("the data are truncated: {needed} bytes expected {grid}, at most {most} found");
                 return Err(attempt.bad_input_error("data", why, help));
             }
         } else {

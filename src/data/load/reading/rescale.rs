@@ -34,7 +34,7 @@ pub(crate) fn rescale(
         attempt.limit_error(
             "slope and intercept",
             format!(
-                "the {} numbers become others of {}: that needs {}, {} are allowed",
+                "converting the {} values to {} needs {}, {} are allowed",
                 before.name(),
                 after.name(),
                 human_bytes(needed.into()),

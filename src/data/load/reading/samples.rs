@@ -108,7 +108,7 @@ impl ReadFault {
             Self::NoMemory => attempt.limit_error(
                 "data",
                 format!(
-                    "the memory for {grid} is not there: {}",
+                    "there is not enough memory for {grid}: {}",
                     human_bytes(u128::from(layout.extent.bytes))
                 ),
                 "close other programs or load a smaller volume",
@@ -199,7 +199,7 @@ pub(crate) fn read_until_full(
     while filled < block.len() {
         control.check().map_err(ReadFault::Stopped)?;
         if fault::is_due(&BLOCKS, fault::InjectedFault::ReadError) {
-            return Err(ReadFault::Io(io::Error::other("a fault was asked for")));
+            return Err(ReadFault::Io(io::Error::other("a fault was injected")));
         }
         // In blocks, so that cancellation is noticed in between.
         let end = block.len().min(filled + BLOCK_BYTES);

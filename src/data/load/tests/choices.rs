@@ -73,7 +73,7 @@ fn errors_list_the_available_choices() {
     let nrrd = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\n\n";
     let path = write(&folder, "v.nrrd", &[nrrd.as_bytes(), &[1; 24]].concat());
     let choice = VolumeChoice { channel: Some(1), frame: Some(2), ..VolumeChoice::default() };
-    let words = ["\"1\" is named, and it has no channels", "time steps (--frame 0 to 2)"];
+    let words = ["\"1\" was selected, but it has no channels", "time steps (--frame 0 to 2)"];
     assert_refused(load_choice(&path, choice), LoadErrorKind::BadInput, &words);
     let plain = nrrd.replace("dimension: 4", "dimension: 3").replace("2 2 2 3", "2 2 2");
     let path = write(&folder, "p.nrrd", &[plain.as_bytes(), &[1; 8]].concat());

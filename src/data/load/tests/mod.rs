@@ -211,7 +211,7 @@ fn what_is_not_a_readable_file_is_refused() {
         folder.path(),
         RawFormat::default(),
         LoadErrorKind::BadInput,
-        &["folder", "name one file"],
+        &["folder", "open a single file"],
     );
     assert_refused(Path::new(""), RawFormat::default(), LoadErrorKind::Io, &[]);
     #[cfg(unix)]

@@ -35,7 +35,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         advice: "convert it with Bio-Formats: bfconvert IN.zvi OUT.ome.tif, or open it in Fiji and save it as TIFF",
     },
     UnsupportedFormat {
-        description: "a document of an older Office",
+        description: "a document of an older Office version",
         signatures: &[
             FormatSignature::Compound("WordDocument"),
             FormatSignature::Compound("Workbook"),
@@ -43,13 +43,13 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
             FormatSignature::Compound("PowerPoint Document"),
         ],
         extensions: &[],
-        advice: "it is no volume: open the data that it is about",
+        advice: "it is not a volume: open the data that it describes",
     },
     UnsupportedFormat {
         description: "a compound file of OLE 2, as microscopes and Office programs write them",
         signatures: &[FormatSignature::Bytes(0, SIGNATURE)],
         extensions: &[],
-        advice: "if it is of a microscope, convert it with Bio-Formats: bfconvert IN OUT.ome.tif, or open it in Fiji and save \
+        advice: "if a microscope wrote it, convert it with Bio-Formats: bfconvert IN OUT.ome.tif, or open it in Fiji and save \
                it as TIFF",
     },
 ];

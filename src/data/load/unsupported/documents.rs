@@ -4,7 +4,7 @@ use super::UnsupportedFormat;
 use super::signature::FormatSignature;
 
 /// Command that extracts the frames of a film.
-const FRAMES: &str = "make slices of its pictures: ffmpeg -i IN slices/%04d.png, and open their folder";
+const FRAMES: &str = "extract its frames (mkdir slices; ffmpeg -i IN slices/%04d.png), and open their folder";
 
 pub(super) const FORMATS: &[UnsupportedFormat] = &[
     UnsupportedFormat {
@@ -23,13 +23,13 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         description: "a web page in place of the data",
         signatures: &[FormatSignature::Text("<!doctype html"), FormatSignature::Text("<html")],
         extensions: &[],
-        advice: "download the file again: what was saved is the page around it, or a message that it is not there",
+        advice: "download the file again: the page around it was saved, or an error message",
     },
     UnsupportedFormat {
         description: "a PDF document",
         signatures: &[FormatSignature::Bytes(0, b"%PDF-")],
         extensions: &[],
-        advice: "it is no volume: open the data that it is about; pictures in it are saved by pdfimages -png IN.pdf OUT",
+        advice: "it is not a volume: open the data that it describes; pdfimages -png IN.pdf OUT saves its pictures",
     },
     UnsupportedFormat {
         description: "an Office document",
@@ -38,22 +38,22 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
             FormatSignature::Container(0, b"PK\x03\x04", b"vnd.oasis"),
         ],
         extensions: &[".docx", ".xlsx", ".pptx"],
-        advice: "it is no volume: open the data that it is about",
+        advice: "it is not a volume: open the data that it describes",
     },
     UnsupportedFormat {
-        description: "a film or picture of several (GIF)",
+        description: "an animation or picture (GIF)",
         signatures: &[FormatSignature::Bytes(0, b"GIF87a"), FormatSignature::Bytes(0, b"GIF89a")],
         extensions: &[],
         advice: FRAMES,
     },
     UnsupportedFormat {
-        description: "a film or picture (MPEG-4, HEIF, AVIF)",
+        description: "a video or picture (MPEG-4, HEIF, AVIF)",
         signatures: &[FormatSignature::Bytes(4, b"ftyp")],
         extensions: &[],
         advice: FRAMES,
     },
     UnsupportedFormat {
-        description: "a film (AVI)",
+        description: "a video (AVI)",
         signatures: &[FormatSignature::Test(|look| look.has_at(0, b"RIFF") && look.has_at(8, b"AVI "))],
         extensions: &[],
         advice: FRAMES,

@@ -115,7 +115,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
             matches!(look.name.as_str(), ".zarray" | ".zgroup" | ".zattrs" | ".zmetadata" | "zarr.json")
         })],
         extensions: &[],
-        advice: "it belongs to the folder it lies in; save an array of that: python -c \"import zarr, numpy; \
+        advice: "it belongs to the folder around it; save an array of that folder: python -c \"import zarr, numpy; \
                numpy.save('OUT.npy', zarr.open('FOLDER', mode='r')['0'][:])\"",
     },
 ];

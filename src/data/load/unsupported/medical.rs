@@ -26,7 +26,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         advice: "convert it and the REC file beside it: dcm2niix IN.PAR, or parrec2nii IN.PAR",
     },
     UnsupportedFormat {
-        description: "a file of parameters of a Bruker scanner (ParaVision)",
+        description: "a parameter file of a Bruker scanner (ParaVision)",
         signatures: &[FormatSignature::Text("##title=parameter list")],
         extensions: &["2dseq", "visu_pars", "acqp"],
         advice: "convert the folder of the study: brkraw tonii FOLDER",
@@ -57,7 +57,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         description: "a BrainVoyager file",
         signatures: &[],
         extensions: &[".vmr", ".v16", ".vmp"],
-        advice: "export it as NIfTI with BrainVoyager, or save it as an array with python's bvbabel and numpy.save",
+        advice: "export it as NIfTI with BrainVoyager, or save it as an array with Python's bvbabel and numpy.save",
     },
     UnsupportedFormat {
         description: "an AVW file of Analyze",
@@ -72,7 +72,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
             FormatSignature::BytesWithExtension(0, b"[", &[".vgi"]),
         ],
         extensions: &[".vgi"],
-        advice: "open the .vol file beside it, whose voxels it describes: its Size is --dims, its Datatype --type",
+        advice: "open the .vol file beside it with the values of this file: Size as --dims, Datatype as --type",
     },
     UnsupportedFormat {
         description: "a project of VGStudio (VGL)",
@@ -81,9 +81,9 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         advice: "export the volume with VGStudio as a stack of TIFF files or as RAW; the .vol file beside a .vgi is RAW already",
     },
     UnsupportedFormat {
-        description: "voxels of VGStudio (VOL), which do not say their size",
+        description: "a file of VGStudio (VOL), which contains nothing but voxels",
         signatures: &[],
         extensions: &[".vol"],
-        advice: "give what the .vgi file beside it says: its Size as --dims, its Datatype as --type",
+        advice: "give the values of the .vgi file beside it: Size as --dims, Datatype as --type",
     },
 ];

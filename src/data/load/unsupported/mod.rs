@@ -88,7 +88,7 @@ impl UnsupportedFormat {
     pub(crate) fn refusal(&self, attempt: LoadContext<'_>) -> LoadError {
         attempt.bad_input_error(
             "format",
-            format!("it is {}, which is not read", self.description),
+            format!("it is {}, which is not supported", self.description),
             self.advice,
         )
     }

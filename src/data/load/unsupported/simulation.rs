@@ -17,7 +17,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         description: "a NanoVDB file",
         signatures: &[FormatSignature::Bytes(0, b"NanoVDB")],
         extensions: &[".nvdb"],
-        advice: "convert it to OpenVDB with nanovdb_convert IN.nvdb OUT.vdb, and save a grid of that as an array with python's \
+        advice: "convert it to OpenVDB with nanovdb_convert IN.nvdb OUT.vdb, and save a grid of that as an array with Python's \
                openvdb and numpy.save",
     },
     UnsupportedFormat {
@@ -40,7 +40,7 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         advice: "convert it with GridDataFormats: python -c \"import gridData; gridData.Grid('IN.dx').export('OUT.mrc')\"",
     },
     UnsupportedFormat {
-        description: "a SEG-Y file of seismics",
+        description: "a SEG-Y file of seismic data",
         // First card image of the textual header in EBCDIC: "C 1 " or "C01 ".
         signatures: &[
             FormatSignature::Bytes(0, b"\xc3\x40\xf1\x40"),

@@ -114,7 +114,7 @@ fn files() -> Vec<UnsupportedSample> {
         example("PDF", file(b"%PDF-1.7"), &["PDF", "pdfimages"]),
         example("DOCX", with(ZIP, 30, b"[Content_Types].xml"), &["Office document"]),
         example("GIF", file(b"GIF89a"), &["GIF", "ffmpeg"]),
-        example("MPEG-4", file(b"\0\0\0\x20ftypisom"), &["film", "ffmpeg"]),
+        example("MPEG-4", file(b"\0\0\0\x20ftypisom"), &["video", "ffmpeg"]),
         example("WebP", file(b"RIFF\0\0\0\0WEBP"), &["WebP", "dwebp"]),
         example("AVI", file(b"RIFF\0\0\0\0AVI "), &["AVI", "ffmpeg"]),
         example("JPEG 2000", file(b"\0\0\0\x0cjP  \r\n\x87\n"), &["JPEG 2000", "opj_decompress"]),
@@ -183,7 +183,7 @@ fn names_tell_where_bytes_say_nothing() {
     assert_refused(
         load_bytes("notes.xyz", &[3; 700], VolumeChoice::default()),
         LoadErrorKind::BadInput,
-        &["not one that is read"],
+        &["its format is not supported"],
     );
 }
 

@@ -53,7 +53,7 @@ impl XmlCostEstimate {
             if found > most { Err(XmlError::Length { what, found, max: most }) } else { Ok(()) }
         };
         within("bytes", bytes.len(), MAX_XML_BYTES)?;
-        within("marks", text.matches('<').count(), MAX_MARKUP_CHARACTERS)?;
+        within("tags", text.matches('<').count(), MAX_MARKUP_CHARACTERS)?;
         within("equals signs", text.matches('=').count(), MAX_MARKUP_CHARACTERS)?;
         Self::default().scan(bytes)
     }

@@ -26,13 +26,13 @@ const MAX_ERROR_BYTES: usize = 200;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum XmlError {
     /// The text is not well-formed.
-    #[error("it is no XML: {0}")]
+    #[error("it is not well-formed XML: {0}")]
     Syntax(String),
     /// The text declares a document type, which could name other files and expand to any length.
-    #[error("it is XML with a document type (<!DOCTYPE>), which is not read")]
+    #[error("it is XML with a document type (<!DOCTYPE>), which is not supported")]
     DocumentType,
     /// The text is too long, or has too many markup characters.
-    #[error("its XML is too long: {found} {what}, and {max} are read at most")]
+    #[error("its XML is too long: {found} {what}, at most {max} are supported")]
     Length {
         /// Unit that is counted, such as bytes.
         what: &'static str,

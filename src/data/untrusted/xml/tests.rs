@@ -89,10 +89,10 @@ fn real_files_are_parsed() {
 #[test]
 fn errors_name_the_problem() {
     for (text, words) in [
-        ("<a>", "no XML"),
-        ("<a b=c/>", "no XML"),
-        ("", "no XML"),
-        ("<a/><b/>", "no XML"),
+        ("<a>", "not well-formed XML"),
+        ("<a b=c/>", "not well-formed XML"),
+        ("", "not well-formed XML"),
+        ("<a/><b/>", "not well-formed XML"),
         ("<a b='1' b='2'/>", "'b'"),
         ("<a>&b;</a>", "'b'"),
         ("<!DOCTYPE a [<!ENTITY b '&c;&c;'>]><a>&b;</a>", "document type"),

@@ -148,7 +148,7 @@ impl DetectedKind {
         {
             return found;
         }
-        Self::new(DataKind::Scalar, "nothing says that it is anything else")
+        Self::new(DataKind::Scalar, "there is no sign of another kind")
     }
 }
 
@@ -218,7 +218,8 @@ fn detect_signed(sampled: &SampledValues<'_>) -> Option<DetectedKind> {
     let coherence = sampled.coherence_beyond(below / 2.0).min(sampled.coherence_beyond(above / 2.0));
     (coherence >= MIN_LOBE_COHERENCE).then(|| {
         let why = format!(
-            "values reach from {below:.3} to {above:.3} in lobes to both sides of zero: {:.0} % of strong values have neighbours like them",
+            "values reach from {below:.3} to {above:.3} in lobes on both sides of zero: {:.0} % of strong values have \
+             similar neighbours",
             100.0 * coherence
         );
         DetectedKind::new(DataKind::Signed, why)

@@ -50,7 +50,7 @@ fn find_box(
             length => (8, u64::from(length)),
         };
         let end = at.checked_add(length).filter(|end| length >= head && *end <= inside.end);
-        let end = end.ok_or_else(|| Error::other("a box is longer than what it is in"))?;
+        let end = end.ok_or_else(|| Error::other("a box is longer than the box around it"))?;
         if found == kind {
             return Ok(Some(at + head..end));
         }

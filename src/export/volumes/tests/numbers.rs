@@ -59,7 +59,7 @@ fn whole_numbers_are_exact_or_refused() {
                 Err(refused) => {
                     assert!(!fits, "{from:?} {to:?}: {refused}");
                     let said = refused.to_string();
-                    assert!(said.contains("--type") && said.contains("helps"), "{said}");
+                    assert!(said.contains("--type") && said.contains("choose"), "{said}");
                 }
             }
         }
@@ -72,7 +72,7 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
     let far = refused(vec![-3.0, 300.0], VoxelType::U8);
     assert_eq!(
         far.to_string(),
-        "its values reach from -3 to 300, uint8 from 0 to 255; a wider --type, or --rescale -3:300, helps"
+        "its values range from -3 to 300, uint8 from 0 to 255; choose a wider --type, or --rescale -3:300"
     );
     assert!(matches!(refused(vec![1.0, 2.5], VoxelType::I16), ConvertError::Fractions { value: 2.5, .. }));
     let unknown = refused(vec![1.0, f64::NAN, f64::INFINITY], VoxelType::I16);
@@ -94,7 +94,7 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
     let (found, _) = converted(&tenths, &wish(VoxelType::F32)).unwrap();
     assert!(found.value(0) == f64::from(0.1f32) && found.value(1).is_nan());
     let no_body = ExportVolume::new(&tenths).reoriented("RAS".parse().unwrap()).unwrap_err();
-    assert!(no_body.to_string().contains("which way a body lies"));
+    assert!(no_body.to_string().contains("does not state the orientation of a body"));
 }
 
 #[test]

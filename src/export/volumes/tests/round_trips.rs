@@ -141,7 +141,7 @@ fn what_nobody_knows_stays_unknown() {
     assert!(
         VolumeFormat::Nifti
             .unsupported_metadata(&outgoing)
-            .contains(&"that nobody knows how large voxels are")
+            .contains(&"the fact that the voxel size is unknown")
     );
     // Cells of a body of unknown size have sides all the same.
     let body = place(DAffine3::IDENTITY).with_anatomical_axes(true);

@@ -45,7 +45,7 @@ impl CubeHeader {
         if atoms > MAX_ATOMS {
             return Err(attempt.limit_error(
                 "line 3",
-                format!("{atoms} atoms are more than {MAX_ATOMS}"),
+                format!("{atoms} atoms exceed the limit of {MAX_ATOMS}"),
                 "check that the file is a Gaussian cube",
             ));
         }
@@ -105,7 +105,7 @@ fn read_orbitals(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Re
     };
     let said = next()?;
     let Some(count) = said.parse::<u64>().ok().filter(|count| (1..=MAX_VALUES).contains(count)) else {
-        return Err(bad_line(attempt, "orbitals", &said, "how many orbitals there are"));
+        return Err(bad_line(attempt, "orbitals", &said, "the number of orbitals"));
     };
     (0..count).map(|_| next().map(|id| format!("orbital {id}"))).collect()
 }

@@ -50,7 +50,7 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     if !source.start.is_gzip() && room < needed {
         return Err(attempt.bad_input_error(
             "data",
-            format!("the data are truncated: {needed} numbers expected, room for {room} found"),
+            format!("the data are truncated: {needed} numbers expected, at most {room} found"),
             HELP,
         ));
     }

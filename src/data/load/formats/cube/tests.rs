@@ -79,7 +79,7 @@ fn inconsistent_headers_are_refused() {
         (WATER.to_owned(), LoadErrorKind::BadInput, "truncated"),
         (WATER.to_owned() + " nothing" + &numbers(11), LoadErrorKind::BadInput, "\"nothing\""),
         (WATER.replace(" 3 0.0", " 300000 0.0"), LoadErrorKind::Limit, "allowed"),
-        (WATER.replace(" 3 0.0", " 30000 0.0"), LoadErrorKind::BadInput, "room for"),
+        (WATER.replace(" 3 0.0", " 30000 0.0"), LoadErrorKind::BadInput, "numbers expected, at most"),
         (WATER.replace(" 3 0.0", " 0 0.0"), LoadErrorKind::BadInput, "empty"),
         (WATER.replace(" 3 0.0", " x 0.0"), LoadErrorKind::BadInput, "line 5"),
         (WATER.replace("\n 2 1.0", "\n 2000000000 1.0"), LoadErrorKind::Limit, "atoms"),

@@ -87,7 +87,7 @@ pub(super) fn stored_padding(found: &DicomValues, shape: &PixelLayout) -> Option
 /// Names the rule by which one of several overlapping segments is shown.
 pub(super) fn overlap_rule(found: &DicomValues) -> &'static str {
     match found.segmentation {
-        Some(SegmentationType::Fractional) => "the largest share",
+        Some(SegmentationType::Fractional) => "the largest fraction",
         _ => "the highest number",
     }
 }
@@ -123,10 +123,10 @@ pub(super) fn remarks(
     let mut remarks = Vec::new();
     match shape.colors {
         PhotometricKind::Inverted => {
-            remarks.push("high values are meant to be shown dark; they are kept as they are");
+            remarks.push("high values are meant to be shown dark (MONOCHROME1): they are not inverted");
         }
         PhotometricKind::Palette => {
-            remarks.push("its values are numbers of colours in a table: they mean no brightness");
+            remarks.push("its values are indices into a colour table, not brightness");
         }
         PhotometricKind::Rgb | PhotometricKind::YbrFull | PhotometricKind::Ybr422 if !is_component => {
             remarks.push("colours are shown as their luminance");
@@ -135,12 +135,12 @@ pub(super) fn remarks(
         }
     }
     if found.has_value_table {
-        remarks.push("a table of what values mean is not applied: they are shown as they are stored");
+        remarks.push("its Modality LUT (a table of values) is not applied: values are shown as stored");
     }
     if is_mosaic(header) && !is_unpacked {
         remarks.push(
-            "its slices lie side by side in one picture (a mosaic), and it does not say how many: `dcm2niix` may \
-             take them apart",
+            "its slices lie side by side in one image (a mosaic), and their number is not stated: `dcm2niix` may \
+             separate them",
         );
     }
     remarks.into_iter().map(str::to_owned).collect()

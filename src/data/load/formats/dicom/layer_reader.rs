@@ -198,7 +198,11 @@ pub(super) fn reserve_voxels<T>(attempt: LoadContext<'_>, count: usize) -> Resul
 
 /// Makes the error for voxels that do not fit in memory.
 pub(super) fn no_memory(attempt: LoadContext<'_>, count: usize) -> LoadError {
-    attempt.limit_error("data", format!("the memory for {count} voxels is not there"), "close other programs")
+    attempt.limit_error(
+        "data",
+        format!("there is not enough memory for {count} voxels"),
+        "close other programs",
+    )
 }
 
 fn resize<T: VoxelNumber>(

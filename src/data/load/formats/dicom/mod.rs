@@ -66,7 +66,11 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
     let attempt = LoadContext { operation: READ_FILE, path };
     if start.is_gzip() {
-        return Err(attempt.bad_input_error("file", "it is compressed as a whole", "unpack it with gunzip"));
+        return Err(attempt.bad_input_error(
+            "file",
+            "the file itself is compressed with gzip",
+            "unpack it with gunzip",
+        ));
     }
     let (header, _) = DicomHeader::parse(attempt, input, start.stored(), control)?;
     if header.pixels.is_none() {
@@ -148,20 +152,20 @@ fn no_pixels_error(attempt: LoadContext<'_>, header: &DicomHeader) -> LoadError 
     if found.is_directory {
         return attempt.bad_input_error(
             "Directory Record Sequence",
-            "it lists the files of a disk, and has no pictures itself",
-            "open the folder that it lies in: folders within are looked through",
+            "it is a DICOMDIR: it lists the files of a disk, and has no images itself",
+            "open the folder that contains it: subfolders are searched as well",
         );
     }
     match ObjectClass::from_uid(&found.sop_class) {
         Some(ObjectClass { name, advice: help }) => attempt.bad_input_error(
             "SOP Class UID",
-            format!("it has no pixels: it is a DICOM object of its own, {name}"),
+            format!("it has no pixels: it is a DICOM object of another kind, {name}"),
             help,
         ),
         None => attempt.bad_input_error(
             "Pixel Data",
-            format!("it has no pixels, as reports and plans have none: {}", header.object_kind()),
-            "open a file with pictures; if this one should have some, copy it again",
+            format!("it has no pixels, as is usual for reports and plans: {}", header.object_kind()),
+            "open a file with images; if this one should have some, copy it again",
         ),
     }
 }
@@ -176,7 +180,7 @@ fn no_pixels_in_folder_error(attempt: LoadContext<'_>, kinds: BTreeMap<String, u
     attempt.bad_input_error(
         "files",
         format!("its {count} DICOM files have no pixels: {kinds}"),
-        "name the folder that holds the pictures",
+        "open the folder that holds the images",
     )
 }
 

@@ -9,20 +9,20 @@ pub(crate) struct ObjectClass {
     pub(crate) advice: &'static str,
 }
 
-const OPEN_IMAGES_ADVICE: &str = "open the pictures that it belongs to";
+const OPEN_IMAGES_ADVICE: &str = "open the images that it refers to";
 
-const CONTOURS_ADVICE: &str = "make a mask of its contours, and open that: \
-                        `dcmrtstruct2nii convert -r IN.dcm -d FOLDER_OF_ITS_PICTURES -o OUT`, \
+const CONTOURS_ADVICE: &str = "convert its contours to a mask, and open that: \
+                        `dcmrtstruct2nii convert -r IN.dcm -d FOLDER_OF_ITS_IMAGES -o OUT`, \
                         `plastimatch convert --input IN.dcm --output-labelmap OUT.nrrd`, or 3D Slicer";
 
 const PLAN_ADVICE: &str =
-    "open the dose (RTDOSE) that was computed from it, or the pictures that it was planned on";
+    "open the dose (RTDOSE) that was computed from it, or the images that it was planned on";
 
-const REPORT_ADVICE: &str = "read it with `dsrdump IN.dcm` (DCMTK), and open the pictures that it is about";
+const REPORT_ADVICE: &str = "read it with `dsrdump IN.dcm` (DCMTK), and open the images that it describes";
 
 const SURFACE_ADVICE: &str = "open it as a surface in 3D Slicer, and save a segmentation of it as NRRD";
 
-const REGISTRATION_ADVICE: &str = "apply it in 3D Slicer, and save the volume that it moves as NRRD";
+const REGISTRATION_ADVICE: &str = "apply it in 3D Slicer, and save the registered volume as NRRD";
 
 /// Suffixes of class identifiers below [`STORAGE_PREFIX`]; one that ends with a dot matches by prefix. Longer ones come
 /// first.
@@ -30,37 +30,40 @@ const CLASSES: &[(&str, ObjectClass)] = &[
     ("481.3", ObjectClass { name: "RT Structure Set (contours)", advice: CONTOURS_ADVICE }),
     ("481.5", ObjectClass { name: "RT Plan", advice: PLAN_ADVICE }),
     ("481.8", ObjectClass { name: "RT Ion Plan", advice: PLAN_ADVICE }),
-    ("481.", ObjectClass { name: "a record of radiotherapy", advice: PLAN_ADVICE }),
-    ("88.59", ObjectClass { name: "Key Object Selection (a list of pictures)", advice: OPEN_IMAGES_ADVICE }),
+    ("481.", ObjectClass { name: "radiotherapy record", advice: PLAN_ADVICE }),
+    ("88.59", ObjectClass { name: "Key Object Selection (a list of images)", advice: OPEN_IMAGES_ADVICE }),
     ("88.67", ObjectClass { name: "Radiation Dose Report", advice: REPORT_ADVICE }),
     ("88.", ObjectClass { name: "Structured Report", advice: REPORT_ADVICE }),
-    ("11.", ObjectClass { name: "Presentation State (how pictures are shown)", advice: OPEN_IMAGES_ADVICE }),
+    (
+        "11.",
+        ObjectClass { name: "Presentation State (display settings of images)", advice: OPEN_IMAGES_ADVICE },
+    ),
     (
         "104.1",
         ObjectClass {
             name: "Encapsulated PDF",
-            advice: "take the document out with `dcm2pdf IN.dcm OUT.pdf` (DCMTK)",
+            advice: "extract the document with `dcm2pdf IN.dcm OUT.pdf` (DCMTK)",
         },
     ),
     (
         "104.2",
         ObjectClass {
             name: "Encapsulated CDA (a document)",
-            advice: "take the document out with `dcm2cda IN.dcm OUT.xml` (DCMTK)",
+            advice: "extract the document with `dcm2cda IN.dcm OUT.xml` (DCMTK)",
         },
     ),
     (
         "104.",
         ObjectClass {
             name: "Encapsulated STL, OBJ or MTL (a surface)",
-            advice: "take the surface out with `dcmdump +W FOLDER IN.dcm` (DCMTK)",
+            advice: "extract the surface with `dcmdump +W FOLDER IN.dcm` (DCMTK)",
         },
     ),
     (
         "9.",
         ObjectClass {
-            name: "Waveform (an ECG or the like)",
-            advice: "it has curves and no voxels: programs for cardiology show them",
+            name: "Waveform (such as an ECG)",
+            advice: "open it in cardiology software: it has curves and no voxels",
         },
     ),
     ("66.1", ObjectClass { name: "Spatial Registration", advice: REGISTRATION_ADVICE }),
@@ -72,7 +75,7 @@ const CLASSES: &[(&str, ObjectClass)] = &[
         "66",
         ObjectClass {
             name: "Raw Data (before reconstruction)",
-            advice: "reconstruct it on the scanner, and export the pictures",
+            advice: "reconstruct it on the scanner, and export the images",
         },
     ),
     ("67", ObjectClass { name: "Real World Value Mapping", advice: OPEN_IMAGES_ADVICE }),
@@ -82,12 +85,12 @@ const CLASSES: &[(&str, ObjectClass)] = &[
         "4.2",
         ObjectClass {
             name: "MR Spectroscopy",
-            advice: "convert it with `spec2nii dicom IN.dcm` and open a map that is made of its spectra",
+            advice: "convert it with `spec2nii dicom IN.dcm`, and open a map computed from its spectra",
         },
     ),
-    ("78.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
-    ("79.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
-    ("80.", ObjectClass { name: "measurements of an eye", advice: REPORT_ADVICE }),
+    ("78.", ObjectClass { name: "ophthalmic measurements", advice: REPORT_ADVICE }),
+    ("79.", ObjectClass { name: "ophthalmic measurements", advice: REPORT_ADVICE }),
+    ("80.", ObjectClass { name: "ophthalmic measurements", advice: REPORT_ADVICE }),
     ("131", ObjectClass { name: "Basic Structured Display", advice: OPEN_IMAGES_ADVICE }),
 ];
 

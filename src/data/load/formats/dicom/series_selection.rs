@@ -107,7 +107,7 @@ impl SeriesSelection<'_> {
             let StackedVolume { slices, layers, placement, .. } = stack.volumes.swap_remove(0);
             request.volume = StackedVolume { slices, layers, placement, ..request.volume };
         }
-        Err(self.attempt.bad_input_error("files", "they change while they are read", "open them again"))
+        Err(self.attempt.bad_input_error("files", "its files change while they are read", "open them again"))
     }
 
     /// Makes the error for a series without a single readable file.
@@ -116,7 +116,7 @@ impl SeriesSelection<'_> {
         if unreadable.is_empty() {
             return self.attempt.bad_input_error(
                 "files",
-                "they have no pictures",
+                "its files have no images",
                 "copy or export them again",
             );
         }
@@ -150,8 +150,9 @@ impl SeriesSelection<'_> {
 fn named_file_remarks(count: usize, all: usize) -> Vec<String> {
     let shown =
         (count > 1).then(|| format!("the {count} slices of its series in the same folder are shown with it"));
-    let left = (all > count)
-        .then(|| format!("{} pictures of the series have another size or direction", all - count));
+    let left = (all > count).then(|| {
+        format!("{} images of the series are not shown: their size or direction differs", all - count)
+    });
     shown.into_iter().chain(left).collect()
 }
 
@@ -160,7 +161,7 @@ fn with_count(why: LoadError, count: usize, what: &str) -> LoadError {
     match why {
         LoadError::BadInput(mut explanation) if count > 1 => {
             explanation.why =
-                format!("none of {count} {what} can be read; of the first: {}", explanation.why);
+                format!("none of {count} {what} can be read; error of the first: {}", explanation.why);
             LoadError::BadInput(explanation)
         }
         why => why,

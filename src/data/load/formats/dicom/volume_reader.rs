@@ -95,7 +95,7 @@ pub(super) fn load_volume(
     let overlapping = source.overlapping.load(Ordering::Relaxed);
     if overlapping > 0 {
         placement.remarks.push(format!(
-            "segments overlap in {overlapping} voxels: of those that lie there {} is shown",
+            "segments overlap in {overlapping} voxels: the one with {} is shown",
             hints::overlap_rule(found)
         ));
     }

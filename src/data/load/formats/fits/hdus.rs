@@ -119,25 +119,25 @@ impl FitsUnits {
         } else if has(FitsUnitKind::CompressedImage) {
             attempt.bad_input_error(
                 "ZIMAGE",
-                "its pictures are compressed in tiles (as fpack does), which is not read",
+                "its images are compressed in tiles (as by fpack), which is not supported",
                 "unpack it: funpack -O OUT.fits IN.fits.fz",
             )
         } else if has(FitsUnitKind::RandomGroups) {
             attempt.bad_input_error(
                 "GROUPS",
-                "it holds visibilities of an interferometer (random groups), not a picture",
+                "it holds visibilities of an interferometer (random groups), not an image",
                 "make an image of them first, for example with CASA's tclean, and export it with exportfits",
             )
         } else if has(FitsUnitKind::Table) {
             attempt.bad_input_error(
                 "XTENSION",
-                "it holds tables and no picture",
+                "it holds tables and no image",
                 "open a file with an image of two axes or more; TOPCAT shows tables",
             )
         } else {
             attempt.bad_input_error(
                 "NAXIS",
-                "it holds no picture: no unit has two axes or more",
+                "it holds no image: no header and data unit (HDU) has two axes or more",
                 "open a file with an image of two to four axes",
             )
         }
@@ -146,7 +146,7 @@ impl FitsUnits {
     /// Returns a remark for the user on units that cannot be chosen.
     pub(super) fn remark(&self) -> Option<&'static str> {
         let is_packed = self.kinds.contains(&FitsUnitKind::CompressedImage);
-        is_packed.then_some("pictures that are compressed in tiles are left out: funpack unpacks them")
+        is_packed.then_some("images that are compressed in tiles are left out: funpack unpacks them")
     }
 }
 

@@ -126,20 +126,15 @@ impl FitsHeader {
 
     /// Returns an integer whose keyword is mandatory.
     pub(super) fn required_int(&self, attempt: LoadContext<'_>, keyword: &str) -> Result<i64, LoadError> {
-        self.int(attempt, keyword)?.ok_or_else(|| {
-            attempt.bad_input_error(
-                keyword,
-                "the header does not have this keyword, which every unit has",
-                HELP,
-            )
-        })
+        self.int(attempt, keyword)?
+            .ok_or_else(|| attempt.bad_input_error(keyword, "the header lacks this mandatory keyword", HELP))
     }
 
     /// Returns the lengths of all axes, fastest first.
     pub(super) fn axes(&self, attempt: LoadContext<'_>) -> Result<Vec<u64>, LoadError> {
         let count = self.required_int(attempt, "NAXIS")?;
         if !(0..=MAX_AXES).contains(&count) {
-            let why = format!("{count} axes cannot be: 0 to {MAX_AXES} were expected");
+            let why = format!("{count} axes are not possible: 0 to {MAX_AXES} were expected");
             return Err(attempt.bad_input_error("NAXIS", why, HELP));
         }
         let length = |axis| {

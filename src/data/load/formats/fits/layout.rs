@@ -37,7 +37,7 @@ impl FitsLayout {
         let Some(number) = number_from_bitpix(bits) else {
             return Err(attempt.bad_input_error(
                 "BITPIX",
-                format!("there are no values of {bits} bits; 8, 16, 32, 64, -32 and -64 are read"),
+                format!("values of {bits} bits are not supported; 8, 16, 32, 64, -32 and -64 are"),
                 "copy or download the file again",
             ));
         };
@@ -54,7 +54,10 @@ impl FitsLayout {
             _ => {
                 return Err(attempt.bad_input_error(
                     "NAXIS",
-                    format!("an array of {} axes longer than 1 is not read: two to four are", axes.len()),
+                    format!(
+                        "an array of {} axes longer than 1 is not supported: two to four are",
+                        axes.len()
+                    ),
                     "cut it along the others first: python -c \"from astropy.io import fits; \
                      fits.writeto('OUT.fits', fits.getdata('IN.fits')[0])\"",
                 ));

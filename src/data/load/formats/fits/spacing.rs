@@ -80,7 +80,7 @@ pub(super) fn placement(header: &FitsHeader, layout: &FitsLayout) -> GridPlaceme
         let keyword = format!("CTYPE{}", layout.axes[axis].unwrap_or_default());
         let kind = sanitised(header.text(&keyword), 40);
         Some(format!(
-            "axis {} ({}, in {}) has another unit than the others ({}): its steps are shown as long as theirs",
+            "axis {} ({}, in {}) has a different unit from the other axes ({}): their smallest spacing is used for it",
             axis + 1,
             if kind.is_empty() { "unnamed" } else { &kind },
             sanitised(step.unit.name(), 40),

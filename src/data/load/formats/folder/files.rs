@@ -58,12 +58,12 @@ impl NestedFiles {
     pub(super) fn remarks(&self) -> Vec<String> {
         let cut = self.is_truncated.then(|| {
             format!(
-                "of the folders within it {} files were looked at, and more are there: open one of these folders",
+                "only {} files in its subfolders were examined, and there are more: open one of the subfolders",
                 self.files.len()
             )
         });
         let unreadable = (self.unreadable > 0)
-            .then(|| format!("{} folders within it cannot be read: they are left out", self.unreadable));
+            .then(|| format!("{} subfolders cannot be read: they are left out", self.unreadable));
         cut.into_iter().chain(unreadable).collect()
     }
 }
@@ -163,6 +163,6 @@ mod tests {
         std::fs::write(folder.path().join(deep).join("file"), "x").unwrap();
         let found = list_nested_files(folder.path(), &LoadControl::new()).unwrap();
         assert_eq!(found.files.len(), 0);
-        assert!(found.remarks()[0].contains("open one of these folders"));
+        assert!(found.remarks()[0].contains("open one of the subfolders"));
     }
 }

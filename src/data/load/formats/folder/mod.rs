@@ -43,11 +43,12 @@ pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) ->
     if let Some(volume) = slices::load(attempt, &files, options, control)? {
         return Ok(volume);
     }
-    let within = if count > 0 { format!(", nor of the {count} in folders within,") } else { String::new() };
+    let within =
+        if count > 0 { format!(" or of the {count} files in its subfolders") } else { String::new() };
     Err(attempt.bad_input_error(
         "files",
-        format!("none of its {} files{within} is a slice that is read", files.len()),
-        "name one file",
+        format!("none of its {} files{within} is a slice in a supported format", files.len()),
+        "open a single file",
     ))
 }
 
@@ -82,7 +83,7 @@ mod tests {
             load()
                 .unwrap_err()
                 .to_string()
-                .contains("none of its 1 files, nor of the 1 in folders within, is")
+                .contains("none of its 1 files or of the 1 files in its subfolders is")
         );
     }
 }

@@ -39,7 +39,7 @@ impl DataFiles {
                             "{needed} names of files were expected after it, {} were found",
                             header.list.len()
                         ),
-                        "write a name for each slice, one a line",
+                        "write a name for each slice, one per line",
                     ));
                 }
                 Ok(Self::Detached(header.list.iter().take(needed as usize).cloned().collect()))
@@ -85,7 +85,7 @@ fn list_file_count(
 fn too_many_files(attempt: LoadContext<'_>, files: u64) -> LoadError {
     attempt.limit_error(
         DATA_FILE,
-        format!("{files} files are too many: at most {MAX_FILES} are read"),
+        format!("{files} files are too many: at most {MAX_FILES} are supported"),
         "join them into one file",
     )
 }

@@ -64,7 +64,7 @@ impl DataStream {
         let too_large = || {
             attempt.limit_error(
                 "DimSize",
-                "there are more bytes than a file can have",
+                "the volume has more bytes than a file can have",
                 "check the dimensions",
             )
         };
@@ -75,7 +75,7 @@ impl DataStream {
         if piece_bytes == 0 || piece_bytes.checked_mul(count) != Some(all_bytes) {
             return Err(attempt.bad_input_error(
                 DATA_FILE,
-                format!("{all_bytes} bytes of voxels are not the same in each of {count} files"),
+                format!("{all_bytes} bytes of voxels cannot be divided equally among {count} files"),
                 "write a file for each slice",
             ));
         }
@@ -106,7 +106,7 @@ impl DataStream {
                         return Err(attempt.bad_input_error(
                             DATA_FILE,
                             format!("{} is the header itself", quoted(name)),
-                            "write LOCAL where the voxels follow the header",
+                            "write LOCAL if the voxels follow the header",
                         ));
                     }
                     let of_data = LoadContext { operation: READ_DATA, path: &path };
@@ -124,7 +124,7 @@ impl DataStream {
             other => Err(pieces.failure().unwrap_or_else(|| {
                 let why = match other {
                     Err(ReadFault::Io(error)) => error.to_string(),
-                    _ => "they end before it".to_owned(),
+                    _ => "the data end before it".to_owned(),
                 };
                 attempt.bad_input_error(
                     "data",

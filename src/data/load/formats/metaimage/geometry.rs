@@ -42,7 +42,7 @@ pub(super) fn placement(
     let origin = origin.map_or(DVec3::ZERO, |origin| DVec3::new(origin[0], origin[1], origin[2]) * mm);
     if directions.determinant() == 0.0 {
         return Ok(axis_aligned
-            .with_remark(Some("the file's axes are unusable: they are taken for those of the grid")));
+            .with_remark(Some("the file's axis directions are unusable: the axes of the grid are used")));
     }
     // Uses the spacing after unusable distances were replaced.
     let matrix3 = directions * axis_aligned.world_from_index.matrix3;

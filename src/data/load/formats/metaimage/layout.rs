@@ -57,7 +57,7 @@ impl MetaImageGrid {
             1..=MAX_FRAMES => Ok(Self { dims, frames: frames as usize, sizes }),
             _ => Err(attempt.limit_error(
                 "DimSize",
-                format!("{frames} volumes are too many: at most {MAX_FRAMES} are read"),
+                format!("{frames} volumes are too many: at most {MAX_FRAMES} are supported"),
                 "split the file",
             )),
         }

@@ -96,7 +96,7 @@ impl MghHeader {
         let [x, y, z, frames] = [4, 8, 12, 16].map(|at| fields.int(at));
         let count = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
         let (Some(dims), Some(frames)) = (all_present([x, y, z].map(count)), count(frames)) else {
-            let why = format!("{x} x {y} x {z} voxels in {frames} frames cannot be");
+            let why = format!("{x} x {y} x {z} voxels in {frames} frames are not valid dimensions");
             return Err(attempt.bad_input_error("width, height, depth, nframes", why, HELP));
         };
         let number = number_from_code(fields.int(20)).map_err(|why| {
@@ -118,7 +118,7 @@ impl MghHeader {
                 GridPlacement::from_ras_affine(centred(axes, place.center))
             }
             None => GridPlacement::from_ras_affine(centred(CORONAL, DVec3::ZERO)).without_anatomy().with_unknown_scale().with_remark(Some(
-                "the header does not say where its voxels lie (goodRASFlag is 0): they are taken for coronal slices",
+                "the header does not state where its voxels lie (goodRASFlag is 0): coronal slices are assumed",
             )),
         }
     }
@@ -132,12 +132,12 @@ fn number_from_code(code: i32) -> Result<FileNumberType, String> {
         3 => return Ok(FileNumberType::F32),
         4 => return Ok(FileNumberType::I16),
         10 => return Ok(FileNumberType::U16),
-        2 => "long whole numbers (type 2), whose length depends on the machine, are not read",
-        5 => "voxels of one bit (type 5) are not read",
-        6 => "tensors (type 6) are not read",
-        7 | 8 => "complex numbers (types 7 and 8) are not read",
-        9 => "colours (type 9) are not read",
-        _ => return Err(format!("there is no type {code}; 0, 1, 3, 4 and 10 are read")),
+        2 => "long whole numbers (type 2), whose length depends on the machine, are not supported",
+        5 => "voxels of one bit (type 5) are not supported",
+        6 => "tensors (type 6) are not supported",
+        7 | 8 => "complex numbers (types 7 and 8) are not supported",
+        9 => "colours (type 9) are not supported",
+        _ => return Err(format!("type {code} is unknown; 0, 1, 3, 4 and 10 are supported")),
     };
     Err(why.to_owned())
 }

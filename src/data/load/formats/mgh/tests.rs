@@ -232,7 +232,7 @@ fn headers_that_lie_are_refused() {
         (twelve().with_int(4, i32::MAX), LoadErrorKind::Limit, "time steps"),
         (twelve().with_int(5, 2), LoadErrorKind::BadInput, "mri_convert"),
         (twelve().with_int(5, 9), LoadErrorKind::BadInput, "colours"),
-        (twelve().with_int(5, 77), LoadErrorKind::BadInput, "no type 77"),
+        (twelve().with_int(5, 77), LoadErrorKind::BadInput, "type 77 is unknown"),
         (twelve().with_int(1, 12).with_int(2, 1).with_int(3, 1), LoadErrorKind::BadInput, "surface"),
     ] {
         assert_refused(load_bytes("a.mgz", &made.bytes(), VolumeChoice::default()), kind, &[words]);

@@ -55,7 +55,7 @@ impl MrcHeader {
         } else {
             Err(attempt.bad_input_error(
                 "header",
-                "it is no header of an MRC file: in neither byte order are its dimensions and its mode possible",
+                "the header is not that of an MRC file: its dimensions or mode are invalid in either byte order",
                 "check the file's name and format",
             ))
         }
@@ -103,7 +103,7 @@ impl MrcHeader {
             (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
             _ => Err(attempt.bad_input_error(
                 "NX, NY, NZ",
-                format!("{x} x {y} x {z} are no dimensions"),
+                format!("{x} x {y} x {z} are not valid dimensions"),
                 "every dimension must be at least 1",
             )),
         }

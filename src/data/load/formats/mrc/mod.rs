@@ -65,7 +65,7 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
 
     let remark = if mode.is_complex && source.options.choice.component.is_none() {
-        Some("complex numbers are shown by their length")
+        Some("complex numbers are shown as their magnitude")
     } else {
         part.remark()
     };
@@ -108,14 +108,14 @@ fn mode_from_header(attempt: LoadContext<'_>, header: &MrcHeader) -> Result<MrcM
         101 => {
             return Err(attempt.bad_input_error(
                 "MODE",
-                "its voxels have 4 bits each (mode 101), which are not read",
+                "its voxels have 4 bits each (mode 101), which is not supported",
                 "write it again with 8 bits, for example with IMOD's newstack -mode 0",
             ));
         }
         other => {
             return Err(attempt.bad_input_error(
                 "MODE",
-                format!("there is no mode {other}; 0, 1, 2, 3, 4, 6, 12 and 16 are read"),
+                format!("mode {other} is unknown; 0, 1, 2, 3, 4, 6, 12 and 16 are supported"),
                 "check that the file is an MRC file, or copy it again",
             ));
         }

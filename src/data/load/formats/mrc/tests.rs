@@ -201,10 +201,10 @@ fn headers_that_lie_are_refused() {
     let component = VolumeChoice { component: Some(2), ..VolumeChoice::default() };
     for (made, choice, kind, words) in [
         (made.clone().int(1, 3), None, LoadErrorKind::BadInput, "24 bytes expected for 3 x 1 x 2"),
-        (made.clone().int(1, 0), None, LoadErrorKind::BadInput, "0 x 1 x 2 are no dimensions"),
+        (made.clone().int(1, 0), None, LoadErrorKind::BadInput, "0 x 1 x 2 are not valid dimensions"),
         (made.clone().int(2, -1), None, LoadErrorKind::BadInput, "-1"),
         (made.clone().int(2, i32::MAX), None, LoadErrorKind::Limit, "are allowed"),
-        (made.clone().int(4, 5), None, LoadErrorKind::BadInput, "no mode 5"),
+        (made.clone().int(4, 5), None, LoadErrorKind::BadInput, "mode 5 is unknown"),
         (made.clone().int(4, 101), None, LoadErrorKind::BadInput, "4 bits"),
         (made.clone().int(24, -4), None, LoadErrorKind::BadInput, "NSYMBT"),
         (made.clone().int(24, i32::MAX), None, LoadErrorKind::BadInput, "truncated"),
@@ -212,7 +212,7 @@ fn headers_that_lie_are_refused() {
             made.clone().int(1, 1 << 25).text(54, [0; 4]).int(4, -1),
             None,
             LoadErrorKind::BadInput,
-            "no header",
+            "not that of an MRC file",
         ),
         (made.clone().int(3, 1 << 24).int(10, 1).int(23, 401), None, LoadErrorKind::Limit, "time steps"),
         (made.clone().int(4, 4), Some(component), LoadErrorKind::BadInput, "--component"),
@@ -225,7 +225,7 @@ fn headers_that_lie_are_refused() {
     let error = short.loaded_with("a.mrc", VolumeChoice::default()).unwrap_err();
     assert!(
         error.to_string().contains("1024 bytes expected, 1036 found")
-            || error.to_string().contains("no header")
+            || error.to_string().contains("not that of an MRC file")
     );
 }
 

@@ -33,9 +33,11 @@ pub(super) fn placement(header: &MrcHeader) -> GridPlacement {
         GridPlacement::from_ras_affine(DAffine3 { matrix3: matrix, translation: origin }).without_anatomy();
     let [a, b, c] = steps;
     let mended = (first_usable.is_some() && used_steps != steps).then(|| {
-        format!("distances of {a} x {b} x {c} Å between voxels cannot be: they are taken to be alike")
+        format!(
+            "a voxel spacing of {a} x {b} x {c} Å is unusable: that of a usable axis is used for the others"
+        )
     });
-    let reordered = is_order_bad.then_some("the order of its axes cannot be: it is taken for x, y, z");
+    let reordered = is_order_bad.then_some("the order of its axes is invalid: x, y, z is assumed");
     let placed = placed.with_remark(mended).with_remark(reordered);
     if first_usable.is_some() { placed } else { placed.with_unknown_scale() }
 }

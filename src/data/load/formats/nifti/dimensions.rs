@@ -63,7 +63,8 @@ impl NiftiGrid {
             return Err(attempt.limit_error(
                 "dim",
                 format!(
-                    "{frames} volumes of {components} components are too many: at most {MAX_FRAMES} of {MAX_COMPONENTS} are read"
+                    "{frames} volumes of {components} components are too many: at most {MAX_FRAMES} of \
+                     {MAX_COMPONENTS} are supported"
                 ),
                 "split the file",
             ));

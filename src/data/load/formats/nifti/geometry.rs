@@ -28,9 +28,9 @@ pub(super) fn placement(header: &NiftiHeader, dims: [u64; 3]) -> GridPlacement {
         remarks.push(format!("the header's {name} is unusable"));
     }
     remarks.push(if header.version == NiftiVersion::Analyze {
-        "Analyze files do not say which way a body lies: left and right are not known".to_owned()
+        "Analyze files do not state the orientation of the body: left and right are unknown".to_owned()
     } else {
-        "the header does not say which way a body lies: left and right are not known".to_owned()
+        "the header does not state the orientation of the body: left and right are unknown".to_owned()
     });
     // Values that programs write by default: no unit, and spacings of 0 or 1.
     let is_default = unit_mm.is_none() && spacing.iter().all(|&length| length == 0.0 || length == 1.0);

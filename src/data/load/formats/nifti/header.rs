@@ -112,7 +112,7 @@ impl NiftiHeader {
         let Some(endian) = form.endian(bytes) else {
             return Err(attempt.bad_input_error(
                 "dim[0]",
-                "neither byte order makes its header one: 1 to 7 dimensions were expected",
+                "the number of dimensions is invalid in either byte order: 1 to 7 were expected",
                 "copy the file again",
             ));
         };

@@ -77,8 +77,8 @@ fn read(
     if grid.components > 1 && number_type.components > 1 {
         return Err(attempt.bad_input_error(
             "datatype",
-            "vectors of colours or of complex numbers are not read",
-            "write its components as volumes of their own",
+            "vectors of colours or of complex numbers are not supported",
+            "write its components as separate volumes",
         ));
     }
     let component = options.choice.resolve_component(components, number_type.is_color);

@@ -44,7 +44,7 @@ impl NiftiNumberType {
                 };
                 Err(attempt.bad_input_error(
                     "datatype",
-                    format!("{why} are not read"),
+                    format!("{why} are not supported"),
                     "write it with a type of 8 to 64 bits",
                 ))
             }

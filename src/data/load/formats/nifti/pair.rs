@@ -16,8 +16,8 @@ pub(super) fn read_header_beside(attempt: LoadContext<'_>) -> Result<NiftiHeader
     let Some(path) = paired_file(attempt, "hdr")? else {
         return Err(attempt.bad_input_error(
             "header",
-            "it does not begin with a header of NIfTI or Analyze, and no file beside it is called like it and ends in .hdr",
-            "put its header beside it",
+            "it has no NIfTI or Analyze header, and there is no .hdr file of the same name beside it",
+            "put the header file beside it",
         ));
     };
     let of_header = LoadContext { operation: "read the NIfTI volume's header", path: &path };
@@ -27,7 +27,7 @@ pub(super) fn read_header_beside(attempt: LoadContext<'_>) -> Result<NiftiHeader
     let Some(form) = NiftiVersion::detect(start.bytes()) else {
         return Err(of_header.bad_input_error(
             "header",
-            "it is no header of NIfTI or Analyze",
+            "it is not a NIfTI or Analyze header",
             "check the file",
         ));
     };
@@ -39,7 +39,7 @@ pub(super) fn data_path_beside(attempt: LoadContext<'_>) -> Result<PathBuf, Load
     paired_file(attempt, "img")?.ok_or_else(|| {
         attempt.bad_input_error(
             "data",
-            "the header's voxels are in a second file, and none beside it is called like it and ends in .img or .img.gz",
+            "the header's voxels are in a second file, and no .img or .img.gz file of the same name is beside it",
             "put the data file beside the header",
         )
     })

@@ -57,12 +57,12 @@ fn expand_pattern(
     if count > u128::from(MAX_FILES) {
         return Err(attempt.limit_error(
             FIELD,
-            format!("{count} files are more than the {MAX_FILES} that are read"),
+            format!("{count} files are more than the {MAX_FILES} that are supported"),
             "join them into one file (for example: unu save -f nrrd -e gzip)",
         ));
     }
     let (before, width, is_filled, behind) = split_format(format)
-        .ok_or_else(|| wrong(format!("{} is no name with one number like %03d", quoted(format))))?;
+        .ok_or_else(|| wrong(format!("{} is not a name with one number like %03d", quoted(format))))?;
     let name = |at: i128| {
         let number = i128::from(min) + at * i128::from(step);
         let number = if is_filled { format!("{number:0width$}") } else { format!("{number:width$}") };

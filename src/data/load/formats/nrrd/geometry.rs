@@ -105,14 +105,14 @@ impl NrrdGeometry {
             |axes: &[&NrrdAxis]| axes.iter().fold(1_u64, |size, axis| size.saturating_mul(axis.size));
         let (components, frames) = (product(&before), product(&behind));
         if components == 0 || frames == 0 {
-            let why = "an axis that is none of space has no samples: 1 or more were expected, 0 was found";
+            let why = "a non-spatial axis has no samples: 1 or more were expected, 0 was found";
             return Err(attempt.bad_input_error("sizes", why.to_owned(), "correct the header"));
         }
         if components > MAX_COMPONENTS {
             return Err(attempt.limit_error(
                 "sizes",
                 format!(
-                    "{components} numbers for each voxel are more than the {MAX_COMPONENTS} that are read"
+                    "{components} numbers for each voxel are more than the {MAX_COMPONENTS} that are supported"
                 ),
                 "extract some of them (for example: unu crop)",
             ));
@@ -143,7 +143,7 @@ fn placement(
     let is_anatomical = is_anatomical(header);
     let has_directions = axes.iter().any(|axis| axis.step_mm.is_some());
     if !has_directions && axes.iter().all(|axis| axis.spacing_mm.is_nan()) {
-        attempt.warn("no spacings: how large the voxels are is not known");
+        attempt.warn("no spacings: the voxel size is unknown");
         let world_from_index = DAffine3 { matrix3: ras_from_file, translation: DVec3::ZERO };
         return Ok(GridPlacement { world_from_index, is_anatomical, ..GridPlacement::unknown() });
     }
@@ -251,7 +251,7 @@ fn drop_single_axes(attempt: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result
     if spatial < 2 {
         return Err(attempt.bad_input_error(
             "dimension",
-            format!("{spatial} spatial axes of {dimension} are no volume; 3, or 2 for a slice, are expected"),
+            format!("{spatial} of {dimension} axes are spatial; 3, or 2 for a slice, are expected"),
             "check dimension, kinds and space directions",
         ));
     }
@@ -261,7 +261,7 @@ fn drop_single_axes(attempt: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result
         return Err(attempt.bad_input_error(
             "sizes",
             format!(
-                "{} components or time steps lie between the axes of space; before or behind them they are read",
+                "{} components or time steps lie between the spatial axes; they must lie before or after them",
                 axes[first + within].size
             ),
             "change the order of the axes (for example: unu permute)",

@@ -111,7 +111,7 @@ fn check_magic(attempt: LoadContext<'_>, line: &str) -> Result<(), LoadError> {
         Some("1" | "2" | "3" | "4" | "5") => Ok(()),
         Some(_) => Err(attempt.bad_input_error(
             "magic",
-            format!("NRRD0001 to NRRD0005 are read, {} was found", quoted(line)),
+            format!("NRRD0001 to NRRD0005 are supported, {} was found", quoted(line)),
             "write it again as NRRD0004 or NRRD0005",
         )),
         None => Err(attempt.bad_input_error(

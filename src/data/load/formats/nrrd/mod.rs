@@ -96,10 +96,10 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let voxels = if geometry.is_planar && stored.components > 1 {
         if bytes_of_frame > options.memory_budget_bytes {
             let what = format!(
-                "{} of all components are more than there is memory",
+                "all components together need {}, more than is allowed",
                 human_bytes(bytes_of_frame.into())
             );
-            return Err(attempt.limit_error("sizes", what, "name one with --component"));
+            return Err(attempt.limit_error("sizes", what, "select one with --component"));
         }
         planar_components::read_interleaved(&mut data, &stored, extent.voxels, control)
             .and_then(|bytes| stored.read_values(&mut bytes.as_slice(), None, extent, &meant, control))
@@ -120,7 +120,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let placement = &mut geometry.placement;
     if is_layered {
         let layers = geometry.components;
-        placement.remarks.push(format!("its labels lie in {layers} layers: --component names one"));
+        placement.remarks.push(format!("its labels are in {layers} layers: --component selects one"));
     }
     placement.remarks.extend(part.remark().map(str::to_owned));
     let name = header.get("content").filter(|content| !content.is_empty());

@@ -37,7 +37,7 @@ pub(super) fn directions(
             continue;
         };
         let direction = spatial_vector(&components, space_dimension)
-            .ok_or_else(|| wrong(format!("{components:?} is no vector of {space_dimension} numbers")))?;
+            .ok_or_else(|| wrong(format!("{components:?} is not a vector of {space_dimension} numbers")))?;
         // A time axis has steps in time alone.
         let is_time = direction == DVec3::ZERO && components.get(3).is_some_and(|&step| step != 0.0);
         directions.push((!is_time).then_some(direction));

@@ -78,11 +78,17 @@ fn parse_number_type(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Fi
         "block" => {
             return Err(attempt.bad_input_error(
                 "type",
-                format!("voxels of type {} are not read", quoted(text)),
+                format!("voxels of type {} are not supported", quoted(text)),
                 HELP,
             ));
         }
-        _ => return Err(attempt.bad_input_error("type", format!("{} is no NRRD type", quoted(text)), HELP)),
+        _ => {
+            return Err(attempt.bad_input_error(
+                "type",
+                format!("{} is not an NRRD type", quoted(text)),
+                HELP,
+            ));
+        }
     })
 }
 

@@ -21,14 +21,14 @@ pub(super) fn parse(text: &str) -> Result<Vec<(String, PythonValue)>, &'static s
     let mut entries = Vec::new();
     while !text.skip_char('}') {
         let key = text.quoted().ok_or("a key in quotes")?;
-        text.require(':', "a colon behind a key")?;
+        text.require(':', "a colon after a key")?;
         entries.push((key, text.value()?));
         if !text.skip_char(',') {
             text.require('}', "a comma or the closing brace")?;
             break;
         }
     }
-    if text.rest().is_empty() { Ok(entries) } else { Err("nothing behind the closing brace") }
+    if text.rest().is_empty() { Ok(entries) } else { Err("nothing after the closing brace") }
 }
 
 /// Remaining text to be parsed.
@@ -72,7 +72,7 @@ impl<'a> DictionaryParser<'a> {
         if self.rest().starts_with('[') {
             return self.list();
         }
-        self.quoted().map(PythonValue::Text).ok_or("a text, True, False, a tuple or a list")
+        self.quoted().map(PythonValue::Text).ok_or("a string, True, False, a tuple or a list")
     }
 
     /// Parses the rest of a tuple, after its parenthesis.

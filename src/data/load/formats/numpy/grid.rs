@@ -24,7 +24,7 @@ impl NumpyGrid {
         let (number, endian, mut components) = parse_type_code(&header.descr).ok_or_else(|| {
             attempt.bad_input_error(
                 "descr",
-                format!("elements of type {} are not read", quoted(&header.descr)),
+                format!("elements of type {} are not supported", quoted(&header.descr)),
                 "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
             )
         })?;
@@ -52,7 +52,7 @@ impl NumpyGrid {
             _ => {
                 return Err(attempt.bad_input_error(
                     "shape",
-                    format!("an array of {count} axes is no volume"),
+                    format!("an array of {count} axes is not a volume"),
                     "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
                 ));
             }
@@ -60,7 +60,7 @@ impl NumpyGrid {
         if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
             return Err(attempt.bad_input_error(
                 "shape",
-                format!("there are no {} in it", dimension.plural()),
+                format!("the array has no {}", dimension.plural()),
                 "every axis must have at least one element",
             ));
         }

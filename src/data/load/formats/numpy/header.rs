@@ -38,16 +38,16 @@ impl NumpyHeader {
         };
         let start = exactly(8)?;
         if !start.starts_with(MAGIC) {
-            return Err(bad("it does not begin as an array of NumPy does".to_owned()));
+            return Err(bad("it does not begin like a NumPy array".to_owned()));
         }
         let (width, version) = match start[6] {
             1 => (2, 1),
             2 | 3 => (4, start[6]),
-            other => return Err(bad(format!("version {other} is not known, 1 to 3 are"))),
+            other => return Err(bad(format!("version {other} is not supported, 1 to 3 are"))),
         };
         let length = exactly(width)?.iter().rev().fold(0u64, |sum, &byte| sum << 8 | u64::from(byte));
         if length > MAX_HEADER {
-            return Err(bad(format!("a header of {length} bytes is longer than any that describes numbers")));
+            return Err(bad(format!("a header of {length} bytes is too long for an array of numbers")));
         }
         let text = exactly(length)?;
         // Versions before 3 are in Latin-1; names of types and axes are ASCII in both.
@@ -57,7 +57,7 @@ impl NumpyHeader {
             text.iter().map(|&byte| char::from(byte)).collect()
         };
         let entries = parse(&text).map_err(|expected| {
-            bad(format!("{} is no header of an array: {expected} was expected", quoted(&text)))
+            bad(format!("{} is not the header of an array: {expected} was expected", quoted(&text)))
         })?;
         let find = |key: &str| entries.iter().find(|(name, _)| name == key).map(|(_, value)| value);
         let descr = match find("descr") {
@@ -69,12 +69,12 @@ impl NumpyHeader {
                     "save one of the fields as an array",
                 ));
             }
-            _ => return Err(bad("it does not say the type of its numbers (descr)".to_owned())),
+            _ => return Err(bad("it does not state the type of its numbers (descr)".to_owned())),
         };
         let (Some(PythonValue::Bool(is_fortran)), Some(PythonValue::Numbers(shape))) =
             (find("fortran_order"), find("shape"))
         else {
-            return Err(bad("it does not say fortran_order or shape".to_owned()));
+            return Err(bad("it does not state fortran_order or shape".to_owned()));
         };
         let bytes = 8 + width + length;
         Ok(Self { descr, is_fortran: *is_fortran, shape: shape.clone(), bytes })

@@ -85,7 +85,7 @@ fn choose_volume(
     )?;
     let before = (extent.voxels as u64).saturating_mul(stored.voxel_bytes()).saturating_mul(number);
     let remark = match part {
-        ScalarReduction::Magnitude => Some("complex numbers are shown by their length"),
+        ScalarReduction::Magnitude => Some("complex numbers are shown as their magnitude"),
         other => other.remark(),
     };
     let placement = GridPlacement::unknown().with_remark(remark);
@@ -193,14 +193,14 @@ fn read_entry(
     };
     let voxels = read().map_err(|fault| match fault {
         ReadFault::Io(error) if is_corruption(&error) => {
-            broken_entry_error(attempt, entry, &format!("they cannot be inflated: {error}"))
+            broken_entry_error(attempt, entry, &format!("they cannot be decompressed: {error}"))
         }
         fault => fault.into_error(attempt, &layout, "bytes", HELP),
     })?;
     // The checksum covers the whole array, and can be verified only if all of it was read.
     let is_all = needed == entry.bytes && content.by_ref().read(&mut [0]).is_ok_and(|more| more == 0);
     if is_all && content.crc().sum() != entry.checksum {
-        return Err(broken_entry_error(attempt, entry, "their checksum is another"));
+        return Err(broken_entry_error(attempt, entry, "their checksum does not match"));
     }
     Ok(voxels)
 }

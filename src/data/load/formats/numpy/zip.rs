@@ -67,7 +67,7 @@ pub(super) fn read_central_directory(
     let bad = |why: &str| attempt.bad_input_error("directory", why, HELP);
     let (at, length) = find_central_directory(attempt, input)?;
     if length > MAX_DIRECTORY || at.saturating_add(length) > input.len {
-        return Err(bad("the directory of the archive is longer than it can be"));
+        return Err(bad("the directory of the archive is too long, or reaches beyond the file"));
     }
     let bytes = read_at(input, at, length).map_err(|error| attempt.io_error(error))?;
     let mut entries = Vec::new();
@@ -82,7 +82,7 @@ pub(super) fn read_central_directory(
         let mut large = zip64_numbers(&line[46 + name..46 + name + extra]);
         for value in [&mut bytes, &mut stored_bytes, &mut at] {
             if *value == IN_ZIP64_FIELD {
-                *value = large.next().ok_or_else(|| bad("an entry does not say its size"))?;
+                *value = large.next().ok_or_else(|| bad("an entry does not state its size"))?;
             }
         }
         let (flags, method) = (read_le(line, 8, 2), read_le(line, 10, 2));

@@ -49,7 +49,7 @@ pub(super) fn unpack(
             ),
             ReadFault::NoMemory => attempt.limit_error(
                 "data",
-                "the memory for what it unpacks to is not there",
+                "there is not enough memory for the unpacked data",
                 "close other programs or load a smaller volume",
             ),
             ReadFault::Io(error) if is_corruption(&error) => {

@@ -40,7 +40,7 @@ impl PvmHeader {
             "PVM" => 1,
             "PVM2" => 2,
             "PVM3" => 3,
-            _ => return Err(bad("mark", &mark, "PVM, PVM2 or PVM3")),
+            _ => return Err(bad("magic", &mark, "PVM, PVM2 or PVM3")),
         };
         let mut line = lines.next().unwrap_or_default();
         while version == 1 && line.starts_with('#') {

@@ -91,7 +91,7 @@ fn storage_from_companion(
     match sidecar::find_description(source.path) {
         Some(Ok(form)) => Ok(Some(form)),
         Some(Err(error)) if is_named => {
-            attempt.warn(format_args!("the file that describes it is not read: {error}"));
+            attempt.warn(format_args!("the description beside it is not used: {error}"));
             Ok(None)
         }
         Some(Err(error)) => Err(error),
@@ -113,7 +113,7 @@ fn storage_from_options(
         (None, None) => {
             return Err(attempt.bad_input_error(
                 "file name",
-                format!("the name {} does not say the dimensions and the type", quoted(file_name)),
+                format!("the name {} does not state the dimensions and the type", quoted(file_name)),
                 "give --dims and --type, or name it like skull_256x256x256_uint8.raw",
             ));
         }
@@ -122,13 +122,13 @@ fn storage_from_options(
     let Some(voxel_type) = format.voxel_type.or(named_type) else {
         return Err(attempt.bad_input_error(
             "--type",
-            "neither the options nor the file name say the type of the voxels",
+            "neither the options nor the file name state the voxel type",
             "give --type: uint8, int8, uint16, int16, uint32, int32, float32 or float64",
         ));
     };
     let is_guessed = format.voxel_type.is_none() && named.as_ref().is_some_and(|named| named.is_type_guessed);
     let remark = is_guessed.then(|| {
-        format!("its name does not say the type of its voxels: by its size they are {}", voxel_type.name())
+        format!("its name does not state the voxel type: by the file size it is {}", voxel_type.name())
     });
     let mut form = RawStorage::new(dims, dims_field, FileNumberType::from_voxel_type(voxel_type));
     form.placement = GridPlacement::unknown().with_remark(remark);
@@ -155,7 +155,7 @@ fn with_overrides(
         if !spacing_mm.into_iter().all(is_usable_spacing) {
             return Err(attempt.bad_input_error(
                 "--spacing",
-                format!("{spacing_mm:?} mm cannot be distances between voxels"),
+                format!("{spacing_mm:?} mm is not a usable voxel spacing"),
                 "give three lengths in millimetres, each above 0",
             ));
         }

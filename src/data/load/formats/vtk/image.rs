@@ -72,7 +72,7 @@ impl VtkGrid {
         // VTK reverses such axes; in other programs the sign has no meaning.
         let remark = self.spacing.cmplt(DVec3::ZERO).any().then(|| {
             let [x, y, z] = self.spacing.to_array();
-            format!("distances of {x} x {y} x {z} between points: axes with one below 0 run backwards")
+            format!("a spacing of {x} x {y} x {z}: axes with a negative spacing run backwards")
         });
         let axes = self.direction * DMat3::from_diagonal(self.spacing);
         let affine = DAffine3 { matrix3: axes, translation: self.origin + axes * first };
@@ -202,7 +202,7 @@ pub(super) fn check_available(
     }
     Err(attempt.bad_input_error(
         field,
-        format!("the data are truncated: {needed} {unit} expected, room for {found} found"),
+        format!("the data are truncated: {needed} {unit} expected, at most {found} found"),
         "copy the file again",
     ))
 }

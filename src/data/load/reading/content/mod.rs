@@ -60,7 +60,7 @@ impl FileContent {
                     format!("the data are truncated: {bytes} bytes expected from byte {start} on, {found} found")
                 }
                 ContentReader::Inflated(_) => format!(
-                    "the data are truncated: {bytes} bytes expected from byte {start} on, room for {found} found"
+                    "the data are truncated: {bytes} bytes expected from byte {start} on, at most {found} found"
                 ),
             },
             "check the header, or copy the file again",

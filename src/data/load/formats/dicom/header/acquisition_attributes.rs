@@ -65,7 +65,7 @@ impl AcquisitionAttribute {
     fn name(self) -> &'static str {
         match self {
             Self::TemporalPosition => "temporal position",
-            Self::BValue => "b value",
+            Self::BValue => "b-value",
             Self::EchoTime => "echo time",
             Self::EchoNumber => "echo",
             Self::InversionTime => "inversion time",
@@ -77,7 +77,7 @@ impl AcquisitionAttribute {
             Self::ReferenceTime => "reference time",
             Self::Acquisition => "acquisition",
             Self::AcquisitionTime => "acquired at",
-            Self::ContentTime => "made at",
+            Self::ContentTime => "created at",
             Self::Instance => "instance",
         }
     }

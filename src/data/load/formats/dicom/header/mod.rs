@@ -127,9 +127,9 @@ impl DicomHeader {
         let found = &self.values;
         let class = ObjectClass::from_uid(&found.sop_class);
         match (class, found.modality.as_str(), found.sop_class.as_str()) {
-            _ if found.is_directory => "a list of files (DICOMDIR)".to_owned(),
+            _ if found.is_directory => "list of files (DICOMDIR)".to_owned(),
             (Some(class), ..) => class.name.to_owned(),
-            (None, "", "") => "it says nothing of what it is".to_owned(),
+            (None, "", "") => "of unstated class and modality".to_owned(),
             (None, "", class) => format!("of class {}", quoted(class)),
             (None, modality, _) => format!("of modality {}", quoted(modality)),
         }
@@ -181,5 +181,7 @@ fn read_file_meta(bytes: &mut DicomReader) -> Result<Option<String>, DataSetErro
             bytes.skip(length)?;
         }
     }
-    Err(DataSetError::Malformed(format!("its first group has more than {MAX_META_ELEMENTS} elements")))
+    Err(DataSetError::Malformed(format!(
+        "its file meta information has more than {MAX_META_ELEMENTS} elements"
+    )))
 }

@@ -51,7 +51,7 @@ impl From<io::Error> for DataSetError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::UnexpectedEof => {
-                Self::Malformed("it is cut off: it ends within an element".to_owned())
+                Self::Malformed("the file is truncated: it ends within a data element".to_owned())
             }
             io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput => {
                 Self::Malformed(format!("its deflated data are broken: {error}"))
@@ -251,7 +251,7 @@ fn end_offset(at: u64, length: u32, limit: u64, tag: DicomTag) -> Result<Option<
     if end > limit {
         let left = limit.saturating_sub(at);
         return Err(DataSetError::Malformed(format!(
-            "{} at byte {at} says that it has {length} bytes, where {left} are left",
+            "{} at byte {at} states a length of {length} bytes, only {left} are left",
             format_tag(tag)
         )));
     }
@@ -286,5 +286,5 @@ fn skip_fragments(bytes: &mut DicomReader, endian: Endian, limit: u64) -> Result
             _ => return Err(DataSetError::Malformed(format!("{} lies among fragments", format_tag(tag)))),
         }
     }
-    Err(DataSetError::Malformed("its fragments have no end".to_owned()))
+    Err(DataSetError::Malformed("the end of its fragments is missing".to_owned()))
 }

@@ -88,10 +88,11 @@ const PRIVATE_GE: &str = "1.2.840.113619.5.2";
 const CONVERT_ADVICE: &str = "convert it with `gdcmconv --raw in.dcm out.dcm`";
 
 /// Advice for a syntax that such tools cannot convert.
-const ASK_SENDER_ADVICE: &str = "ask who sent it for pixels without compression (Explicit VR Little Endian)";
+const ASK_SENDER_ADVICE: &str = "ask the sender for an uncompressed file (Explicit VR Little Endian)";
 
 /// Advice for files that contain a video stream.
-const EXTRACT_FRAMES_ADVICE: &str = "take its pictures out: `gdcmraw -i in.dcm -o film.mpg`, `ffmpeg -i film.mpg %04d.png`, and open their folder";
+const EXTRACT_FRAMES_ADVICE: &str = "extract its frames: `gdcmraw -i in.dcm -o video.mpg`, \
+                        `ffmpeg -i video.mpg %04d.png`, and open their folder";
 
 /// Transfer syntax of a data set and its pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -132,7 +133,7 @@ impl TransferSyntax {
             return Self { pixel_endian: Some(Endian::Big), ..native(ElementEncoding::IMPLICIT) };
         }
         let Some(rest) = uid.strip_prefix("1.2.840.10008.1.2") else {
-            return Self::private(uid, "a private syntax");
+            return Self::private(uid, "a private transfer syntax");
         };
         match rest {
             "" => native(ElementEncoding::IMPLICIT),
@@ -144,7 +145,7 @@ impl TransferSyntax {
             ".4.50" | ".4.51" | ".4.57" | ".4.70" => encapsulated(PixelCodec::Jpeg),
             ".4.80" | ".4.81" => encapsulated(PixelCodec::JpegLs),
             ".4.90" | ".4.91" => encapsulated(PixelCodec::Jpeg2000),
-            ".4.92" | ".4.93" => Self::unsupported(uid, "JPEG 2000 of several components", CONVERT_ADVICE),
+            ".4.92" | ".4.93" => Self::unsupported(uid, "multi-component JPEG 2000", CONVERT_ADVICE),
             ".4.94" | ".4.95" | ".4.204" | ".4.205" => {
                 Self::unsupported(uid, "pixels on a server (JPIP)", ASK_SENDER_ADVICE)
             }
@@ -152,9 +153,9 @@ impl TransferSyntax {
                 Self::unsupported(uid, "High-Throughput JPEG 2000", ASK_SENDER_ADVICE)
             }
             ".4.110" | ".4.111" | ".4.112" => Self::unsupported(uid, "JPEG XL", ASK_SENDER_ADVICE),
-            _ if rest.starts_with(".4.10") => Self::unsupported(uid, "a film (MPEG)", EXTRACT_FRAMES_ADVICE),
+            _ if rest.starts_with(".4.10") => Self::unsupported(uid, "a video (MPEG)", EXTRACT_FRAMES_ADVICE),
             _ if rest.starts_with(".4.") => Self::unsupported(uid, "a rare kind of JPEG", CONVERT_ADVICE),
-            _ => Self::private(uid, "a syntax that is not known"),
+            _ => Self::private(uid, "an unknown transfer syntax"),
         }
     }
 
@@ -234,7 +235,7 @@ mod tests {
             assert_eq!(TransferSyntax::from_uid(uid).codec, Ok(codec), "{uid}");
         }
         for (uid, name) in [
-            ("1.2.840.10008.1.2.4.102", "film"),
+            ("1.2.840.10008.1.2.4.102", "video"),
             ("1.2.840.10008.1.2.4.201", "High-Throughput"),
             ("1.3.46.670589.33.1.4.1", "private"),
             ("", "private"),

@@ -259,7 +259,7 @@ impl DicomValues {
         plane.location_mm = self.frame_locations_mm.get(frame).copied().or(plane.location_mm);
         if plane.spacing.is_none() {
             plane.spacing = self.region.spacing_mm();
-            plane.spacing_source = plane.spacing.map(|_| "its calibrated region");
+            plane.spacing_source = plane.spacing.map(|_| "the calibrated ultrasound region");
         }
         if let (Some(position), Some(normal)) = (plane.position, plane.normal())
             && let (Some(offset), Some(first)) = (self.frame_offsets.get(frame), self.frame_offsets.first())

@@ -38,7 +38,7 @@ pub(super) fn decode_image(
     // A decoder that panics must cost the image, not the program.
     let catching_panics = |decode: &mut dyn FnMut() -> Result<DecodedImage, String>| {
         catch_unwind(AssertUnwindSafe(decode))
-            .unwrap_or_else(|_| Err("a picture is broken in a way that its decoder does not know".to_owned()))
+            .unwrap_or_else(|_| Err("an image is broken: its decoder failed unexpectedly".to_owned()))
     };
     match codec {
         PixelCodec::Native => Ok(DecodedImage { bytes: compressed, shape }),
@@ -54,7 +54,7 @@ pub(super) fn decode_image(
 
 /// Formats a decoder's error for the user.
 fn decoder_error(error: impl std::fmt::Display) -> String {
-    format!("a picture is broken, or of a kind that is not read: {}", sanitised(&error.to_string(), 120))
+    format!("an image is broken, or of an unsupported kind: {}", sanitised(&error.to_string(), 120))
 }
 
 fn check_size(found: [u64; 2], shape: &PixelLayout) -> Result<(), String> {
@@ -63,7 +63,7 @@ fn check_size(found: [u64; 2], shape: &PixelLayout) -> Result<(), String> {
         return Ok(());
     }
     let ([x, y], [columns, rows]) = (found, expected);
-    Err(format!("a picture has {x} x {y} pixels where the header says {columns} x {rows}"))
+    Err(format!("an image has {x} x {y} pixels, the header states {columns} x {rows}"))
 }
 
 fn check_samples(found: usize, shape: &PixelLayout) -> Result<(), String> {
@@ -71,7 +71,7 @@ fn check_samples(found: usize, shape: &PixelLayout) -> Result<(), String> {
     if found == expected {
         return Ok(());
     }
-    Err(format!("a picture has {found} numbers a pixel where the header says {expected}"))
+    Err(format!("an image has {found} samples per pixel, the header states {expected}"))
 }
 
 /// Decodes JPEG (ITU-T T.81): sequential of 8 and 12 bits, progressive, and lossless up to 16 bits.
@@ -84,7 +84,7 @@ fn decode_jpeg(packed: &[u8], shape: PixelLayout) -> Result<DecodedImage, String
         }
         Err(error) => return Err(decoder_error(error)),
     }
-    let Some(info) = decoder.info() else { return Err(decoder_error("it has no size")) };
+    let Some(info) = decoder.info() else { return Err(decoder_error("it states no size")) };
     check_size([info.width.into(), info.height.into()], &shape)?;
     let samples = match info.pixel_format {
         PixelFormat::L8 | PixelFormat::L16 => 1,
@@ -194,18 +194,18 @@ fn decode_jpeg_2000(packed: &[u8], shape: PixelLayout) -> Result<DecodedImage, S
     let within = &packed[..packed.len().min(MAX_STREAM_OFFSET)];
     let start = within.windows(4).position(|four| four == JPEG_2000_MAGIC);
     let Some(stream) = start.and_then(|start| packed.get(start..)) else {
-        return Err(decoder_error("it has no stream"));
+        return Err(decoder_error("it has no codestream"));
     };
     let Some(size) = Jpeg2000Size::parse(stream) else {
-        return Err(decoder_error("its numbers are not all of one size"));
+        return Err(decoder_error("its SIZ segment is broken, or its components differ in resolution"));
     };
     check_size(size.pixels, &shape)?;
     if let Some((_, bits)) = size.components.iter().find(|(_, bits)| *bits > MAX_BITS) {
-        return Err(format!("JPEG 2000 of {bits} bits is not read"));
+        return Err(format!("JPEG 2000 of {bits} bits is not supported"));
     }
     if size.components.len() != shape.samples || size.tiles > MAX_TILES {
         return Err(decoder_error(format_args!(
-            "{} numbers a pixel, {} tiles",
+            "{} samples per pixel, {} tiles",
             size.components.len(),
             size.tiles
         )));
@@ -219,7 +219,7 @@ fn decode_jpeg_2000(packed: &[u8], shape: PixelLayout) -> Result<DecodedImage, S
     let is_whole = |samples: &[f32]| samples.len() == shape.pixel_count();
     if components.len() != shape.samples || !components.iter().all(|component| is_whole(component.samples()))
     {
-        return Err(decoder_error("it has not all of its pixels"));
+        return Err(decoder_error("some of its pixels are missing"));
     }
     let numbers = (0..shape.pixel_count()).flat_map(|pixel| {
         components.iter().zip(&size.components).map(move |(component, &(is_signed, bits))| {

@@ -65,7 +65,7 @@ impl PixelLayout {
         let (Some(rows), Some(columns)) = (found.rows, found.columns) else {
             return Err(attempt.bad_input_error(
                 "Rows, Columns",
-                "it does not say how large its pictures are",
+                "the size of its images is not stated",
                 "copy or export the file again",
             ));
         };
@@ -80,7 +80,7 @@ impl PixelLayout {
             (samples, photometric) => {
                 return Err(attempt.bad_input_error(
                     "Photometric Interpretation",
-                    format!("pixels of {samples} numbers as {} are not read", quoted(photometric)),
+                    format!("{samples} samples per pixel as {} are not supported", quoted(photometric)),
                     "convert it to grey values or RGB: `gdcmconv --photometric-interpretation RGB in.dcm out.dcm`",
                 ));
             }
@@ -102,7 +102,7 @@ impl PixelLayout {
         if shape.colors == PhotometricKind::Ybr422 && !shape.columns.is_multiple_of(2) {
             return Err(attempt.bad_input_error(
                 "Columns",
-                format!("pixels share colours in pairs, and {columns} are not pairs"),
+                format!("pixels share colours in pairs (YBR_FULL_422), but the number of columns, {columns}, is odd"),
                 "copy or export the file again",
             ));
         }
@@ -166,7 +166,7 @@ fn bits_from_header(attempt: LoadContext<'_>, header: &DicomHeader) -> Result<In
     let found = &header.values;
     let allocated = u32::from(found.bits_allocated.unwrap_or(16));
     if !matches!(allocated, 8 | 16 | 32) {
-        let why = format!("numbers of {allocated} bits are not read, but those of 1, 8, 16 and 32");
+        let why = format!("samples of {allocated} bits are not supported, only those of 1, 8, 16 and 32");
         return Err(attempt.bad_input_error(
             "Bits Allocated",
             why,

@@ -96,7 +96,7 @@ impl PixelStore {
             return Err(attempt.limit_error(
                 "Number of Frames",
                 format!(
-                    "deflated pixels of {} are expected, {} are allowed",
+                    "its pixels take {} uncompressed, {} are allowed",
                     human_bytes(u128::from(expected)),
                     human_bytes(u128::from(budget_bytes))
                 ),
@@ -157,13 +157,13 @@ impl PixelStore {
                 if matches!(tag, None | Some(SEQUENCE_END | ITEM)) {
                     break;
                 }
-                return Err(wrong("something that is no fragment lies among the fragments"));
+                return Err(wrong("an unexpected element lies among the fragments"));
             };
             let offset = bytes.position;
             let left = bytes.len.saturating_sub(offset);
             if u64::from(length) > left {
                 return Err(wrong(&format!(
-                    "it is cut off: {length} bytes of a fragment expected, {left} found"
+                    "the data are truncated: {length} bytes of a fragment expected, {left} found"
                 )));
             }
             if is_first {
@@ -189,7 +189,9 @@ impl PixelStore {
         }
         let found = fragments.len();
         let frames = assign_fragments(fragments, &table, count).ok_or_else(|| {
-            wrong(&format!("its {found} fragments make no {count} frames, and no table says which do"))
+            wrong(&format!(
+                "its {found} fragments cannot be assigned to {count} frames: no offset table matches"
+            ))
         })?;
         Ok(PixelLocation::Compressed { codec, frames })
     }
@@ -211,7 +213,7 @@ impl PixelStore {
         record_read(attempt.path);
         let size = self.layout.bytes_per_frame();
         let missing_frame_error =
-            || attempt.bad_input_error("Number of Frames", "it has fewer frames than it says", COPY_ADVICE);
+            || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
         if self.layout.number == PixelNumber::Bit {
             return self.read_bits(attempt, frame, raster, voxels);
         }
@@ -255,7 +257,7 @@ impl PixelStore {
                 let DecodedImage { bytes, shape } =
                     decode_image(*codec, packed, self.layout).map_err(wrong)?;
                 if (bytes.len() as u64) < shape.bytes_per_frame() {
-                    return Err(wrong(format!("a picture has {} of {size} bytes", bytes.len())));
+                    return Err(wrong(format!("an image has {} of {size} bytes", bytes.len())));
                 }
                 PixelConversion { shape, endian: Endian::Little, ..raster }.write(&bytes, voxels);
             }
@@ -274,7 +276,7 @@ impl PixelStore {
         voxels: &mut [T],
     ) -> Result<(), LoadError> {
         let beyond =
-            || attempt.bad_input_error("Number of Frames", "it has fewer frames than it says", COPY_ADVICE);
+            || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
         let pixels = self.layout.pixel_count() as u64;
         let first = pixels.checked_mul(frame as u64).ok_or_else(beyond)?;
         // Begins at the 16-bit word that contains the frame's first bit, as bytes may be swapped within words.
@@ -300,7 +302,7 @@ impl PixelStore {
             PixelLocation::Compressed { .. } => {
                 return Err(attempt.bad_input_error(
                     "Pixel Data",
-                    "compressed pixels of one bit are not read",
+                    "compressed pixels of one bit are not supported",
                     "convert it with `gdcmconv --raw in.dcm out.dcm`",
                 ));
             }

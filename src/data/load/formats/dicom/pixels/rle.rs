@@ -20,26 +20,28 @@ pub(super) fn decode(
     };
     let plane_count = word(0).unwrap_or(0);
     if plane_count != planes || packed.len() < HEADER_BYTES {
-        return Err(format!("a picture has {plane_count} planes of bytes where {planes} are expected"));
+        return Err(format!("an image has {plane_count} byte planes, {planes} are expected"));
     }
     // Two bytes encode at most 128: data that cannot be complete get no memory.
     if packed.len().saturating_mul(64) < pixels.saturating_mul(planes) {
-        return Err(format!("a picture is cut off: {} bytes cannot hold {pixels} pixels", packed.len()));
+        return Err(format!("an image is truncated: {} bytes cannot hold {pixels} pixels", packed.len()));
     }
     let mut unpacked = vec![0; pixels * planes];
     for plane in 0..planes {
         let start = word(plane + 1).filter(|&start| start >= HEADER_BYTES);
         let end = if plane + 1 < planes { word(plane + 2) } else { Some(packed.len()) };
-        let (Some(start), Some(end)) = (start, end) else { return Err("a plane has no place".to_owned()) };
+        let (Some(start), Some(end)) = (start, end) else {
+            return Err("the offset of a byte plane is missing or invalid".to_owned());
+        };
         let Some(packed) = packed.get(start..end) else {
-            return Err(format!("a plane lies at bytes {start} to {end} of {}", packed.len()));
+            return Err(format!("a byte plane lies at bytes {start} to {end} of {}", packed.len()));
         };
         let (sample, byte) = (plane / bytes_of_number, plane % bytes_of_number);
         let first = sample * bytes_of_number + (bytes_of_number - 1 - byte);
         let into = unpacked.iter_mut().skip(first).step_by(planes);
         let decoded = decode_plane(packed, into);
         if decoded < pixels {
-            return Err(format!("a plane is cut off: it has {decoded} of {pixels} bytes"));
+            return Err(format!("a byte plane is truncated: it has {decoded} of {pixels} bytes"));
         }
     }
     Ok(unpacked)
@@ -101,7 +103,7 @@ mod tests {
     fn what_is_broken_is_refused() {
         let good = encode_planes(&[&[3, 1, 2, 3, 4]]);
         assert!(decode(&good, 4, 1, 1).is_ok());
-        assert!(decode(&good, 4, 1, 2).unwrap_err().contains("1 planes of bytes where 2"));
+        assert!(decode(&good, 4, 1, 2).unwrap_err().contains("1 byte planes, 2"));
         assert!(decode(&good, 5, 1, 1).unwrap_err().contains("4 of 5"));
         assert!(decode(&good, usize::MAX, 1, 1).unwrap_err().contains("cannot hold"));
         let mut outside = good.clone();

@@ -47,7 +47,7 @@ pub(crate) fn supported_codec(
     header.syntax.codec.as_ref().copied().map_err(|UnsupportedSyntax { name, advice: help, .. }| {
         attempt.bad_input_error(
             "Transfer Syntax",
-            format!("its pixels are compressed in a way that is not read: {name}"),
+            format!("its pixel compression is not supported: {name}"),
             *help,
         )
     })
@@ -69,7 +69,7 @@ pub(crate) fn check_file_size(
         // Each fragment begins with 8 bytes of tag and length.
         None if count > available / 8 => Err(attempt.bad_input_error(
             "Number of Frames",
-            format!("the file has no room for the {count} frames that it announces"),
+            format!("the file is too short for the {count} frames that it announces"),
             COPY_ADVICE,
         )),
         None if header.syntax.codec.as_ref().is_ok_and(|codec| !fits(*codec)) => {

@@ -144,10 +144,13 @@ impl PositionSource {
         let placement = match self {
             Self::Positions => placement_from_positions(&slices, layers.len()),
             Self::Axis | Self::Locations => {
-                let from =
-                    if self == Self::Axis { "positions, whatever their direction" } else { "Slice Location" };
+                let from = if self == Self::Axis {
+                    "Image Position, as no orientation is stated"
+                } else {
+                    "Slice Location"
+                };
                 spaced_placement(&plane, distance).with_remark(spacing_remark(&plane)).with_remark(Some(
-                    format!("where its slices lie, {distance:.4} mm apart, is taken from {from}"),
+                    format!("the positions of its slices, {distance:.4} mm apart, are taken from {from}"),
                 ))
             }
         };
@@ -162,7 +165,7 @@ fn drop_unplaced(slices: &mut Vec<DicomSlice>, remarks: &mut Vec<String>) {
     if placed < total && 2 * placed > total {
         slices.retain(|slice| slice.plane.position.is_some());
         let left_out = total - placed;
-        remarks.push(format!("{left_out} of {total} pictures do not say where they lie: they are left out"));
+        remarks.push(format!("{left_out} of {total} images have no position: they are left out"));
     }
 }
 
@@ -196,7 +199,7 @@ fn layer_per_image(slices: Vec<DicomSlice>, placement: GridPlacement) -> Stacked
 fn cine_volume(mut slices: Vec<DicomSlice>) -> StackedVolume {
     slices.sort_by(|a, b| compare_acquisition(&a.plane.attributes, &b.plane.attributes));
     let remark = format!(
-        "its {} pictures lie all at one place: they are stacked in the order in which they were taken",
+        "its {} images all have the same position: they are stacked in order of acquisition",
         slices.len()
     );
     layer_per_image(slices, GridPlacement::unknown().with_remark(Some(remark)))
@@ -225,9 +228,8 @@ fn unplaced_volume(mut slices: Vec<DicomSlice>) -> StackedVolume {
         _ => slice_spacing(&plane),
     };
     let Some(depth) = depth else {
-        let how = "the file does not say how its";
-        let remark =
-            (count > 1).then(|| format!("{how} {count} pictures lie: they are stacked in their order"));
+        let how = "the file does not state the positions of its";
+        let remark = (count > 1).then(|| format!("{how} {count} images: they are stacked in their order"));
         // The aspect ratio of pixels is known.
         let [between_rows, between_columns] = plane.spacing.unwrap_or([1.0; 2]);
         let placement = match plane.spacing {

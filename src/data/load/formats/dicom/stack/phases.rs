@@ -87,7 +87,9 @@ impl SeriesPhases {
         phases.sort_by_key(|phase| (phase.images.len() as f64) < COMPLETE_FRACTION * largest);
         let total = poses.len();
         let remark = (left_out > 0).then(|| {
-            format!("{left_out} of {total} pictures lie where others do: the first of each place are shown")
+            format!(
+                "{left_out} of {total} images share their position with others: the first at each is shown"
+            )
         });
         Self { phases, remark }
     }

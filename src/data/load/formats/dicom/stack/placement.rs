@@ -43,8 +43,8 @@ pub(crate) fn placement_from_positions(slices: &[DicomSlice], layers: usize) -> 
 /// Returns a remark for the user on the source of the pixel spacing.
 pub(crate) fn spacing_remark(plane: &ImagePlane) -> Option<String> {
     match (plane.spacing, plane.spacing_source) {
-        (None, _) => Some("the file does not say how far its pixels lie apart".to_owned()),
-        (Some(_), Some(source)) => Some(format!("how far its pixels lie apart is taken from {source}")),
+        (None, _) => Some("the file does not state its pixel spacing".to_owned()),
+        (Some(_), Some(source)) => Some(format!("the pixel spacing is taken from {source}")),
         (Some(_), None) => None,
     }
 }
@@ -58,7 +58,7 @@ pub(crate) fn placement_from_plane(lowest: &ImagePlane, across: Option<DVec3>) -
     };
     // An invalid negative spacing does not mirror the images.
     let remark = (between_rows < 0.0 || between_columns < 0.0).then(|| {
-        format!("distances of {between_columns} x {between_rows} mm between pixels cannot be: they are taken without signs")
+        format!("a pixel spacing of {between_columns} x {between_rows} mm is impossible: signs are ignored")
     });
     let along_row = along_row * between_columns.abs();
     let axes = DMat3::from_cols(along_row, along_column * between_rows.abs(), across);
@@ -77,7 +77,7 @@ pub(crate) fn slice_thickness(plane: &ImagePlane) -> Option<SliceSpacing> {
         return Some(SliceSpacing { depth_mm, remark: None });
     }
     let [between_rows, _] = plane.spacing?;
-    let remark = "the file does not say how thick its slice is: it is taken for as thick as pixels are";
+    let remark = "the file does not state its slice thickness: the pixel spacing is used";
     Some(SliceSpacing { depth_mm: between_rows.abs(), remark: Some(remark.to_owned()) })
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn slice_spacing(plane: &ImagePlane) -> Option<SliceSpacing> {
     let is_usable = |depth: &f64| *depth != 0.0;
     let of = |depth: Option<f64>, element: &str| {
         let depth_mm = depth.filter(is_usable)?.abs();
-        let remark = format!("how far its slices lie apart, {depth_mm} mm, is taken from {element}");
+        let remark = format!("the slice spacing, {depth_mm} mm, is taken from {element}");
         Some(SliceSpacing { depth_mm, remark: Some(remark) })
     };
     of(plane.slice_spacing_mm, "Spacing Between Slices").or_else(|| of(plane.thickness_mm, "Slice Thickness"))
@@ -97,7 +97,7 @@ fn sideways_remark(slices: &[DicomSlice], origin: DVec3, across: DVec3, normal: 
     let distance = across.length();
     let aside = across - normal * across.dot(normal);
     if aside.length() > MAX_TILT * distance {
-        return Some("its slices lie aslant above each other, as a tilted scanner takes them".to_owned());
+        return Some("its slices are sheared against each other, as with a tilted gantry".to_owned());
     }
     let line = across / across.dot(normal);
     let sideways_offset = |slice: &DicomSlice| {
@@ -106,5 +106,5 @@ fn sideways_remark(slices: &[DicomSlice], origin: DVec3, across: DVec3, normal: 
     };
     let furthest = slices.iter().filter_map(sideways_offset).fold(0.0, f64::max);
     (furthest > MAX_SIDEWAYS_OFFSET * distance)
-        .then(|| format!("its slices lie up to {furthest:.4} mm aside of each other: they are shown in line"))
+        .then(|| format!("its slices are shifted sideways by up to {furthest:.4} mm: they are shown in line"))
 }

@@ -19,7 +19,7 @@ pub(super) fn segment_volume(slices: Vec<DicomSlice>) -> StackedVolume {
     };
     let Some(poses) = slices.iter().map(pose).collect::<Option<Vec<ImagePose>>>() else {
         let remark =
-            (slices.len() > 1).then_some("the file does not say where the masks of its segments lie");
+            (slices.len() > 1).then_some("the file does not state the positions of its segment masks");
         let layers = (0..slices.len()).map(|mask| SliceLayer::Masks(mask..mask + 1)).collect();
         return StackedVolume {
             name,

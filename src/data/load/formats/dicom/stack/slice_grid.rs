@@ -61,7 +61,7 @@ impl SliceGrid {
         if !has_room {
             let layers = (0..places_mm.len()).map(SliceLayer::Slice).collect();
             let remark = format!(
-                "{spacing_text}, too unevenly to show each at its place: they are shown {} apart",
+                "{spacing_text}, too unevenly to show each at its position: they are shown {} apart",
                 format_length(mean)
             );
             return Self { layers, spacing: mean, remark: Some(remark) };
@@ -74,7 +74,7 @@ impl SliceGrid {
         let empty = layers.iter().filter(|layer| **layer == SliceLayer::Empty).count();
         let how = match filling {
             GapFill::Interpolate => "interpolated to layers",
-            GapFill::Nearest | GapFill::NoSegment => "the nearest to layers",
+            GapFill::Nearest | GapFill::NoSegment => "resampled (nearest slice) to layers",
         };
         let left = if empty > 0 { format!(", {empty} in long gaps are left empty") } else { String::new() };
         Self {
@@ -110,12 +110,12 @@ impl SliceGrid {
         let missing = interpolated + empty;
         let remark = (missing > 0 && filling != GapFill::NoSegment).then(|| {
             let fill_text = match (filling, interpolated, empty) {
-                (GapFill::Interpolate, _, 0) => "interpolated between those beside them".to_owned(),
+                (GapFill::Interpolate, _, 0) => "interpolated between their neighbours".to_owned(),
                 (GapFill::Interpolate, 0, _) => "left empty".to_owned(),
                 (GapFill::Interpolate, ..) => {
-                    format!("{interpolated} interpolated between those beside them, {empty} in longer gaps left empty")
+                    format!("{interpolated} interpolated between their neighbours, {empty} in longer gaps left empty")
                 }
-                _ => "filled with the nearest".to_owned(),
+                _ => "filled with the nearest slice".to_owned(),
             };
             let are = if missing == 1 { "slice is" } else { "slices are" };
             format!("{missing} {are} missing of {}, {} apart: {fill_text}", last + 1, format_length(distance))

@@ -143,7 +143,7 @@ fn slices_without_positions_among_others_are_left_out() {
     files.push(ramp_file(9).with(|set| set.without(tags::POSITION)));
     let volume = load_path(folder(&files).path(), VolumeChoice::default()).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(ramp_values(&[0, 100, 200])));
-    assert_remark(&volume, "1 of 4 pictures do not say where they lie");
+    assert_remark(&volume, "1 of 4 images have no position");
 }
 
 /// Layers of a part of a volume are those of the whole.

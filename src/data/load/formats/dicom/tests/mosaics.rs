@@ -72,7 +72,7 @@ fn mosaics_of_a_series_are_phases() {
 fn a_mosaic_that_does_not_say_how_many_slices_it_has_stays_a_picture() {
     let volume = mosaic(|set| set).load().unwrap();
     assert_eq!(volume.dims(), [4, 6, 1]);
-    assert_remark(&volume, "it does not say how many");
+    assert_remark(&volume, "their number is not stated");
     for count in [0u16, 5000, 65535, 17] {
         let file = mosaic(|set| counted(set).value(tags::MOSAIC_COUNT, *b"US", &count.to_le_bytes()));
         assert_eq!(file.load().unwrap().dims(), [4, 6, 1], "{count}");

@@ -63,8 +63,8 @@ fn every_attribute_that_varies_is_offered() {
         (|set, n| set.text(tags::TEMPORAL_POSITION, *b"IS", &n.to_string()), "temporal position 2"),
         (|set, n| set.text(tags::ECHO_NUMBER, *b"IS", &n.to_string()), "echo 2"),
         (|set, n| set.decimal(tags::TRIGGER_TIME, &(n * 40.0).to_string()), "trigger time 80 ms"),
-        (|set, n| set.value(tags::B_VALUE, *b"FD", &(n * 500.0).to_le_bytes()), "b value 1000"),
-        (|set, n| set.text(tags::CONTENT_TIME, *b"TM", &format!("12000{n}.5")), "made at 12:00:02.500"),
+        (|set, n| set.value(tags::B_VALUE, *b"FD", &(n * 500.0).to_le_bytes()), "b-value 1000"),
+        (|set, n| set.text(tags::CONTENT_TIME, *b"TM", &format!("12000{n}.5")), "created at 12:00:02.500"),
         (|set, n| set.text(tags::ACQUISITION_TIME, *b"TM", &format!("12000{n}")), "acquired at 12:00:02.000"),
         (|set, n| set.decimal(tags::REFERENCE_TIME, &n.to_string()), "reference time 2 ms"),
         (
@@ -154,7 +154,7 @@ fn acquisitions_that_follow_each_other_are_one_volume() {
     let expected: Vec<u16> = (0..8).map(|z| 100 * z).collect();
     assert_eq!(volume.dims()[2], 8);
     assert_eq!(volume.samples(), &Samples::U16(ramp_values(&expected)));
-    assert_remark(&volume, "1 of 9 pictures lie where others do");
+    assert_remark(&volume, "1 of 9 images share their position with others");
 }
 
 #[test]

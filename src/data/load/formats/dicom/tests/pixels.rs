@@ -131,7 +131,7 @@ fn colours_are_shown_as_luminance_or_one_by_one() {
 
 #[test]
 fn values_that_mean_something_else_are_kept_and_said() {
-    for (photometric, words) in [("MONOCHROME1", "shown dark"), ("PALETTE COLOR", "colours in a table")] {
+    for (photometric, words) in [("MONOCHROME1", "shown dark"), ("PALETTE COLOR", "colour table")] {
         let volume = DicomFileBuilder::new(EXPLICIT)
             .with(|set| set.text(tags::PHOTOMETRIC, *b"CS", photometric))
             .load()

@@ -14,7 +14,7 @@ fn files_without_pictures_say_what_they_are() {
         ("481.3", "RT Structure Set", "plastimatch convert"),
         ("481.5", "RT Plan", "RTDOSE"),
         ("88.22", "Structured Report", "dsrdump"),
-        ("11.1", "Presentation State", "open the pictures"),
+        ("11.1", "Presentation State", "open the images"),
         ("104.1", "Encapsulated PDF", "dcm2pdf"),
         ("9.1.1", "Waveform", "no voxels"),
         ("66", "Raw Data", "reconstruct"),
@@ -37,18 +37,18 @@ fn files_without_pictures_say_what_they_are() {
     assert_refused(
         directory.load(),
         LoadErrorKind::BadInput,
-        &["lists the files of a disk", "open the folder that it lies in"],
+        &["lists the files of a disk", "open the folder that contains it"],
     );
 }
 
 #[test]
 fn kinds_that_are_not_read_are_named_with_what_helps() {
     for (syntax, words, help) in [
-        ("1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000", "without compression"),
-        ("1.2.840.10008.1.2.4.110", "JPEG XL", "without compression"),
-        ("1.2.840.10008.1.2.4.102", "film", "gdcmraw"),
+        ("1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000", "uncompressed file"),
+        ("1.2.840.10008.1.2.4.110", "JPEG XL", "uncompressed file"),
+        ("1.2.840.10008.1.2.4.102", "video", "gdcmraw"),
         ("1.2.840.10008.1.2.4.52", "rare kind", "gdcmconv --raw"),
-        ("1.2.3", "private", "without compression"),
+        ("1.2.3", "private", "uncompressed file"),
     ] {
         let file = DicomFileBuilder::new(syntax).fragments(&[&[], &[0; 8]]);
         assert_refused(file.load(), LoadErrorKind::BadInput, &[words, help, "Transfer Syntax"]);
@@ -72,11 +72,11 @@ fn lengths_that_lie_are_found_out_before_there_is_room_for_them() {
     let huge = DicomFileBuilder::new(RLE).size(65535, 65535).fragments(&[&[], &[0; 8]]);
     assert_refused(huge.load(), LoadErrorKind::BadInput, &["65535 x 65535 pixels do not fit in"]);
     let crowded = DicomFileBuilder::new(RLE).frames("9999").fragments(&[&[], &[0; 8]]);
-    assert_refused(crowded.load(), LoadErrorKind::BadInput, &["no room for the 9999 frames"]);
+    assert_refused(crowded.load(), LoadErrorKind::BadInput, &["too short for the 9999 frames"]);
     assert_refused(
         DicomFileBuilder::new(EXPLICIT).size(0, 4).load(),
         LoadErrorKind::BadInput,
-        &["empty volume"],
+        &["voxels is empty"],
     );
     let short = DicomFileBuilder::new(EXPLICIT).size(3, 3).load();
     assert_refused(short, LoadErrorKind::BadInput, &["18 bytes expected", "12 found"]);
@@ -102,14 +102,17 @@ fn data_sets_that_contradict_themselves_are_refused() {
         std::fs::write(&path, [&[0; 128], &b"DICM"[..], bytes].concat()).unwrap();
         assert_refused(load_path(&path, VolumeChoice::default()), LoadErrorKind::BadInput, &[words]);
     };
-    refuse(b"\x08\0\x05\0LO\xff\xff", "says that it has 65535 bytes, where 0 are left");
+    refuse(b"\x08\0\x05\0LO\xff\xff", "states a length of 65535 bytes, only 0 are left");
     refuse(b"\x08\0\x05\0UN\0\0\xfe\xff\xff\xff", "4294967294 bytes");
-    refuse(b"\x08\0\x05\0LO\x02", "cut off");
+    refuse(b"\x08\0\x05\0LO\x02", "ends within a data element");
     refuse(b"\xfe\xff\0\xe0\0\0\0\0", "outside of a sequence");
     refuse(b"\x08\0\x40\x11SQ\0\0\xff\xff\xff\xff\x08\0\x05\0CS\0\0", "between the items");
     refuse(b"\x08\0\x40\x11OB\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff", "no length");
     refuse(b"", "no pixels");
-    refuse(b"\x08\0\x40\x11OB\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\0\0\0\0", "no end");
+    refuse(
+        b"\x08\0\x40\x11OB\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\0\0\0\0",
+        "the end of its fragments is missing",
+    );
     // Deeply nested sequences.
     let nest = b"\x08\0\x40\x11SQ\0\0\xff\xff\xff\xff\xfe\xff\0\xe0\xff\xff\xff\xff";
     refuse(&nest.repeat(100_000), "more than 64 sequences are nested");

@@ -100,10 +100,7 @@ fn segments_that_overlap_are_said() {
     let volume = file.pixels(&bits(&[mask(&[0, 1]), mask(&[1, 2]), mask(&[])])).load().unwrap();
     let Samples::U8(found) = volume.samples() else { panic!() };
     assert_eq!(&found[..4], [3, 3, 1, 0]);
-    assert_remark(
-        &volume,
-        "segments overlap in 1 voxels: of those that lie there the highest number is shown",
-    );
+    assert_remark(&volume, "segments overlap in 1 voxels: the one with the highest number is shown");
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn what_is_odd_about_a_series_is_said() {
         (
             vec![slice("0", 1, "1"), slice("1", 2, "2"), slice("1", 3, "3")],
             vec![1, 2],
-            "1 of 3 pictures lie where others do",
+            "1 of 3 images share their position with others",
         ),
     ] {
         let volume = load_all(&files).unwrap();
@@ -63,13 +63,13 @@ fn what_is_odd_about_a_series_is_said() {
     let volume = load_all(&film).unwrap();
     assert_eq!(volume.samples(), &Samples::U16(vec![1, 2]));
     assert!(volume.has_unknown_scale());
-    assert_remark(&volume, "all at one place");
+    assert_remark(&volume, "all have the same position");
     let tilted = [("0", 1), ("1", 2), ("2", 3)].map(|(z, value)| {
         let position = format!("0\\{z}\\{z}");
         slice(z, value, &value.to_string()).with(|set| set.decimal(tags::POSITION, &position))
     });
     let volume = load_all(&tilted).unwrap();
-    assert_remark(&volume, "aslant");
+    assert_remark(&volume, "tilted gantry");
     assert_eq!(affine_columns(&volume)[6..9], [0.0, -1.0, 1.0]);
 }
 
@@ -86,7 +86,7 @@ fn slices_at_the_same_places_are_time_steps() {
     let choice = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
     assert_eq!(load_path(at.path(), choice).unwrap().samples(), &Samples::U16(vec![2, 3]));
     let choice = VolumeChoice { frame: Some(3), ..VolumeChoice::default() };
-    assert_refused(load_path(at.path(), choice), LoadErrorKind::BadInput, &["\"3\" is none of its 3"]);
+    assert_refused(load_path(at.path(), choice), LoadErrorKind::BadInput, &["\"3\" is not one of its 3"]);
 }
 
 #[test]
@@ -115,7 +115,10 @@ fn series_of_a_folder_are_offered() {
         LoadErrorKind::BadInput,
         &["2 series", "0 \"CT Head axial\" (1 x 1 x 2)", "1 \"CT Head axial\" (2 x 1 x 1)"],
     );
-    assert_remark(&load_path(&at.path().join("0"), VolumeChoice::default()).unwrap(), "another size");
+    assert_remark(
+        &load_path(&at.path().join("0"), VolumeChoice::default()).unwrap(),
+        "their size or direction differs",
+    );
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn slice_locations_say_order_and_distance() {
         assert_eq!(volume.samples(), &Samples::U16(ramp_values(&[0, 100, 200, 300])));
         assert_eq!(spacing(&volume), [0.25, 0.5, 1.5]);
         assert!(!volume.has_unknown_scale());
-        assert_remark(&volume, "1.5000 mm apart, is taken from Slice Location");
+        assert_remark(&volume, "1.5000 mm apart, are taken from Slice Location");
     }
     // With one slice missing.
     let at = folder(&[files[0].clone(), files[1].clone(), files[3].clone()]);

@@ -33,9 +33,9 @@ fn one_unreadable_slice_does_not_cost_the_series() {
     let cut = [0xff, 0xd8, 0xff, 0xc3, 0, 11, 16, 0, 3, 0, 4, 1, 1, 0x11, 0, 0xff];
     for (second, why) in [
         (packed(HTJ2K, &[0xff; 64]), "High-Throughput JPEG 2000"),
-        (packed(JPEG_LOSSLESS, &cut), "picture is broken"),
-        (packed(JPEG_LOSSLESS, &[0; 64]), "picture is broken"),
-        (packed(RLE, &[0; 64]), "0 planes"),
+        (packed(JPEG_LOSSLESS, &cut), "image is broken"),
+        (packed(JPEG_LOSSLESS, &[0; 64]), "image is broken"),
+        (packed(RLE, &[0; 64]), "0 byte planes"),
         (ramp_file(0).words(&[1, 2, 3]), "truncated"),
         (ramp_file(0).bits(64, 64, false), "64 bits"),
     ] {
@@ -120,7 +120,11 @@ fn private_syntaxes_that_are_plain_are_read() {
     assert_eq!(packed.load().unwrap().samples(), &Samples::U16(vec![7; 12]));
     // Pixels in no known form.
     let unknown = DicomFileBuilder { syntax: PRIVATE, ..ramp_file(0) }.words(&[0; 7]);
-    assert_refused(unknown.load(), LoadErrorKind::BadInput, &["private syntax", PRIVATE, "Explicit VR"]);
+    assert_refused(
+        unknown.load(),
+        LoadErrorKind::BadInput,
+        &["private transfer syntax", PRIVATE, "Explicit VR"],
+    );
 }
 
 #[test]

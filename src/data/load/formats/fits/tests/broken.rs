@@ -43,7 +43,7 @@ fn headers_that_lie_are_refused() {
         (picture().with("NAXIS1", FAR).with("NAXIS2", FAR), LoadErrorKind::Limit, "are allowed"),
         (picture().with("NAXIS1", "99999999999999999999"), LoadErrorKind::BadInput, "NAXIS1"),
         (picture().with("NAXIS1", -3), LoadErrorKind::BadInput, "NAXIS1"),
-        (picture().with("NAXIS1", 0), LoadErrorKind::BadInput, "no picture"),
+        (picture().with("NAXIS1", 0), LoadErrorKind::BadInput, "no image"),
         (picture().with("NAXIS1", 2000), LoadErrorKind::BadInput, "truncated"),
         (picture().with("NAXIS", 1), LoadErrorKind::BadInput, "two axes or more"),
         (picture().with("BITPIX", 12), LoadErrorKind::BadInput, "12 bits"),
@@ -94,7 +94,7 @@ fn files_without_a_picture_say_what_they_hold() {
     let groups =
         TestUnit::primary(-32, &[0, 3], vec![0; 24]).with("GROUPS", "T").with("PCOUNT", 3).with("GCOUNT", 1);
     for (units, words) in [
-        (vec![empty.clone()], "no picture"),
+        (vec![empty.clone()], "no image"),
         (vec![empty.clone(), table.clone()], "tables"),
         (vec![empty.clone(), packed.clone()], "funpack"),
         (vec![groups], "interferometer"),

@@ -76,7 +76,7 @@ fn distances_have_units_and_are_mended() {
     let identity = "TransformMatrix = 1 0 0 0 1 0 0 0 1";
     let volume = read(&[identity, "ElementSpacing = 0 -2 nan"], &VOXELS);
     assert_eq!(volume.spacing_mm(), DVec3::new(1.0, 2.0, 1.0));
-    assert!(volume.is_anatomical() && volume.remarks()[0].contains("cannot be"));
+    assert!(volume.is_anatomical() && volume.remarks()[0].contains("is unusable"));
     let flat = read(&["TransformMatrix = 1 0 0 1 0 0 0 0 1", "ElementSpacing = 1 2 3"], &VOXELS);
     assert!(!flat.is_anatomical() && !flat.remarks().is_empty());
     assert!(read(&[identity], &VOXELS).has_unknown_scale());

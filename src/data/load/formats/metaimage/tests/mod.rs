@@ -126,7 +126,7 @@ fn channels_and_time_steps_are_chosen() {
     let data = [3u8, 0, 4, 0, 0, 0, 2, 0];
     let volume = read(&vector, &data);
     assert_eq!(*volume.samples(), Samples::F32(vec![5.0, 2.0]));
-    assert!(volume.remarks().iter().any(|remark| remark.contains("length")));
+    assert!(volume.remarks().iter().any(|remark| remark.contains("magnitude")));
     assert_eq!(*load_local(&vector, &data, component(1)).unwrap().samples(), Samples::I16(vec![4, 2]));
     assert_refused(
         load_local(&vector, &data, component(2)),

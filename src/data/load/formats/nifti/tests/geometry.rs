@@ -93,7 +93,7 @@ fn what_nobody_has_said_is_not_known() {
     assert!(!place(&default.clone().text(123, &[2])).has_unknown_scale(), "one millimetre");
     let volume = place(&default.f32(76, &[1.0, 2.0, 0.0, -3.0]));
     assert_eq!(volume.spacing_mm(), DVec3::new(2.0, 1.0, 3.0));
-    assert!(volume.remarks().iter().any(|remark| remark.contains("cannot be")));
+    assert!(volume.remarks().iter().any(|remark| remark.contains("is unusable")));
     // One slice, without a spacing along z.
     let slice = read(&nifti1_header(&[2, 2], 2).f32(88, &[0.0]).with_data(&[1; 4]));
     assert_eq!((slice.dims(), slice.spacing_mm()), ([2, 2, 1], DVec3::new(2.0, 3.0, 2.0)));

@@ -43,7 +43,7 @@ fn either_of_a_pair_can_be_named() {
         assert_refused(
             load_path(&paths[1], VolumeChoice::default()),
             LoadErrorKind::BadInput,
-            &["no header"],
+            &["not a NIfTI or Analyze header"],
         );
         fs::remove_file(&paths[0]).unwrap();
         assert_refused(load_path(&paths[1], VolumeChoice::default()), LoadErrorKind::BadInput, &[".hdr"]);

@@ -46,7 +46,7 @@ fn the_slowest_axis_holds_time_steps() {
         assert_refused(
             load(fields, &bytes, frame(2)),
             LoadErrorKind::BadInput,
-            &["none of its 2 time steps"],
+            &["not one of its 2 time steps"],
         );
     }
     for encoding in ["gzip", "ascii"] {

@@ -151,7 +151,7 @@ fn missing_and_wrong_fields_are_named() {
         ("space origin: (inf,0,0)", &["space origin"]),
         ("space dimension: 5", &["space dimension"]),
         ("kinds: domain vector domain", &["components", "permute"]),
-        ("kinds: vector list domain", &["spatial axes"]),
+        ("kinds: vector list domain", &["axes are spatial"]),
         ("line skip: -1", &["line skip"]),
         ("line skip: 99", &["line skip"]),
         ("byte skip: -2", &["byte skip"]),

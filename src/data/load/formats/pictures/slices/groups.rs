@@ -161,7 +161,7 @@ fn gap_remark(numbers: &[Option<u64>]) -> Option<String> {
         more => format!(", and at {more} more places"),
     };
     Some(format!(
-        "slices are missing between numbers {before} and {after}{more}: the others are stacked as if they were not"
+        "slices are missing between numbers {before} and {after}{more}: the others are stacked without gaps"
     ))
 }
 

@@ -42,7 +42,7 @@ fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let Some(kind) = SliceFormat::detect(start.stored()) else {
         return Err(attempt.bad_input_error(
             "header",
-            "it does not begin as pictures do",
+            "its first bytes are not those of a picture",
             "copy the file again",
         ));
     };
@@ -131,7 +131,7 @@ fn damaged_slices_remark(
     }
     (count > 0).then(|| {
         let (is, they) =
-            if count == 1 { ("is", "it is no picture") } else { ("are", "they are no pictures") };
+            if count == 1 { ("is", "it is not a picture") } else { ("are", "they are not pictures") };
         format!("{} {is} left out: {they}; copy the file again if a slice is missing", names.join(", "))
     })
 }
@@ -216,7 +216,7 @@ fn read_stack(
         .map(|path| look_at(path, false).map(|(header, _)| header))
         .collect::<Result<_, _>>()?;
     let (Some(&model), Some(first)) = (headers.first(), files.first()) else {
-        return Err(attempt.bad_input_error("files", "there is no slice", "name one file"));
+        return Err(attempt.bad_input_error("files", "there is no slice", "open a single file"));
     };
     for (header, path) in headers.iter().zip(files) {
         check_slices_match(attempt, [(&model, first), (header, path)])?;
@@ -252,7 +252,7 @@ fn check_slices_match(
         return Err(attempt.bad_input_error(
             "files",
             format!("{path} alone holds {} slices", header.pages),
-            "name that file, or choose another series with --series",
+            "open that file, or choose another series with --series",
         ));
     }
     if header.size == model.size && header.stored == model.stored {

@@ -201,7 +201,11 @@ fn read_image(
         && format == ImageFormat::Jpeg
         && !has_end_of_image(&mut input).map_err(|error| attempt.io_error(error))?
     {
-        return Err(attempt.bad_input_error("data", "the picture is truncated: it has no end", HELP));
+        return Err(attempt.bad_input_error(
+            "data",
+            "the picture is truncated: its end marker is missing",
+            HELP,
+        ));
     }
     let (length, most_pixels) = (input.len, max_pixels(format, input.len, &first_bytes));
     let mut reader: ImageReader<BufReader<_>> = ImageReader::with_format(input.reader, format);
@@ -219,7 +223,13 @@ fn read_image(
         ColorType::La16 => (FileNumberType::U16, 2),
         ColorType::Rgb16 => (FileNumberType::U16, 3),
         ColorType::Rgba16 => (FileNumberType::U16, 4),
-        other => return Err(attempt.bad_input_error("data", format!("its colours are {other:?}"), HELP)),
+        other => {
+            return Err(attempt.bad_input_error(
+                "data",
+                format!("its colour type {other:?} is not supported"),
+                HELP,
+            ));
+        }
     };
     let component = options.choice.resolve_component(components, true);
     let part = ScalarReduction::require(attempt, component, components, true)?;

@@ -162,7 +162,7 @@ fn broken_and_huge_pictures_are_refused() {
     let whole = std::fs::read(&path).unwrap();
     assert!(load_path(&path).is_ok());
     std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-    assert_refused(load_path(&path), LoadErrorKind::BadInput, &["a.jpg", "it has no end"]);
+    assert_refused(load_path(&path), LoadErrorKind::BadInput, &["a.jpg", "its end marker is missing"]);
     let large = folder(&[("a.png", grey(300, &vec![0; 300 * 300]))]);
     assert_refused(load_path(&large.path().join("a.png")), LoadErrorKind::Limit, &["allowed"]);
 }
@@ -199,7 +199,7 @@ fn a_slice_that_is_no_picture_is_said() {
     };
     for bytes in [&b"garbage"[..], b"", &[0; 4096]] {
         let remarks = damaged(bytes, "s001.png");
-        assert!(remarks.contains("\"s001.png\" is left out: it is no picture"), "{remarks}");
+        assert!(remarks.contains("\"s001.png\" is left out: it is not a picture"), "{remarks}");
         assert!(!remarks.contains("notes"), "{remarks}");
     }
     assert!(damaged(b"garbage", "other.jpeg").contains("\"other.jpeg\" is left out"));

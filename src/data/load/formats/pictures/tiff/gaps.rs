@@ -20,14 +20,16 @@ impl SliceRun {
         let mut parts = Vec::new();
         if there < said {
             parts.push(if first == 0 {
-                format!("{said} slices are said, and there are pages for the first {there}: those are shown")
+                format!("{said} slices are announced, and there are pages for the first {there}: those are shown")
             } else {
-                format!("{said} slices are said, and there are pages for {first} to {last} of them: those are shown")
+                format!(
+                    "{said} slices are announced, and there are pages for {first} to {last} of them: those are shown"
+                )
             });
         }
         let empty: Vec<usize> = (first..=last).filter(|&at| slices[at].is_none()).collect();
         if !empty.is_empty() {
-            parts.push(format!("no pages are there for slices {}: they are empty", list_numbers(&empty)));
+            parts.push(format!("no pages exist for slices {}: they are left empty", list_numbers(&empty)));
         }
         let remark = (!parts.is_empty()).then(|| parts.join("; "));
         Some(Self { slices: kept, remark })
@@ -62,12 +64,14 @@ mod tests {
         assert_eq!(recorded(&[0, 1]), Some(SliceRun { slices: slices(&[0, 1]), remark: None }));
         let stopped = recorded(&[0, 1, -1, -1]).unwrap();
         assert_eq!(stopped.slices, slices(&[0, 1]));
-        assert!(stopped.remark.unwrap().contains("4 slices are said, and there are pages for the first 2"));
+        assert!(
+            stopped.remark.unwrap().contains("4 slices are announced, and there are pages for the first 2")
+        );
         let between = recorded(&[-1, 5, -1, 7, -1]).unwrap();
         assert_eq!(between.slices, slices(&[5, -1, 7]));
         let remark = between.remark.unwrap();
         assert!(
-            remark.contains("for 1 to 3 of them") && remark.contains("slices 2: they are empty"),
+            remark.contains("for 1 to 3 of them") && remark.contains("slices 2: they are left empty"),
             "{remark}"
         );
         let many: Vec<i32> = (0..40).map(|at| if at % 2 == 0 { at } else { -1 }).collect();

@@ -55,7 +55,11 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
     let attempt = LoadContext { operation: WHAT, path };
     if !is_tiff(start.stored()) {
-        return Err(attempt.bad_input_error("header", "it does not begin as TIFF files do", messages::HELP));
+        return Err(attempt.bad_input_error(
+            "header",
+            "its first bytes are not those of a TIFF file",
+            messages::HELP,
+        ));
     }
     let mut tiff = TiffFile::open(attempt, input, control)?;
     let description = tiff.text_entry(tag::DESCRIPTION, ome::MAX_XML_BYTES).unwrap_or_default();

@@ -29,7 +29,7 @@ impl SingleSlice {
         let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
         let pages = usable_pages(&tiff, &mut Vec::new());
         let Some(&number) = pages.first() else {
-            return Err(attempt.bad_input_error("pages", "there is none", super::messages::HELP));
+            return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
         };
         let page = tiff.pages[number];
         Ok(Self { tiff, page, number, pages: pages.len() })

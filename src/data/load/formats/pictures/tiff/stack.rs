@@ -168,7 +168,7 @@ impl TiffStack {
         } = self;
         let mut files = TiffStackFiles { attempt, first: tiff, beside: &beside, open: None, control };
         let Some(&first) = slices.iter().flatten().next() else {
-            return Err(attempt.bad_input_error("pages", "there is none", HELP));
+            return Err(attempt.bad_input_error("pages", "it has no pages", HELP));
         };
         let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
         let sample = sample.or_else(|| chosen_sample(&model, options));
@@ -180,7 +180,7 @@ impl TiffStack {
         placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
         // Inversion is a property of display: the stored values are the measurements, or those of the mask.
         if model.is_inverted {
-            let remark = "0 is said to stand for white: values are those that are stored";
+            let remark = "0 stands for white (WhiteIsZero): values are shown as stored";
             placement.remarks.push(remark.to_owned());
         }
         // The first page is checked before memory is allocated for all, in case that it lacks the announced data.
@@ -259,11 +259,7 @@ pub(super) fn page_encoding(
 ) -> Result<VoxelEncoding, LoadError> {
     page.check_supported(attempt, "first page")?;
     let Some(number) = page.number() else {
-        return Err(attempt.bad_input_error(
-            "first page",
-            "its numbers are of a kind that is not read",
-            HELP,
-        ));
+        return Err(attempt.bad_input_error("first page", "its sample type is not supported", HELP));
     };
     let component = sample.or(chosen_component(page, options)).or(match page.meaning {
         SampleMeaning::Channels => Some(0),
@@ -288,7 +284,7 @@ pub(super) fn check_page_bytes(
     }
     Err(attempt.limit_error(
         "first page",
-        format!("a page of {} x {} pixels of {} numbers is too large", page.width, page.height, page.samples),
+        format!("a page of {} x {} pixels of {} samples is too large", page.width, page.height, page.samples),
         "close other programs, or load a smaller or cropped picture",
     ))
 }
@@ -301,7 +297,7 @@ fn mismatch_error(attempt: LoadContext<'_>, number: usize, page: &TiffPage, mode
     };
     attempt.bad_input_error(
         &format!("page {number}"),
-        format!("it has {}, the first page {}", say(page), say(model)),
+        format!("it has {}, the first page has {}", say(page), say(model)),
         "save the pages of one size in a file of their own",
     )
 }

@@ -21,7 +21,7 @@ pub(super) fn usable_pages(tiff: &TiffFile, remarks: &mut Vec<String>) -> Vec<us
         meant.into_iter().partition(|&page| pages[page].matches(&pages[first]));
     for (left_out, why) in [
         (aside, "are left out: they are masks or smaller versions of others"),
-        (unlike, "are left out: their size or number type is not that of the first"),
+        (unlike, "are left out: their size or sample type differs from the first"),
     ] {
         if !left_out.is_empty() {
             remarks.push(format!("{} of {} pages {why}", left_out.len(), pages.len()));
@@ -39,7 +39,7 @@ pub(super) fn stack_of_pages(
     let mut placement = GridPlacement::unknown();
     let pages = usable_pages(tiff, &mut placement.remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-        return Err(attempt.bad_input_error("pages", "there is none", super::messages::HELP));
+        return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
     };
     let is_channels = first.meaning == SampleMeaning::Channels;
     let steps = ChannelsAndTimes {

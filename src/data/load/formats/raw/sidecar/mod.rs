@@ -95,8 +95,8 @@ fn guess_data_file(attempt: LoadContext<'_>) -> Result<String, LoadError> {
     candidates.iter().find(is_there).cloned().ok_or_else(|| {
         attempt.bad_input_error(
             "data file",
-            "there is no file beside it that it could describe",
-            format!("put the voxels beside it and call them {}.raw", crate::data::sanitised(&stem, 60)),
+            "the data file that it describes is not beside it",
+            format!("put the data file beside it, named {}.raw", crate::data::sanitised(&stem, 60)),
         )
     })
 }
@@ -154,7 +154,7 @@ fn text(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<String, LoadE
     if bytes.len() as u64 > MAX_BYTES {
         return Err(attempt.bad_input_error(
             "",
-            format!("it is longer than {MAX_BYTES} bytes, which no description is"),
+            format!("it is longer than {MAX_BYTES} bytes, the maximum for a description"),
             "check the file's name and format",
         ));
     }

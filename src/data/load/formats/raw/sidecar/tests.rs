@@ -160,7 +160,7 @@ fn inconsistent_descriptions_are_refused() {
         ("a.dat", DAT.to_owned() + "Sequences: 0", LoadErrorKind::BadInput, "Sequences"),
         ("a.dat", DAT.to_owned() + "Sequences: 99999999999999", LoadErrorKind::Limit, "time steps"),
         ("a.dat", DAT.to_owned() + &"#\n".repeat(40_000), LoadErrorKind::BadInput, "longer"),
-        ("a.ini", INI.to_owned(), LoadErrorKind::BadInput, "no file beside it"),
+        ("a.ini", INI.to_owned(), LoadErrorKind::BadInput, "is not beside it"),
         ("foot.ini", INI.replace("dimz:2", "dimz:"), LoadErrorKind::BadInput, "dimz"),
         ("foot.ini", INI.replace("uint8", "Vec9uint8"), LoadErrorKind::BadInput, "format"),
         ("foot.ini", INI.replace("uint8", "vecé"), LoadErrorKind::BadInput, "format"),

@@ -5,7 +5,7 @@ use super::super::super::placement::GridPlacement;
 use super::super::super::{Endian, LoadError};
 use crate::data::load_context::{LoadContext, quoted};
 
-const HELP: &str = "correct the description, or give --dims and --type with the file of voxels";
+const HELP: &str = "correct the description, or open the data file with --dims and --type";
 
 /// Error for a value of unexpected form.
 pub(super) fn bad_value(attempt: LoadContext<'_>, field: &str, found: &str, expected: &str) -> LoadError {
@@ -14,7 +14,7 @@ pub(super) fn bad_value(attempt: LoadContext<'_>, field: &str, found: &str, expe
 
 /// Error for a missing key.
 pub(super) fn missing_key(attempt: LoadContext<'_>, field: &str) -> LoadError {
-    attempt.bad_input_error(field, "it does not say this", HELP)
+    attempt.bad_input_error(field, "the field is missing", HELP)
 }
 
 /// Parses lines `key: value` or `key = value`, with keys in lower case. Other lines and comments are ignored.

@@ -40,7 +40,7 @@ impl<'a> LegacyLines<'a> {
         let text = String::from_utf8_lossy(&line);
         if line.len() as u64 == MAX_LINE_BYTES && !line.ends_with(b"\n") {
             let why = format!("a line is longer than {MAX_LINE_BYTES} bytes: {}", quoted(&text));
-            return Err(self.attempt.bad_input_error("lines", why, "check that it is a file of VTK's"));
+            return Err(self.attempt.bad_input_error("lines", why, "check that it is a VTK file"));
         }
         Ok((!line.is_empty()).then(|| text.trim().to_owned()))
     }

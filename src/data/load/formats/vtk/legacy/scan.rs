@@ -76,7 +76,7 @@ impl<'a> LegacyScan<'a> {
         match dataset.to_uppercase().split_whitespace().collect::<Vec<_>>()[..] {
             ["DATASET", "STRUCTURED_POINTS"] => {}
             ["DATASET", kind] => {
-                let why = format!("a data set of the kind {} is no regular grid", quoted(kind));
+                let why = format!("a data set of type {} is not a regular grid", quoted(kind));
                 return Err(attempt.bad_input_error("DATASET", why, RESAMPLE));
             }
             _ => {
@@ -263,7 +263,7 @@ impl<'a> LegacyScan<'a> {
                     location: place,
                 });
             }
-            _ => self.attempt.warn(format_args!("the array {} is not read", quoted(&name))),
+            _ => self.attempt.warn(format_args!("the array {} is ignored", quoted(&name))),
         }
         if self.is_text {
             lines.skip_words(tuples.saturating_mul(components))
@@ -282,7 +282,7 @@ impl<'a> LegacyScan<'a> {
                 "open it in ParaView and save it as .vti",
             ));
         }
-        self.attempt.warn(format_args!("nothing behind the line {} is read", quoted(line)));
+        self.attempt.warn(format_args!("everything after the line {} is ignored", quoted(line)));
         Ok(false)
     }
 }

@@ -66,7 +66,7 @@ impl<R: BufRead> Base64Reader<R> {
                 0
             }
             byte if byte.is_ascii_whitespace() => return Ok(()),
-            byte => return Err(format!("{:?} is no character of base64 here", char::from(byte))),
+            byte => return Err(format!("{:?} is not valid base64 here", char::from(byte))),
         };
         if self.padding > 0 && byte != b'=' {
             return Err("the padding of base64 ends too early".to_owned());
@@ -77,7 +77,7 @@ impl<R: BufRead> Base64Reader<R> {
             let [_, bytes @ ..] = self.bits.to_be_bytes();
             let (bytes, rest) = bytes.split_at(3 - self.padding as usize);
             if rest.iter().any(|&byte| byte != 0) {
-                return Err("the padding of base64 hides bits".to_owned());
+                return Err("the padding of base64 contains bits that are not zero".to_owned());
             }
             self.ready.get_mut().extend(bytes);
             (self.bits, self.characters, self.padding) = (0, 0, 0);

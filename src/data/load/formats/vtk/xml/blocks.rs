@@ -95,7 +95,7 @@ impl<R: Read> CompressedBlocks<R> {
         }
         if block_bytes > MAX_BLOCK_BYTES {
             return Err(invalid_data(format!(
-                "its blocks of {block_bytes} bytes are larger than the {MAX_BLOCK_BYTES} that are read"
+                "its blocks of {block_bytes} bytes are larger than the {MAX_BLOCK_BYTES} that are supported"
             )));
         }
         // A table larger than the data is implausible, except for very small data.
@@ -108,7 +108,7 @@ impl<R: Read> CompressedBlocks<R> {
             // Neither scheme expands incompressible data beyond this.
             if bytes > block_bytes.saturating_add(block_bytes / 8).saturating_add(1024) {
                 return Err(invalid_data(format!(
-                    "a block of {block_bytes} bytes cannot have {bytes} when it is compressed"
+                    "a block of {block_bytes} bytes cannot take {bytes} bytes when compressed"
                 )));
             }
             compressed.push(bytes);
@@ -116,7 +116,7 @@ impl<R: Read> CompressedBlocks<R> {
         let sum = compressed.iter().fold(0u64, |sum, &bytes| sum.saturating_add(bytes));
         if room.is_some_and(|room| room < sum) {
             return Err(invalid_data(format!(
-                "the data are truncated: {sum} bytes of blocks expected, room for {} found",
+                "the data are truncated: {sum} bytes of blocks expected, at most {} found",
                 room.unwrap_or_default()
             )));
         }
@@ -156,7 +156,7 @@ impl<R: Read> CompressedBlocks<R> {
             }
             // A byte of an LZ4 length adds at most 255 bytes.
             Compressor::Lz4 if self.packed.len().saturating_mul(255) < wanted => {
-                Err(format!("{} bytes cannot make {wanted}", self.packed.len()))
+                Err(format!("{} bytes cannot expand to {wanted}", self.packed.len()))
             }
             Compressor::Lz4 => {
                 // Zeroed pages are committed only as they are written: as much as the block really contains.
@@ -166,7 +166,7 @@ impl<R: Read> CompressedBlocks<R> {
         };
         match unpacked {
             Ok(found) if found == wanted => Ok(()),
-            Ok(found) => Err(invalid_data(format!("a block of {wanted} bytes has {found}"))),
+            Ok(found) => Err(invalid_data(format!("a block of {wanted} bytes expands to {found}"))),
             Err(why) => Err(invalid_data(format!("a compressed block is broken: {why}"))),
         }
     }

@@ -114,7 +114,7 @@ impl MarkupScan {
                     if self.markup.len() + self.tag.len() > MAX_MARKUP_BYTES {
                         return Err(attempt.limit_error(
                             "markup",
-                            "its marks take more than 1 MiB",
+                            "its markup takes more than 1 MiB",
                             "write it again with fewer arrays",
                         ));
                     }
@@ -157,7 +157,7 @@ impl MarkupScan {
         if self.depth > MAX_DEPTH {
             return Err(attempt.bad_input_error(
                 "markup",
-                format!("its elements lie in each other more than {MAX_DEPTH} deep"),
+                format!("its elements are nested more than {MAX_DEPTH} deep"),
                 "check that it is a VTK file",
             ));
         }

@@ -87,7 +87,7 @@ fn find_piece<'a, 'input>(
     if root.tag_name().name() != "VTKFile" {
         return Err(attempt.bad_input_error(
             "VTKFile",
-            "its root is another element",
+            "its root element is not VTKFile",
             "check the file's format",
         ));
     }
@@ -101,7 +101,7 @@ fn find_piece<'a, 'input>(
     if kind != "ImageData" {
         return Err(attempt.bad_input_error(
             "type",
-            format!("{} is no regular grid", quoted(kind)),
+            format!("{} is not a regular grid", quoted(kind)),
             RESAMPLE,
         ));
     }
@@ -116,7 +116,7 @@ fn find_piece<'a, 'input>(
         [] => Err(attempt.bad_input_error("Piece", "it has no piece with values", "write the file again")),
         [..] => Err(attempt.bad_input_error(
             "Piece",
-            format!("it is in {} pieces, and one is read", pieces.len()),
+            format!("it is in {} pieces, and only one is supported", pieces.len()),
             "open it in ParaView and save it as one .vti",
         )),
     }
@@ -166,7 +166,7 @@ fn grid(attempt: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadEr
 /// Encoding of the values, by the attributes of the root element.
 fn value_encoding(attempt: LoadContext<'_>, root: Node<'_, '_>) -> Result<VtkEncoding, LoadError> {
     let refused = |field: &str, text: &str, known: &str, help: &str| {
-        Err(attempt.bad_input_error(field, format!("{known} is read, {} is not", quoted(text)), help))
+        Err(attempt.bad_input_error(field, format!("{known} is supported, {} is not", quoted(text)), help))
     };
     let endian = match root.attribute("byte_order") {
         None | Some("LittleEndian") => Endian::Little,
@@ -209,7 +209,7 @@ fn arrays(
             let name = sanitised(node.attribute("Name").unwrap_or_default().trim(), 80);
             let Some(number) = node.attribute("type").and_then(number) else {
                 let kind = quoted(node.attribute("type").unwrap_or_default());
-                attempt.warn(format_args!("the array {} of type {kind} is not read", quoted(&name)));
+                attempt.warn(format_args!("the array {} of type {kind} is ignored", quoted(&name)));
                 continue;
             };
             let text = node.attribute("NumberOfComponents").unwrap_or("1");
@@ -221,7 +221,8 @@ fn arrays(
             })?;
             let tuples = node.attribute("NumberOfTuples").and_then(|text| text.parse::<u64>().ok());
             if tuples.is_some_and(|tuples| tuples != grid.count(of_cells)) {
-                attempt.warn(format_args!("the array {} is not one of the grid's", quoted(&name)));
+                attempt
+                    .warn(format_args!("the array {} does not fit the grid, and is ignored", quoted(&name)));
                 continue;
             }
             let place = value_location(attempt, node)?;
@@ -354,7 +355,8 @@ fn read_binary(
     let VtkEncoding { words, compressor, .. } = style;
     let expected = chosen.stored_bytes();
     let compressor = compressor.transpose().map_err(|other| {
-        let why = format!("vtkZLibDataCompressor or vtkLZ4DataCompressor is read, {} is not", quoted(&other));
+        let why =
+            format!("vtkZLibDataCompressor or vtkLZ4DataCompressor is supported, {} is not", quoted(&other));
         attempt.bad_input_error("compressor", why, "write it again with one of those, or uncompressed")
     })?;
     let Some(compressor) = compressor else {

@@ -258,14 +258,14 @@ fn what_cannot_be_read_is_named() {
         ("1 2 3 4", "1 2", &["truncated"]),
         ("1 2 3 4\n5 6 7 8", "", &["truncated"]),
         ("</Piece>", "</Piece><Piece/>", &["2 pieces"]),
-        ("</Piece>", "", &["no XML"]),
+        ("</Piece>", "", &["not well-formed XML"]),
     ] {
         let text = plain_file();
         assert!(text.contains(from), "{from}");
         assert_refused(load_bytes(text.replace(from, to).as_bytes()), LoadErrorKind::BadInput, words);
     }
     let cut = &plain_file()[..200];
-    assert_refused(load_bytes(cut.as_bytes()), LoadErrorKind::BadInput, &["no XML"]);
+    assert_refused(load_bytes(cut.as_bytes()), LoadErrorKind::BadInput, &["not well-formed XML"]);
     let huge = plain_file().replace("0 1 0 1 0 1", "0 99999 0 99999 0 99999");
     assert_refused(load_bytes(huge.as_bytes()), LoadErrorKind::Limit, &["100000 x 100000"]);
     let large = plain_file().replace("0 1 0 1 0 1", "0 99 0 99 0 9");
@@ -301,7 +301,7 @@ fn inconsistent_headers_are_refused() {
         (&[u64::from(u32::MAX), u64::from(u32::MAX), 0], &[], &["announces"]),
         (&[1, 4, 8, length], &packed[..], &["announces"]),
         (&[1, 8, 0, length + 1], &packed[..], &["truncated"]),
-        (&[1, 8, 0, 1 << 30], &packed[..], &["cannot have"]),
+        (&[1, 8, 0, 1 << 30], &packed[..], &["cannot take"]),
         (&[1, 8, 0, length - 3], &packed[..], &["block"]),
         (&[1, 8, 0], &[], &["header"]),
     ] {
@@ -311,7 +311,7 @@ fn inconsistent_headers_are_refused() {
             words => assert_refused(result, bad, words),
         }
     }
-    for (bytes, words) in [(&VOXELS[..7], "has 7"), (&[1; 9], "has 9")] {
+    for (bytes, words) in [(&VOXELS[..7], "expands to 7"), (&[1; 9], "expands to 9")] {
         let packed = zlib(bytes);
         let result = read(zlib_root, &with(&[1, 8, 0, packed.len() as u64], &packed));
         assert_refused(result, bad, &[words]);

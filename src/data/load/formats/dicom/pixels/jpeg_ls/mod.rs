@@ -67,7 +67,7 @@ pub(super) fn decode(packed: &[u8]) -> Result<JpegLsImage, String> {
 }
 
 /// Error message for missing bits, or bits that no encoder writes.
-const TRUNCATED: &str = "it is broken, or ends before all of its pixels are there";
+const TRUNCATED: &str = "it is broken, or ends before its last pixel";
 /// Error message for a segment of wrong length or in a wrong place.
 const BAD_MARKERS: &str = "its markers are broken";
 
@@ -105,16 +105,18 @@ impl<'a> JpegLsStream<'a> {
                 let presets = presets.as_chunks().0.first_chunk().ok_or(BAD_MARKERS)?;
                 self.presets = presets.map(u16::from_be_bytes);
             }
-            (0xf8, [2 | 3, ..]) => return Err("mapping tables are not read"),
-            (0xf8, [4..=255, ..]) => return Err("extensions of JPEG-LS are not read"),
+            (0xf8, [2 | 3, ..]) => return Err("mapping tables are not supported"),
+            (0xf8, [4..=255, ..]) => return Err("extensions of JPEG-LS are not supported"),
             (0xdd, _) if matches!(data.len(), 2..=4) => {
                 self.restart_interval = data.iter().fold(0, |all, &byte| all << 8 | usize::from(byte));
             }
             // HP's colour transform, an encoder extension that improves compression; 0 means none.
-            (0xe8, [b'm', b'r', b'f', b'x', 1..=255, ..]) => return Err("its colours are mixed"),
+            (0xe8, [b'm', b'r', b'f', b'x', 1..=255, ..]) => {
+                return Err("its colour transform is not supported");
+            }
             // Application segments, and comments.
             (0xe0..=0xef | 0xfe, _) => {}
-            (0xc0..=0xcf, _) => return Err("it is JPEG of another kind"),
+            (0xc0..=0xcf, _) => return Err("it is another kind of JPEG"),
             _ => return Err(BAD_MARKERS),
         }
         Ok(None)
@@ -129,10 +131,10 @@ impl<'a> JpegLsStream<'a> {
         self.frame = Some(JpegLsHeader { width, height, components: parts.len(), bits: bits.into() });
         match count {
             _ if each.len() != 3 * usize::from(count) => Err(BAD_MARKERS),
-            0 | 5.. => Err("only 1 to 4 components are read"),
-            _ if !(2..=16).contains(&bits) => Err("only 2 to 16 bits are read"),
-            _ if parts.iter().any(|part| part[1] != 0x11) => Err("subsampling is not read"),
-            _ if width == 0 || height == 0 => Err("sizes that are given later are not read"),
+            0 | 5.. => Err("only 1 to 4 components are supported"),
+            _ if !(2..=16).contains(&bits) => Err("only 2 to 16 bits are supported"),
+            _ if parts.iter().any(|part| part[1] != 0x11) => Err("subsampling is not supported"),
+            _ if width == 0 || height == 0 => Err("a size outside the frame header is not supported"),
             _ => Ok(()),
         }
     }
@@ -145,7 +147,7 @@ impl<'a> JpegLsStream<'a> {
         let &[near, mode @ 0..=2, transform] = rest else { return Err(BAD_MARKERS) };
         let pairs = pairs.as_chunks::<2>().0;
         if transform != 0 || pairs.iter().any(|pair| pair[1] != 0) {
-            return Err("point transforms and mapping tables are not read");
+            return Err("point transforms and mapping tables are not supported");
         }
         let place = |pair: &[u8; 2]| self.component_ids.iter().position(|&name| name == pair[0]);
         let places: Vec<_> = pairs.iter().map(place).collect::<Option<_>>().ok_or(BAD_MARKERS)?;

@@ -85,7 +85,7 @@ impl JpegLsScanDecoder {
             if is_restart {
                 // Restart markers are numbered from D0 to D7 (T.81 B.2.1).
                 if packed.get(marker + 1) != Some(&(0xd0 + (y / restart - 1) as u8 % 8)) {
-                    return Err("a restart is missing");
+                    return Err("a restart marker is missing");
                 }
                 (marker, groups) = (self.reset(packed, marker + 2), fresh());
             }

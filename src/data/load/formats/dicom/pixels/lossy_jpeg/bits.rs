@@ -84,11 +84,11 @@ impl ScanBits<'_> {
             if word < limit {
                 self.take(length)?;
                 let value = codes.values.get(before as usize);
-                return Ok(*value.ok_or("a table is broken")?);
+                return Ok(*value.ok_or("a Huffman table is broken")?);
             }
             start = limit;
         }
-        Err("a code is in no table".to_owned())
+        Err("a code is not in the Huffman table".to_owned())
     }
 
     /// Decodes a signed number of up to 15 bits (T.81 sections F.2.2.1 and F.2.2.4).
@@ -110,16 +110,16 @@ impl ScanBits<'_> {
         let [dc_table, ac_table] = &part.huffman_tables;
         // Differences of DC coefficients have up to 15 bits, AC coefficients up to 14 (T.81 section F.1.5).
         let size = self.decode_code(dc_table)?;
-        let size = Some(size).filter(|&size| size <= 15).ok_or("a mean has more than 15 bits")?;
+        let size = Some(size).filter(|&size| size <= 15).ok_or("a DC difference has more than 15 bits")?;
         part.dc_predictor = part.dc_predictor.saturating_add(self.decode_number(size)?);
         let mut last = store(0, part.dc_predictor);
         // The last coefficient is at 63 in zigzag and in row order.
-        while last.ok_or("a coefficient is outside of its block")? < 63 {
+        while last.ok_or("a coefficient lies outside its block")? < 63 {
             let value = self.decode_code(ac_table)?;
             last = match (value >> 4, value & 15) {
                 (0, 0) => break,
                 (15, 0) => store(15, 0),
-                (_, 0 | 15) => Err("a coefficient has more than 14 bits, or none")?,
+                (_, 0 | 15) => Err("an AC coefficient has more than 14 bits, or none")?,
                 (zeros, size) => store(zeros, self.decode_number(size)?),
             };
         }

@@ -12,7 +12,7 @@ use bits::{HuffmanTable, ScanBits};
 type JpegBlock = [[f64; 8]; 8];
 
 /// Error message for an image that ends before it is complete.
-const TRUNCATED: &str = "the picture is cut off, or broken before its last block";
+const TRUNCATED: &str = "the image is truncated, or broken before its last block";
 
 /// Frame header of an image: size in pixels, components (1 to 4) and bits per component (8 or 12).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -98,7 +98,7 @@ struct LossyJpegDecoder<'a> {
 impl<'a> LossyJpegDecoder<'a> {
     /// Starts a decoder behind the SOI marker.
     fn new(packed: &'a [u8]) -> Result<Self, String> {
-        let rest = packed.strip_prefix(b"\xff\xd8").ok_or("no picture of JPEG begins there")?;
+        let rest = packed.strip_prefix(b"\xff\xd8").ok_or("it does not begin as a JPEG image")?;
         let wave = |u, x| (f64::from((2 * x + 1) * u) * PI / 16.0).cos();
         let scaled = |u, x| if u == 0 { 1.0 } else { SQRT_2 * wave(u, x) };
         let waves = from_fn(|u| from_fn(|x| scaled(u as u32, x as u32)));
@@ -114,15 +114,17 @@ impl<'a> LossyJpegDecoder<'a> {
         let body = segment.get(2..).ok_or(TRUNCATED)?;
         self.bits.rest = rest;
         match marker {
-            0xc0 | 0xc1 if self.header.width > 0 => Err("the picture has two sizes")?,
+            0xc0 | 0xc1 if self.header.width > 0 => Err("the image has two frame headers")?,
             0xc0 | 0xc1 => self.read_frame(marker, body)?,
-            0xc2 => Err("progressive JPEG is not read here")?,
-            0xc3 => Err("lossless JPEG is not read here")?,
-            0xc4 | 0xdb => self.read_tables(marker, body).ok_or("a table is broken")?,
-            0xc8..=0xcc => Err("JPEG with arithmetic codes is not read")?,
-            0xc5..=0xcf | 0xde | 0xdf => Err("hierarchical JPEG is not read")?,
+            0xc2 => Err("progressive JPEG of 12 bits is not supported")?,
+            0xc3 => Err("lossless JPEG is not supported by this decoder")?,
+            0xc4 | 0xdb => {
+                self.read_tables(marker, body).ok_or("a Huffman or quantisation table is broken")?
+            }
+            0xc8..=0xcc => Err("JPEG with arithmetic coding is not supported")?,
+            0xc5..=0xcf | 0xde | 0xdf => Err("hierarchical JPEG is not supported")?,
             0xda => self.read_scan(body)?,
-            0xdc => Err("JPEG whose height follows a scan is not read")?,
+            0xdc => Err("JPEG with its height after a scan (DNL) is not supported")?,
             0xdd => self.restart_interval = u16::from_be_bytes(*body.first_chunk().ok_or(TRUNCATED)?).into(),
             0xe0..=0xfe => {} // Application segments and comments.
             _ => Err(TRUNCATED)?,
@@ -156,8 +158,8 @@ impl<'a> LossyJpegDecoder<'a> {
         let is_whole = after.is_empty() && named.len() == usize::from(count);
         let is_known = matches!((bits, count), (8 | 12, 1..=4)) && width > 0 && height > 0;
         if !is_whole || !is_known || !factors.clone().flatten().all(|n| matches!(n, 1..=4)) {
-            let size = format!("{width} x {height} pixels of {count} numbers of {bits} bits");
-            return Err(format!("JPEG with loss of {size} is not read, or broken"));
+            let size = format!("{width} x {height} pixels of {count} samples of {bits} bits");
+            return Err(format!("lossy JPEG of {size} is broken, or not supported"));
         }
         let [x, y] = factors.clone().fold([1, 1], |[x, y], [h, v]| [h.max(x), v.max(y)]);
         for (place, (&[id, _, table], [h, v])) in named.iter().zip(factors).enumerate() {
@@ -188,7 +190,7 @@ impl<'a> LossyJpegDecoder<'a> {
         // A byte encodes at most 4 blocks: each has a DC code and at least one AC code.
         let is_held = blocks.div_ceil(4) <= self.bits.rest.len();
         if !is_held || self.samples.try_reserve_exact(count - self.samples.len()).is_err() {
-            return Err(format!("{width} x {height} pixels are cut off, or too many here"));
+            return Err(format!("{width} x {height} pixels are truncated, or do not fit in memory"));
         }
         self.samples.resize(count, 0);
         Ok(())
@@ -222,7 +224,7 @@ impl<'a> LossyJpegDecoder<'a> {
     fn read_scan(&mut self, body: &[u8]) -> Result<(), String> {
         self.allocate()?;
         let parts = self.take_components(body);
-        let mut parts = parts.ok_or("a scan lacks a table, or has not the right components")?;
+        let mut parts = parts.ok_or("a scan lacks a table, or has wrong components")?;
         let ([x, y], JpegFrameHeader { width, height, .. }) = (self.max_factors, self.header);
         let [across, down] = match &parts[..] {
             // A scan of a single component has no padding blocks.
@@ -234,7 +236,7 @@ impl<'a> LossyJpegDecoder<'a> {
             if mcu > 0 && mcu.is_multiple_of(self.restart_interval) {
                 let restart = 0xd0 + (mcu / self.restart_interval - 1) % 8;
                 let found = self.bits.marker().filter(|&found| usize::from(found) == restart);
-                found.ok_or("a restart is missing")?;
+                found.ok_or("a restart marker is missing")?;
                 for part in &mut parts {
                     part.dc_predictor = 0;
                 }

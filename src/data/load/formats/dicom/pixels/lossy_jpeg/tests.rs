@@ -140,8 +140,8 @@ fn what_is_not_sequential_is_refused() {
         (0xc9, 8, [8, 8], &[0x11], "arithmetic"),
         (0xc1, 10, [8, 8], &[0x11], "10 bits"),
         (0xc1, 12, [8, 0], &[0x11], "8 x 0 pixels"),
-        (0xc1, 12, [8, 8], &[0x51], "is not read"),
-        (0xc1, 12, [8, 8], &[0x11; 5], "5 numbers"),
+        (0xc1, 12, [8, 8], &[0x51], "not supported"),
+        (0xc1, 12, [8, 8], &[0x11; 5], "5 samples"),
     ] {
         let packed = stream(&[frame(marker, bits, size, factors), scan(&[1], &[(0, &[])])]);
         let refused = [header(&packed).unwrap_err(), decode(&packed).unwrap_err()];
@@ -150,15 +150,15 @@ fn what_is_not_sequential_is_refused() {
     for (parts, words) in [
         (vec![frame(0xc1, 12, [8, 8], &[0x11]), scan(&[1], &[(0, &[])])], "table"),
         (vec![tables(), frame(0xc1, 12, [8, 8], &[0x11]), scan(&[2], &[(0, &[])])], "components"),
-        (vec![tables(), frame(0xc1, 12, [65535, 65535], &[0x11]), scan(&[1], &[(0, &[])])], "cut off"),
-        (vec![frame(0xc1, 12, [8, 8], &[0x11]); 2], "two sizes"),
+        (vec![tables(), frame(0xc1, 12, [65535, 65535], &[0x11]), scan(&[1], &[(0, &[])])], "truncated"),
+        (vec![frame(0xc1, 12, [8, 8], &[0x11]); 2], "two frame headers"),
         (vec![tables(), frame(0xc1, 12, [8, 8], &[0x11]), scan(&[1], &[(0, &[(15, 0); 4])])], "outside"),
         (vec![segment(0xdb, &[0; 64])], "table"),
     ] {
         let refused = decode(&stream(&parts)).unwrap_err();
         assert!(refused.contains(words), "{refused}");
     }
-    assert!(header(b"GIF").unwrap_err().contains("begins"));
+    assert!(header(b"GIF").unwrap_err().contains("does not begin"));
 }
 
 #[test]

@@ -179,7 +179,7 @@ pub(crate) fn for_each_directory(
         if !seen.insert(next) {
             return Err(attempt.bad_input_error(
                 &field,
-                "the list of pages leads back to a page before",
+                "the list of pages is circular: it leads back to an earlier page",
                 "copy the file again, or save it anew",
             ));
         }

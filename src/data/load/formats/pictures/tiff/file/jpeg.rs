@@ -34,7 +34,7 @@ pub(super) struct JpegPart<'a> {
 pub(super) fn expand(picture: JpegPart<'_>, packed: &[u8], out: &mut [u8]) -> Result<usize, ReadFault> {
     // A panic of the decoder becomes an error of this picture, and does not end the program.
     let decoded = catch_unwind(AssertUnwindSafe(|| decode(picture, packed, out.len())))
-        .unwrap_or_else(|_| Err("it is broken in a way that its decoder does not know".to_owned()));
+        .unwrap_or_else(|_| Err("its decoder failed unexpectedly".to_owned()));
     let decoded = decoded.map_err(|why| ReadFault::Io(io::Error::other(why)))?;
     let count = decoded.len().min(out.len());
     out[..count].copy_from_slice(&decoded[..count]);
@@ -44,12 +44,12 @@ pub(super) fn expand(picture: JpegPart<'_>, packed: &[u8], out: &mut [u8]) -> Re
 fn decode(picture: JpegPart<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>, String> {
     let JpegPart { tables, size: [across, down], full_bytes: _, samples, is_ycbcr: is_ybr } = picture;
     let Some(rest) = packed.strip_prefix(&START) else {
-        return Err("no picture of JPEG begins there".to_owned());
+        return Err("it does not begin as a JPEG picture".to_owned());
     };
     let tables = tables.strip_suffix(&END).filter(|tables| tables.starts_with(&START));
     let mut decoder = Decoder::new(tables.unwrap_or(&START).chain(rest));
     decoder.read_info().map_err(|error| error.to_string())?;
-    let Some(info) = decoder.info() else { return Err("it has no size".to_owned()) };
+    let Some(info) = decoder.info() else { return Err("it states no size".to_owned()) };
     let [width, height] = [info.width, info.height].map(u64::from);
     let row = across.saturating_mul(samples as u64).max(1);
     let rows = wanted as u64 / row;
@@ -58,7 +58,7 @@ fn decode(picture: JpegPart<'_>, packed: &[u8], wanted: usize) -> Result<Vec<u8>
     }
     match (info.pixel_format, samples) {
         (PixelFormat::L8, 1) | (PixelFormat::RGB24, 3) => {}
-        (found, _) => return Err(format!("its picture has pixels of the kind {found:?}")),
+        (found, _) => return Err(format!("its picture has the pixel format {found:?}, unlike its page")),
     }
     if samples == 3 {
         // The directory of the page decides on the colour space, whatever other programs write into the picture.
@@ -143,7 +143,7 @@ mod tests {
             (JpegPart { size: [9, 8], ..picture }, &stream[..], "8 x 8 pixels"),
             (JpegPart { size: [8, 7], ..picture }, &stream, "8 x 8 pixels"),
             (JpegPart { samples: 3, size: [8, 8], ..picture }, &stream, "L8"),
-            (picture, b"\x55\x55\x55", "begins"),
+            (picture, b"\x55\x55\x55", "does not begin"),
             (picture, &stream[..40], ""),
         ] {
             let refused = expanded(picture, packed, 64).unwrap_err();

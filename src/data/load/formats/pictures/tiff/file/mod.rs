@@ -166,7 +166,8 @@ impl TiffFile {
         };
         let needed = per_sample.saturating_mul(wanted.end as u64);
         if needed > listed {
-            let why = format!("{per_sample} strips or tiles are needed and {listed} are listed");
+            let why =
+                format!("{per_sample} strips or tiles are needed per plane and {listed} are listed in all");
             return Err(attempt.bad_input_error(&field, why, HELP));
         }
         if needed > MAX_PARTS {
@@ -204,13 +205,13 @@ impl TiffFile {
             }
             sum += count;
             if sum > self.bytes.len().saturating_add(MAX_SHARED_BYTES) {
-                let why = "its strips or tiles are the same bytes over and over";
+                let why = "its strips or tiles overlap: they share the same bytes";
                 return Err(attempt.bad_input_error(&field, why, HELP));
             }
             let room = TiffCodec::from_tag(page.compression).map_or(0, |codec| codec.max_expanded(count));
             if room < whole && count > 0 {
                 let why =
-                    format!("a strip or tile ends too early: {whole} bytes expected, room for {room} found");
+                    format!("a strip or tile ends too early: {whole} bytes expected, at most {room} found");
                 return Err(attempt.bad_input_error(&field, why, HELP));
             }
             places.push(PartLocation { offset, count });
@@ -234,7 +235,7 @@ pub(super) fn alloc_zeroed_bytes(
 ) -> Result<Vec<u8>, LoadError> {
     let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
-        let why = format!("the memory for {count} bytes is not there");
+        let why = format!("there is not enough memory for {count} bytes");
         attempt.limit_error(field, why, "close other programs or load a smaller volume")
     })
 }

@@ -33,17 +33,14 @@ impl TiffPage {
         let bits = self.bits;
         if let SampleMeaning::Unsupported(photometric) = self.meaning {
             let kind = match photometric {
-                4 => "a mask",
+                4 => "transparency mask",
                 5 => "CMYK",
                 6 => "YCbCr",
                 8..=10 => "CIE L*a*b*",
-                32803 | 34892 => "the raw data of a camera",
-                _ => "not known",
+                32803 | 34892 => "camera raw data",
+                _ => "unknown",
             };
-            return refuse(
-                format!("its colours are of a kind that is not read: {kind}"),
-                "save it as grey or RGB",
-            );
+            return refuse(format!("its colour space is not supported: {kind}"), "save it as grey or RGB");
         }
         if self.number().is_none() {
             let format = match self.format {
@@ -53,20 +50,20 @@ impl TiffPage {
                 _ => "unsigned",
             };
             return refuse(
-                format!("its numbers are of a kind that is not read: {format}, of {bits} bits"),
-                "save it with unsigned or signed numbers of 8, 16 or 32 bits, or floating point of 32",
+                format!("its sample type is not supported: {format}, of {bits} bits"),
+                "save it with unsigned or signed integers of 8, 16 or 32 bits, or 32-bit floating point",
             );
         }
         if TiffCodec::from_tag(self.compression).is_none() {
             let name = compression_name(self.compression);
             return refuse(
-                format!("it is compressed {name} (number {}), which is not read", self.compression),
+                format!("its compression is not supported: {name} (number {})", self.compression),
                 "save it uncompressed, or with LZW, Deflate, PackBits or Zstandard",
             );
         }
         if TiffCodec::from_tag(self.compression) == Some(TiffCodec::Jpeg) && (bits != 8 || self.format == 2) {
             return refuse(
-                format!("JPEG is read where numbers have 8 bits and no sign, they have {bits}"),
+                format!("JPEG is supported for unsigned samples of 8 bits only, these have {bits}"),
                 "save it uncompressed, or with LZW, Deflate, PackBits or Zstandard",
             );
         }
@@ -78,7 +75,7 @@ impl TiffPage {
         };
         if !suits {
             return refuse(
-                format!("predictor {} does not go with its numbers of {bits} bits", self.predictor),
+                format!("predictor {} is not supported for its samples of {bits} bits", self.predictor),
                 "save it without a predictor",
             );
         }
@@ -88,7 +85,10 @@ impl TiffPage {
         match self.bytes() {
             Some(whole) if part <= whole.saturating_add(MAX_TILE_EXCESS) => Ok(()),
             _ => refuse(
-                format!("tiles of {} x {} pixels cannot be meant", self.part_size[0], self.part_size[1]),
+                format!(
+                    "its tile size of {} x {} pixels is implausible",
+                    self.part_size[0], self.part_size[1]
+                ),
                 HELP,
             ),
         }

@@ -26,7 +26,7 @@ pub(super) fn contiguous_pages(
             .first_integer(&mut tiff.bytes)
             .map_err(|error| unreadable_error(attempt, "first page", error))?,
     };
-    let slice = page.bytes().ok_or_else(|| broken("its slices cannot be so large".to_owned()))?;
+    let slice = page.bytes().ok_or_else(|| broken("the size of its slices is implausible".to_owned()))?;
     let end = slice.checked_mul(images as u64).and_then(|bytes| bytes.checked_add(offset));
     if images > MAX_PAGES || end.is_none_or(|end| end > tiff.bytes.len()) {
         return Err(broken(format!(

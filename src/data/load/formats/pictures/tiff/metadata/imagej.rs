@@ -59,7 +59,7 @@ pub(crate) fn stack(
     let mut remarks = Vec::new();
     let pages = usable_pages(tiff, &mut remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-        return Err(attempt.bad_input_error("pages", "there is none", HELP));
+        return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
     };
     let (channels, frames) = (said.count("channels").unwrap_or(1), said.count("frames").unwrap_or(1));
     let slices = said.count("slices");
@@ -76,8 +76,8 @@ pub(crate) fn stack(
         if is_depth { (1, channels, 1) } else { (channels, slices, frames) }
     } else {
         remarks.push(format!(
-            "{channels} channels of {slices} slices at {frames} times are said, and there are {} pages: all are taken as \
-             slices",
+            "{channels} channels of {slices} slices at {frames} time steps are announced, and there are {} pages: all \
+             are taken as slices",
             pages.len()
         ));
         (1, pages.len(), 1)

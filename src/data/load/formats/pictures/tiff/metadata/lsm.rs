@@ -60,7 +60,7 @@ impl LsmInfo {
         // Without a remark on thumbnails: LSM files always have them.
         placement.remarks.extend(remarks.into_iter().filter(|remark| !remark.contains("smaller versions")));
         let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-            return Err(attempt.bad_input_error("pages", "there is none", HELP));
+            return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
         };
         let is_whole = self.slices.checked_mul(self.frames) == Some(pages.len());
         let (slices, frames) = if is_whole { (self.slices, self.frames) } else { (pages.len(), 1) };

@@ -12,7 +12,7 @@ const PALETTE: f64 = 3.0;
 const MAX_NUMBERS: u64 = 3 << 16;
 
 /// Remark on palettes for the user.
-const REMARK: &str = "values are the numbers of its table of colours";
+const REMARK: &str = "values are indices into its colour table";
 
 /// Palette: red of all entries, then green, then blue, each up to 65535.
 pub(crate) struct TiffPalette(Vec<u64>);

@@ -24,9 +24,9 @@ pub(super) fn placement_from_resolution(
             let mut placement =
                 GridPlacement::from_spacing(lengths.map(|length| length * unit)).with_length_unit(unit);
             if deep.is_none() {
-                placement
-                    .remarks
-                    .push("no distance of slices is written: 1 of its unit, as ImageJ takes it".to_owned());
+                placement.remarks.push(
+                    "the slice spacing is not stated: 1 unit of length is used, as in ImageJ".to_owned(),
+                );
             }
             placement
         }

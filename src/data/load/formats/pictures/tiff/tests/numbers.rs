@@ -195,7 +195,7 @@ fn values_are_those_that_are_stored_whichever_is_white() {
     ] {
         let volume = load_bytes(&LITTLE.file(&[white(bits, pixels)])).unwrap();
         assert_eq!(*volume.samples(), Samples::U8(expected.to_vec()), "{bits}");
-        assert!(volume.remarks()[0].contains("stand for white"));
+        assert!(volume.remarks()[0].contains("stands for white"));
     }
     let wide = LITTLE.leaf([2, 1], 16, &[0, 0, 0x10, 0x27]).with(tag::PHOTOMETRIC, SHORT, &[0]);
     assert_eq!(samples_of(&LITTLE.file(&[wide])), Samples::U16(vec![0, 10_000]));
@@ -220,11 +220,11 @@ fn labels_have_the_colours_of_their_table() {
         load_bytes(&LITTLE.file(&[leaf.with(tag::COLOR_MAP, SHORT, &table)])).unwrap()
     };
     let labels = read(|x, y| [0, 90, 20, 60, 120, 30, 0, 150, 10][x / 22 + 3 * (y / 22)]);
-    assert!(labels.remarks()[0].contains("table of colours"));
+    assert!(labels.remarks()[0].contains("colour table"));
     let found = &labels.metadata().labels;
     assert_eq!(found.get(90).and_then(|label| label.color), Some([90.0 / 255.0, 0.0, 0.0]));
     assert_eq!(found.get(91), None, "no voxel has it");
     // An image that is not a label map keeps its numbers only.
     let smooth = read(|x, y| (x * 2 + y) as u8);
-    assert!(smooth.metadata().labels.is_empty() && smooth.remarks()[0].contains("table of colours"));
+    assert!(smooth.metadata().labels.is_empty() && smooth.remarks()[0].contains("colour table"));
 }

@@ -118,8 +118,8 @@ fn pages_may_lie_in_files_beside() {
     let volume = load_with(&path, VolumeChoice::default()).unwrap();
     assert_eq!(firsts(&volume), [0.0, 31.0], "what is there is shown");
     let remarks = volume.remarks().join("; ");
-    assert!(remarks.contains("3 slices are said, and there are pages for the first 2"), "{remarks}");
-    assert!(remarks.contains("\"missing.tif\" is not there"), "{remarks}");
+    assert!(remarks.contains("3 slices are announced, and there are pages for the first 2"), "{remarks}");
+    assert!(remarks.contains("\"missing.tif\" is missing"), "{remarks}");
     write(&set("../c.tif"));
     assert_refused(
         load_with(&path, VolumeChoice::default()),
@@ -182,7 +182,7 @@ fn xml_beside_its_files_is_opened_as_they_are() {
         (document(&image("", pixels, "<TiffData/>")), LoadErrorKind::BadInput, "no TIFF files"),
         (xml.replace("p0.ome.tif", "../p0.ome.tif"), LoadErrorKind::BadInput, "out of the header's folder"),
         (xml.replace("p0.ome.tif", "/etc/hostname"), LoadErrorKind::BadInput, "absolute"),
-        (xml[..xml.len() / 2].to_owned(), LoadErrorKind::BadInput, "it is no XML"),
+        (xml[..xml.len() / 2].to_owned(), LoadErrorKind::BadInput, "not well-formed XML"),
     ] {
         std::fs::write(&companion, xml).unwrap();
         assert_refused(load_with(&companion, VolumeChoice::default()), kind, &[words]);
@@ -196,7 +196,7 @@ fn recordings_that_stopped_show_what_is_there() {
     for data in ["", "<TiffData/>", "<TiffData IFD=\"0\" PlaneCount=\"10\"/>"] {
         let volume = load_bytes(&file(&document(&image("a", &pixels(10, 1, 1), data)), 6)).unwrap();
         assert_eq!(firsts(&volume), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "{data}");
-        assert!(volume.remarks()[0].contains("10 slices are said, and there are pages for the first 6"));
+        assert!(volume.remarks()[0].contains("10 slices are announced, and there are pages for the first 6"));
     }
     // Stopped in the second of four time steps: two are offered, and the second is short.
     let stopped = file(&document(&image("a", &pixels(3, 1, 4), "")), 5);
@@ -204,11 +204,11 @@ fn recordings_that_stopped_show_what_is_there() {
     let second = load_chosen(&stopped, VolumeChoice { frame: Some(1), ..VolumeChoice::default() }).unwrap();
     assert_eq!(firsts(&second), [3.0, 4.0]);
     let remarks = second.remarks().join("; ");
-    assert!(remarks.contains("4 time steps are said, and there are pages for the first 2"), "{remarks}");
+    assert!(remarks.contains("4 time steps are announced, and there are pages for the first 2"), "{remarks}");
     assert_refused(
         load_chosen(&stopped, VolumeChoice { frame: Some(3), ..VolumeChoice::default() }),
         LoadErrorKind::BadInput,
-        &["\"3\" is none of its 2 time steps"],
+        &["\"3\" is not one of its 2 time steps"],
     );
     // For one slice over time, the recorded steps are its depth.
     let times = load_bytes(&file(&document(&image("a", &pixels(1, 1, 9), "")), 4)).unwrap();
@@ -218,7 +218,10 @@ fn recordings_that_stopped_show_what_is_there() {
     let gap = load_bytes(&file(&document(&image("a", &pixels(5, 1, 1), &data)), 4)).unwrap();
     assert_eq!(firsts(&gap), [0.0, 1.0, 0.0, 3.0]);
     let remarks = gap.remarks().join("; ");
-    assert!(remarks.contains("slices 2: they are empty") && remarks.contains("the first 4"), "{remarks}");
+    assert!(
+        remarks.contains("slices 2: they are left empty") && remarks.contains("the first 4"),
+        "{remarks}"
+    );
     // No page at all for the chosen channel; the error lists the others.
     let data: String =
         [0, 1].map(|z| format!("<TiffData FirstC=\"1\" FirstZ=\"{z}\" IFD=\"{z}\"/>")).concat();
@@ -227,7 +230,7 @@ fn recordings_that_stopped_show_what_is_there() {
     assert_refused(
         refused,
         LoadErrorKind::BadInput,
-        &["no page for channel 0 at time 0", "with pages: 1 at 0"],
+        &["no page for channel 0 at time step 0", "with pages: 1 at 0"],
     );
 }
 
@@ -244,10 +247,10 @@ fn inconsistent_metadata_are_refused() {
     let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"3\" SizeC=\"1\" SizeT=\"1\"";
     for (xml, words) in [
         (document(""), "no image"),
-        ("<OME><Image></OME>".to_owned(), "it is no XML"),
-        (document(&image("a", "SizeZ=\"0\" SizeC=\"1\" SizeT=\"1\"", "")), "no size"),
+        ("<OME><Image></OME>".to_owned(), "not well-formed XML"),
+        (document(&image("a", "SizeZ=\"0\" SizeC=\"1\" SizeT=\"1\"", "")), "not a valid size"),
         (document(&image("a", "SizeZ=\"9999999\" SizeC=\"1\" SizeT=\"1\"", "")), "9999999 slices"),
-        (document(&image("a", "SizeZ=\"1\" SizeC=\"9999\" SizeT=\"9999\"", "")), "cannot be"),
+        (document(&image("a", "SizeZ=\"1\" SizeC=\"9999\" SizeT=\"9999\"", "")), "implausible"),
         (document(&image("a", pixels, "<TiffData FirstZ=\"3\"/>")), "beyond"),
         (document(&image("a", pixels, "<TiffData IFD=\"7\" PlaneCount=\"3\"/>")), "the file has 2 pages"),
         (

@@ -52,7 +52,7 @@ fn axes_are_channels_times_and_slices() {
         assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &[words]);
         let volume = load_chosen(&bytes, choice).unwrap();
         assert_eq!(firsts(&volume), expected, "{json}");
-        let is_assumed = volume.remarks().iter().any(|remark| remark.contains("what the axes"));
+        let is_assumed = volume.remarks().iter().any(|remark| remark.contains("the axes of its pages"));
         assert_eq!(is_assumed, !json.contains("axes") || json.contains("\"CZ\""), "{json}");
     }
     let bytes = file("shape=(2, 3, 1, 2)", 6);
@@ -155,16 +155,18 @@ fn recordings_that_stopped_and_shapes_that_lie() {
     let stopped = file("{\"shape\": [2, 4, 1, 2], \"axes\": \"TZYX\"}", 6);
     let second = load_chosen(&stopped, frame(1)).unwrap();
     assert_eq!(firsts(&second), [4.0, 5.0]);
-    assert!(second.remarks().join("; ").contains("4 slices are said, and there are pages for the first 2"));
+    assert!(
+        second.remarks().join("; ").contains("4 slices are announced, and there are pages for the first 2")
+    );
     let early = file("{\"shape\": [2, 4, 1, 2], \"axes\": \"TZYX\"}", 3);
     let first = load_bytes(&early).unwrap();
     assert_eq!(firsts(&first), [0.0, 1.0, 2.0]);
     let remarks = first.remarks().join("; ");
-    assert!(remarks.contains("2 time steps are said, and there are pages for the first 1"), "{remarks}");
+    assert!(remarks.contains("2 time steps are announced, and there are pages for the first 1"), "{remarks}");
     let late = load_chosen(&early, frame(1));
-    assert_refused(late, LoadErrorKind::BadInput, &["\"1\" is none of its 1 time steps"]);
+    assert_refused(late, LoadErrorKind::BadInput, &["\"1\" is not one of its 1 time steps"]);
     let none = load_chosen(&file("{\"shape\": [2, 4, 1, 2], \"axes\": \"RZYX\"}", 3), series(1));
-    assert_refused(none, LoadErrorKind::BadInput, &["8 pages are said, and 3 are there"]);
+    assert_refused(none, LoadErrorKind::BadInput, &["8 pages are announced, and 3 exist"]);
     // A shape that the pages do not match is ignored: pages are slices.
     for shape in
         ["[3, 2, 3]", "[0, 1, 2]", "[3, 1, 3]", "[2]", "[18446744073709551615, 18446744073709551615, 1, 2]"]

@@ -72,7 +72,7 @@ impl OmeSizes {
         let size = |name: &str| {
             number::<u64>(pixels, name).filter(|size| (1..=1 << 31).contains(size)).ok_or_else(|| {
                 let said = quoted(pixels.attribute(name).unwrap_or_default());
-                attempt.bad_input_error(name, format!("{said} is no size"), HELP)
+                attempt.bad_input_error(name, format!("{said} is not a valid size"), HELP)
             })
         };
         let dims = [size("SizeX")?, size("SizeY")?, size("SizeZ")?];
@@ -85,7 +85,11 @@ impl OmeSizes {
             }
             _ => {
                 let said = quoted(pixels.attribute("DimensionOrder").unwrap_or_default());
-                return Err(attempt.bad_input_error("DimensionOrder", format!("{said} is no order"), HELP));
+                return Err(attempt.bad_input_error(
+                    "DimensionOrder",
+                    format!("{said} is not a valid order"),
+                    HELP,
+                ));
             }
         };
         Ok(Self { dims, channels, frames: size("SizeT")? as usize, order })
@@ -136,7 +140,7 @@ pub(crate) fn first_file(
         }
     }
     Err(lost.unwrap_or_else(|| {
-        let why = "it names no TIFF files that would hold its pages";
+        let why = "it names no TIFF files with its pages";
         attempt.bad_input_error("TiffData", why, "open the TIFF files themselves")
     }))
 }
@@ -166,7 +170,7 @@ fn chosen_image<'a, 'i>(
     let mut images: Vec<[Node<'_, '_>; 2]> =
         children(root, "Image").filter_map(|image| Some([image, child(image, "Pixels")?])).collect();
     if images.len() > MAX_IMAGES {
-        let why = format!("there are {} images, and {MAX_IMAGES} are read at most", images.len());
+        let why = format!("it has {} images, {MAX_IMAGES} are allowed", images.len());
         return Err(attempt.limit_error("Image", why, "split the file into several"));
     }
     let offers: Vec<VolumeOffer> = images
@@ -205,18 +209,23 @@ fn stack_from_root(
     choice: &VolumeChoice,
 ) -> Result<TiffStack, LoadError> {
     let Some(first) = tiff.pages.first() else {
-        return Err(attempt.bad_input_error("pages", "there is none", HELP));
+        return Err(attempt.bad_input_error("pages", "it has no pages", HELP));
     };
     let [image, pixels] = chosen_image(attempt, root, choice)?;
     let sizes = OmeSizes::parse(attempt, pixels, first.samples)?;
     let inside = if first.meaning == SampleMeaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);
     if channels.saturating_mul(sizes.frames) > super::super::file::directory::MAX_PAGES {
-        return Err(attempt.bad_input_error("SizeC, SizeT", "so many channels and times cannot be", HELP));
+        let why = "the numbers of channels and time steps are implausible";
+        return Err(attempt.bad_input_error("SizeC, SizeT", why, HELP));
     }
     let slices = usize::try_from(sizes.dims[2]).unwrap_or(usize::MAX);
     if slices > super::super::file::directory::MAX_PAGES {
-        return Err(attempt.bad_input_error("SizeZ", format!("{slices} slices cannot be"), HELP));
+        return Err(attempt.bad_input_error(
+            "SizeZ",
+            format!("a number of {slices} slices is implausible"),
+            HELP,
+        ));
     }
     let pages = OmePages::parse(attempt, root, pixels, &sizes, tiff.pages.len())?;
     let (frames, channels_there) = (pages.frames(), pages.channels().saturating_mul(inside));
@@ -239,7 +248,7 @@ fn stack_from_root(
     for (there, said, what) in [(frames, sizes.frames, "time steps"), (channels_there, channels, "channels")]
     {
         if there < said {
-            let remark = format!("{said} {what} are said, and there are pages for the first {there}");
+            let remark = format!("{said} {what} are announced, and there are pages for the first {there}");
             placement.remarks.push(remark);
         }
     }
@@ -275,7 +284,7 @@ fn check_size(
         Some(page) if [page.width, page.height] != [width, height] => Err(attempt.bad_input_error(
             "SizeX, SizeY",
             format!(
-                "pages of {width} x {height} pixels are said, they have {} x {}",
+                "pages of {width} x {height} pixels are announced, they have {} x {}",
                 page.width, page.height
             ),
             HELP,
@@ -298,7 +307,7 @@ fn placement_from_physical_size(pixels: Node<'_, '_>) -> GridPlacement {
     // Two of the three, as in a picture without depth, are not an error.
     let all = ["PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"];
     let is_wrong = all.iter().all(|size| pixels.has_attribute(*size));
-    let remark = is_wrong.then_some("its PhysicalSize cannot be: how large voxels are is not known");
+    let remark = is_wrong.then_some("its PhysicalSize is invalid: the voxel size is unknown");
     GridPlacement::unknown().with_remark(remark)
 }
 

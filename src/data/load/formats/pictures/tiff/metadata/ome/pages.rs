@@ -60,7 +60,7 @@ impl<'a> OmePages<'a> {
             let first =
                 ["FirstZ", "FirstC", "FirstT"].map(|name| number::<usize>(element, name).unwrap_or(0));
             if (0..3).any(|axis| first[axis] >= counts[axis]) {
-                let why = format!("{first:?} is beyond its {counts:?} slices, channels and times");
+                let why = format!("{first:?} is beyond its {counts:?} slices, channels and time steps");
                 return Err(attempt.bad_input_error("TiffData", why, HELP));
             }
             let page = number::<usize>(element, "IFD");
@@ -127,8 +127,8 @@ impl<'a> OmePages<'a> {
             slices.push(file.map(|file| TiffSlice { file, page }));
         }
         let lost_files = lost.first().map(|first| match lost.len() - 1 {
-            0 => format!("the file {} is not there", quoted(first)),
-            more => format!("the file {} is not there, nor are {more} others", quoted(first)),
+            0 => format!("the file {} is missing", quoted(first)),
+            more => format!("the file {} is missing, and {more} others", quoted(first)),
         });
         Ok(SlicePages { slices, other_files: beside, missing_files_remark: lost_files })
     }
@@ -173,16 +173,19 @@ impl<'a> OmePages<'a> {
         there.sort_unstable();
         there.dedup();
         let why = format!(
-            "there is no page for channel {channel} at time {frame}; the file has {} pages",
+            "there is no page for channel {channel} at time step {frame}; the file has {} pages",
             self.own_count
         );
         let words = there.iter().take(MAX_LISTED).map(|[channel, frame]| format!("{channel} at {frame}"));
         let words = words.collect::<Vec<_>>().join(", ");
         let help = match there.len() {
             0 => "copy the file again, or export it anew".to_owned(),
-            1..=MAX_LISTED => format!("choose a channel and a time with pages: {words}"),
+            1..=MAX_LISTED => format!("choose a channel and a time step with pages: {words}"),
             more => {
-                format!("choose a channel and a time with pages: {words}, and {} more", more - MAX_LISTED)
+                format!(
+                    "choose a channel and a time step with pages: {words}, and {} more",
+                    more - MAX_LISTED
+                )
             }
         };
         attempt.bad_input_error("TiffData", why, help)

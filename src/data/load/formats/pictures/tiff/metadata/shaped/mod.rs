@@ -51,7 +51,7 @@ fn arrays(tiff: &mut TiffFile, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
             if !arrays.is_empty() {
                 let count = tiff.pages.len() - first;
                 remarks.push(format!(
-                    "the last {count} pages are left out: they belong to no array that is said"
+                    "the last {count} pages are left out: they belong to no array that is described"
                 ));
             }
             break;
@@ -102,8 +102,10 @@ pub(crate) fn stack_of_shapes(
         let Some(stride) = stride else { return 1 };
         let begun = stride.size.min(pages.saturating_sub(of_series + 1) / stride.pages + 1);
         if begun < stride.size {
-            remarks
-                .push(format!("{} {what} are said, and there are pages for the first {begun}", stride.size));
+            remarks.push(format!(
+                "{} {what} are announced, and there are pages for the first {begun}",
+                stride.size
+            ));
         }
         begun
     };
@@ -124,14 +126,16 @@ pub(crate) fn stack_of_shapes(
         (page < pages).then_some(TiffSlice { file: 0, page: first + page })
     });
     let Some(SliceRun { slices, remark }) = SliceRun::new(&wanted.collect::<Vec<_>>()) else {
-        let why = format!("{} pages are said, and {pages} are there: none for what is chosen", axes.pages);
+        let why = format!(
+            "{} pages are announced, and {pages} exist: none for the chosen channel and time step",
+            axes.pages
+        );
         return Err(attempt.bad_input_error("shape", why, HELP));
     };
     let mut placement = placement_from_resolution(tiff, words.unit.as_deref(), words.spacing);
     if axes.is_assumed {
-        remarks.push(
-            "nothing says what the axes of its pages are: they are taken as time, channel and z".to_owned(),
-        );
+        remarks
+            .push("the axes of its pages are not stated: they are taken as time, channel and z".to_owned());
     }
     remarks.extend(remark);
     placement.remarks.splice(0..0, remarks);
