@@ -5,8 +5,10 @@
 
 use std::error::Error;
 
-use chiaroscuro::data::{Dataset, synthetic};
-use chiaroscuro::gpu::{GpuContext, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look};
+use chiaroscuro_render::{
+    GpuContext, PicturePainter, RenderOptions, Renderer, device_descriptor, first_look,
+};
+use chiaroscuro_volume::{Dataset, synthetic};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // The other program opens its device itself, with at least the features and limits of `device_descriptor`.

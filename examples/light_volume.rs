@@ -3,13 +3,12 @@
 
 use std::error::Error;
 
-use chiaroscuro::data::{Dataset, Samples, Volume};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_scene::{
     ControlPoint, LightSettings, LightStorage, OpacityInterpolation, OpacityLength, Settings,
     TransferFunction,
 };
-use chiaroscuro::plan::RenderRequest;
+use chiaroscuro_volume::{Dataset, Samples, Volume};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Voxels of 1 mm, x fastest: a full block of 12³ in the middle of 32³ empty ones.

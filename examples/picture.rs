@@ -6,11 +6,10 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use chiaroscuro::data::Dataset;
-use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::open;
-use chiaroscuro::export::export_png;
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
+use chiaroscuro_media::export_png;
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, first_look};
+use chiaroscuro_volume::{Dataset, LoadControl};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);

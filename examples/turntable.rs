@@ -4,10 +4,10 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use chiaroscuro::data::{Dataset, synthetic};
-use chiaroscuro::export::{Animation, AnimationSpec};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, first_look};
-use chiaroscuro::model::LookRecord;
+use chiaroscuro_media::{Animation, AnimationSpec};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, first_look};
+use chiaroscuro_scene::LookRecord;
+use chiaroscuro_volume::{Dataset, synthetic};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args()

@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use chiaroscuro::cli::{self, CliError, ViewerRequest};
-use chiaroscuro::data::one_line;
+use chiaroscuro_files::one_line;
 
 fn main() -> ExitCode {
     set_runtime_dir();
@@ -16,8 +16,10 @@ fn main() -> ExitCode {
             let level = record.level().as_str().to_lowercase();
             // Users do not need to know the module that wrote a message.
             match record.target().split("::").next() {
-                Some(env!("CARGO_PKG_NAME")) | None => writeln!(out, "{level}: {text}"),
-                Some(other) => writeln!(out, "{level}: {text} ({other})"),
+                Some(other) if !other.starts_with(env!("CARGO_PKG_NAME")) => {
+                    writeln!(out, "{level}: {text} ({other})")
+                }
+                _ => writeln!(out, "{level}: {text}"),
             }
         })
         .init();
@@ -70,7 +72,7 @@ mod before_main {
 #[cfg(feature = "window")]
 fn open_window(request: ViewerRequest) -> Result<(), CliError> {
     use chiaroscuro::app::{self, WindowOptions};
-    use chiaroscuro::gpu::GpuContext;
+    use chiaroscuro_render::GpuContext;
 
     let options = WindowOptions {
         source: request.source,

@@ -6,11 +6,9 @@
 
 use std::time::{Duration, Instant};
 
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::data::{Dataset, Histogram};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, device_descriptor};
-use chiaroscuro::model::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, first_look};
-use chiaroscuro::plan::RenderRequest;
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, device_descriptor, plan::RenderRequest};
+use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, first_look};
+use chiaroscuro_volume::{Dataset, Histogram, synthetic::builtin};
 
 /// Number of drags in the ordinary run; after every hundred the settings are those of the start.
 const DRAGS: usize = 400;

@@ -1,4 +1,4 @@
-// Decoding of dispatches over listed cells of 2³ voxels or blocks (src/gpu/volume/cell_list.rs): eight cells per
+// Decoding of dispatches over listed cells of 2³ voxels or blocks (crates/render/src/volume/cell_list.rs): eight cells per
 // workgroup of 64 invocations, in rows of 16384 workgroups because a dispatch has at most 65535 along an axis. A list
 // entry holds the cell's coordinates, packed like those of bricks.
 #import "common/sizes.wgsl"

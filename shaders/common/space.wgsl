@@ -1,4 +1,4 @@
-// Transforms between index space and scene space (src/math/scene.rs).
+// Transforms between index space and scene space (crates/volume/src/math/scene.rs).
 struct SpaceUniform {
     // Index space to scene space: three rows of an affine map.
     scene_from_index_x: vec4f,

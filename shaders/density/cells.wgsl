@@ -1,4 +1,4 @@
-// Empty-space skipping over cells of 2³ voxels in which nothing is visible (src/data/cells.rs).
+// Empty-space skipping over cells of 2³ voxels in which nothing is visible (crates/volume/src/cells.rs).
 #import "common/sizes.wgsl"
 #import "density/volume.wgsl"
 

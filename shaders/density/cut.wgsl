@@ -1,4 +1,4 @@
-// Crop box and clip plane (src/math/clip_region.rs): region of the volume that remains, and the part of each slab of
+// Crop box and clip plane (crates/volume/src/math/clip_region.rs): region of the volume that remains, and the part of each slab of
 // a ray inside it.
 #import "sheets/sheet_frame.wgsl"
 

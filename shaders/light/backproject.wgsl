@@ -49,7 +49,7 @@ override FIRST_TOUCH: bool = false;
 // Set if the kernel is wider than a pixel or a slab anywhere, or for cube faces.
 override WIDE: bool = false;
 
-// Width of the kernel across the sheets: minimum in voxels, maximum in pixels (src/plan/geometry/light_frame.rs).
+// Width of the kernel across the sheets: minimum in voxels, maximum in pixels (crates/render/src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 
@@ -233,7 +233,7 @@ fn next_completed_voxel(brick: u32, lane: u32, cells: vec2u) -> CompletedVoxel {
 // Number of voxels in a cell, with one lane each.
 const CELL_VOXELS = CELL_EDGE * CELL_EDGE * CELL_EDGE;
 
-// Number of lanes that share a brick, a power of two from 8 to 64 (src/gpu/light/backproject.rs).
+// Number of lanes that share a brick, a power of two from 8 to 64 (crates/render/src/light/backproject.rs).
 override LANES: u32 = 64u;
 
 // Eight lanes per cell of 2³ voxels; the same lanes stride over the other cells of the brick.

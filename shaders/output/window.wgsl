@@ -10,7 +10,7 @@ override LINEAR_TARGET: bool = false;
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
 
-// Encoded shift of pictures that are not shifted (src/gpu/output/window_painter.rs).
+// Encoded shift of pictures that are not shifted (crates/render/src/output/window_painter.rs).
 const UNSHIFTED = 32768;
 
 struct Corner {

@@ -54,7 +54,7 @@ const SPLAT_MATERIAL = 2u;
 
 override SPLAT: u32 = 0u;
 
-// Order of sheets (src/model/settings/mod.rs): across the line of sight, slices of voxels, or single footprints.
+// Order of sheets (crates/scene/src/settings/mod.rs): across the line of sight, slices of voxels, or single footprints.
 const ORDER_IMAGE_ALIGNED = 0u;
 const ORDER_VOLUME_ALIGNED = 1u;
 const ORDER_EVERY_FOOTPRINT = 2u;

@@ -1,4 +1,4 @@
-// Voxel list of the scattering engine (src/gpu/scatter/voxels.rs).
+// Voxel list of the scattering engine (crates/render/src/scatter/voxels.rs).
 #import "common/sizes.wgsl"
 
 // Densities of 8³ voxels per brick, two per word, as 16-bit normalised numbers.

@@ -21,7 +21,7 @@ struct LightUniform {
     cone_cos_outer: f32,
     // Additional length of the last near-field step: half a voxel of the light volume, in scene units.
     last_step_extension: f32,
-    // Number of points on an area light (src/model/settings/light/area_light.rs), or 1.
+    // Number of points on an area light (crates/scene/src/settings/light/area_light.rs), or 1.
     points: u32,
     // Shape of the area light: 1 disc, 2 rectangle, 3 ball.
     shape: u32,

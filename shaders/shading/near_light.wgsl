@@ -5,14 +5,14 @@
 #import "density/cut.wgsl"
 #import "shading/shade.wgsl"
 
-// Maximum number of near-field steps (src/model/settings/shadows.rs), or 0. Area lights take fewer.
+// Maximum number of near-field steps (crates/scene/src/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
 
 // Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
 // or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
 // where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
 // omitted. All samples look up light at the same distance, so that light volumes need no larger extent
-// (src/plan/geometry/near_field_cells.rs).
+// (crates/render/src/plan/geometry/near_field_cells.rs).
 fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     let forward = index_from_scene_vector(eye.space, towards.direction);
     var way = 0.0;

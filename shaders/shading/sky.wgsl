@@ -1,4 +1,4 @@
-// Sky whose radiance is linear in the direction (src/model/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
+// Sky whose radiance is linear in the direction (crates/scene/src/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
 struct SkyUniform {
     // Slope l₁, in scene space, and mean l₀ for each colour.
     red: vec4f,

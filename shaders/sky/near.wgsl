@@ -3,7 +3,7 @@
 #import "sky/rays.wgsl"
 
 // Range of slices for each tile of rays: the first, and from bit 16 on the exclusive end
-// (src/plan/geometry/sweep_tiles.rs).
+// (crates/render/src/plan/geometry/sweep_tiles.rs).
 @group(0) @binding(4) var<storage, read> tiles: array<u32>;
 
 // First and last slice in which a ray is less than a block from the grid, along one axis across the slices.

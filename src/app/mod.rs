@@ -32,18 +32,15 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::drag_cancel::DragCancel;
-use self::common::{light_keys, reveal, shortcuts};
-use self::shell::file_tasks::FileTasks;
-use self::shell::status_file;
-use self::windows::file_dialogs;
-
 use self::common::commands::AppCommand;
+use self::common::drag_cancel::DragCancel;
 use self::common::volume_facts::VolumeFacts;
+use self::common::{light_keys, reveal, shortcuts};
 use self::kept_views::KeptStrip;
 use self::layout::WindowLayout;
 use self::persistence::{PersistentState, RecentThumbnails};
 use self::shell::auto_balance::AutoBalance;
+use self::shell::file_tasks::FileTasks;
 use self::shell::history::{History, HistoryWindow};
 use self::shell::light_placement::{LightPlacement, LightSearchTask};
 use self::shell::messages::MessageLog;
@@ -53,6 +50,7 @@ use self::shell::object::orientation::OrientationTasks;
 use self::shell::object::outline::OutlineCache;
 use self::shell::opening::{NeighbourSearch, PendingLook};
 use self::shell::session::SessionFile;
+use self::shell::status_file;
 use self::shell::status_file::StatusFile;
 use self::start::handover::HandoverSlot;
 use self::transfer_editor::TransferEditor;
@@ -71,6 +69,7 @@ use self::viewport::{Viewport, paint_callback};
 use self::windows::contact_sheet::ContactSheetWindow;
 use self::windows::device_loss::DeviceLossDialog;
 use self::windows::export::ExportWindow;
+use self::windows::file_dialogs;
 use self::windows::file_dialogs::FileDialogs;
 use self::windows::help::HelpWindows;
 use self::windows::large_volume::LargeVolumeDialog;
@@ -84,9 +83,9 @@ use self::windows::untrusted_path::UntrustedPathDialog;
 use self::windows::volume_chooser::VolumeChooser;
 use self::worker::background_task::{self, BackgroundTask};
 use self::worker::loader::Loader;
-use crate::data::Dataset;
-use crate::gpu::{GpuContext, GpuError, WindowPainter};
-use crate::model::Settings;
+use chiaroscuro_render::{GpuContext, GpuError, WindowPainter};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
 const SLOW_FRAME_MS: f64 = 50.0;

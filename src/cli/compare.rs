@@ -8,9 +8,10 @@ use clap::builder::PossibleValuesParser;
 use super::CliError;
 use super::output::{print_line, warn_empty_picture};
 use super::scene::{SceneArgs, parse_size};
-use crate::export::{check_extension, check_writable, export_png};
-use crate::gpu::{PictureDistance, RenderOptions, RenderedPicture, Renderer, is_empty_light};
-use crate::model::ComparisonVariant;
+use chiaroscuro_files::{check_extension, check_writable};
+use chiaroscuro_media::export_png;
+use chiaroscuro_render::{PictureDistance, RenderOptions, RenderedPicture, Renderer, is_empty_light};
+use chiaroscuro_scene::ComparisonVariant;
 
 /// Width of the gap between two pictures, in pixels.
 const GAP: usize = 4;

@@ -7,9 +7,12 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, finish_output, open_destination, warn_line};
 use super::scene::{LoadArgs, open_with_size_warning, parse_voxel_type};
-use crate::data::load::{ErrorExplanation, LoadError, ReadFiles};
-use crate::data::{AnatomicalAxes, ValueRange, VoxelType};
-use crate::export::{ConvertError, ExportVolume, NumberRequest, VolumeFormat, check_writable, write_volume};
+use chiaroscuro_files::check_writable;
+use chiaroscuro_volume::{AnatomicalAxes, ErrorExplanation, LoadError, ValueRange, VoxelType};
+use chiaroscuro_volume_io::{
+    ReadFiles,
+    write::{ConvertError, ExportVolume, NumberRequest, VolumeFormat, write_volume},
+};
 
 /// Name that stands for standard output.
 const STANDARD_OUTPUT: &str = "-";

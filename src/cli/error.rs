@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::data::EnvironmentMapError;
-use crate::data::load::{LoadError, LoadErrorKind};
-use crate::export::{ExportError, ReadPictureError};
-use crate::gpu::GpuError;
-use crate::model::PresetError;
+use chiaroscuro_files::WriteError;
+use chiaroscuro_media::{EnvironmentMapError, ExportError, ReadPictureError};
+use chiaroscuro_render::GpuError;
+use chiaroscuro_scene::PresetError;
+use chiaroscuro_volume::{LoadError, LoadErrorKind};
 
 /// Reason for the failure of a command.
 #[derive(Debug, thiserror::Error)]
@@ -84,6 +84,9 @@ pub enum CliError {
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// Standard output could not be written.
     #[error("could not write to standard output: {0}; check that its destination is open and has free space")]
     Output(std::io::Error),
@@ -129,7 +132,7 @@ impl CliError {
                 | EnvironmentMapError::Black { .. } => 3,
             },
             Self::Gpu(_) | Self::Window(_) => 4,
-            Self::Read { .. } | Self::Export(_) | Self::Picture(_) | Self::Output(_) => 6,
+            Self::Read { .. } | Self::Export(_) | Self::Write(_) | Self::Picture(_) | Self::Output(_) => 6,
         }
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 
 use super::scene::parse_size;
-use crate::export::PictureFormat;
-use crate::model::{Annotations, ImageSpec, MAX_SAMPLES_PER_EDGE, PixelFormat};
+use chiaroscuro_media::PictureFormat;
+use chiaroscuro_scene::{Annotations, ImageSpec, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
 /// Arguments of a still picture.
 #[derive(Debug, Args)]

@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use super::CliError;
 use super::output::print_line;
 use super::scene::{LoadArgs, apply_command_line_corrections, open_for_overview};
-use crate::data::{CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume};
-use crate::gpu::{bytes_with_one_light, downsampled_volume};
-use crate::model::first_look;
+use chiaroscuro_render::{bytes_with_one_light, downsampled_volume};
+use chiaroscuro_scene::first_look;
+use chiaroscuro_volume::{CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume};
 
 /// Percentiles of the values that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
@@ -232,7 +232,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::data::Samples;
+    use chiaroscuro_volume::Samples;
 
     #[test]
     fn lengths_are_said_in_units_that_suit_them() {

@@ -7,10 +7,10 @@ use clap::Args;
 use super::CliError;
 use super::output::{finish_output, open_destination};
 use super::scene::SceneArgs;
-use crate::export::{check_extension, write_atomically};
-use crate::gpu::{RenderOptions, Renderer, export_slice, light_volume_nrrd};
-use crate::model::LightStorage;
-use crate::plan::RenderRequest;
+use chiaroscuro_files::{check_extension, write_atomically};
+use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, export_slice, plan::RenderRequest};
+use chiaroscuro_scene::LightStorage;
+use chiaroscuro_volume_io::write::nrrd_of_blocks;
 
 /// Arguments of `light-volume`.
 #[derive(Debug, Args)]
@@ -78,7 +78,9 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
                 &["nrrd"],
                 "light volumes are written as .nrrd, their slices as .png",
             )?;
-            write_atomically(output.path(), &light_volume_nrrd(loaded.volume(), &attenuation))?;
+            let AttenuationData { dims, divisor, values, .. } = &attenuation;
+            let nrrd = nrrd_of_blocks(loaded.volume(), AttenuationData::CONTENT, *dims, *divisor, values);
+            write_atomically(output.path(), &nrrd)?;
         }
         Some(LightVolumeSlice { axis, index }) => {
             let slice = attenuation.slice(axis, index).ok_or_else(|| {

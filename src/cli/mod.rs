@@ -1,5 +1,5 @@
-//! Command line: arguments become the same [`Settings`](crate::model::Settings) and go to the same renderer as in the
-//! window.
+//! Command line: arguments become the same [`Settings`](chiaroscuro_scene::Settings) and go to the same renderer as
+//! in the window.
 
 mod bench;
 mod compare;
@@ -19,13 +19,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::fault::{self, InjectedFault};
+use chiaroscuro_files::fault::{self, InjectedFault};
+use chiaroscuro_media::may_carry_record;
 pub use error::CliError;
 use output::{print_line, warn_line, warn_lines};
 pub use process::note_closed_output;
 use scene::LoadArgs;
-
-use crate::export::may_carry_record;
 
 /// See the shape of volume data, with true volumetric shadows.
 #[derive(Debug, Parser)]
@@ -99,7 +98,7 @@ pub struct ViewerRequest {
     /// Path of a file, or name of a built-in volume.
     pub source: Option<PathBuf>,
     /// Options for reading the volume.
-    pub load: crate::data::load::LoadOptions,
+    pub load: chiaroscuro_volume_io::LoadOptions,
     /// Session to continue, from `--session`.
     pub session: Option<PathBuf>,
     /// Volume of a look, from `--volume`.

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::CliError;
 use super::process::is_output_closed;
-use crate::data::{one_line, without_controls};
-use crate::export::{OutputDestination, is_written_by_us};
+use chiaroscuro_files::{OutputDestination, is_written_by_us, one_line, without_controls};
 
 /// Rejects output names under which a command would replace one of its inputs or another of its outputs, under any
 /// alias of the file, or, without `force`, a file that this program has not made. Names that are not regular files

@@ -9,12 +9,12 @@ use super::CliError;
 use super::image_args::ImageArgs;
 use super::output::{copy_to_stdout, finish_output, open_destination, warn_empty_picture, warn_line};
 use super::scene::SceneArgs;
-use crate::data::fingerprint;
-use crate::export::{
-    OutputDestination, check_picture, check_writable, marks_layer, write_atomically, write_picture,
+use chiaroscuro_files::{
+    OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
-use crate::gpu::{RenderOptions, Renderer, dark_fraction, mean_luminance};
-use crate::model::{ImageRecord, LookRecord, VolumeRecord, with_provenance_mark};
+use chiaroscuro_media::{check_picture, marks_layer, write_picture};
+use chiaroscuro_render::{RenderOptions, Renderer, dark_fraction, mean_luminance};
+use chiaroscuro_scene::{ImageRecord, LookRecord, VolumeRecord};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]

@@ -7,12 +7,13 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, print_line, warn_line};
 use super::scene::{LoadArgs, apply_corrections};
-use crate::data::{Dataset, sanitised};
-use crate::export::{
+use chiaroscuro_files::sanitised;
+use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
 };
-use crate::gpu::{PictureDistance, Renderer};
-use crate::model::{LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_render::{PictureDistance, Renderer};
+use chiaroscuro_scene::{LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_volume::Dataset;
 
 /// Maximum length of a path in a message, in characters.
 const MAX_PATH_CHARS: usize = 4096;

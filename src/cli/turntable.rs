@@ -7,9 +7,9 @@ use clap::Args;
 use super::CliError;
 use super::output::{print_line, warn_empty_picture, warn_line};
 use super::scene::{SceneArgs, parse_size};
-use crate::export::{Animation, AnimationFormat, AnimationSpec, frame_names};
-use crate::gpu::{RenderOptions, Renderer};
-use crate::model::{ImageRecord, ImageSpec, LookRecord, VolumeRecord};
+use chiaroscuro_media::{Animation, AnimationFormat, AnimationSpec, frame_names};
+use chiaroscuro_render::{RenderOptions, Renderer};
+use chiaroscuro_scene::{ImageRecord, ImageSpec, LookRecord, VolumeRecord};
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]

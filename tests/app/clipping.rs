@@ -64,7 +64,7 @@ fn box_and_plane_are_dragged_in_the_picture() {
         harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
         harness.run_steps(2);
     }
-    assert_eq!(harness.state().settings().cuts, chiaroscuro::model::Clipping::default());
+    assert_eq!(harness.state().settings().cuts, chiaroscuro_scene::Clipping::default());
     wait_until_idle(&mut harness);
     harness.run_steps(20);
     assert!(picture(&mut harness).0 == whole, "as it was");

@@ -1,7 +1,7 @@
 //! Tests of the transfer function editor: points, selection, colour maps and freehand drawing.
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{ControlPoint, Easing, Settings, TransferFunction};
+use chiaroscuro_scene::{ControlPoint, Easing, Settings, TransferFunction};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

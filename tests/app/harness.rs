@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
-use chiaroscuro::data::Dataset;
-use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::{ValueRanges, open};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer};
-use chiaroscuro::model::{LookRecord, Settings};
+use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
+use chiaroscuro_scene::{LookRecord, Settings};
+use chiaroscuro_volume::{Dataset, LoadControl, ValueRanges};
+use chiaroscuro_volume_io::{LoadOptions, open};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

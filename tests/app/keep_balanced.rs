@@ -1,7 +1,7 @@
 //! Tests of the kept balance: it follows changes in the settings, the picture and the undo history.
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::gpu::measure_balance_fast;
+use chiaroscuro_render::measure_balance_fast;
 use eframe::egui::{self, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

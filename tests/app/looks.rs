@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::gpu::{LightSearch, SearchedLight, UndecidedPart, complete_first_look, first_look};
-use chiaroscuro::model::Settings;
+use chiaroscuro_render::{LightSearch, SearchedLight, UndecidedPart, complete_first_look, first_look};
+use chiaroscuro_scene::Settings;
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::{self, Modifiers, vec2};
 use egui_kittest::Harness;

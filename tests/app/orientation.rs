@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{Camera, SceneAxis, Settings};
+use chiaroscuro_scene::{Camera, SceneAxis, Settings};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

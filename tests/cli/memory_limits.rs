@@ -5,8 +5,8 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use chiaroscuro::export::{ExportError, PixelRows, read_record, write_picture};
-use chiaroscuro::model::{ImageSpec, PixelFormat};
+use chiaroscuro_media::{ExportError, PixelRows, read_record, write_picture};
+use chiaroscuro_scene::{ImageSpec, PixelFormat};
 
 use crate::program::{COMMAND_TIMEOUT, ProgramFolder};
 use crate::volumes::attached;

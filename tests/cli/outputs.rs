@@ -59,7 +59,7 @@ fn files_of_the_program_say_so_and_are_replaced() {
             folder.run_successfully(&format!("{turn} -o {file}"));
         }
     }
-    let mark = chiaroscuro::model::PROVENANCE_MARK.as_bytes();
+    let mark = chiaroscuro_files::PROVENANCE_MARK.as_bytes();
     for name in
         ["p.png", "r.json", "p.exr", "l.nrrd", "slice.png", "c.png", "t.png", "t.gif", "turn/0001.png"]
     {

@@ -1,7 +1,7 @@
 //! Tests of the command `replay`: pictures rendered again from their own metadata or from a report.
 
-use chiaroscuro::export::{ExportError, export_png, read_picture, read_record, write_picture};
-use chiaroscuro::model::{ImageSpec, PixelFormat};
+use chiaroscuro_media::{ExportError, export_png, read_picture, read_record, write_picture};
+use chiaroscuro_scene::{ImageSpec, PixelFormat};
 
 use crate::program::ProgramFolder;
 use crate::volumes::small_ball;

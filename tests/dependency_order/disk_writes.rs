@@ -1,10 +1,10 @@
-//! Check that only `src/export/files/` opens files for writing, renames and removes them.
+//! Check that only `crates/files/` opens files for writing, renames and removes them.
 
-use crate::sources::source_files;
+use crate::sources::all_sources;
 use crate::tokens::tokens;
 
-/// Only module that may write to the disk.
-const WRITER_MODULE: &str = "export/files/";
+/// Only crate that may write to the disk.
+const WRITER_CRATE: &str = "crates/files/";
 
 /// Functions of `fs` that modify the disk, by the last word of their path.
 const FS_FUNCTIONS: [&str; 12] = [
@@ -56,14 +56,14 @@ fn disk_writes(source: &str) -> Vec<String> {
 
 #[test]
 fn nothing_else_opens_files_for_writing() {
-    let sources = source_files("src", "rs");
+    let sources = all_sources();
     assert!(
         sources
             .iter()
-            .any(|source| source.path.starts_with(WRITER_MODULE) && !disk_writes(&source.text).is_empty())
+            .any(|source| source.path.starts_with(WRITER_CRATE) && !disk_writes(&source.text).is_empty())
     );
     let elsewhere = sources.iter().filter(|source| {
-        !source.path.starts_with(WRITER_MODULE)
+        !source.path.starts_with(WRITER_CRATE)
             && !source.path.ends_with("/tests.rs")
             && !source.path.contains("/tests/")
     });
@@ -72,7 +72,7 @@ fn nothing_else_opens_files_for_writing() {
             disk_writes(&source.text).into_iter().map(|word| format!("{}: {word}", source.path))
         })
         .collect();
-    assert!(found.is_empty(), "src/{WRITER_MODULE} is the place for this:\n{}", found.join("\n"));
+    assert!(found.is_empty(), "{WRITER_CRATE} is the place for this:\n{}", found.join("\n"));
 }
 
 #[test]

@@ -6,8 +6,9 @@ use std::path::{Component, Path, PathBuf};
 use crate::sources::{SourceFile, source_files};
 
 /// Folders and scripts of the project with which a path in a document begins.
-const ROOMS: [&str; 10] = [
+const ROOMS: [&str; 11] = [
     "src/",
+    "crates/",
     "shaders/",
     "tests/",
     "script/",

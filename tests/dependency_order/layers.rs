@@ -1,152 +1,146 @@
-//! Check of the layering: modules import lower modules only, and some crates are confined to some modules.
+//! Check of the layering: the manifest of each crate depends on lower crates only, and the libraries of the window and
+//! of the GPU stay where they belong.
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
-use crate::module_paths::{crates, paths};
-use crate::sources::{SourceFile, source_files};
+use crate::module_paths::crates;
+use crate::sources::{LAYERS, SourceFile, all_sources, source_files};
 use crate::tokens::tokens;
 
-/// Modules from the lowest layer up. Each may import those before it.
-const ORDER: [&str; 11] =
-    ["fault", "math", "data", "model", "plan", "export", "reference", "gpu", "app", "cli", "main"];
+/// Prefix of the names of the project's own crates.
+const OWN: &str = "chiaroscuro-";
 
-/// Imports that the order allows and the design forbids: the renderer must not use the reference, or comparing them
-/// would prove nothing.
-const FORBIDDEN: [(&str, &str); 1] = [("gpu", "reference")];
+/// Renderer of which the reference uses only the plan: geometry that both must share, without any rendering.
+const RENDERER: &str = "chiaroscuro_render";
 
-/// Crates that only these modules may name.
+/// Libraries that only sources with these prefixes may name.
 const CONFINED: [(&str, &[&str]); 4] = [
-    ("egui", &["app", "main"]),
-    ("eframe", &["app", "main"]),
-    ("egui_wgpu", &["app", "main"]),
-    ("wgpu", &["gpu", "app"]),
+    ("egui", &["src/app/", "src/main.rs"]),
+    ("eframe", &["src/app/", "src/main.rs"]),
+    ("egui_wgpu", &["src/app/", "src/main.rs"]),
+    ("wgpu", &["crates/render/src/", "src/app/"]),
 ];
 
-fn violations(file: &SourceFile) -> Vec<String> {
-    let SourceFile { path, text } = file;
-    let top = file.top_module();
-    let mut found = Vec::new();
-    let tokens = tokens(text);
-    for (name, allowed) in CONFINED {
-        if crates(&tokens).contains(name) && !allowed.contains(&top) {
-            found.push(format!("{path} names the crate {name}, which belongs into {allowed:?}"));
-        }
-    }
+/// Parts of the crates named above that do without these libraries all the same: what a picture needs is planned
+/// without a GPU.
+const EXCLUDED: [(&str, &str); 1] = [("wgpu", "crates/render/src/plan/")];
 
-    // The root declares all modules, in alphabetical order.
-    if top == "lib" {
-        return found;
-    }
-    let rank = |module: &str| ORDER.iter().position(|known| *known == module);
-    let Some(own) = rank(top) else {
-        found.push(format!("{path} is in {top}, which has no place in the order of modules"));
-        return found;
-    };
-    let module = if top == "main" { Vec::new() } else { file.module_path() };
-    let roots: BTreeSet<String> =
-        paths(&tokens, &module).into_iter().filter_map(|path| path.into_iter().next()).collect();
-    for root in roots {
-        let is_own_item = top == "main" && rank(&root).is_none();
-        match rank(&root) {
-            Some(other) if other > own => {
-                found.push(format!("{path}: {top} imports {root}, which is above it"));
-            }
-            Some(_) if FORBIDDEN.contains(&(top, root.as_str())) => {
-                found.push(format!("{path}: {top} must not import {root}"));
-            }
-            None if !is_own_item => found.push(format!("{path} uses {root} of the root, which is no module")),
-            _ => {}
+/// Crates of the project on which a manifest depends, without those of tests.
+fn own_dependencies(manifest: &str) -> BTreeSet<&str> {
+    let mut found = BTreeSet::new();
+    let mut is_list = false;
+    for line in manifest.lines() {
+        if let Some(table) = line.strip_prefix('[') {
+            is_list = table.ends_with("dependencies]")
+                && !table.contains("dev-dependencies")
+                && !table.starts_with("workspace");
+        } else if let Some(name) = line.strip_prefix(OWN).filter(|_| is_list) {
+            found.insert(name.split(['.', ' ', '=']).next().unwrap_or_default());
         }
     }
     found
 }
 
+/// Uses of confined libraries in a source file outside their places.
+fn confinement_violations(file: &SourceFile) -> Vec<String> {
+    let tokens = tokens(&file.text);
+    let named = crates(&tokens);
+    let is_allowed = |name: &str, allowed: &[&str]| {
+        allowed.iter().any(|place| file.path.starts_with(place))
+            && !EXCLUDED.iter().any(|(library, place)| *library == name && file.path.starts_with(place))
+    };
+    CONFINED
+        .into_iter()
+        .filter(|(name, allowed)| named.contains(name) && !is_allowed(name, allowed))
+        .map(|(name, allowed)| format!("{} names {name}, which belongs into {allowed:?}", file.path))
+        .collect()
+}
+
 #[test]
-fn source_files_keep_the_order_of_modules() {
-    let files = source_files("src", "rs");
-    assert!(files.len() > 50, "the check must see the sources");
-    let found: Vec<_> = files.iter().flat_map(violations).collect();
-    assert!(found.is_empty(), "\n{}", found.join("\n"));
+fn crates_depend_on_lower_crates_only() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut lower = BTreeSet::new();
+    for (name, folder, allowed) in LAYERS {
+        let path = root.join(folder).with_file_name("Cargo.toml");
+        let manifest = fs::read_to_string(&path).expect("each crate has a manifest");
+        assert!(manifest.contains(&format!("name = \"{name}\"")), "{}", path.display());
+        assert_eq!(own_dependencies(&manifest), allowed.iter().copied().collect(), "{name}");
+        assert!(allowed.iter().all(|other| lower.contains(other)), "{name} depends on a crate above it");
+        lower.insert(name.trim_start_matches(OWN));
+    }
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("the workspace has a manifest");
+    let members = manifest.matches("\n    \"crates/").count();
+    assert_eq!(members, LAYERS.len() - 1, "each crate has its place in the order");
 }
 
 #[test]
 fn the_order_is_that_of_the_documentation() {
     let documented: Vec<_> = include_str!("../../src/lib.rs")
         .lines()
-        // Modules behind a feature are listed without a link.
-        .filter_map(|line| line.strip_prefix("//! | [`").or_else(|| line.strip_prefix("//! | `")))
+        .filter_map(|line| line.strip_prefix("//! | `"))
         .filter_map(|line| line.split('`').next())
-        .map(|name| name.trim_start_matches("mod@"))
         .collect();
-    assert_eq!(documented, ORDER[..ORDER.len() - 1]);
-}
-
-fn violations_of(path: &str, text: &str) -> Vec<String> {
-    violations(&SourceFile { path: path.to_owned(), text: text.to_owned() })
+    assert_eq!(documented, LAYERS.map(|(name, ..)| name));
 }
 
 #[test]
-fn upward_imports_are_reported() {
+fn libraries_stay_in_their_places() {
+    let files = all_sources();
+    assert!(files.len() > 500, "the check must see the sources, and sees {}", files.len());
+    let found: Vec<_> = files.iter().flat_map(confinement_violations).collect();
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+/// Paths in the reference renderer that name the renderer itself, rather than its plan.
+fn uses_of_the_renderer(text: &str) -> usize {
+    let tokens = tokens(text);
+    tokens.windows(3).filter(|part| part[0] == RENDERER && part[1] == "::" && part[2] != "plan").count()
+}
+
+#[test]
+fn the_reference_does_without_the_renderer() {
+    let files = source_files("crates/reference/src", "rs");
+    assert!(files.iter().any(|file| file.text.contains("use chiaroscuro_render::plan")));
+    let found: Vec<_> =
+        files.iter().filter(|file| uses_of_the_renderer(&file.text) > 0).map(|file| &file.path).collect();
+    assert!(found.is_empty(), "they would be compared with themselves: {found:?}");
+    assert_eq!(uses_of_the_renderer("use chiaroscuro_render::{plan, Renderer};"), 1);
+    assert_eq!(uses_of_the_renderer("use chiaroscuro_render::plan::EyeKey;"), 0);
+}
+
+#[test]
+fn dependencies_are_read_from_manifests() {
+    let manifest = "[package]\nname = \"chiaroscuro-x\"\n[dependencies]\nchiaroscuro-files.workspace = true\n\
+                    glam = \"1\"\n[dev-dependencies]\nchiaroscuro-media = { path = \"..\" }\n\
+                    [target.'cfg(unix)'.dependencies]\nchiaroscuro-scene = { workspace = true }\n";
+    assert_eq!(own_dependencies(manifest), BTreeSet::from(["files", "scene"]));
+}
+
+#[test]
+fn confined_libraries_are_reported() {
+    let violations = |path: &str, text: &str| {
+        confinement_violations(&SourceFile { path: path.to_owned(), text: text.to_owned() })
+    };
     for (path, text) in [
-        ("model/light.rs", "use crate::gpu::Renderer;"),
-        ("model/light.rs", "use crate::{data::Volume, plan};"),
-        ("model/light.rs", "use crate::{\n    math::{a, b},\n    cli::{self, CliError},\n};"),
-        ("model/light.rs", "fn f() -> u8 { let x = crate::plan::plan(); x }"),
-        ("model/light.rs", "use super::super::app::theme;"),
-        ("model/light.rs", "use super::{super::app::theme, Settings};"),
-        ("model/mod.rs", "use super::plan;"),
-        ("model/mod.rs", "mod tests {\n    use super::super::plan;\n}"),
-        ("model/a/b.rs", "fn f() { super::super::super::cli::main() }"),
-        ("model/light.rs", "pub(in crate::gpu) fn f() {}"),
-        ("model/light.rs", "use crate::*;"),
-        ("model/light.rs", "use crate::nowhere::x;"),
-        ("reference/kernel.rs", "use crate::gpu::Context;"),
-        ("gpu/renderer.rs", "use crate::reference::render;"),
-        ("app/mod.rs", "use crate::cli::CliError;"),
-        ("elsewhere/mod.rs", ""),
+        ("src/cli/mod.rs", "fn f(ui: &mut egui::Ui) {}"),
+        ("crates/render/src/lib.rs", "use eframe::App;"),
+        ("crates/render/src/lib.rs", "use egui_wgpu::RenderState;"),
+        ("crates/render/src/plan/mod.rs", "use wgpu::Device;"),
+        ("crates/scene/src/lib.rs", "use {::wgpu::Device};"),
+        ("crates/scene/src/lib.rs", "fn f(d: &::wgpu::Device) {}"),
+        ("src/main.rs", "fn f(device: &wgpu::Device) {}"),
+        ("crates/volume/src/lib.rs", "use wgpu as w;"),
     ] {
-        assert_eq!(violations_of(path, text).len(), 1, "{path}: {text}: {:?}", violations_of(path, text));
+        assert_eq!(violations(path, text).len(), 1, "{path}: {text}");
     }
-}
-
-#[test]
-fn confined_crates_are_reported() {
     for (path, text) in [
-        ("cli/mod.rs", "fn f(ui: &mut egui::Ui) {}"),
-        ("gpu/mod.rs", "use eframe::App;"),
-        ("gpu/mod.rs", "use egui_wgpu::RenderState;"),
-        ("plan/mod.rs", "use wgpu::Device;"),
-        ("plan/mod.rs", "use {::wgpu::Device};"),
-        ("plan/mod.rs", "fn f(d: &::wgpu::Device) {}"),
-        ("plan/mod.rs", "use ::wgpu::Device;"),
-        ("main.rs", "fn f(device: &wgpu::Device) {}"),
-        ("plan/mod.rs", "use wgpu as w;"),
+        ("crates/scene/src/lib.rs", "fn f() { Length::egui::<u8>(); crate::math::wgpu::x() }"),
+        ("src/app/mod.rs", "use eframe::egui;\nfn f(d: wgpu::Device) {}"),
+        ("src/main.rs", "fn f() { eframe::run() }"),
+        ("crates/render/src/eye/mod.rs", "use wgpu::Device;"),
     ] {
-        let found = violations_of(path, text);
-        assert_eq!(found.len(), 1, "{path}: {text}: {found:?}");
-    }
-}
-
-#[test]
-fn what_is_allowed_is_not_reported() {
-    for (path, text) in [
-        ("model/light.rs", "use crate::{data::{Volume, gpu}, math};"),
-        ("model/light.rs", "use super::Settings;\nuse self::gpu::x;"),
-        ("model/a/b.rs", "use super::super::plan;"),
-        ("model/mod.rs", "mod tests {\n    use super::plan;\n}\nuse self::cli;"),
-        ("model/mod.rs", "mod tests { fn f() {} }\nmod gpu { use super::super::math; }"),
-        ("model/light.rs", "// crate::gpu::x\n/* crate::gpu /* nested */ crate::cli */"),
-        ("model/light.rs", "/// See [`crate::gpu`].\nfn f() {}"),
-        ("model/light.rs", "const A: &str = \"crate::gpu \\\" crate::cli\"; const B: char = '\"';"),
-        ("model/light.rs", "const A: &str = r#\"crate::gpu \" crate::cli\"#; fn f<'a>(x: &'a str) {}"),
-        ("model/light.rs", "fn f(gpu: u8, x: crate::math::Bounds) { x.gpu::<u8>(); egui(); }"),
-        ("model/light.rs", "fn f() { Length::egui::<u8>(); crate::math::wgpu::x() }"),
-        ("model/light.rs", "pub(crate) fn f() -> Vec<crate::data::Volume> { vec![] }"),
-        ("app/mod.rs", "use eframe::egui;\nuse crate::gpu::Context;\nfn f(d: wgpu::Device) {}"),
-        ("main.rs", "use chiaroscuro::{app, cli::{self, CliError}};\nfn f() { eframe::run() }"),
-        ("cli/mod.rs", "use std::io::Write as _;\nuse crate::app;"),
-        ("lib.rs", "pub mod app;\npub mod math;"),
-    ] {
-        assert_eq!(violations_of(path, text), Vec::<String>::new(), "{path}: {text}");
+        assert_eq!(violations(path, text), Vec::<String>::new(), "{path}: {text}");
     }
 }

@@ -1,4 +1,4 @@
-//! Checks of the source tree: modules import downwards only (the table in `src/lib.rs`), without cycles between
+//! Checks of the source tree: crates depend downwards only (the table in `src/lib.rs`), modules without cycles between
 //! siblings; the UI library stays in the window and the GPU library in the renderer; files state their subject and
 //! stay short, and folders have few entries.
 

@@ -1,4 +1,4 @@
-//! Source files of the project, and the modules that they define.
+//! Source files of the project, its crates, and the modules that they define.
 
 use std::fs;
 use std::path::Path;
@@ -11,16 +11,37 @@ pub(crate) struct SourceFile {
 }
 
 impl SourceFile {
-    /// Module path below the root: folders and stem, without `mod`.
+    /// Module path below the root of its crate, for a path below the crate's sources: folders and stem, without `mod`;
+    /// empty for the root itself.
     pub(crate) fn module_path(&self) -> Vec<&str> {
         let stem = self.path.strip_suffix(".rs").unwrap_or(&self.path);
-        stem.split('/').filter(|part| *part != "mod").collect()
+        stem.split('/').filter(|part| !["mod", "lib"].contains(part)).collect()
     }
+}
 
-    /// Top-level module that contains the file.
-    pub(crate) fn top_module(&self) -> &str {
-        self.module_path()[0]
-    }
+/// Crates of the project from the lowest layer up, each with the folder of its sources and the crates that it may
+/// depend on.
+pub(crate) const LAYERS: [(&str, &str, &[&str]); 9] = [
+    ("chiaroscuro-files", "crates/files/src", &[]),
+    ("chiaroscuro-codecs", "crates/codecs/src", &[]),
+    ("chiaroscuro-volume", "crates/volume/src", &["files"]),
+    ("chiaroscuro-volume-io", "crates/volume-io/src", &["codecs", "files", "volume"]),
+    ("chiaroscuro-scene", "crates/scene/src", &["files", "volume"]),
+    ("chiaroscuro-media", "crates/media/src", &["files", "scene", "volume"]),
+    ("chiaroscuro-render", "crates/render/src", &["files", "media", "scene", "volume"]),
+    ("chiaroscuro-reference", "crates/reference/src", &["render", "scene", "volume"]),
+    ("chiaroscuro", "src", &["files", "media", "render", "scene", "volume", "volume-io"]),
+];
+
+/// Sources of all crates, with paths below the top folder of the project.
+pub(crate) fn all_sources() -> Vec<SourceFile> {
+    let below = |(_, folder, _): (&str, &str, &[&str])| {
+        source_files(folder, "rs")
+            .into_iter()
+            .map(|file| SourceFile { path: format!("{folder}/{}", file.path), ..file })
+            .collect::<Vec<_>>()
+    };
+    LAYERS.into_iter().flat_map(below).collect()
 }
 
 /// Paths of all files below a folder of the project, sorted.

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::sources::{SourceFile, source_files};
+use crate::sources::{SourceFile, all_sources, source_files};
 use crate::tokens::tokens;
 
 /// Words with which a doc comment begins that describes its item by a relative clause.
@@ -169,7 +169,7 @@ fn parts(identifier: &str) -> Vec<String> {
 
 #[test]
 fn doc_comments_open_with_a_noun_or_a_verb() {
-    let sources = source_files("src", "rs");
+    let sources = all_sources();
     at_most(
         RELATIVE_SHARE,
         listed(&sources, |text| opens_with(text, &RELATIVE)),
@@ -185,14 +185,14 @@ fn doc_comments_open_with_a_noun_or_a_verb() {
 
 #[test]
 fn doc_comments_can_be_understood_alone() {
-    let sources = source_files("src", "rs");
+    let sources = all_sources();
     at_most(0.0, listed(&sources, |text| word_count(text) <= FEWEST_WORDS), "have a word or two");
     at_most(SHORT.1, listed(&sources, |text| word_count(text) <= SHORT.0), "have four words or fewer");
 }
 
 #[test]
 fn types_have_names_of_their_own() {
-    let sources = source_files("src", "rs");
+    let sources = all_sources();
     let mut places: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for file in &sources {
         for name in declared_types(&tokens(&file.text)) {
@@ -208,7 +208,7 @@ fn types_have_names_of_their_own() {
 #[test]
 fn constructors_and_visibility_are_those_of_rust() {
     let mut found = BTreeSet::new();
-    for file in source_files("src", "rs") {
+    for file in all_sources() {
         let tokens = tokens(&file.text);
         for window in tokens.windows(3) {
             let [a, b, c] = window else { continue };
@@ -223,12 +223,10 @@ fn constructors_and_visibility_are_those_of_rust() {
 #[test]
 fn retired_words_are_no_identifiers() {
     let mut found = BTreeSet::new();
-    for (folder, ending) in [("src", "rs"), ("shaders", "wgsl")] {
-        for file in source_files(folder, ending) {
-            for token in tokens(&file.text) {
-                if parts(&token).iter().any(|part| RETIRED.contains(&part.as_str())) {
-                    found.insert(format!("{folder}/{}: {token}", file.path));
-                }
+    for file in all_sources().into_iter().chain(source_files("shaders", "wgsl")) {
+        for token in tokens(&file.text) {
+            if parts(&token).iter().any(|part| RETIRED.contains(&part.as_str())) {
+                found.insert(format!("{}: {token}", file.path));
             }
         }
     }

@@ -5,8 +5,8 @@ use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 use std::time::Instant;
 
-use chiaroscuro::data::load::{LoadControl, LoadErrorKind, LoadOptions};
-use chiaroscuro::data::open;
+use chiaroscuro_volume::{LoadControl, LoadErrorKind};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 use crate::random::Random;
 

@@ -3,14 +3,16 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::{ValueRange, ValueRanges, open};
-use chiaroscuro::export::{Animation, AnimationSpec, ExportError, PixelRows};
-use chiaroscuro::export::{export_png, picture_size, read_picture, read_record, write_picture};
-use chiaroscuro::model::{
+use chiaroscuro_media::{
+    Animation, AnimationSpec, ExportError, PixelRows, export_png, picture_size, read_picture, read_record,
+    write_picture,
+};
+use chiaroscuro_scene::{
     EXPORT_EXTENSIONS, ImageSpec, LookRecord, PRESETS, PixelFormat, Settings, VolumeRecord, export_transfer,
     import_transfer,
 };
+use chiaroscuro_volume::{LoadControl, ValueRange, ValueRanges};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Valid file of one kind.
 pub(crate) struct SampleFile {

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chiaroscuro::data::load::{LoadControl, LoadErrorKind, LoadOptions};
-use chiaroscuro::data::{Dataset, open};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer};
-use chiaroscuro::model::first_look;
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer};
+use chiaroscuro_scene::first_look;
+use chiaroscuro_volume::{Dataset, LoadControl, LoadErrorKind};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 use crate::random::Random;
 use crate::samples::samples;

@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::data::load::{LoadControl, LoadError, LoadOptions, RawFormat, load};
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::data::{Histogram, Samples, ValueRange, Volume};
-use chiaroscuro::model::first_look;
+use chiaroscuro_scene::first_look;
+use chiaroscuro_volume::{
+    Histogram, LoadControl, LoadError, Samples, ValueRange, Volume, synthetic::builtin,
+};
+use chiaroscuro_volume_io::{LoadOptions, RawFormat, load};
 
 use crate::manifest::{ManifestEntry, read_manifest};
 

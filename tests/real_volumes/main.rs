@@ -14,11 +14,13 @@ mod oracle;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use chiaroscuro::data::load::RawFormat;
-use chiaroscuro::data::synthetic::{BUILTIN_NAMES, builtin};
-use chiaroscuro::data::{Histogram, KindName, Samples};
+use chiaroscuro_volume::{
+    Histogram, KindName, Samples,
+    synthetic::{BUILTIN_NAMES, builtin},
+};
+use chiaroscuro_volume_io::RawFormat;
 
-use chiaroscuro::model::first_look;
+use chiaroscuro_scene::first_look;
 
 use checks::{assert_good_first_looks, files_with_extension, load_all, open};
 use harness::NamedTest;

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::data::Volume;
-use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, VolumeChoice, load};
+use chiaroscuro_volume::{LoadControl, LoadError, LoadErrorKind, Volume, VolumeChoice};
+use chiaroscuro_volume_io::{LoadOptions, load};
 use flate2::Crc;
 use glam::DVec3;
 

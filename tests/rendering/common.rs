@@ -1,8 +1,8 @@
 //! Shared helpers of the rendering tests: a device and ways to render.
 
-pub(crate) use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary};
-use chiaroscuro::model::Settings;
+use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary};
+use chiaroscuro_scene::Settings;
+pub(crate) use chiaroscuro_volume::Dataset;
 
 /// Opens a device, or fails the test: a check that did not run must be seen.
 pub(crate) fn context() -> GpuContext {
@@ -28,7 +28,7 @@ pub(crate) fn full_attenuation(
 ) -> Vec<f32> {
     let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
-    let request = chiaroscuro::plan::RenderRequest {
+    let request = chiaroscuro_render::plan::RenderRequest {
         volume: loaded.volume().id(),
         settings: settings.clone(),
         size: [8, 8],

@@ -1,7 +1,7 @@
 //! Path tracing by Woodcock (delta) tracking: free paths through material without steps, slabs or sheet kernels.
 
-use chiaroscuro::model::{BakedTransfer, Settings};
-use chiaroscuro::reference::cubic_b_spline;
+use chiaroscuro_reference::cubic_b_spline;
+use chiaroscuro_scene::{BakedTransfer, Settings};
 use glam::DVec3;
 
 use crate::common::Dataset;

@@ -1,10 +1,10 @@
 //! Small scenes for comparisons: a volume with shells, rods and soft parts, and looks for it.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_scene::{
     Camera, ControlPoint, LightGeometry, LightSettings, LitSides, NearFieldRay, OpacityInterpolation,
     OpacityLength, Projection, ReverseKernel, Settings, ShadowSettings, TransferFunction,
 };
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 /// Asymmetric volume with thin and thick, hard and soft parts.

@@ -2,7 +2,7 @@
 //! before tone mapping; 1/255 is one step of an 8-bit display.
 
 use super::compare::ErrorLimit;
-use chiaroscuro::model::ShadowAlgorithm;
+use chiaroscuro_scene::ShadowAlgorithm;
 
 /// GPU against reference with the same weights: the rest are f16 sheets and light volumes (2^−11 each), f32 positions
 /// and early ray termination at 1/4096.

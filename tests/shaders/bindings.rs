@@ -1,7 +1,7 @@
 //! Check of the bind group layouts: number, name, kind, format and size of every binding agree with the shaders, by
 //! reflection.
 
-use chiaroscuro::gpu::{SHADERS, shader_bindings};
+use chiaroscuro_render::{SHADERS, shader_bindings};
 use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, ImageDimension, Module, ScalarKind, TypeInner};
 use wgpu::{

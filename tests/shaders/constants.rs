@@ -1,12 +1,14 @@
 //! Check that constants, table sizes and workgroup sizes agree between Rust and the shaders.
 
-use chiaroscuro::data::{BRICK_EDGE, CELL_EDGE};
-use chiaroscuro::gpu::LISTED_PER_ROW;
-use chiaroscuro::model::{LUT_SIZE, MAX_LIGHTS, MAX_SLAB_PARTS};
-use chiaroscuro::plan::{
-    END_SLICE_BIT, MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT,
-    TILE_ROW_BIT,
+use chiaroscuro_render::{
+    LISTED_PER_ROW,
+    plan::{
+        END_SLICE_BIT, MAX_KERNEL_PIXELS, MAX_STRETCH_LEVEL, MIN_KERNEL_VOXELS, TILE_EDGE, TILE_FIRST_BIT,
+        TILE_ROW_BIT,
+    },
 };
+use chiaroscuro_scene::{LUT_SIZE, MAX_LIGHTS, MAX_SLAB_PARTS};
+use chiaroscuro_volume::{BRICK_EDGE, CELL_EDGE};
 
 use crate::sources::{entry_shaders, shader_source, validate_shader};
 

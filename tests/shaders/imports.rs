@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use chiaroscuro::gpu::{SHADERS, ShaderLibrary};
+use chiaroscuro_render::{SHADERS, ShaderLibrary};
 use wgpu::TextureFormat;
 
 use crate::sources::{entry_shaders, imports_of, shader_source};

@@ -1,6 +1,6 @@
 //! Memory layouts in Rust of the structs that it shares with shaders.
 
-use chiaroscuro::gpu::uniforms;
+use chiaroscuro_render::uniforms;
 
 /// Field of a struct: its name, offset and type in Rust's terms, `[f32; 3]` for a vector.
 #[derive(Debug, Clone, PartialEq, Eq)]

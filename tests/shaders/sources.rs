@@ -1,6 +1,6 @@
 //! Shader sources with resolved imports, and their variants.
 
-use chiaroscuro::gpu::{SHADERS, ShaderLibrary, shader_conditions};
+use chiaroscuro_render::{SHADERS, ShaderLibrary, shader_conditions};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::TextureFormat;
 

@@ -74,10 +74,10 @@ fn shared_structs_have_the_same_fields_in_the_same_places() {
 #[test]
 fn every_shared_struct_is_compared() {
     let files = [
-        include_str!("../../src/gpu/pipelines/uniforms/mod.rs"),
-        include_str!("../../src/gpu/pipelines/uniforms/light.rs"),
-        include_str!("../../src/gpu/pipelines/uniforms/bounces.rs"),
-        include_str!("../../src/gpu/pipelines/uniforms/sky.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/mod.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/light.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/bounces.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/sky.rs"),
     ];
     let declared: BTreeSet<_> = files
         .into_iter()

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use chiaroscuro::gpu::ShaderLibrary;
+use chiaroscuro_render::ShaderLibrary;
 use wgpu::TextureFormat;
 
 use crate::sources::{FORMATS, entry_shaders, shader_source, validate_shader, variants};

@@ -3,7 +3,7 @@
 //! They are its series, arrays, channels, time steps and components.
 
 use crate::app::text;
-use crate::data::load::{
+use chiaroscuro_volume::{
     ChoiceAspect, DefaultComponent, FileContents, VolumeAlternatives, VolumeChoice, VoxelComponents,
 };
 
@@ -122,7 +122,7 @@ fn first_component(components: VoxelComponents) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::load::{FileDimension, VolumeOffer};
+    use chiaroscuro_volume::{FileDimension, VolumeOffer};
 
     fn held(whole: DefaultComponent, shown: Option<usize>) -> FileContents {
         let offers =

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Modifiers};
 
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
 
 /// Settings to restore when a drag is cancelled.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers};
 use glam::{DQuat, DVec3};
 
 use super::shortcuts::is_typing;
-use crate::model::{Camera, LightSettings, Settings};
+use chiaroscuro_scene::{Camera, LightSettings, Settings};
 
 /// Angle per press of an arrow key, in degrees.
 const NUDGE_DEG: f64 = 1.0;

@@ -2,8 +2,8 @@
 
 use eframe::egui::Ui;
 
-use crate::data::ValueRanges;
-use crate::model::{PRESETS, Preset, Settings};
+use chiaroscuro_scene::{PRESETS, Preset, Settings};
+use chiaroscuro_volume::ValueRanges;
 
 /// Cache of the presets in use: finding them takes applying all presets to the settings.
 #[derive(Debug, Default)]

@@ -5,7 +5,7 @@ use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 
 use super::commands::AppCommand;
 use crate::app::text;
-use crate::model::{ObjectRotation, StandardView};
+use chiaroscuro_scene::{ObjectRotation, StandardView};
 
 const fn plain(key: Key, command: AppCommand) -> (KeyboardShortcut, AppCommand) {
     (KeyboardShortcut::new(Modifiers::NONE, key), command)

@@ -5,12 +5,11 @@ use std::sync::Arc;
 
 use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::ReadChoices;
-use crate::data::load::FileContents;
-use crate::data::{
-    CountedLabel, DataKind, Dataset, DensityMapping, Histogram, ValueRange, ValueRanges, Volume, VoxelType,
+use chiaroscuro_scene::{LabelTable, Settings};
+use chiaroscuro_volume::{
+    CountedLabel, DataKind, Dataset, DensityMapping, FileContents, Histogram, ValueRange, ValueRanges,
+    Volume, VoxelType, math::SceneSpace,
 };
-use crate::math::SceneSpace;
-use crate::model::{LabelTable, Settings};
 
 /// Facts about a volume, all fixed except for the range of values that is shown.
 #[derive(Debug, Clone)]

@@ -9,7 +9,7 @@ pub(crate) use self::strip::KeptStrip;
 use super::App;
 use super::common::commands::AppCommand;
 use crate::app::text;
-use crate::model::{
+use chiaroscuro_scene::{
     Camera, ComparisonVariant, ObjectRotation, SavedContent, SavedEntry, SavedLook, Settings,
 };
 

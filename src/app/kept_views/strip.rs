@@ -10,7 +10,7 @@ use super::thumbnails::{KeptThumbnails, thumbnail_size};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::{shortcuts, theme};
 use crate::app::text::{self, ControlText};
-use crate::model::{DIGIT_KEYS, MAX_NAME_CHARS, SavedEntry, Settings};
+use chiaroscuro_scene::{DIGIT_KEYS, MAX_NAME_CHARS, SavedEntry, Settings};
 
 /// Height of a thumbnail, in points.
 const THUMBNAIL_HEIGHT: f32 = 72.0;

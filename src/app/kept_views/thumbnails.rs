@@ -7,7 +7,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 use crate::app::windows::contact_sheet::{SMALL, render_small};
 use crate::app::windows::export::{ExportScene, ExportWorker, settings_for_kept};
 use crate::app::worker::background_task::BackgroundTask;
-use crate::model::{SavedContent, SavedEntry, Settings};
+use chiaroscuro_scene::{SavedContent, SavedEntry, Settings};
 
 /// Finished thumbnail of a kept item.
 struct KeptThumbnail {

@@ -7,7 +7,7 @@ use super::super::text::{self, ControlText};
 use super::controls::{NumberRow, advanced_group, choice_row};
 use super::{PanelContext, sampling};
 use crate::app::common::commands::AppCommand;
-use crate::model::{FovReference, ObjectRotation, Projection, SamplingSettings, SceneAxis};
+use chiaroscuro_scene::{FovReference, ObjectRotation, Projection, SamplingSettings, SceneAxis};
 
 const PROJECTIONS: [(Projection, ControlText); 2] = [
     (Projection::Perspective, text::camera::PERSPECTIVE),

@@ -8,7 +8,7 @@ use super::PanelContext;
 use super::controls::{NumberRow, reset_button_cell, row, switch_row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::model::{ClipEffect, CropBox, MIN_CROP_EXTENT};
+use chiaroscuro_scene::{ClipEffect, CropBox, MIN_CROP_EXTENT};
 
 /// Shows the section "Clipping" of the side panel.
 pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {

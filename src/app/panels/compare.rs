@@ -6,7 +6,7 @@ use super::super::text::{self, ControlText};
 use super::controls::{row, switch_row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
 use crate::app::viewport::compare::Compare;
-use crate::model::{ComparisonVariant, Settings};
+use chiaroscuro_scene::{ComparisonVariant, Settings};
 
 /// Shows the section "Compare" of the side panel.
 pub(super) fn show(

@@ -12,7 +12,7 @@ use super::controls::{
 use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::elide_middle;
 use crate::app::common::theme;
-use crate::model::{
+use chiaroscuro_scene::{
     Camera, LightGeometry, LightLock, LightSettings, LightShape, MAX_LIGHTS, MAX_NAME_CHARS, Settings,
     Spotlight,
 };

@@ -23,8 +23,8 @@ use super::text;
 use super::text::common::LengthUnit;
 use super::viewport::RendererStatus;
 use super::viewport::compare::Compare;
-use crate::data::KindName;
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::KindName;
 
 pub(super) use lights::add_light;
 pub(super) use shadows::set_linked;

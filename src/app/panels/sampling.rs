@@ -4,7 +4,7 @@ use eframe::egui::Ui;
 
 use super::super::text::{self, ControlText};
 use super::controls::{NumberRow, choice_row};
-use crate::model::{
+use chiaroscuro_scene::{
     ClassificationOrder, GradientSource, ReconstructionKernel, RenderEngine, SamplingSettings, SheetOrder,
     SlabMode, SlabQuadrature,
 };

@@ -7,7 +7,7 @@ use super::super::text::common::FACTOR_SUFFIX;
 use super::PanelContext;
 use super::controls::{NumberRow, advanced_group};
 use super::shadows::soft_light_resolution;
-use crate::model::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
+use chiaroscuro_scene::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
 
 /// Shows the rows of multiple scattering in the section "Sky and scattering".
 pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {

@@ -6,7 +6,7 @@ use super::super::text::common::FACTOR_SUFFIX;
 use super::super::text::{self, ControlText};
 use super::PanelContext;
 use super::controls::{NumberRow, choice_row, color_button, reset_button_cell, row};
-use crate::model::{LitSides, MAX_EXPOSURE, MIN_EXPOSURE, ToneMap};
+use chiaroscuro_scene::{LitSides, MAX_EXPOSURE, MIN_EXPOSURE, ToneMap};
 
 const TONE_MAPS: [(ToneMap, ControlText); 2] =
     [(ToneMap::Neutral, text::shading::NEUTRAL), (ToneMap::Clip, text::shading::CLIP)];

@@ -11,7 +11,7 @@ use super::{PanelContext, sampling};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::theme;
 use crate::app::viewport::LightCost;
-use crate::model::{
+use chiaroscuro_scene::{
     DepositMode, LightShape, LightStorage, LightVolumePrecision, LightVolumeResolution, MAX_LIGHT_SAMPLES,
     MAX_MIN_BLOCKS, NearFieldRay, QualityPreset, ReverseKernel, ShadowAlgorithm, ShadowSettings,
 };
@@ -246,7 +246,7 @@ fn light_opacity_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
 }
 
 /// Links or unlinks the lighting curve; when first unlinked, it starts as a copy of the eye's curve.
-pub(crate) fn set_linked(settings: &mut crate::model::Settings, linked: bool) {
+pub(crate) fn set_linked(settings: &mut chiaroscuro_scene::Settings, linked: bool) {
     settings.lighting.linked = linked;
     if !linked && settings.lighting.curve.points.is_empty() {
         settings.lighting.curve = settings.transfer.clone();

@@ -8,7 +8,7 @@ use super::PanelContext;
 use super::controls::{NumberRow, advanced_group, choice_row, color_button, row};
 use super::shadows::soft_light_resolution;
 use crate::app::common::commands::AppCommand;
-use crate::model::{EnvironmentLight, SKY_DIRECTIONS, SkyMode};
+use chiaroscuro_scene::{EnvironmentLight, SKY_DIRECTIONS, SkyMode};
 
 const MODES: [(SkyMode, ControlText); 4] = [
     (SkyMode::Off, text::sky::OFF),

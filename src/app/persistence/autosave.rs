@@ -15,9 +15,9 @@ use super::earlier_runs;
 use super::folder_orientation::{self, FolderOrientation};
 use super::recent_files::RecentFile;
 use super::{recent_files, recent_thumbnails, thumbnail};
-use crate::data::load::VolumeChoice;
-use crate::export::write_atomically;
-use crate::model::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_files::write_atomically;
+use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_volume::VolumeChoice;
 
 /// Time for which changes are collected before they are written: together with the time for writing, the maximum
 /// loss, and half of the two seconds that users are promised.

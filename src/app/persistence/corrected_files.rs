@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::recent_files::{decode_entry, encode_entry};
 use super::shared_list;
-use crate::data::Corrections;
+use chiaroscuro_volume::Corrections;
 
 /// Maximum number of remembered files: some hundred bytes each, and more than a user corrects in a year.
 pub(super) const MAX_CORRECTED_FILES: usize = 500;

@@ -10,9 +10,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use eframe::egui::ColorImage;
 
 use super::{quarantine, thumbnail};
-use crate::data::read_small_file;
-use crate::export;
-use crate::model::LookRecord;
+use chiaroscuro_files::read_small_file;
+use chiaroscuro_scene::LookRecord;
 
 /// Maximum number of earlier looks that are kept.
 pub(crate) const MAX_EARLIER_RUNS: usize = 10;
@@ -48,7 +47,7 @@ impl EarlierRun {
 
 /// Marks the run of a look as ended normally, by removing its lock file.
 pub(super) fn mark_ended(look: &Path) {
-    export::remove_own_file(&lock_path(look));
+    chiaroscuro_files::remove_own_file(&lock_path(look));
 }
 
 fn lock_path(look: &Path) -> PathBuf {
@@ -70,14 +69,14 @@ pub(super) struct CurrentRun {
 impl CurrentRun {
     /// Starts a run in a folder, with a lock file.
     pub(super) fn begin(folder: &Path) -> std::io::Result<Self> {
-        export::make_folder(folder)?;
+        chiaroscuro_files::make_folder(folder)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         // Names sort by time, and are unique among processes.
         let number = RUNS.fetch_add(1, Ordering::Relaxed);
         let name = format!("{:013}-{}-{number}.json", now.as_millis(), std::process::id());
         let look = folder.join(name);
         // On a file system without locks, a running window looks like a crashed one.
-        let lock = export::hold_lock(&lock_path(&look))?;
+        let lock = chiaroscuro_files::hold_lock(&lock_path(&look))?;
         Ok(Self { look, lock: Some(lock) })
     }
 }
@@ -117,8 +116,8 @@ pub(super) fn import_old_look(folder: &Path, runs: &Path) {
         let look = folder.join(name);
         let Ok(when) = std::fs::metadata(&look).and_then(|found| found.modified()) else { continue };
         let millis = when.duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
-        export::make_folder(runs).ok();
-        export::rename_own_file(&look, &runs.join(format!("{millis:013}-0.json"))).ok();
+        chiaroscuro_files::make_folder(runs).ok();
+        chiaroscuro_files::rename_own_file(&look, &runs.join(format!("{millis:013}-0.json"))).ok();
     }
 }
 
@@ -155,7 +154,7 @@ pub(super) fn read(folder: &Path) -> (Vec<EarlierRun>, Vec<String>) {
     // Failed starts matter until one has succeeded.
     let (_, over) = crashed_without_look(&files);
     for lock in over {
-        export::remove_own_file(lock);
+        chiaroscuro_files::remove_own_file(lock);
     }
     let (mut runs, mut notices) = (Vec::new(), Vec::new());
     for look in files.into_iter().rev().filter(|file| file.extension().is_some_and(|ending| ending == "json"))
@@ -193,6 +192,6 @@ fn describe(look: &Path, crashed: bool) -> Option<EarlierRun> {
 /// Removes a look with its thumbnail and lock file.
 fn remove(look: &Path) {
     for file in [look.to_owned(), look.with_extension("png"), lock_path(look)] {
-        export::remove_own_file(&file);
+        chiaroscuro_files::remove_own_file(&file);
     }
 }

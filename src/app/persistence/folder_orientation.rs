@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::recent_files::{decode_entry, encode_entry};
 use super::shared_list;
-use crate::model::SceneAxis;
+use chiaroscuro_scene::SceneAxis;
 
 /// Maximum number of remembered folders: more than a user works in at a time.
 pub(super) const MAX_FOLDERS: usize = 100;

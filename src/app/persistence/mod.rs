@@ -29,10 +29,8 @@ pub(crate) use self::quarantine::check_window_state;
 pub(crate) use self::recent_files::RecentFile;
 pub(crate) use self::recent_thumbnails::RecentThumbnails;
 use crate::app::text;
-use crate::data::Corrections;
-use crate::data::load::VolumeChoice;
-use crate::export;
-use crate::model::{SceneAxis, Settings};
+use chiaroscuro_scene::{SceneAxis, Settings};
+use chiaroscuro_volume::{Corrections, VolumeChoice};
 
 /// Number of successive failed starts after which the next one is a safe start.
 const FAILED_STARTS: usize = 3;
@@ -99,7 +97,7 @@ impl PersistentState {
         let runs = folder.join("runs");
         earlier_runs::import_old_look(folder, &runs);
         for folder in [folder, &runs] {
-            export::remove_abandoned_temporary_files(folder);
+            chiaroscuro_files::remove_abandoned_temporary_files(folder);
         }
         memory.is_first = !runs.exists();
         let (recent, notice) = recent_files::read(folder);

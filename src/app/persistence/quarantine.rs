@@ -4,12 +4,11 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use crate::app::text;
-use crate::data::read_small_file;
-use crate::export;
+use chiaroscuro_files::read_small_file;
 
 /// Quarantines a file by renaming it, with the time in its name, so that it can be examined. Returns a notice.
 pub(super) fn quarantine(path: &Path) -> String {
-    match export::quarantine(path) {
+    match chiaroscuro_files::quarantine(path) {
         Ok(aside) => text::persistence::quarantined(path, &aside),
         Err(err) => text::persistence::quarantine_failed(path, err),
     }

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::quarantine;
-use crate::data::load::VolumeChoice;
-use crate::data::read_small_file;
-use crate::export::{hold_lock, write_atomically};
-use crate::model::{decode_path, encode_path};
+use chiaroscuro_files::{hold_lock, read_small_file, write_atomically};
+use chiaroscuro_scene::{decode_path, encode_path};
+use chiaroscuro_volume::VolumeChoice;
 
 /// Prefix of paths that are not valid text, all bytes of which are encoded after it. Other entries are absolute
 /// paths, which never begin with it.

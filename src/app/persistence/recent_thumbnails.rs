@@ -7,8 +7,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 
 use super::recent_files::{RecentFile, encode_entry};
 use super::{is_builtin, thumbnail};
-use crate::data::fingerprint;
-use crate::export;
+use chiaroscuro_files::fingerprint;
 
 /// Name of the folder, beside the list.
 const FOLDER: &str = "recent";
@@ -26,7 +25,7 @@ pub(super) fn write(folder: &Path, file: &Path, picture: &ColorImage) -> Result<
     if is_builtin(file) {
         return Ok(());
     }
-    export::make_folder(&folder.join(FOLDER)).map_err(|err| err.to_string())?;
+    chiaroscuro_files::make_folder(&folder.join(FOLDER)).map_err(|err| err.to_string())?;
     let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
     thumbnail::write(picture, &thumbnail_path(folder, &whole))
 }
@@ -38,7 +37,7 @@ pub(super) fn remove_unlisted(folder: &Path, listed: &[RecentFile]) {
     for path in names.take(MOST_NAMES).map(|entry| entry.path()) {
         let is_ours = path.extension().is_some_and(|ending| ending == "png");
         if is_ours && !kept.contains(&path) {
-            export::remove_own_file(&path);
+            chiaroscuro_files::remove_own_file(&path);
         }
     }
 }
@@ -76,9 +75,10 @@ impl RecentThumbnails {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::data::load::VolumeChoice;
     use egui::Color32;
+
+    use super::*;
+    use chiaroscuro_volume::VolumeChoice;
 
     #[test]
     fn pictures_belong_to_their_files_and_go_with_them() {

@@ -7,8 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::quarantine;
-use crate::data::read_small_file;
-use crate::export::{hold_lock, write_atomically};
+use chiaroscuro_files::{hold_lock, read_small_file, write_atomically};
 
 /// Reads the list in a file; returns a notice if it was corrupt and was quarantined.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> (Vec<T>, Option<String>) {

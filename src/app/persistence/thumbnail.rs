@@ -5,7 +5,8 @@ use std::path::Path;
 use eframe::egui::{Color32, ColorImage};
 use image::{RgbImage, imageops};
 
-use crate::export::{encode_png, write_atomically};
+use chiaroscuro_files::write_atomically;
+use chiaroscuro_media::encode_png;
 
 /// Longer edge of a thumbnail in pixels: 1.5 times the size in the list, for high-resolution screens.
 const EDGE: u32 = 192;
@@ -32,7 +33,7 @@ fn shrink(picture: &ColorImage) -> Option<RgbImage> {
 
 /// Reads a thumbnail; `None` if the file is missing, invalid or larger than this program writes.
 pub(super) fn read(path: &Path) -> Option<ColorImage> {
-    let bytes = crate::data::read_small_file(path).ok()?;
+    let bytes = chiaroscuro_files::read_small_file(path).ok()?;
     let mut reader = image::ImageReader::with_format(std::io::Cursor::new(bytes), image::ImageFormat::Png);
     let mut limits = image::Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(EDGE), Some(EDGE));

@@ -15,8 +15,8 @@ use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::LoadOutcome;
 use crate::app::{App, panels};
-use crate::gpu::GpuError;
-use crate::model::{COLOR_MAPS, Camera, Settings};
+use chiaroscuro_render::GpuError;
+use chiaroscuro_scene::{COLOR_MAPS, Camera, Settings};
 
 impl App {
     /// Executes a command of the user.

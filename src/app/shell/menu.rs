@@ -9,11 +9,11 @@ use crate::app::common::{overlay_windows, theme};
 use crate::app::persistence::{EarlierRun, RecentFile, RecentThumbnails};
 use crate::app::text;
 use crate::app::windows::recovery;
-use crate::data::load::{ChoiceAspect, FileContents, FileDimension};
-use crate::data::{sanitised, synthetic};
-use crate::model::{
+use chiaroscuro_files::sanitised;
+use chiaroscuro_scene::{
     LightingRig, MAX_LIGHTS, MAX_NAME_CHARS, ObjectRotation, Projection, Settings, StandardView,
 };
+use chiaroscuro_volume::{ChoiceAspect, FileContents, FileDimension, synthetic};
 
 /// Maximum number of characters of a path in a tooltip: the longest path that systems allow.
 const MAX_PATH_CHARS: usize = 4096;

@@ -23,9 +23,8 @@ use crate::app::viewport::{
     RendererStatus, Viewport, empty_picture_notice, light_chips, light_probe, mouse_navigation,
 };
 use crate::app::windows::slices::SlicesWindow;
-use crate::gpu::GpuError;
-use crate::model::first_look::ObjectOutline;
-use crate::model::{ImageSpec, Settings};
+use chiaroscuro_render::GpuError;
+use chiaroscuro_scene::{ImageSpec, Settings, first_look::ObjectOutline};
 
 /// Inputs of the picture: the state that it shows, and the values that the mouse changes.
 pub(crate) struct PictureInputs<'a> {

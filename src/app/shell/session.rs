@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::app::text;
 use crate::app::windows::file_dialogs;
-use crate::model::{LookRecord, SCHEMA, Settings, VolumeRecord};
+use chiaroscuro_scene::{LookRecord, SCHEMA, Settings, VolumeRecord};
 
 /// Session file to which the look is saved.
 #[derive(Debug)]

@@ -12,7 +12,7 @@ use crate::app::text;
 use crate::app::viewport::{RendererActivity, RendererStatus};
 use crate::app::windows::export::ExportProgress;
 use crate::app::worker::loader::LoadProgress;
-use crate::data::sanitised;
+use chiaroscuro_files::sanitised;
 
 /// Maximum number of characters of a path in the bar: more than the widest screen shows.
 const MAX_PATH_CHARS: usize = 500;

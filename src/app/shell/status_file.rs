@@ -113,7 +113,7 @@ impl StatusFile {
         let text = state.json().to_string();
         if text != self.written {
             // Atomic write: readers never see half of it.
-            if let Err(err) = crate::export::write_atomically(path, text.as_bytes()) {
+            if let Err(err) = chiaroscuro_files::write_atomically(path, text.as_bytes()) {
                 log::warn!("{STATUS_PATH_VARIABLE}: {err}");
                 self.path = None;
             }

@@ -1,6 +1,6 @@
 //! Errors that keep a window from opening.
 
-use crate::gpu::GpuError;
+use chiaroscuro_render::GpuError;
 
 /// Error of a start without a window.
 #[derive(Debug, thiserror::Error)]

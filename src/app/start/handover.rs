@@ -21,9 +21,9 @@ use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use crate::data::Dataset;
-use crate::data::load::LoadOptions;
-use crate::model::{QualityPreset, Settings};
+use chiaroscuro_scene::{QualityPreset, Settings};
+use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume_io::LoadOptions;
 
 /// State of the user's work: the look with its history, the volume in host memory, and the session file.
 #[derive(Debug)]

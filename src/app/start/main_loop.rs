@@ -12,7 +12,7 @@ use super::icon;
 use super::options::WindowOptions;
 use crate::app::persistence::{check_window_state, write_all_pending};
 use crate::app::{App, text};
-use crate::gpu::{check_driver_address_space, device_descriptor};
+use chiaroscuro_render::{check_driver_address_space, device_descriptor};
 
 /// Application identifier of the window for the desktop, and name of the storage folder.
 const APP_ID: &str = "chiaroscuro";

@@ -50,10 +50,10 @@ use crate::app::windows::untrusted_path::UntrustedPathDialog;
 use crate::app::windows::volume_chooser::VolumeChooser;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
-use crate::data::load::LoadOptions;
-use crate::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
-use crate::gpu::{GpuContext, GpuError, WindowPainter};
-use crate::model::{QualityPreset, Settings};
+use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
+use chiaroscuro_render::{GpuContext, GpuError, WindowPainter};
+use chiaroscuro_scene::{QualityPreset, Settings};
+use chiaroscuro_volume_io::LoadOptions;
 
 /// Counter of the frames of all windows, for fault injection.
 static FRAMES: FaultCounter = FaultCounter::new();

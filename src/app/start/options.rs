@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::data::load::LoadOptions;
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume_io::LoadOptions;
 
 /// Function that changes settings once.
 pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;

@@ -1,6 +1,6 @@
 //! Texts that several parts of the window share: buttons, units and tooltips of reset buttons.
 
-use crate::data::SpacingUnit;
+use chiaroscuro_volume::SpacingUnit;
 
 /// Caption of a collapsed group of rarely needed settings.
 pub(crate) const ADVANCED: &str = "Advanced";

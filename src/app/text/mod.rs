@@ -2,8 +2,8 @@
 //!
 //! One file per part of the window. Plain texts are constants; texts with figures in them are functions, because
 //! other languages put the figures elsewhere. Fonts and colours are chosen where a text is shown. The names of
-//! presets, colour maps, views and light rigs are with these in `src/model`; errors have their messages where they
-//! are defined.
+//! presets, colour maps, views and light rigs are with these in `crates/scene/src`; errors have their messages where
+//! they are defined.
 
 pub(super) mod common;
 pub(super) mod dock;

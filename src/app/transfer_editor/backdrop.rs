@@ -9,9 +9,9 @@ use super::plot::PlotAxes;
 use super::theme;
 use crate::app::viewport::canvas::Canvas;
 use crate::app::viewport::paint_callback;
-use crate::data::ValueRange;
-use crate::gpu::{WindowPainter, WindowPicture};
-use crate::model::TransferFunction;
+use chiaroscuro_render::{WindowPainter, WindowPicture};
+use chiaroscuro_scene::TransferFunction;
+use chiaroscuro_volume::ValueRange;
 
 /// Smallest opacity of the fill under the curve, so that its colour is seen even where it is nearly transparent.
 const MIN_FILL_OPACITY: f32 = 0.25;
@@ -138,7 +138,7 @@ mod tests {
 
     use super::super::zoom::ShownValues;
     use super::*;
-    use crate::model::ControlPoint;
+    use chiaroscuro_scene::ControlPoint;
 
     #[test]
     fn bars_and_colours_stand_on_the_floor() {

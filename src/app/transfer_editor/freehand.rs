@@ -4,7 +4,7 @@ use eframe::egui::{self, CursorIcon, Event, Key, Modifiers, Pos2, Response, Stro
 
 use super::plot::{self, PlotAxes};
 use super::theme;
-use crate::model::TransferFunction;
+use chiaroscuro_scene::TransferFunction;
 
 /// State of freehand drawing between frames.
 #[derive(Debug, Default)]

@@ -8,7 +8,7 @@ use super::super::text::{self, ControlText};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::{LabelRow, VolumeFacts};
 use crate::app::panels::controls::color_button;
-use crate::model::{LabelLook, LabelTable, MAX_NAME_CHARS, Settings};
+use chiaroscuro_scene::{LabelLook, LabelTable, MAX_NAME_CHARS, Settings};
 
 /// Number of labels from which on a filter is shown: fewer are visible at once.
 const MIN_FILTERED_LABELS: usize = 7;

@@ -6,7 +6,7 @@ use std::f32::consts::{PI, TAU};
 use super::super::text;
 use crate::app::common::theme;
 use crate::app::panels::set_linked;
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
 
 /// Size of the button, half the straight length of a link, and the radius of its round ends, in points.
 const BUTTON_SIZE: Vec2 = Vec2::new(20.0, 18.0);

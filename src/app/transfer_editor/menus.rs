@@ -7,8 +7,8 @@ use super::zoom::ShownValues;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::common::{overlay_windows, reveal, theme};
-use crate::data::ValueRange;
-use crate::model::{COLOR_MAPS, ColorMap, ColorMixing, ControlPoint, Easing, TransferFunction};
+use chiaroscuro_scene::{COLOR_MAPS, ColorMap, ColorMixing, ControlPoint, Easing, TransferFunction};
+use chiaroscuro_volume::ValueRange;
 
 /// Size of the swatch of a colour map, in points.
 const SWATCH_SIZE: egui::Vec2 = vec2(96.0, 14.0);

@@ -28,9 +28,9 @@ use super::common::theme;
 use super::common::volume_facts::VolumeFacts;
 use super::text;
 use crate::app::panels::set_linked;
-use crate::data::ValueRange;
-use crate::gpu::WindowPainter;
-use crate::model::{Settings, TransferFunction};
+use chiaroscuro_render::WindowPainter;
+use chiaroscuro_scene::{Settings, TransferFunction};
+use chiaroscuro_volume::ValueRange;
 
 /// Curve that the editor edits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -8,9 +8,8 @@ use super::text;
 use super::theme::{self, PlotColors};
 use super::zoom::ShownValues;
 use crate::app::common::volume_facts::range_decimals;
-use crate::data::Histogram;
-use crate::data::ValueRange;
-use crate::model::{Settings, TransferFunction};
+use chiaroscuro_scene::{Settings, TransferFunction};
+use chiaroscuro_volume::{Histogram, ValueRange};
 
 /// Distance between two samples of a curve, in points.
 const SAMPLE_STEP: f32 = 2.0;
@@ -227,7 +226,7 @@ mod tests {
 
     #[test]
     fn every_voxel_is_in_a_bar() {
-        use crate::data::{Samples, Volume};
+        use chiaroscuro_volume::{Samples, Volume};
         let values = Samples::U8((0..=199).chain(0..=55).collect());
         let volume = Volume::with_spacing("ramp", [16, 4, 4], glam::DVec3::ONE, values).unwrap();
         let histogram = Histogram::from_volume(&volume);

@@ -7,11 +7,11 @@ use super::super::text;
 use super::super::text::common::DEGREES;
 use crate::app::common::overlay_windows;
 use crate::app::common::volume_facts::range_decimals;
-use crate::data::ValueRange;
-use crate::model::{
+use chiaroscuro_scene::{
     ControlPoint, Easing, TransferFunction, lab_from_lch, lch_from_lab, linear_from_oklab, linear_from_srgb,
     oklab_from_linear, srgb_from_linear,
 };
+use chiaroscuro_volume::ValueRange;
 
 /// Interpolations from a point to the next, with their names.
 const EASINGS: [(Easing, &str); 3] = [

@@ -12,7 +12,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::preset_match::PresetMatchCache;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::model::{PRESETS, Preset, Settings};
+use chiaroscuro_scene::{PRESETS, Preset, Settings};
 
 /// Size of a thumbnail in points: half of its pixels.
 const THUMBNAIL_SIZE: Vec2 = vec2(88.0, 58.0);

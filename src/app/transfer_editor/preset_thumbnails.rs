@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 
-use crate::model::Preset;
+use chiaroscuro_scene::Preset;
 
 macro_rules! pictures {
     ($($name:literal),+ $(,)?) => {
@@ -69,7 +69,7 @@ impl PresetThumbnails {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::PRESETS;
+    use chiaroscuro_scene::PRESETS;
 
     #[test]
     fn every_preset_of_the_menu_has_a_picture() {

@@ -6,8 +6,8 @@ use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
 
 use super::plot::PlotAxes;
 use super::theme;
-use crate::data::ValueRange;
-use crate::model::TransferFunction;
+use chiaroscuro_scene::TransferFunction;
+use chiaroscuro_volume::ValueRange;
 
 /// Indices of the selected points, and the rubber band that selects more of them.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -86,7 +86,7 @@ impl PointSelection {
             if !ui.input(|input| input.modifiers.shift) {
                 self.points.clear();
             }
-            let inside = |point: &crate::model::ControlPoint| {
+            let inside = |point: &chiaroscuro_scene::ControlPoint| {
                 axes.contains_value(point.value) && frame.contains(axes.position(point.value, point.opacity))
             };
             let found = function.points.iter().enumerate().filter(|(_, point)| inside(point));
@@ -145,7 +145,7 @@ fn paint_rubber_band(painter: &Painter, frame: Rect) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::ControlPoint;
+    use chiaroscuro_scene::ControlPoint;
 
     fn function() -> TransferFunction {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);

@@ -4,7 +4,7 @@ use eframe::egui::{PointerButton, Rect, Response, Ui};
 
 use super::super::text;
 use crate::app::viewport::mouse_navigation::wheel_notches;
-use crate::data::{ValueRange, ValueRanges};
+use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Factor by which a notch of the wheel narrows the shown range.
 const ZOOM_PER_NOTCH: f64 = 1.2;

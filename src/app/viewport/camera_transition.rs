@@ -1,7 +1,7 @@
 //! Animated transition between two views, so that the user can follow how the object turns. Only the display is
 //! animated: the settings have the new view at once.
 
-use crate::model::Camera;
+use chiaroscuro_scene::Camera;
 
 /// Duration of the transition, in seconds: long enough to follow, too short to wait for.
 const TRANSITION_S: f64 = 0.15;

@@ -8,8 +8,8 @@ use super::{ViewportPictures, paint_callback};
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::request::ComparedLooks;
-use crate::gpu::PictureDistance;
-use crate::model::{ComparisonVariant, Settings};
+use chiaroscuro_render::PictureDistance;
+use chiaroscuro_scene::{ComparisonVariant, Settings};
 
 /// Half width of the divider's drag area, in points.
 const DIVIDER_HALF_WIDTH: f32 = 7.0;

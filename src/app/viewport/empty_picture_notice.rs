@@ -5,8 +5,8 @@ use eframe::egui::{self, Align, Layout, Rect, RichText, Ui, UiBuilder, Vec2};
 use super::RendererStatus;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::data::Volume;
-use crate::model::{Settings, first_look};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::Volume;
 
 /// Size of the notice, in points.
 const SIZE: Vec2 = Vec2::new(340.0, 84.0);

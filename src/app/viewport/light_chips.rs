@@ -8,7 +8,7 @@ use crate::app::common::elide::elide_middle;
 use crate::app::common::light_keys::solo;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{LightSettings, MAX_LIGHTS, Settings};
+use chiaroscuro_scene::{LightSettings, MAX_LIGHTS, Settings};
 
 /// Width of the widest name, in points; longer names are elided in the middle and complete in the chip's tooltip.
 const MAX_NAME_WIDTH: f32 = 140.0;

@@ -31,10 +31,10 @@ use super::worker::render_thread::RenderThread;
 use super::worker::request::{ComparedLooks, FrameRequest, RenderScene};
 use super::worker::response_times::PendingRequests;
 pub(super) use super::worker::response_times::ResponseTimes;
-use crate::data::Dataset;
-pub(super) use crate::gpu::LightVolumeStatistics;
-use crate::gpu::{GpuContext, GpuError, PictureDistance, Renderer, WindowPainter, WindowPicture};
-use crate::model::Settings;
+pub(super) use chiaroscuro_render::LightVolumeStatistics;
+use chiaroscuro_render::{GpuContext, GpuError, PictureDistance, Renderer, WindowPainter, WindowPicture};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Longest time that a frame of the window waits for a preview: the rest of 1/60 s.
 const PREVIEW_WAIT: Duration = Duration::from_millis(12);

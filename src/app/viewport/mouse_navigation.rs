@@ -4,9 +4,8 @@ use eframe::egui::{self, Key, PointerButton, Response};
 use glam::dvec2;
 
 use crate::app::common::light_keys;
-use crate::data::ValueRange;
-use crate::model::first_look::ObjectOutline;
-use crate::model::{Camera, Settings};
+use chiaroscuro_scene::{Camera, Settings, first_look::ObjectOutline};
+use chiaroscuro_volume::ValueRange;
 
 /// Degrees of orbit per point of drag.
 const DEGREES_PER_POINT: f64 = 0.4;

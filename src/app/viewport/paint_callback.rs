@@ -5,7 +5,7 @@ use eframe::egui::{Color32, PaintCallbackInfo, Rect, Shape};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 use eframe::wgpu;
 
-use crate::gpu::{WindowPainter, WindowPicture};
+use chiaroscuro_render::{WindowPainter, WindowPicture};
 
 enum PictureCallback {
     /// Picture with its opacity (0 to 255) and its shift to the right in pixels.

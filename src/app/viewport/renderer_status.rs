@@ -2,9 +2,9 @@
 
 use crate::app::viewport::Viewport;
 use crate::app::worker::request::ComparedLooks;
-use crate::data::sanitised;
-use crate::gpu::{LightVolumeStatistics, RenderStage};
-use crate::model::MAX_NAME_CHARS;
+use chiaroscuro_files::sanitised;
+use chiaroscuro_render::{LightVolumeStatistics, RenderStage};
+use chiaroscuro_scene::MAX_NAME_CHARS;
 
 /// Activity of the renderer, for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use eframe::egui::{Pos2, Rect, vec2};
 use glam::DVec3;
 
-use crate::model::Camera;
+use chiaroscuro_scene::Camera;
 
 /// Camera together with the picture's rectangle in the window, in points.
 #[derive(Debug, Clone)]
@@ -48,9 +48,10 @@ impl ViewProjection {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::model::Projection;
     use eframe::egui::pos2;
+
+    use super::*;
+    use chiaroscuro_scene::Projection;
 
     #[test]
     fn lines_are_followed_under_the_pointer() {

@@ -6,7 +6,7 @@ use crate::app::common::overlay_windows;
 use crate::app::common::shortcuts::{SHORTCUTS, key_text};
 use crate::app::text;
 use crate::app::viewport::RendererStatus;
-use crate::model::SceneAxis;
+use chiaroscuro_scene::SceneAxis;
 
 /// Size of the tables of keys and mouse, in points.
 const KEYS_WINDOW_SIZE: egui::Vec2 = egui::vec2(980.0, 626.0);

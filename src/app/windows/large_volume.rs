@@ -8,8 +8,8 @@ use crate::app::common::{overlay_windows, shortcuts};
 use crate::app::text;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::worker::memory_estimate::{MemoryEstimate, MemoryFit};
-use crate::data::load::{Downsampling, Portion, VoxelRegion, VoxelSpan};
-use crate::data::sanitised;
+use chiaroscuro_files::sanitised;
+use chiaroscuro_volume::{Downsampling, Portion, VoxelRegion, VoxelSpan};
 
 /// Longest path that is shown, in characters.
 const MAX_PATH_CHARS: usize = 200;
@@ -139,7 +139,7 @@ impl LargeVolume {
     fn answer(&self) -> Option<LargeVolumeAnswer> {
         let portion = self.chosen_portion()?;
         let choice = self.reading.choice.clone().unwrap_or_default();
-        let choice = Some(crate::data::load::VolumeChoice { portion: Some(portion), ..choice });
+        let choice = Some(chiaroscuro_volume::VolumeChoice { portion: Some(portion), ..choice });
         let reading = ReadChoices { choice, takes_all_memory: true, ..self.reading.clone() };
         Some(LargeVolumeAnswer::Read { source: self.source.clone(), reading: Box::new(reading) })
     }

@@ -8,14 +8,15 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 use crate::app::common::dock::ToolWindow;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::data::{Dataset, Volume};
-use crate::export::write_atomically;
-use crate::gpu::{
-    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, export_slice, light_volume_nrrd,
+use chiaroscuro_files::write_atomically;
+use chiaroscuro_media::ExportError;
+use chiaroscuro_render::{
+    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, export_slice,
+    plan::{LightKey, RenderRequest},
 };
-use crate::math::false_color;
-use crate::model::{LightStorage, Settings};
-use crate::plan::{LightKey, RenderRequest};
+use chiaroscuro_scene::{LightStorage, Settings};
+use chiaroscuro_volume::{Dataset, Volume, math::false_color};
+use chiaroscuro_volume_io::write::nrrd_of_blocks;
 
 /// Longest edge of the slice on screen, in points.
 const SLICE_EDGE: f32 = 360.0;
@@ -144,7 +145,9 @@ impl LightSliceWindow {
             let slice = attenuation.slice(self.axis, at).ok_or(text::light_volume::NO_SUCH_SLICE)?;
             export_slice(&slice, path)
         } else {
-            write_atomically(path, &light_volume_nrrd(volume, attenuation))
+            let AttenuationData { dims, divisor, values, .. } = &**attenuation;
+            let nrrd = nrrd_of_blocks(volume, AttenuationData::CONTENT, *dims, *divisor, values);
+            write_atomically(path, &nrrd).map_err(ExportError::from)
         };
         written.map_err(|err| err.to_string())
     }
@@ -166,7 +169,7 @@ impl LightSliceWindow {
         self.wanted_key = None;
         let Some(dataset) = &scene.dataset else { return Ok(()) };
         let is_there = |index: usize| {
-            scene.settings.lights.get(index).is_some_and(crate::model::LightSettings::needs_volume)
+            scene.settings.lights.get(index).is_some_and(chiaroscuro_scene::LightSettings::needs_volume)
         };
         if !is_there(self.light) {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);

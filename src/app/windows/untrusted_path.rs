@@ -6,8 +6,8 @@ use eframe::egui;
 
 use crate::app::common::overlay_windows;
 use crate::app::text;
-use crate::data::sanitised;
-use crate::model::LookRecord;
+use chiaroscuro_files::sanitised;
+use chiaroscuro_scene::LookRecord;
 
 /// Longest path that is shown, in characters: the user must see all of it.
 const MAX_PATH_CHARS: usize = 4096;

@@ -5,9 +5,11 @@ use std::time::{Duration, Instant};
 use super::exposure_compensation::{ExposureCompensation, PreviewClass};
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, RenderScene};
-use crate::gpu::{GpuError, RenderOptions, RenderReport, dark_fraction, is_empty_light, mean_luminance};
-use crate::model::Settings;
-use crate::plan::{EyeKey, RenderRequest};
+use chiaroscuro_render::{
+    GpuError, RenderOptions, RenderReport, dark_fraction, is_empty_light, mean_luminance,
+    plan::{EyeKey, RenderRequest},
+};
+use chiaroscuro_scene::Settings;
 
 /// Largest number of pixels of a preview whose brightness is measured: 2 ms on a software adapter.
 const MAX_MEASURED_PIXELS: u64 = 1 << 18;

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Color32, ColorImage};
 
-use crate::gpu::PictureDistance;
+use chiaroscuro_render::PictureDistance;
 
 /// Amplification of the displayed difference: makes one step in eight bits just visible.
 const AMPLIFICATION: i32 = 8;

@@ -11,14 +11,15 @@ use super::memory_estimate::{MemoryEstimate, PendingMemoryDecision, memory_check
 use super::warm_up::PipelineWarmUp;
 use crate::app::persistence::{CorrectedFile, FileStamp};
 use crate::app::text;
-use crate::data::load::{
-    self, LoadControl, LoadError, LoadOptions, RawFormat, RawGuess, RawLayout, VolumeAlternatives,
-    VolumeChoice, memory_budget_bytes,
+use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
+use chiaroscuro_render::{
+    GpuContext, GpuError, Renderer, ShaderLibrary, downsample_to_fit, first_look_upright,
 };
-use crate::data::{self, Dataset, Volume};
-use crate::fault::{FaultThread, panic_if_injected};
-use crate::gpu::{GpuContext, GpuError, Renderer, ShaderLibrary, downsample_to_fit, first_look_upright};
-use crate::model::{SceneAxis, Settings};
+use chiaroscuro_scene::{SceneAxis, Settings};
+use chiaroscuro_volume::{
+    Dataset, LoadControl, LoadError, Volume, VolumeAlternatives, VolumeChoice, memory_budget_bytes,
+};
+use chiaroscuro_volume_io::{LoadOptions, RawFormat, RawGuess, RawLayout};
 
 /// Options for reading a volume that the user has chosen.
 #[derive(Debug, Clone, Default)]
@@ -227,8 +228,7 @@ impl Loader {
     pub(crate) fn take_outcome(&mut self) -> Option<LoadOutcome> {
         let running = self.running.as_ref()?;
         if running.control.is_cancelled() {
-            // Its thread notices the cancellation at the next piece of work and ends.
-            self.running = None;
+            self.running = None; // Its thread notices the cancellation at the next piece of work and ends.
             return Some(LoadOutcome::Cancelled);
         }
         let outcome = running.work.take_result()?.unwrap_or_else(|panic| LoadOutcome::Failed {
@@ -295,7 +295,7 @@ struct LoadJob {
 /// Opens a volume. Of several, it opens the first unless the user has chosen one, and adds a remark about that.
 fn open_first(source: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let options = LoadOptions { choice: options.choice.clone().with_first_as_fallback(), ..options.clone() };
-    let volume = data::open(source, &options, control)?;
+    let volume = chiaroscuro_volume_io::open(source, &options, control)?;
     let is_unsaid = |several: &&VolumeAlternatives| {
         several.unmatched_selection.is_some() || options.choice.selected_key(several.dimension).is_none()
     };
@@ -323,7 +323,7 @@ fn open(opening: LoadJob) -> LoadOutcome {
     let stamp = FileStamp::read(&source);
     let volume = match open_first(&source, &options, &control) {
         Ok(volume) => volume,
-        Err(load::LoadError::Cancelled) => {
+        Err(LoadError::Cancelled) => {
             let Some(weighed) = question.take() else { return LoadOutcome::Cancelled };
             return LoadOutcome::NeedsMemoryDecision { source, reading: Box::new(reading), weighed };
         }

@@ -8,9 +8,9 @@ use eframe::egui::ColorImage;
 use super::difference::PictureDifference;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, RenderScene};
-use crate::data::Dataset;
-use crate::gpu::{GpuError, LightVolumeStatistics, RenderStage};
-use crate::model::Settings;
+use chiaroscuro_render::{GpuError, LightVolumeStatistics, RenderStage};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Finished picture, with its request and quality.
 pub(crate) struct FinishedFrame {

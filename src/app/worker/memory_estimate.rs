@@ -3,8 +3,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::data::load::{Downsampling, LoadControl, Portion, VolumeSize, VoxelRegion, VoxelSpan};
-use crate::gpu::{GpuContext, bytes_with_one_light, downsampled_dims};
+use chiaroscuro_render::{GpuContext, bytes_with_one_light, downsampled_dims};
+use chiaroscuro_volume::{Downsampling, LoadControl, Portion, VolumeSize, VoxelRegion, VoxelSpan};
 
 /// Strides and block edges that are offered: each leaves an eighth of the previous voxels. Larger ones would leave
 /// hardly anything to see.
@@ -152,7 +152,7 @@ impl MemoryEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::VoxelType;
+    use chiaroscuro_volume::VoxelType;
 
     const MIB: u64 = 1 << 20;
 

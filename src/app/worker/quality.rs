@@ -3,9 +3,9 @@
 //! Pure arithmetic: it predicts milliseconds from the measured times of earlier batches and chooses the finest level
 //! that fits the frame budget; the render worker carries it out.
 
-use crate::math::SceneSpace;
-use crate::model::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, SlabMode};
-use crate::plan::preview_slab;
+use chiaroscuro_render::plan::preview_slab;
+use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, SlabMode};
+use chiaroscuro_volume::math::SceneSpace;
 
 /// Time budget of a preview during interaction, in milliseconds: a frame at 30 Hz.
 const PREVIEW_BUDGET_MS: f64 = 33.0;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::mailbox::Mailbox;
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, RenderScene};
-use crate::data::Dataset;
+use chiaroscuro_volume::Dataset;
 
 /// Debounce interval: time without changes after which the picture is refined.
 const REFINEMENT_DELAY: Duration = Duration::from_millis(150);

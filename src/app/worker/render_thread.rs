@@ -12,9 +12,9 @@ use super::background_task::panic_message;
 use super::mailbox::{BalanceRequest, FinishedFrame, Mailbox, RenderStatistics, SharedMailbox};
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, RenderScene};
-use crate::data::Dataset;
-use crate::gpu::{GpuContext, GpuError};
-use crate::model::Settings;
+use chiaroscuro_render::{GpuContext, GpuError};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Handle to the render thread, which ends when the handle is dropped.
 pub(crate) struct RenderThread {

@@ -15,11 +15,13 @@ use super::mailbox::{BalanceRequest, FinishedFrame, RenderStatistics, SharedMail
 use super::quality::{MissingLightVolumes, QualityController, QualityLevel};
 use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
 use super::request::{FrameRequest, RenderScene};
-use crate::data::Dataset;
-use crate::fault::{FaultThread, panic_if_injected};
-use crate::gpu::{GpuContext, GpuError, RenderOptions, RenderStage, measure_balance_fast};
-use crate::model::Settings;
-use crate::plan::{FrameKeys, RenderRequest};
+use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
+use chiaroscuro_render::{
+    GpuContext, GpuError, RenderOptions, RenderStage, measure_balance_fast,
+    plan::{FrameKeys, RenderRequest},
+};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Interval at which a refinement reports progress: each report redraws the window, on the same processors if the
 /// driver is software.

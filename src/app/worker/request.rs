@@ -1,9 +1,11 @@
 //! Requests of the window to the render thread.
 
-use crate::data::{Dataset, DensityMapping, ValueRange, ValueRanges};
-use crate::gpu::{RenderOptions, Renderer};
-use crate::model::Settings;
-use crate::plan::{FrameKeys, RenderRequest};
+use chiaroscuro_render::{
+    RenderOptions, Renderer,
+    plan::{FrameKeys, RenderRequest},
+};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::{Dataset, DensityMapping, ValueRange, ValueRanges};
 
 /// Single look, or two looks that are compared.
 #[derive(Debug, Clone)]
@@ -88,8 +90,8 @@ pub(crate) struct RenderScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::synthetic::builtin;
-    use crate::model::DensityRange;
+    use chiaroscuro_scene::DensityRange;
+    use chiaroscuro_volume::synthetic::builtin;
 
     #[test]
     fn looks_that_are_compared_share_an_upload() {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use crate::gpu::{GpuError, ShaderLibrary};
+use chiaroscuro_render::{GpuError, ShaderLibrary};
 
 /// Threads that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a
 /// thread executes in it.

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::round_to_microsecond;
 use super::{STEP_DEG, VolumeBenchmark};
 use crate::cli::CliError;
-use crate::model::{LightShape, LightVolumeResolution, Settings};
+use chiaroscuro_scene::{LightShape, LightVolumeResolution, Settings};
 
 /// Numbers of points on the light, and resolutions of its volume, that are timed.
 const BUILDS: [(u32, LightVolumeResolution); 4] = [

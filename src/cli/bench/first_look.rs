@@ -8,12 +8,12 @@ use super::report::round_to_microsecond;
 use super::{MAX_FIGURE_SIZE, VolumeBenchmark};
 use crate::cli::CliError;
 use crate::cli::process::process_cpu_ms;
-use crate::data::DataKind;
-use crate::gpu::{
+use chiaroscuro_render::{
     LightSearch, RenderOptions, SearchedLight, dark_fraction, first_look, mean_luminance, shadowed_fraction,
     visible_fraction,
 };
-use crate::model::{ShadowAlgorithm, first_look};
+use chiaroscuro_scene::{ShadowAlgorithm, first_look};
+use chiaroscuro_volume::DataKind;
 
 impl VolumeBenchmark<'_> {
     /// Measures the first look, independently of the look of the benchmark.

@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 
 use super::report::{CaseTimings, round_to_microsecond};
 use crate::cli::CliError;
-use crate::data::{Dataset, synthetic};
-use crate::gpu::{GpuContext, RenderOptions, Renderer, ShaderLibrary};
-use crate::model::{ShadowAlgorithm, first_look};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_scene::{ShadowAlgorithm, first_look};
+use chiaroscuro_volume::{Dataset, synthetic};
 
 /// Numbers of voxels along each axis of the test clouds.
 const SIZES: [usize; 4] = [64, 128, 256, 512];

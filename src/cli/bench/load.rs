@@ -13,10 +13,11 @@ use serde_json::{Value, json};
 use super::report::{CaseTimings, round_to_microsecond, spread_json};
 use super::{BenchArgs, VolumeBenchmark, case_json};
 use crate::cli::CliError;
-use crate::data::{Dataset, Volume};
-use crate::gpu::{GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, first_look};
-use crate::model::{Settings, first_look};
-use crate::plan::RenderRequest;
+use chiaroscuro_render::{
+    GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, first_look, plan::RenderRequest,
+};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::{Dataset, Volume};
 
 /// Names of the stages, in their order.
 pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];

@@ -24,14 +24,15 @@ mod report;
 mod scattering;
 mod sky;
 
-use report::{CaseTimings, round_to_microsecond};
-
 use super::CliError;
 use super::output::print_line;
 use super::scene::{LookArgs, parse_size};
-use crate::data::Dataset;
-use crate::gpu::{GpuContext, RenderOptions, Renderer};
-use crate::model::{LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, ShadowAlgorithm};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer};
+use chiaroscuro_scene::{
+    LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, ShadowAlgorithm,
+};
+use chiaroscuro_volume::Dataset;
+use report::{CaseTimings, round_to_microsecond};
 
 /// Number of untimed frames at the start, which compile pipelines and fill caches.
 const WARM_UP_FRAMES: usize = 2;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::VolumeBenchmark;
 use super::report::round_to_microsecond;
 use crate::cli::CliError;
-use crate::model::{ReconstructionKernel, ShadowAlgorithm};
+use chiaroscuro_scene::{ReconstructionKernel, ShadowAlgorithm};
 
 impl VolumeBenchmark<'_> {
     /// Measures light volume and picture by each algorithm of P §5, and compares the ratios with the paper's for the

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::cli::process::process_cpu_ms;
-use crate::gpu::RenderReport;
+use chiaroscuro_render::RenderReport;
 
 /// Timings of one benchmark case, one entry per frame.
 #[derive(Debug, Default)]

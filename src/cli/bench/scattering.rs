@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::round_to_microsecond;
 use super::{STEP_DEG, VolumeBenchmark};
 use crate::cli::CliError;
-use crate::model::{LightVolumeResolution, Settings, SkyMode};
+use chiaroscuro_scene::{LightVolumeResolution, Settings, SkyMode};
 
 /// Configuration of the scattering volume that is timed.
 struct ScatteringBuild {

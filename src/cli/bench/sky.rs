@@ -6,7 +6,7 @@ use super::edits::EDIT_SHARE;
 use super::report::{CaseTimings, round_to_microsecond};
 use super::{STEP_DEG, VolumeBenchmark, WARM_UP_FRAMES};
 use crate::cli::CliError;
-use crate::model::{LightVolumeResolution, ReconstructionKernel, ReverseKernel, Settings, SkyMode};
+use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, ReverseKernel, Settings, SkyMode};
 
 /// Numbers of directions, and resolutions of the sky's volume, that are timed.
 const BUILDS: [(u32, LightVolumeResolution); 6] = [

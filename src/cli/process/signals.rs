@@ -3,7 +3,7 @@
 #[cfg(unix)]
 use std::sync::Arc;
 
-use crate::export::remove_own_temporary_files;
+use chiaroscuro_files::remove_own_temporary_files;
 
 /// Base of the exit code that shells report for a process ended by a signal; the signal's number is added.
 const SIGNAL_EXIT_BASE: i32 = 128;

@@ -2,7 +2,7 @@
 //! reported.
 
 use crate::cli::CliError;
-use crate::data::address_bytes_left;
+use chiaroscuro_volume::address_bytes_left;
 
 /// Address space of a thread, in bytes: 2 MiB of stack, and the 64 MiB that glibc reserves for its heap, of which it
 /// requests twice as many for alignment.

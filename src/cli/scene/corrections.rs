@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::cli::CliError;
-use crate::data::{Corrections, Volume};
-use crate::model::{Settings, set_value};
+use chiaroscuro_scene::{Settings, set_value};
+use chiaroscuro_volume::{Corrections, Volume};
 
 /// Settings group that contains the corrections.
 const CORRECTIONS_GROUP: &str = "volume";
@@ -68,7 +68,7 @@ pub(crate) fn apply_corrections(source: &Path, volume: Volume, by: &Corrections)
     if by.is_none() {
         return Ok(volume);
     }
-    let refused = |err: crate::data::VolumeError| CliError::InvalidCorrection {
+    let refused = |err: chiaroscuro_volume::VolumeError| CliError::InvalidCorrection {
         path: source.display().to_string(),
         by: by.in_words().join(", "),
         why: err.to_string(),

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::super::output::warn_line;
-use crate::data::load::{LoadControl, LoadError, LoadOptions, Portion, VolumeSize, human_bytes};
-use crate::data::{Volume, open};
+use chiaroscuro_volume::{LoadControl, LoadError, Portion, Volume, VolumeSize, human_bytes};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Bytes of voxels below which there is no warning: they are read in seconds.
 const SMALL_BYTES: u64 = 1 << 30;
@@ -110,7 +110,7 @@ fn size_text(stored: u64, size: &VolumeSize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::VoxelType;
+    use chiaroscuro_volume::VoxelType;
 
     #[test]
     fn files_that_unfold_are_known_and_thinned() {

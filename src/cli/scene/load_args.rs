@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 
 use super::{downsampled_to_fit, open_with_size_warning};
 use crate::cli::CliError;
-use crate::data::load::{Downsampling, Endian, LoadOptions, Portion, RawFormat, VolumeChoice, VoxelRegion};
-use crate::data::{Volume, VoxelType};
-use crate::gpu::GpuContext;
+use chiaroscuro_render::GpuContext;
+use chiaroscuro_volume::{Downsampling, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType};
+use chiaroscuro_volume_io::{Endian, LoadOptions, RawFormat};
 
 /// Arguments for reading a volume.
 #[derive(Debug, Clone, Args)]

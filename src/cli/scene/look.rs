@@ -4,9 +4,9 @@ use super::LookArgs;
 use super::preset_or_session::PresetOrSession;
 use crate::cli::CliError;
 use crate::cli::output::warn_line;
-use crate::data::Dataset;
-use crate::gpu::{Renderer, UndecidedPart, complete_first_look};
-use crate::model::{Settings, first_look};
+use chiaroscuro_render::{Renderer, UndecidedPart, complete_first_look};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::Dataset;
 
 /// Parts of a look that are determined automatically unless they are given, with the paths of their settings.
 const AUTOMATIC_PARTS: [(&str, UndecidedPart); 4] = [

@@ -22,10 +22,14 @@ use self::option_values::{EngineArg, KindArg, QualityArg, ShadowArg};
 use self::preset_or_session::PresetOrSession;
 use super::CliError;
 use super::output::{check_overwrites, warn_line};
-use crate::data::{Dataset, EnvironmentMap, KindName, ValueRanges, Volume, read_environment_map};
-use crate::gpu::{GpuContext, downsample_to_fit, downsampled_volume};
-use crate::model::first_look::FirstLookOptions;
-use crate::model::{MAX_IMAGE_EDGE, SceneAxis, Settings, first_look, set_value};
+use chiaroscuro_media::read_environment_map;
+use chiaroscuro_render::{GpuContext, downsample_to_fit, downsampled_volume};
+use chiaroscuro_scene::{
+    EnvironmentMap, MAX_IMAGE_EDGE, SceneAxis, Settings,
+    first_look::{self, FirstLookOptions},
+    set_value,
+};
+use chiaroscuro_volume::{Dataset, KindName, ValueRanges, Volume};
 
 /// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
@@ -80,7 +84,7 @@ pub(super) struct LookArgs {
     /// Set a single setting by its path, for instance shadows.strength=0.5; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Shadow algorithm
+    /// Algorithm of light volumes and shadows
     #[arg(long, value_enum)]
     shadows: Option<ShadowArg>,
     /// Method of filling the sheets

@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 
-use crate::data::KindName;
-use crate::model::QualityPreset;
+use chiaroscuro_scene::QualityPreset;
+use chiaroscuro_volume::KindName;
 
 /// Shadow algorithm, as named on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]

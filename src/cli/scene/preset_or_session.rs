@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use crate::cli::CliError;
-use crate::data::{Corrections, ValueRanges, read_small_file};
-use crate::export::{may_carry_record, read_record};
-use crate::model::{LookRecord, Preset, SceneAxis, Settings};
+use chiaroscuro_files::read_small_file;
+use chiaroscuro_media::{may_carry_record, read_record};
+use chiaroscuro_scene::{LookRecord, Preset, SceneAxis, Settings};
+use chiaroscuro_volume::{Corrections, ValueRanges};
 
 /// Preset or session that is applied to settings.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use super::LookArgs;
 use super::option_values::{EngineArg, ShadowArg};
 use crate::cli::CliError;
-use crate::model::{QualityPreset, RenderEngine, Settings, ShadowAlgorithm, set_value};
+use chiaroscuro_scene::{QualityPreset, RenderEngine, Settings, ShadowAlgorithm, set_value};
 
 impl LookArgs {
     /// Applies the single settings of the command line.

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::data::{Corrections, SpacingUnit};
-use chiaroscuro::model::{LookRecord, OpacityLength, Settings};
+use chiaroscuro_scene::{LookRecord, OpacityLength, Settings};
+use chiaroscuro_volume::{Corrections, SpacingUnit};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

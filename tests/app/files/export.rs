@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use chiaroscuro::export::{export_png, read_picture};
-use chiaroscuro::gpu::RenderOptions;
-use chiaroscuro::model::{ImageSpec, PixelFormat};
+use chiaroscuro_media::{export_png, read_picture};
+use chiaroscuro_render::RenderOptions;
+use chiaroscuro_scene::{ImageSpec, PixelFormat};
 use eframe::egui::{self, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 

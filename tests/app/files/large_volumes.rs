@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::data::load::LoadOptions;
+use chiaroscuro_volume_io::LoadOptions;
 use eframe::egui::{Key, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use chiaroscuro::app::App;
-use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::open;
+use chiaroscuro_volume::LoadControl;
+use chiaroscuro_volume_io::{LoadOptions, open};
 use eframe::egui::{Key, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

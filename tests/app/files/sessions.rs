@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
 use eframe::egui::{self, Modifiers, Vec2, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::data::load::VolumeChoice;
-use chiaroscuro::export::export_png;
-use chiaroscuro::model::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_media::export_png;
+use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_volume::VolumeChoice;
 use eframe::egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

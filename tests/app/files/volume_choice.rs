@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::LookRecord;
+use chiaroscuro_scene::LookRecord;
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

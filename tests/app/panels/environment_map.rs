@@ -1,6 +1,6 @@
 //! Tests of lighting by an environment map, chosen in the section of the sky.
 
-use chiaroscuro::model::{ENVIRONMENT_LIGHT_NAME, SkyMode};
+use chiaroscuro_scene::{ENVIRONMENT_LIGHT_NAME, SkyMode};
 use eframe::egui;
 
 use crate::harness::{wait_until, wait_until_idle, window};

@@ -1,7 +1,7 @@
 //! Tests of the window's layout: picture only, docked tools, the strip of kept views, undo history, and messages.
 
 use chiaroscuro::app::App;
-use chiaroscuro::model::{SavedEntry, Settings};
+use chiaroscuro_scene::{SavedEntry, Settings};
 use eframe::egui::{Key, Modifiers, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -266,7 +266,7 @@ fn views_from_the_sides_show_all_of_the_object() {
     let mut harness = window();
     let outline = |harness: &Harness<'_, App>| {
         let (dataset, _) = crate::harness::second_renderer();
-        chiaroscuro::model::first_look::ObjectOutline::from_settings(
+        chiaroscuro_scene::first_look::ObjectOutline::from_settings(
             harness.state().settings(),
             dataset.volume(),
         )

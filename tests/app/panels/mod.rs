@@ -11,7 +11,7 @@ mod side_panel;
 mod slices;
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{LightGeometry, Projection};
+use chiaroscuro_scene::{LightGeometry, Projection};
 use eframe::egui::{self, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

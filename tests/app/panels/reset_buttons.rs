@@ -1,7 +1,7 @@
 //! Tests of the rows of the side panel: their reset buttons, and how their controls fit.
 
 use chiaroscuro::app::App;
-use chiaroscuro::model::Settings;
+use chiaroscuro_scene::Settings;
 use eframe::egui::{Event, Key, Rect, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -107,7 +107,7 @@ fn methods_of_shadows_stand_in_one_row_or_in_a_list() {
     harness.get_by_role_and_label(Role::ComboBox, "Method").click();
     harness.run_steps(4);
     click(&mut harness, "Voxel");
-    assert_eq!(settings(&harness).shadows.algorithm, chiaroscuro::model::ShadowAlgorithm::Raycast);
+    assert_eq!(settings(&harness).shadows.algorithm, chiaroscuro_scene::ShadowAlgorithm::Raycast);
     wait_until_idle(&mut harness);
 }
 
@@ -124,7 +124,7 @@ fn lengths_without_a_unit_are_said_in_voxels_everywhere() {
         source: Some(path),
         adjust: Some(Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
-            settings.opacity_unit = chiaroscuro::model::OpacityLength::Mm(1.0);
+            settings.opacity_unit = chiaroscuro_scene::OpacityLength::Mm(1.0);
             settings
         })),
         ..WindowOptions::default()

@@ -1,7 +1,7 @@
 //! Tests of the side panel: no content makes it wider, and settings that are searched for are revealed in it.
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{Settings, SkyMode};
+use chiaroscuro_scene::{Settings, SkyMode};
 use eframe::egui::{Event, Key, Modifiers, Rect, Role, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;

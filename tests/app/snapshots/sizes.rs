@@ -2,7 +2,7 @@
 //! like translations that are longer.
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro::model::{SavedEntry, Settings, SkyMode};
+use chiaroscuro_scene::{SavedEntry, Settings, SkyMode};
 use eframe::egui::{Rect, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

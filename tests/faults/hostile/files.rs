@@ -5,8 +5,8 @@ use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
 
-use chiaroscuro::export::export_png;
-use chiaroscuro::model::{LookRecord, Settings};
+use chiaroscuro_media::export_png;
+use chiaroscuro_scene::{LookRecord, Settings};
 
 /// Hostile file, and the command that reads it.
 pub(super) struct HostileFile {

@@ -1,9 +1,8 @@
 //! Relations that must hold between pictures of any scene, each numbered P1 to P15.
 
-use chiaroscuro::data::{Dataset, Samples, ValueRanges};
-use chiaroscuro::gpu::{RenderOptions, RenderedPicture};
-use chiaroscuro::model::{LookRecord, Settings};
-use chiaroscuro::plan::PixelWindow;
+use chiaroscuro_render::{RenderOptions, RenderedPicture, plan::PixelWindow};
+use chiaroscuro_scene::{LookRecord, Settings};
+use chiaroscuro_volume::{Dataset, Samples, ValueRanges};
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::scenes::{

@@ -1,11 +1,11 @@
 //! Random volumes, transfer functions, cameras and lights, and a renderer for them.
 
-use chiaroscuro::data::{Dataset, Samples, Volume};
-use chiaroscuro::gpu::{GpuContext, RenderOptions, RenderedPicture, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
+use chiaroscuro_scene::{
     ControlPoint, LightGeometry, LightSettings, Projection, QualityPreset, Settings, ShadowAlgorithm,
     first_look,
 };
+use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::random::Random;

@@ -1,9 +1,11 @@
 //! Tests of adapters with lower limits: a volume is shown at full resolution, downsampled, or refused with a message.
 
-use chiaroscuro::data::load::{LoadControl, LoadOptions};
-use chiaroscuro::data::{Dataset, open};
-use chiaroscuro::gpu::{GpuContext, GpuError, RenderOptions, Renderer, device_descriptor, downsample_to_fit};
-use chiaroscuro::model::{RenderEngine, first_look};
+use chiaroscuro_render::{
+    GpuContext, GpuError, RenderOptions, Renderer, device_descriptor, downsample_to_fit,
+};
+use chiaroscuro_scene::{RenderEngine, first_look};
+use chiaroscuro_volume::{Dataset, LoadControl};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 use super::relations::mean_steps;
 

@@ -1,11 +1,11 @@
 //! Area lights against the reference: light volumes, near-field rays, and the floor below.
 
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     LightGeometry, LightSettings, LightShape, LightStorage, LightVolumeResolution, NearFieldRay,
     RenderEngine, Settings, ShadowAlgorithm, Spotlight,
 };
-use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions};
 use glam::DVec3;
 
 use super::mutations::{assert_in_shader, differs_in_look};

@@ -1,12 +1,11 @@
 //! Coloured shadows against the reference: each colour of light is traced separately, on both sides.
 
-use chiaroscuro::gpu::{AttenuationData, RenderOptions, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceOptions, merge_color_channels};
+use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_scene::{
     ClassificationOrder, ControlPoint, FloorSettings, LightGeometry, LightSettings, LightShape, LightStorage,
     LightVolumePrecision, NearFieldRay, RenderEngine, Settings, ShadowAlgorithm,
 };
-use chiaroscuro::plan::RenderRequest;
-use chiaroscuro::reference::{Reference, ReferenceOptions, merge_color_channels};
 use glam::DVec3;
 
 use super::mutations::assert_in_shader;
@@ -192,7 +191,7 @@ fn one_volume_for_all_lights_has_the_colours() {
 #[test]
 fn skies_are_attenuated_alike() {
     let mut settings = look();
-    settings.sky.mode = chiaroscuro::model::SkyMode::White;
+    settings.sky.mode = chiaroscuro_scene::SkyMode::White;
     settings.sky.directions = 6;
     check("a sky", &settings);
 }

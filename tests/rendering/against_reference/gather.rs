@@ -6,13 +6,13 @@ use crate::common::{Dataset, context, full_attenuation, render};
 use crate::compare::{channels_f32, channels_f64, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::{BYTE_STEP, BYTES, LITERAL, SAME_WEIGHTS};
-use chiaroscuro::gpu::{Renderer, stored_density};
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceOptions, ReferenceWeights};
+use chiaroscuro_render::{Renderer, stored_density};
+use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClipPlane, DepositMode, FovReference, GradientSource, LightGeometry,
     LightLock, LightVolumePrecision, LightVolumeResolution, Projection, ReconstructionKernel, Settings,
     ShadowAlgorithm, SlabMode, SlabQuadrature,
 };
-use chiaroscuro::reference::{Reference, ReferenceOptions, ReferenceWeights};
 use glam::DVec3;
 
 /// Compares sheets, light volumes and picture of one look with the reference.

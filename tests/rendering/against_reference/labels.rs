@@ -1,8 +1,8 @@
 //! Label maps with a table of looks, against the reference.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{ClassificationOrder, LabelLook, LabelTable, Settings};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{ClassificationOrder, LabelLook, LabelTable, Settings};
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{SIZE, check_volume, round_to_f16};

@@ -1,10 +1,10 @@
 //! Quality *Exact* against its limit: rays from every sample in f64, through slabs so thin that thinner ones change
 //! nothing, with the gradient of the kernel for normals.
 
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightGeometry, QualityPreset, Settings, SlabMode, first_look};
-use chiaroscuro::reference::{Reference, ReferenceOptions};
+use chiaroscuro_reference::{Reference, ReferenceOptions};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{LightGeometry, QualityPreset, Settings, SlabMode, first_look};
+use chiaroscuro_volume::synthetic::builtin;
 
 use crate::common::{Dataset, context, render};
 use crate::scenes;

@@ -1,9 +1,9 @@
 //! Tests of the GPU against the independent f64 reference, and proof that the comparison detects mistakes.
 
-use chiaroscuro::data::Volume;
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightShape, Settings, ShadowAlgorithm};
-use chiaroscuro::reference::{Reference, ReferenceOptions, Rounding};
+use chiaroscuro_reference::{Reference, ReferenceOptions, Rounding};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{LightShape, Settings, ShadowAlgorithm};
+use chiaroscuro_volume::Volume;
 use glam::DVec3;
 
 use crate::common::{Dataset, context, full_attenuation, render};

@@ -1,13 +1,13 @@
 //! Multiple scattering against the reference: the volume of scattered light, and pictures.
 
-use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_reference::{BouncedLight, Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_render::plan::UniformLightColor;
+use chiaroscuro_scene::{
     ClassificationOrder, ClipEffect, CropBox, LightGeometry, LightSettings, LightShape,
     LightVolumeResolution, LitSides, RenderEngine, ScatteringSettings, Settings, ShadowAlgorithm, SkyMode,
     SkySettings, Spotlight,
 };
-use chiaroscuro::plan::UniformLightColor;
-use chiaroscuro::reference::{BouncedLight, Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_volume::{Dataset, Volume};
 use glam::DVec3;
 
 use super::check_volume;

@@ -1,12 +1,12 @@
 //! Mutation tests: deliberate mistakes in a shader or in the reference, each of which the comparison must detect.
 
-use chiaroscuro::data::Volume;
-use chiaroscuro::gpu::ShaderLibrary;
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_render::ShaderLibrary;
+use chiaroscuro_scene::{
     Camera, ControlPoint, GradientSource, LightGeometry, ReconstructionKernel, RenderEngine, Settings,
     ShadowAlgorithm, SlabMode,
 };
-use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_volume::Volume;
 use glam::DVec3;
 
 use super::presence::{thin_waves, two_lobes, waves};

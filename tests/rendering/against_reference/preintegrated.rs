@@ -1,7 +1,7 @@
 //! Mutation tests of pre-integrated slabs: the comparison with the reference detects mistakes.
 
-use chiaroscuro::model::{Settings, SlabMode};
-use chiaroscuro::reference::ReferenceFault;
+use chiaroscuro_reference::ReferenceFault;
+use chiaroscuro_scene::{Settings, SlabMode};
 
 use super::mutations::{assert_in_shader, differs_in_look};
 use crate::scenes;

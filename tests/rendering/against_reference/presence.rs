@@ -1,11 +1,11 @@
 //! Presence against the reference: no material outside the grid, nor where voxels are missing.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClipEffect, ControlPoint, CropBox, GradientSource, LightGeometry, LightLock,
     NearFieldRay, OpacityInterpolation, ReconstructionKernel, RenderEngine, Settings, ShadowAlgorithm,
     SlabQuadrature, TransferFunction,
 };
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{check_volume, round_to_f16};

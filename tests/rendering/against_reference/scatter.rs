@@ -6,14 +6,13 @@ use crate::common::{Dataset, context, render};
 use crate::compare::{channels_f32, compare, to_f64};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
 use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::gpu::{Renderer, SHADERS};
-use chiaroscuro::model::{
+use chiaroscuro_render::{Renderer, SHADERS};
+use chiaroscuro_scene::{
     Camera, ClassificationOrder, ControlPoint, DepositMode, GradientSource, LightGeometry, LightLock,
     LightSettings, LightVolumeResolution, OpacityInterpolation, OpacityLength, ReconstructionKernel,
     RenderEngine, Settings, SheetOrder, SlabMode, SlabQuadrature, TransferFunction, first_look,
 };
+use chiaroscuro_volume::{Samples, Volume, synthetic::builtin};
 use glam::DVec3;
 
 fn scattering_look() -> Settings {
@@ -192,7 +191,7 @@ fn single_voxels_reproduce_the_footprint() {
 #[test]
 fn scattering_samples_no_density() {
     let shaders =
-        chiaroscuro::gpu::shader_bindings(wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float);
+        chiaroscuro_render::shader_bindings(wgpu::TextureFormat::R16Float, wgpu::TextureFormat::R16Float);
     for name in ["splat", "eye", "light", "reverse", "normalise", "footprints"] {
         let name = format!("scatter/{name}.wgsl");
         let (_, groups) = shaders.iter().find(|(known, _)| *known == name).expect("the shader is there");

@@ -1,7 +1,7 @@
 //! Mutation tests of the scattering engine: deliberate mistakes in its shaders that the comparison must detect.
 
-use chiaroscuro::model::{GradientSource, RenderEngine};
-use chiaroscuro::reference::ReferenceFault;
+use chiaroscuro_reference::ReferenceFault;
+use chiaroscuro_scene::{GradientSource, RenderEngine};
 
 use super::mutations::{assert_in_shader, differs_in_look, differs_with_engine, look};
 

@@ -1,12 +1,12 @@
 //! Sky light against the reference: moments of sky visibility, and pictures under a sky.
 
-use chiaroscuro::data::{Dataset, Volume};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions, SkyVisibility};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     ClassificationOrder, ClipEffect, CropBox, LightStorage, LightVolumeResolution, LitSides, RenderEngine,
     Settings, ShadowAlgorithm, SkyMode, SkySettings,
 };
-use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions, SkyVisibility};
+use chiaroscuro_volume::{Dataset, Volume};
 use glam::DVec3;
 
 use super::check_volume;

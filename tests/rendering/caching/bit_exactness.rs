@@ -1,13 +1,12 @@
 //! Bit-exactness tests: empty-space skipping, repetition, earlier previews, and the margin of light volumes change no
 //! bit.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_render::{RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_scene::{
     LightGeometry, LightStorage, LightVolumeResolution, ReconstructionKernel, Settings, ShadowAlgorithm,
     SkyMode, SlabMode, SlabQuadrature,
 };
-use chiaroscuro::plan::RenderRequest;
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{SIZE, loaded, three_lights};

@@ -1,8 +1,7 @@
 //! Cache tests: products that are kept or refilled after a change, and bit-exact results.
 
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightGeometry, NearFieldRay, Settings};
-use chiaroscuro::plan::RenderRequest;
+use chiaroscuro_render::{Renderer, plan::RenderRequest};
+use chiaroscuro_scene::{LightGeometry, NearFieldRay, Settings};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};
@@ -184,7 +183,7 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
         preview_resolution: None,
     };
     assert!(renderer.corrupt_attenuation(&request(&settings), 0), "there is a volume to spoil");
-    let mean = |picture: &chiaroscuro::gpu::RenderedPicture| {
+    let mean = |picture: &chiaroscuro_render::RenderedPicture| {
         picture.linear.iter().map(|t| f64::from(t[1])).sum::<f64>()
     };
     let spoiled = render(&mut renderer, &loaded, &settings, SIZE);

@@ -1,11 +1,11 @@
 //! Cost of changes, counted by the renderer: every setting recomputes only the products that depend on it.
 
-use chiaroscuro::data::Dataset;
-use chiaroscuro::gpu::{GpuContext, RenderOptions, Renderer, ShaderLibrary, StepCounts};
-use chiaroscuro::model::{
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary, StepCounts};
+use chiaroscuro_scene::{
     ControlPoint, LightGeometry, LightSettings, Settings, ShadowSettings, SkyMode, TransferFunction,
     apply_path,
 };
+use chiaroscuro_volume::Dataset;
 use glam::DVec3;
 
 use crate::common::context;
@@ -96,7 +96,7 @@ impl RecomputeCounter {
     }
 }
 
-/// Rows for the settings that users change most; `src/plan/keys/tests/` checks that every setting is classified.
+/// Rows for the settings that users change most; `crates/render/src/plan/keys/tests/` checks that every setting is classified.
 #[test]
 fn every_setting_costs_what_it_should() {
     let table = [
@@ -337,10 +337,10 @@ fn pictures_that_are_shown_again_are_the_same_bytes() {
 /// A picture does not depend on the pictures drawn before it on the same renderer, as in contact sheets.
 #[test]
 fn a_picture_does_not_depend_on_the_one_before() {
-    use chiaroscuro::data::Histogram;
-    use chiaroscuro::data::synthetic::builtin;
-    use chiaroscuro::model::first_look::first_settings;
-    use chiaroscuro::model::{LightVolumeResolution, ReconstructionKernel, SlabMode};
+    use chiaroscuro_scene::{
+        LightVolumeResolution, ReconstructionKernel, SlabMode, first_look::first_settings,
+    };
+    use chiaroscuro_volume::{Histogram, synthetic::builtin};
     let volume = builtin("chair", Some(48)).unwrap();
     let mut whole = first_settings(&volume, &Histogram::from_volume(&volume));
     whole.shadows.resolution = LightVolumeResolution::Half;

@@ -2,10 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use chiaroscuro::data::Dataset;
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::gpu::{RenderOptions, Renderer, ShaderLibrary};
-use chiaroscuro::model::{Settings, first_look};
+use chiaroscuro_render::{RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::{Dataset, synthetic::builtin};
 
 use crate::common::context;
 

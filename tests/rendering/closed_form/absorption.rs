@@ -1,11 +1,10 @@
 //! Absorption by homogeneous material in closed form: Beer–Lambert, and the opacity of chords.
 
-use chiaroscuro::gpu::RenderedPicture;
-use chiaroscuro::model::{
+use chiaroscuro_render::{RenderedPicture, plan::light_views};
+use chiaroscuro_scene::{
     Camera, DepositMode, LightGeometry, RenderEngine, ReverseKernel, ShadowAlgorithm, SlabMode,
     SlabQuadrature,
 };
-use chiaroscuro::plan::light_views;
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};

@@ -1,15 +1,14 @@
 //! All light against a path tracer: area lights, a sky and multiple scattering, compared with pictures that are
 //! traced without light volumes, sheets, blocks, fixed directions or counted bounces.
 
-use chiaroscuro::data::load::{Downsampling, LoadControl, LoadOptions, Portion, VolumeChoice};
-use chiaroscuro::data::{Samples, Volume, open};
-use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_render::{RenderOptions, Renderer, plan::picture_frame};
+use chiaroscuro_scene::{
     DensityRange, LightGeometry, LightSettings, LightShape, LightVolumeResolution, Projection, QualityPreset,
     ScatteringSettings, SceneLight, Settings, ShadowSettings, SkyMode, SkyRadiance, SkySettings, SlabMode,
     srgb_from_linear,
 };
-use chiaroscuro::plan::picture_frame;
+use chiaroscuro_volume::{Downsampling, LoadControl, Portion, Samples, Volume, VolumeChoice};
+use chiaroscuro_volume_io::{LoadOptions, open};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -147,7 +146,7 @@ impl ScenePathTracer<'_> {
 fn trace_picture(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
     let scene = loaded.volume().scene();
     let linear = |light: &LightSettings| {
-        light.color.map(|c| chiaroscuro::model::linear_from_srgb(f64::from(c)) * light.intensity)
+        light.color.map(|c| chiaroscuro_scene::linear_from_srgb(f64::from(c)) * light.intensity)
     };
     let points =
         |light: &LightSettings| light.resolve(&settings.camera).sample_lights(settings.shadows.area.samples);

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_scene::{
     LightGeometry, LightSettings, LightShape, LightVolumeResolution, LitSides, NearFieldRay, RenderEngine,
     Settings, ShadowAlgorithm,
 };
+use chiaroscuro_volume::{Samples, Volume};
 use glam::{DVec2, DVec3};
 
 use super::{base, renderer};

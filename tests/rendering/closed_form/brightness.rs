@@ -1,7 +1,7 @@
 //! Constant brightness: while camera or light turn, and with balanced shadows.
 
-use chiaroscuro::gpu::mean_luminance;
-use chiaroscuro::model::{LightGeometry, RenderEngine};
+use chiaroscuro_render::mean_luminance;
+use chiaroscuro_scene::{LightGeometry, RenderEngine};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -68,9 +68,9 @@ fn balanced_pictures_are_as_bright_as_unshadowed_ones() {
     let mut settings = scenes::look();
     let plain = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).linear);
     settings.shadows.balance =
-        chiaroscuro::gpu::measure_balance(&mut renderer, &loaded, &settings).expect("balance");
+        chiaroscuro_render::measure_balance(&mut renderer, &loaded, &settings).expect("balance");
     let with = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).linear);
-    settings.shadows.algorithm = chiaroscuro::model::ShadowAlgorithm::Off;
+    settings.shadows.algorithm = chiaroscuro_scene::ShadowAlgorithm::Off;
     let without = mean_luminance(&render(&mut renderer, &loaded, &settings, [160, 120]).linear);
     println!("shadows, unbalanced {plain:.4}, balanced {with:.4}, none {without:.4}");
     assert!((with / without - 1.0).abs() < BALANCED, "{with} against {without}");

@@ -1,8 +1,7 @@
 //! Coloured shadows in closed form: the Beer–Lambert law for each colour of light.
 
-use chiaroscuro::gpu::RenderOptions;
-use chiaroscuro::model::{RenderEngine, ShadowAlgorithm};
-use chiaroscuro::plan::RenderRequest;
+use chiaroscuro_render::{RenderOptions, plan::RenderRequest};
+use chiaroscuro_scene::{RenderEngine, ShadowAlgorithm};
 
 use super::{base, renderer, with_both_engines};
 use crate::common::Dataset;
@@ -18,7 +17,7 @@ const EXTINCTION_SHARES: [f64; 3] = [1.0 / 30.0, 1.0 / 3.0, 1.0];
 
 /// The sRGB colour that has these shares: 1 − t·(c − min) / max, with a blue of 0 and t of 29/30.
 fn glass_color() -> [f32; 3] {
-    [1.0, (2.0 / 3.0) / (29.0 / 30.0), 0.0].map(|linear| chiaroscuro::model::srgb_from_linear(linear) as f32)
+    [1.0, (2.0 / 3.0) / (29.0 / 30.0), 0.0].map(|linear| chiaroscuro_scene::srgb_from_linear(linear) as f32)
 }
 
 /// Behind d voxels of a block of extinction μ, e^(−μ·s·d) remains of light of a colour that meets a share s of it:

@@ -1,6 +1,6 @@
 //! Kernels in closed form: partition of unity, convergence of slabs, and finite results for extreme volumes.
 
-use chiaroscuro::model::{DepositMode, RenderEngine, SlabQuadrature};
+use chiaroscuro_scene::{DepositMode, RenderEngine, SlabQuadrature};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
@@ -27,7 +27,7 @@ fn kernels_are_a_partition_of_unity(engine: RenderEngine) {
         // Sheets that deposit the arriving light: successive ratios are e^−τ of one slab.
         settings.shadows.deposit = DepositMode::Front;
         let sheets = renderer().light_sheets(&loaded, &settings, 0, 0).expect("sheets");
-        let view = &chiaroscuro::plan::light_views(
+        let view = &chiaroscuro_render::plan::light_views(
             &settings.lights[0].resolve(&settings.camera),
             &settings.shadows,
             &loaded.volume().scene(),
@@ -74,11 +74,11 @@ fn thinner_slabs_converge(engine: RenderEngine) {
 /// No. 17: Noise, empty and solid volumes give finite numbers, and empty ones exactly the background.
 fn extremes_stay_finite(engine: RenderEngine) {
     let noise: Vec<u8> = (0..32usize.pow(3)).map(|i| (i.wrapping_mul(2654435761) >> 13) as u8).collect();
-    let noise = chiaroscuro::data::Volume::with_spacing(
+    let noise = chiaroscuro_volume::Volume::with_spacing(
         "noise",
         [32; 3],
         DVec3::ONE,
-        chiaroscuro::data::Samples::U8(noise),
+        chiaroscuro_volume::Samples::U8(noise),
     )
     .expect("a valid volume");
     let loaded = Dataset::new(noise);

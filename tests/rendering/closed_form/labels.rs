@@ -1,11 +1,11 @@
 //! Label interpolation: label numbers are never mixed, so that there is no shell of labels 4 to 8 between labels 3
 //! and 9.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_scene::{
     ClassificationOrder, ControlPoint, NearFieldRay, ReconstructionKernel, RenderEngine, Settings,
     ShadowAlgorithm, TransferFunction,
 };
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};

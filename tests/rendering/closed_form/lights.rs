@@ -1,7 +1,7 @@
 //! Lights and shadows in closed form: a headlight, the shadow of a ball, a distant light, and a spotlight.
 
-use chiaroscuro::gpu::RenderedPicture;
-use chiaroscuro::model::{
+use chiaroscuro_render::RenderedPicture;
+use chiaroscuro_scene::{
     DepositMode, LightGeometry, RenderEngine, ReverseKernel, ShadowAlgorithm, Spotlight,
 };
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Tests of the GPU in scenes with a closed-form solution.
 
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightGeometry, OpacityLength, RenderEngine, Settings};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{LightGeometry, OpacityLength, RenderEngine, Settings};
 
 use crate::common::context;
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
@@ -43,13 +43,13 @@ macro_rules! with_both_engines {
         mod gathered {
             $(#[test]
             fn $check() {
-                super::$check(chiaroscuro::model::RenderEngine::Gather);
+                super::$check(chiaroscuro_scene::RenderEngine::Gather);
             })+
         }
         mod scattered {
             $(#[test]
             fn $check() {
-                super::$check(chiaroscuro::model::RenderEngine::Scatter);
+                super::$check(chiaroscuro_scene::RenderEngine::Scatter);
             })+
         }
     };

@@ -1,11 +1,11 @@
 //! Multiple scattering in scenes with a known solution, on the reference and on the GPU.
 
-use chiaroscuro::data::{Dataset, Samples, Volume};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceOptions};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     DensityRange, LightGeometry, LightVolumeResolution, ScatteringSettings, Settings, SkyMode, SkySettings,
 };
-use chiaroscuro::reference::{Reference, ReferenceOptions};
+use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
 use crate::common::{context, render};
@@ -122,7 +122,7 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
 #[test]
 fn bounced_light_is_linear_in_the_lights() {
     let volume = scenes::noise(14, 5);
-    let lit = |lights: Vec<chiaroscuro::model::LightSettings>| {
+    let lit = |lights: Vec<chiaroscuro_scene::LightSettings>| {
         let mut settings = scattering_look(0.4, (1, 0.9, 14));
         settings.lights = lights;
         scattered_light(&volume, &settings)

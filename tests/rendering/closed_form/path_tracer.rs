@@ -1,14 +1,12 @@
 //! Brightness against a path tracer of single scattering in dense material: the visible point and its transmittance
 //! to the light are both sampled at random, without steps and without slabs.
 
-use chiaroscuro::data::KindName;
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::first_look::FirstLookOptions;
-use chiaroscuro::model::{
-    LightGeometry, OpacityLength, Projection, QualityPreset, Settings, ShadowAlgorithm, first_look,
+use chiaroscuro_render::{RenderOptions, Renderer, plan::picture_frame};
+use chiaroscuro_scene::{
+    LightGeometry, OpacityLength, Projection, QualityPreset, Settings, ShadowAlgorithm,
+    first_look::{self, FirstLookOptions},
 };
-use chiaroscuro::plan::picture_frame;
+use chiaroscuro_volume::{KindName, synthetic::builtin};
 use rayon::prelude::*;
 
 use crate::common::{Dataset, context};

@@ -1,12 +1,12 @@
 //! Presence in closed form: material ends with the grid, and where voxels are missing, whatever the transfer
 //! function.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::model::{
+use chiaroscuro_reference::{cubic_b_spline, tent};
+use chiaroscuro_scene::{
     ClassificationOrder, ControlPoint, OpacityInterpolation, ReconstructionKernel, RenderEngine, Settings,
     TransferFunction,
 };
-use chiaroscuro::reference::{cubic_b_spline, tent};
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};

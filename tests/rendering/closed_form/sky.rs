@@ -1,9 +1,9 @@
 //! Sky visibility in scenes with a known solution, on the reference and on the GPU.
 
-use chiaroscuro::data::{Dataset, Samples, Volume};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightVolumeResolution, Settings, SkyMode, SkySettings};
-use chiaroscuro::reference::{Reference, ReferenceOptions};
+use chiaroscuro_reference::{Reference, ReferenceOptions};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{LightVolumeResolution, Settings, SkyMode, SkySettings};
+use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
 use crate::common::context;
@@ -48,7 +48,7 @@ fn visibility_moments(
     let volume = Volume::with_spacing("sky", dims, DVec3::ONE, Samples::U8(values)).expect("a volume");
     let settings = Settings {
         transfer: linear_extinction(per_voxel),
-        range: chiaroscuro::model::DensityRange::Full,
+        range: chiaroscuro_scene::DensityRange::Full,
         sky: white_sky(directions),
         ..scenes::look()
     };

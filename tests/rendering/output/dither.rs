@@ -1,7 +1,7 @@
 //! Dithering of two-colour backgrounds in 8 bits, so that they have no bands.
 
-use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{Background, Settings};
+use chiaroscuro_render::{RenderOptions, Renderer};
+use chiaroscuro_scene::{Background, Settings};
 use glam::DVec3;
 
 use crate::common::{Dataset, context};

@@ -1,8 +1,8 @@
 //! Downsampled volumes look like the full-resolution ones.
 
-use chiaroscuro::data::{Histogram, Volume};
-use chiaroscuro::gpu::{Renderer, downsample_to_fit, mean_luminance};
-use chiaroscuro::model::{Settings, first_look};
+use chiaroscuro_render::{Renderer, downsample_to_fit, mean_luminance};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::{Histogram, Volume};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};

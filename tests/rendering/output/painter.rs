@@ -1,7 +1,7 @@
 //! Painting into render passes of another program: every byte of the picture, whatever the format of its target.
 
-use chiaroscuro::gpu::{GpuContext, PicturePainter, RenderOptions, Renderer};
-use chiaroscuro::model::PixelFormat;
+use chiaroscuro_render::{GpuContext, PicturePainter, RenderOptions, Renderer};
+use chiaroscuro_scene::PixelFormat;
 use wgpu::TextureFormat;
 
 use super::window::{SIZE, drawn};

@@ -1,13 +1,14 @@
 //! Previews of the window compared with the final picture.
 
-use chiaroscuro::data::Histogram;
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::gpu::{RenderOptions, Renderer, mean_luminance};
-use chiaroscuro::model::{
+use chiaroscuro_render::{
+    RenderOptions, Renderer, mean_luminance,
+    plan::{RenderRequest, preview_slab},
+};
+use chiaroscuro_scene::{
     LightDirection, LightShape, LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, SkyMode,
     SlabMode, first_look, key_and_fill,
 };
-use chiaroscuro::plan::{RenderRequest, preview_slab};
+use chiaroscuro_volume::{Histogram, synthetic::builtin};
 
 use glam::{DVec2, DVec3};
 

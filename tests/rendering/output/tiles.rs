@@ -1,8 +1,8 @@
 //! Tiled rendering, supersampling, and pictures of more than 8 bits.
 
-use chiaroscuro::export::PixelRows;
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_media::PixelRows;
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     Background, FloorSettings, ImageSpec, PixelFormat, Projection, RenderEngine, SamplingSettings, Settings,
     ShadowAlgorithm,
 };
@@ -155,7 +155,7 @@ fn linear_light_is_what_the_display_shows() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = look();
-    settings.output.tone_map = chiaroscuro::model::ToneMap::Clip;
+    settings.output.tone_map = chiaroscuro_scene::ToneMap::Clip;
     settings.floor.on = false;
     let whole = (4096, 1 << 20);
     let image_spec = ImageSpec { depth: PixelFormat::Linear, ..ImageSpec::new(SIZE) };

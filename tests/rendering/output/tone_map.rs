@@ -1,7 +1,7 @@
 //! Tone maps against their formulas in double precision: from the linear light of pictures to the displayed values.
 
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{ImageSpec, PixelFormat, Settings, ToneMap};
+use chiaroscuro_render::{Renderer, ShaderLibrary};
+use chiaroscuro_scene::{ImageSpec, PixelFormat, Settings, ToneMap};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, damaged_renderer, render};

@@ -1,6 +1,6 @@
 //! Pictures in the window: every byte is displayed unchanged, whatever the window's format.
 
-use chiaroscuro::gpu::{GpuContext, WindowPainter};
+use chiaroscuro_render::{GpuContext, WindowPainter};
 
 use crate::common::context;
 use crate::thresholds::EIGHT_BITS;

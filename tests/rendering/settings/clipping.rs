@@ -1,11 +1,11 @@
 //! Crop box and clip plane: against the reference, against closed forms, and without side effects.
 
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     ClassificationOrder, ClipEffect, ClipPlane, Clipping, CropBox, GradientSource, LightGeometry,
     LightStorage, NearFieldRay, OpacityLength, RenderEngine, Settings, ShadowAlgorithm, SheetOrder,
 };
-use chiaroscuro::reference::{Reference, ReferenceFault, ReferenceOptions};
 use glam::DVec3;
 
 use crate::against_reference::check_against;

@@ -4,8 +4,8 @@ use crate::common::{Dataset, context, render};
 use crate::compare::{channels_f32, compare, difference};
 use crate::scenes::{self, make_isotropic};
 use crate::thresholds::{COMBINED, COMBINED_NORMALS};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{LightGeometry, LightSettings, LightStorage, NearFieldRay, Settings};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{LightGeometry, LightSettings, LightStorage, NearFieldRay, Settings};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [96, 80];

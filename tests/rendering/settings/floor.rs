@@ -1,12 +1,12 @@
 //! Floor: against the reference, against closed forms, and below the picture.
 
-use chiaroscuro::gpu::{RenderOptions, Renderer};
-use chiaroscuro::model::{
+use chiaroscuro_reference::{Reference, ReferenceOptions};
+use chiaroscuro_render::{RenderOptions, Renderer};
+use chiaroscuro_scene::{
     Background, Camera, DepositMode, FloorSettings, FovReference, LightGeometry, LightShape,
     LightVolumeResolution, ObjectRotation, OpacityLength, Projection, ReconstructionKernel, SceneAxis,
     Settings, ShadowAlgorithm, SkyMode, SkySettings, Spotlight, ToneMap, linear_from_srgb,
 };
-use chiaroscuro::reference::{Reference, ReferenceOptions};
 use glam::DVec3;
 
 use crate::against_reference::mutations::assert_in_shader;

@@ -1,7 +1,7 @@
 //! Narrow peaks of transfer functions, which slabs by need must not skip.
 
-use chiaroscuro::gpu::{Renderer, mean_luminance};
-use chiaroscuro::model::{Camera, ControlPoint, OpacityInterpolation, SlabMode, TransferFunction};
+use chiaroscuro_render::{Renderer, mean_luminance};
+use chiaroscuro_scene::{Camera, ControlPoint, OpacityInterpolation, SlabMode, TransferFunction};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};

@@ -1,11 +1,11 @@
 //! Near-field rays: shadows from material within a few voxels are traced by a short ray.
 
-use chiaroscuro::data::synthetic::builtin;
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     Camera, LightGeometry, LightingTransfer, NearFieldRay, OpacityLength, Projection, ReconstructionKernel,
     Settings, ShadowAlgorithm, first_look,
 };
+use chiaroscuro_volume::synthetic::builtin;
 
 use crate::common::{Dataset, context, render};
 use crate::compare::to_f64;

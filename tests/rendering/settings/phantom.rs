@@ -3,10 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
-use chiaroscuro::data::Volume;
-use chiaroscuro::data::load::{LoadControl, LoadOptions, load};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{Camera, ControlPoint, OpacityInterpolation, Settings, TransferFunction};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{Camera, ControlPoint, OpacityInterpolation, Settings, TransferFunction};
+use chiaroscuro_volume::{LoadControl, Volume};
+use chiaroscuro_volume_io::{LoadOptions, load};
 use glam::{DAffine3, DVec3};
 
 use crate::common::{Dataset, context, render};

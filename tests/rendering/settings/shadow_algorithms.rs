@@ -8,12 +8,12 @@ use crate::thresholds::{
     DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, MIN_COMPARED_LIGHT, SELF_SHADOW,
     SELF_SHADOW_GROWS,
 };
-use chiaroscuro::data::{Histogram, Samples, Volume};
-use chiaroscuro::gpu::{Renderer, mean_luminance};
-use chiaroscuro::model::{
+use chiaroscuro_render::{Renderer, mean_luminance};
+use chiaroscuro_scene::{
     Camera, ControlPoint, LightGeometry, LightingTransfer, OpacityInterpolation, OpacityLength, Projection,
     RenderEngine, Settings, ShadowAlgorithm, TransferFunction, first_look,
 };
+use chiaroscuro_volume::{Histogram, Samples, Volume};
 use glam::DVec3;
 
 fn renderer() -> Renderer {
@@ -175,7 +175,7 @@ fn edges_of_shadows_are_as_wide_as_the_blurs() {
 /// remedy for darkness brightens, and the more the stronger it is.
 #[test]
 fn cures_brighten_and_splatting_is_slightly_darker() {
-    let volume = chiaroscuro::data::synthetic::builtin("chair", Some(48)).expect("the chair");
+    let volume = chiaroscuro_volume::synthetic::builtin("chair", Some(48)).expect("the chair");
     let histogram = Histogram::from_volume(&volume);
     let mut settings = first_look::first_settings(&volume, &histogram);
     use_earlier_first_look(&mut settings);

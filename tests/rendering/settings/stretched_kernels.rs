@@ -4,8 +4,8 @@
 use crate::common::{Dataset, context, render};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic};
 use crate::thresholds::{STRETCHED_CONTRAST, STRETCHED_FLICKER, STRETCHED_FOG};
-use chiaroscuro::gpu::{Renderer, ShaderLibrary};
-use chiaroscuro::model::{Camera, OpacityLength, RenderEngine, Settings};
+use chiaroscuro_render::{Renderer, ShaderLibrary};
+use chiaroscuro_scene::{Camera, OpacityLength, RenderEngine, Settings};
 
 const N: usize = 96;
 /// Width and height of the picture, at 4.3 voxels per pixel: no multiple of the checkerboard's period of four.

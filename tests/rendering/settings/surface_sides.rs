@@ -1,11 +1,11 @@
 //! Sides of surfaces: they face towards falling opacity, whichever way density runs.
 
-use chiaroscuro::data::{Samples, Volume};
-use chiaroscuro::gpu::Renderer;
-use chiaroscuro::model::{
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{
     Camera, ControlPoint, LightSettings, LitSides, OpacityInterpolation, OpacityLength, Settings,
     TransferFunction,
 };
+use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use crate::common::{Dataset, context, render};

@@ -6,12 +6,11 @@ use std::path::PathBuf;
 
 use super::reveal::SettingPlace;
 use super::searchable_settings::SEARCHABLE_SETTINGS;
-use crate::data::KindName;
-use crate::data::load::{ChoiceAspect, Downsampling, VolumeChoice};
-use crate::model::{
+use chiaroscuro_scene::{
     COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, SceneAxis, Settings,
     StandardView,
 };
+use chiaroscuro_volume::{ChoiceAspect, Downsampling, KindName, VolumeChoice};
 
 /// Subsamplings that commands and the data section offer.
 pub(crate) const SUBSAMPLINGS: [Downsampling; 5] = [

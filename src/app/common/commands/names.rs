@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::AppCommand;
 use crate::app::common::searchable_settings::synonyms_of;
 use crate::app::text;
-use crate::model::{COLOR_MAPS, ObjectRotation, SceneAxis};
+use chiaroscuro_scene::{COLOR_MAPS, ObjectRotation, SceneAxis};
 
 impl AppCommand {
     /// Returns the name while this axis of the scene points up; the names of standard views depend on it.

@@ -7,7 +7,7 @@ use crate::app::common::alternatives::Alternatives;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::data::load::ChoiceAspect;
+use chiaroscuro_volume::ChoiceAspect;
 
 /// Width of a step button, in points.
 const STEP_WIDTH: f32 = 20.0;

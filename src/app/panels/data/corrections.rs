@@ -8,10 +8,10 @@ use super::super::controls::{
 use crate::app::common::reveal;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
-use crate::data::{
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::{
     AnatomicalAxes, AxisOrder, Corrections, Orientation, PaddingValue, SpacingUnit, ValueScale, Volume,
 };
-use crate::model::Settings;
 
 /// Share of a number by which a drag of one point changes it: 200 points double it.
 const DRAG_SPEED: f64 = 1.0 / 200.0;

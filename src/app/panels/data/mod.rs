@@ -13,8 +13,9 @@ use crate::app::common::commands::{AppCommand, SUBSAMPLINGS};
 use crate::app::common::elide::elide_middle;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
-use crate::data::{KindName, ValueRange, sanitised};
-use crate::model::{OpacityLength, Settings};
+use chiaroscuro_files::sanitised;
+use chiaroscuro_scene::{OpacityLength, Settings};
+use chiaroscuro_volume::{KindName, ValueRange};
 
 /// Longest part of a path that is laid out, in characters; it is then cut to the available width.
 const MAX_PATH_CHARS: usize = 4096;

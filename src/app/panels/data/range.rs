@@ -5,8 +5,8 @@ use eframe::egui::{self, Ui};
 use super::super::controls::{choice_row, format_number, row, unlabelled_row};
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
-use crate::data::{ValueRange, ValueRanges};
-use crate::model::{DensityRange, Settings};
+use chiaroscuro_scene::{DensityRange, Settings};
+use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Share of the span by which a drag of one point moves an end: 500 points, which fit in every window, cover the
 /// span.

@@ -4,7 +4,7 @@ mod icons;
 pub(super) mod tabs;
 
 use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
-use crate::model::{Settings, ShadowSettings};
+use chiaroscuro_scene::{Settings, ShadowSettings};
 
 /// Returns true if something is on in a section that is off by default, so that its header shows a dot.
 pub(super) fn is_section_active(title: &str, settings: &Settings, compares: bool) -> bool {
@@ -69,7 +69,7 @@ pub(super) fn can_reset(title: &str, settings: &Settings, first: &Settings) -> b
 mod tests {
     use super::*;
     use crate::app::text;
-    use crate::model::LightSettings;
+    use chiaroscuro_scene::LightSettings;
 
     #[test]
     fn resetting_a_section_changes_no_other() {
@@ -82,7 +82,7 @@ mod tests {
         settings.cuts.plane.on = true;
         settings.camera.azimuth_deg = 12.0;
         settings.shading.diffuse = 0.1;
-        settings.sky.mode = crate::model::SkyMode::White;
+        settings.sky.mode = chiaroscuro_scene::SkyMode::White;
         let changed = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
         for title in text::sections::ALL {
             assert_eq!(can_reset(title, &settings, &first), changed.contains(&title), "{title}");

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use super::{gain_of, look, remember};
 use crate::app::shell::session::SessionFile;
-use crate::data::load::VolumeChoice;
-use crate::model::{LookRecord, VolumeRecord};
+use chiaroscuro_scene::{LookRecord, VolumeRecord};
+use chiaroscuro_volume::VolumeChoice;
 
 /// Environment variable with the folder of the process to be killed, which is this test itself.
 const KILLED_FOLDER_VARIABLE: &str = "CHIAROSCURO_TEST_KILLED_IN";
@@ -100,7 +100,7 @@ fn kill_repeatedly(count: u32) {
         );
         memory.acknowledge_crashes();
         drop(memory);
-        crate::export::remove_abandoned_temporary_files(folder.path());
+        chiaroscuro_files::remove_abandoned_temporary_files(folder.path());
         let names: Vec<_> =
             fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         let left = names.iter().filter(|name| name.to_string_lossy().contains(".part")).count();

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 mod kills;
 
 use super::*;
-use crate::data::ValueRanges;
-use crate::model::LookRecord;
+use chiaroscuro_scene::LookRecord;
+use chiaroscuro_volume::ValueRanges;
 
 pub(super) fn remember(folder: &Path) -> PersistentState {
     PersistentState::new(Some(folder), &egui::Context::default())
@@ -347,7 +347,7 @@ fn last_words_are_written_at_once() {
 fn the_look_of_an_earlier_version_is_taken_over() {
     let folder = tempfile::tempdir().unwrap();
     let text = |gain| {
-        let volume = crate::model::VolumeRecord::new(Path::new("builtin:chair"), 7, None);
+        let volume = chiaroscuro_scene::VolumeRecord::new(Path::new("builtin:chair"), 7, None);
         LookRecord::to_json(&look(gain), Some(&volume), None)
     };
     fs::write(folder.path().join("before.json"), text(2.0)).unwrap();

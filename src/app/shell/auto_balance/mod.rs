@@ -11,8 +11,8 @@ use eframe::egui;
 use super::easing::{eased_progress, interpolate_factor, is_user_active};
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
-use crate::gpu::Renderer;
-use crate::model::{RenderEngine, SamplingSettings, Settings, ShadowSettings};
+use chiaroscuro_render::Renderer;
+use chiaroscuro_scene::{RenderEngine, SamplingSettings, Settings, ShadowSettings};
 
 /// Debounce time without changes, in seconds: longer than the pauses within one movement of a hand.
 const DEBOUNCE_S: f64 = 0.25;
@@ -171,7 +171,7 @@ impl App {
         let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
         let task = move || {
             let mut renderer = Renderer::new(&context.second_device()?)?;
-            crate::gpu::measure_balance(&mut renderer, &dataset, &settings)
+            chiaroscuro_render::measure_balance(&mut renderer, &dataset, &settings)
         };
         match BackgroundTask::start("balance", ctx, task) {
             Ok(work) => self.balance = Some(work),

@@ -1,7 +1,7 @@
 //! Tests of the automatic balance, in virtual time.
 
 use super::*;
-use crate::model::LightLock;
+use chiaroscuro_scene::LightLock;
 
 /// Window in virtual time, with 60 frames per second, whose measurements take 0.1 s.
 struct BalanceTestWindow {
@@ -191,7 +191,7 @@ fn what_does_not_make_shadows_darker_is_passed_over() {
         |look| look.lights[0].name = "Sun".to_owned(),
         |look| look.floor.on = true,
         |look| look.output.background.top = [1.0; 3],
-        |look| look.output.tone_map = crate::model::ToneMap::Clip,
+        |look| look.output.tone_map = chiaroscuro_scene::ToneMap::Clip,
         |look| look.sampling.engine = RenderEngine::Scatter,
         |look| assert!(look.save_view_for_digit(1, "front")),
     ];
@@ -201,11 +201,11 @@ fn what_does_not_make_shadows_darker_is_passed_over() {
     }
     assert_eq!(window.measured, 0);
     let changes: [fn(&mut Settings); 5] = [
-        |look| look.transfer.interpolation = crate::model::OpacityInterpolation::Extinction,
+        |look| look.transfer.interpolation = chiaroscuro_scene::OpacityInterpolation::Extinction,
         |look| look.shading.ambient = 0.4,
         |look| look.shadows.strength = 0.5,
         |look| look.cuts.plane.on = true,
-        |look| look.opacity_unit = crate::model::OpacityLength::Voxels(3.0),
+        |look| look.opacity_unit = chiaroscuro_scene::OpacityLength::Voxels(3.0),
     ];
     for (count, change) in changes.into_iter().enumerate() {
         change(&mut window.settings);
@@ -224,7 +224,7 @@ fn it_is_off_when_switched_off_and_measures_when_switched_on() {
     window.settings.shadows.keep_balanced = true;
     window.pass(2.0);
     assert_eq!((window.measured, window.settings.shadows.balance.to_bits()), (1, 1.8f64.to_bits()));
-    window.settings.shadows.algorithm = crate::model::ShadowAlgorithm::Off;
+    window.settings.shadows.algorithm = chiaroscuro_scene::ShadowAlgorithm::Off;
     window.brighten();
     window.pass(2.0);
     assert_eq!(window.measured, 1, "without shadows there is nothing to balance");

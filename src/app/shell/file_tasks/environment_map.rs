@@ -6,7 +6,7 @@ use eframe::egui;
 
 use super::ReadPurpose;
 use crate::app::{App, text};
-use crate::data::read_environment_map;
+use chiaroscuro_media::read_environment_map;
 
 impl App {
     /// Reads an environment map on a thread and lights the scene by it; supersedes one that is still being read.

@@ -7,7 +7,7 @@ use eframe::egui;
 use super::ReadPurpose;
 use crate::app::windows::file_dialogs;
 use crate::app::{App, text};
-use crate::model::LabelTable;
+use chiaroscuro_scene::LabelTable;
 
 impl App {
     /// Reads a transfer function of another program on a thread and applies it to the look.

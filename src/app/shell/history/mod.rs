@@ -7,8 +7,8 @@ use eframe::egui::util::undoer::{self, Undoer};
 
 pub(crate) use self::list::HistoryWindow;
 use crate::app::{App, text};
-use crate::data::KindName;
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::KindName;
 
 /// Time without a change after which a step can be undone, in seconds.
 const SETTLE_S: f32 = 0.4;
@@ -197,7 +197,7 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::SavedEntry;
+    use chiaroscuro_scene::SavedEntry;
 
     /// Sequence of reproducible pseudo-random numbers (linear congruential generator).
     fn numbers(seed: u64) -> impl Iterator<Item = u64> {
@@ -217,7 +217,7 @@ mod tests {
             2 => settings.shadows.strength = share,
             3 => settings.shading.ambient = share,
             4 => settings.lights[0].on ^= true,
-            5 => settings.transfer.points.push(crate::model::ControlPoint::new(
+            5 => settings.transfer.points.push(chiaroscuro_scene::ControlPoint::new(
                 amount as f64,
                 [share as f32; 3],
                 share,

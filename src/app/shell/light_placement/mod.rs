@@ -15,8 +15,8 @@ use super::easing::{eased_progress, interpolate_factor, is_user_active};
 use crate::app::App;
 use crate::app::shell::history::HistoryStep;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::gpu::{GpuError, LightSearch, LightSearchResult, SearchedLight};
-use crate::model::{LightSettings, Settings};
+use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, SearchedLight};
+use chiaroscuro_scene::{LightSettings, Settings};
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
 const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::app::shell::easing::EASE_S;
-use crate::gpu::LightSuggestion;
-use crate::model::LightingRig;
+use chiaroscuro_render::LightSuggestion;
+use chiaroscuro_scene::LightingRig;
 
 /// Window in virtual time, with 60 frames per second, whose searches take 0.1 s.
 struct PlacementTestWindow {
@@ -236,6 +236,6 @@ fn steps_of_the_look_that_was_finished_keep_their_views_alone() {
     let mut other = before.clone();
     other.settings.shading.ambient = 0.9;
     assert_eq!(with_automatic_lights(&other, &before, &after), other);
-    let treated = HistoryStep { treated_as: Some(crate::data::KindName::Mask), ..before.clone() };
+    let treated = HistoryStep { treated_as: Some(chiaroscuro_volume::KindName::Mask), ..before.clone() };
     assert_eq!(with_automatic_lights(&treated, &before, &after), treated);
 }

@@ -6,7 +6,7 @@ mod notification;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use crate::data::{sanitised, without_controls};
+use chiaroscuro_files::{sanitised, without_controls};
 
 /// Time for which a note stays, in seconds; errors stay until they are dismissed.
 const NOTE_S: f64 = 6.0;

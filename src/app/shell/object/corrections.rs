@@ -8,8 +8,8 @@ use super::orientation::has_same_framing;
 use crate::app::persistence::FileStamp;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
-use crate::data::{Corrections, Dataset, VolumeError};
-use crate::model::{Settings, first_look};
+use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_volume::{Corrections, Dataset, VolumeError};
 
 /// Corrected volume, and the first look that frames it.
 #[derive(Debug)]

@@ -9,8 +9,8 @@ use eframe::egui;
 use crate::app::shell::light_placement::LightPlacement;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
-use crate::data::KindName;
-use crate::model::{LabelTable, Settings, TransferFunction, first_look};
+use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, first_look};
+use chiaroscuro_volume::KindName;
 
 /// Result of a pass over all voxels.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use eframe::egui;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
-use crate::model::{Camera, CameraLightRotation, ObjectRotation, SceneAxis, Settings, first_look};
+use chiaroscuro_scene::{Camera, CameraLightRotation, ObjectRotation, SceneAxis, Settings, first_look};
 
 /// Continuation after the first look has been framed.
 #[derive(Debug)]

@@ -9,8 +9,9 @@ use eframe::egui;
 use crate::app::App;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::model::first_look::ObjectOutline;
-use crate::model::{Clipping, DensityRange, LabelTable, Settings, TransferFunction};
+use chiaroscuro_scene::{
+    Clipping, DensityRange, LabelTable, Settings, TransferFunction, first_look::ObjectOutline,
+};
 
 /// Inputs on which an outline depends.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use super::PendingLook;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use crate::data::load::{ChoiceAspect, VolumeChoice};
+use chiaroscuro_volume::{ChoiceAspect, VolumeChoice};
 
 impl App {
     /// Opens the chooser of an aspect of the open file.

@@ -11,8 +11,8 @@ use crate::app::windows::file_dialogs;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use crate::data::Volume;
-use crate::data::load::{LoadControl, neighbour_volume};
+use chiaroscuro_volume::{LoadControl, Volume};
+use chiaroscuro_volume_io::neighbour_volume;
 
 /// File extensions of possible slices of one volume; DICOM files often have none.
 const SLICE_EXTENSIONS: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
@@ -154,9 +154,10 @@ fn slice_folder(paths: &[PathBuf]) -> Option<&Path> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::data::{Dataset, Samples};
     use glam::DVec3;
+
+    use super::*;
+    use chiaroscuro_volume::{Dataset, Samples};
 
     #[test]
     fn slices_are_of_one_kind_and_in_one_folder() {

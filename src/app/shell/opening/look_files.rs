@@ -10,8 +10,8 @@ use crate::app::shell::session::SessionFile;
 use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
 use crate::app::windows::untrusted_path::UntrustedPathAnswer;
 use crate::app::{App, text};
-use crate::data::ValueRanges;
-use crate::model::{LookRecord, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_scene::{LookRecord, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_volume::ValueRanges;
 
 impl App {
     /// Opens the look of a session, a preset or a picture. A volume that it names is opened first, unless it is open;

@@ -21,9 +21,9 @@ use crate::app::windows::file_dialogs;
 use crate::app::windows::raw_dialog::RawDialogResult;
 use crate::app::worker::loader::{OpenedVolume, ReadChoices, RememberedFileSettings};
 use crate::app::{App, text};
-use crate::data::load::{Downsampling, Portion, VolumeChoice};
-use crate::data::{Corrections, Volume};
-use crate::model::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation, provenance_mark};
+use chiaroscuro_files::provenance_mark;
+use chiaroscuro_scene::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation};
+use chiaroscuro_volume::{Corrections, Downsampling, Portion, Volume, VolumeChoice};
 
 pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
 use self::dropped_and_neighbours::VolumeSimilarity;
@@ -146,7 +146,7 @@ impl App {
             // Comments of a NRRD header follow its first line.
             let content = layout.nrrd_header(&data_file, *is_gzip);
             let content = content.replacen('\n', &format!("\n# {}\n", provenance_mark()), 1);
-            match crate::export::write_atomically(header, content.as_bytes()) {
+            match chiaroscuro_files::write_atomically(header, content.as_bytes()) {
                 Ok(()) => {
                     self.start_loading(header, ReadChoices::default(), ctx);
                     return;

@@ -1,7 +1,7 @@
 //! Texts of the camera section.
 
 use crate::app::text::{ControlText, control_text};
-use crate::model::SceneAxis;
+use chiaroscuro_scene::SceneAxis;
 
 pub(crate) const PROJECTION: ControlText = control_text("Projection", "Perspective or parallel projection");
 pub(crate) const PERSPECTIVE: ControlText =

@@ -1,7 +1,7 @@
 //! Texts of the corrections of file metadata, in the data section.
 
 use crate::app::text::{ControlText, control_text};
-use crate::data::{AxisOrder, SpacingUnit};
+use chiaroscuro_volume::{AxisOrder, SpacingUnit};
 
 /// Title of the group, followed by the headline of its error message.
 pub(crate) const TITLE: &str = "Corrections";

@@ -2,8 +2,7 @@
 
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{ControlText, control_text};
-use crate::data::load::{Downsampling, Portion, VoxelRegion};
-use crate::data::{DataKind, KindName, SpacingUnit};
+use chiaroscuro_volume::{DataKind, Downsampling, KindName, Portion, SpacingUnit, VoxelRegion};
 
 /// Text in place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "No volume is open";

@@ -1,7 +1,7 @@
 //! Descriptions of undo steps, in a few words that follow "Undo" and "Undone:".
 
 use crate::app::text;
-use crate::model::{
+use chiaroscuro_scene::{
     Camera, Clipping, LightSettings, OutputSettings, QualityPreset, SavedEntry, Settings, ShadowSettings,
     TransferFunction,
 };
@@ -194,7 +194,7 @@ fn describe_saved_views(before: &[SavedEntry], after: &[SavedEntry]) -> &'static
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::ControlPoint;
+    use chiaroscuro_scene::ControlPoint;
 
     fn change(of_settings: impl FnOnce(&mut Settings)) -> String {
         let before = Settings::default();

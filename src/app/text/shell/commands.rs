@@ -1,8 +1,7 @@
 //! Names of commands for menus, buttons and the list of shortcuts, and texts of the command palette.
 
 use crate::app::text::data;
-use crate::data::KindName;
-use crate::data::load::Downsampling;
+use chiaroscuro_volume::{Downsampling, KindName};
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";

@@ -1,9 +1,10 @@
 //! Texts of opening volumes and looks, and of the window's title.
 
-use crate::data::load::VolumeAlternatives;
-use crate::data::sanitised;
 use std::fmt::Display;
 use std::path::Path;
+
+use chiaroscuro_files::sanitised;
+use chiaroscuro_volume::VolumeAlternatives;
 
 /// Title of the window while no volume is open.
 pub(crate) const PROGRAM: &str = "Chiaroscuro";

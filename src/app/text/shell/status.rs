@@ -1,8 +1,8 @@
 //! Texts of the status bar.
 
 use crate::app::text::{ControlText, control_text};
-use crate::data::load::human_bytes;
-use crate::gpu::RenderStage;
+use chiaroscuro_render::RenderStage;
+use chiaroscuro_volume::human_bytes;
 
 pub(crate) const NO_VOLUME: &str = "No volume";
 /// State of the picture: full quality, preview or failure.

@@ -1,7 +1,7 @@
 //! Texts of the section that compares two looks.
 
 use crate::app::text::{ControlText, control_text};
-use crate::model::ComparisonVariant;
+use chiaroscuro_scene::ComparisonVariant;
 
 pub(crate) const ON: ControlText =
     control_text("Compare two looks", "Shows two looks in one picture: drag the line between them (C)");

@@ -1,7 +1,7 @@
 //! Texts of the chooser of series, channels, time steps and components, and of the rows that open it.
 
 use crate::app::text::{ControlText, control_text};
-use crate::data::load::{ChoiceAspect, DefaultComponent, FileDimension, VoxelComponents};
+use chiaroscuro_volume::{ChoiceAspect, DefaultComponent, FileDimension, VoxelComponents};
 
 /// Name and tooltip of the row of an aspect.
 pub(crate) fn row(aspect: ChoiceAspect) -> ControlText {

@@ -1,7 +1,7 @@
 //! Texts of the dialog that asks how much of a large volume to load.
 
 use crate::app::text::data::{dimensions, ordinal};
-use crate::data::load::{VolumeSize, human_bytes};
+use chiaroscuro_volume::{VolumeSize, human_bytes};
 
 pub(crate) const TITLE: &str = "Large volume: how much to open?";
 

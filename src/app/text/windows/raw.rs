@@ -1,8 +1,7 @@
 //! Texts of the import dialog for raw volumes.
 
 use crate::app::text::{ControlText, control_text};
-use crate::data::load::raw::LayoutEvidence;
-use crate::data::load::{Endian, RawLayout};
+use chiaroscuro_volume_io::{Endian, RawLayout, raw::LayoutEvidence};
 
 pub(crate) const TITLE: &str = "Import raw volume";
 pub(crate) const OPEN: &str = "Open";

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::math::SceneSpace;
-use crate::model::{ClipPlane, CropBox};
+use chiaroscuro_scene::{ClipPlane, CropBox};
+use chiaroscuro_volume::math::SceneSpace;
 
 /// Converts normalised grid coordinates (0 to 1 along each axis) to a scene point.
 fn scene_from_share(scene: &SceneSpace, share: DVec3) -> DVec3 {

@@ -12,8 +12,8 @@ use super::mouse_navigation::wheel_notches;
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::math::SceneSpace;
-use crate::model::{CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT, Settings};
+use chiaroscuro_scene::{CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT, Settings};
+use chiaroscuro_volume::math::SceneSpace;
 
 /// Length of the clip plane's arrow, in scene units.
 const PLANE_ARROW_LENGTH: f64 = 0.35;

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::theme;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::model::{Camera, LightGeometry, Projection, SceneLight};
+use chiaroscuro_scene::{Camera, LightGeometry, Projection, SceneLight};
 
 /// Radius of the sphere that carries the handles of parallel lights, relative to the volume's radius.
 const SPHERE_PER_SUPPORT: f64 = 1.15;
@@ -211,9 +211,10 @@ impl LightHandleView {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::model::FovReference;
     use eframe::egui::pos2;
+
+    use super::*;
+    use chiaroscuro_scene::FovReference;
 
     fn view(projection: Projection) -> LightHandleView {
         let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(640.0, 480.0));

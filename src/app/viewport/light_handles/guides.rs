@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::geometry::LightHandleView;
 use crate::app::common::theme;
-use crate::model::{LightGeometry, SceneLight};
+use chiaroscuro_scene::{LightGeometry, SceneLight};
 
 /// Number of segments of a circle.
 const CIRCLE_SEGMENTS: usize = 72;
@@ -97,7 +97,7 @@ fn spotlight_cone(light: &SceneLight) -> Vec<Vec<DVec3>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Spotlight;
+    use chiaroscuro_scene::Spotlight;
 
     #[test]
     fn lights_stand_over_the_floor() {

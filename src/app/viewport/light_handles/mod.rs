@@ -18,7 +18,7 @@ use self::spotlight_handle::SpotlightHandle;
 use super::mouse_navigation::wheel_notches;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{LightGeometry, Settings};
+use chiaroscuro_scene::{LightGeometry, Settings};
 
 /// Drag in progress of a light's handle.
 #[derive(Debug, Clone, Copy)]

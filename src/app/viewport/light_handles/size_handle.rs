@@ -9,7 +9,9 @@ use super::geometry::LightHandleView;
 use super::small_handle::interact_small_handle;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{LightArea, LightGeometry, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_SIZE, SceneLight};
+use chiaroscuro_scene::{
+    LightArea, LightGeometry, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_SIZE, SceneLight,
+};
 
 /// Radius of the handle, in points.
 const HANDLE_RADIUS: f32 = 5.0;
@@ -185,9 +187,10 @@ fn paint_outline(painter: &Painter, view: &LightHandleView, shown: &AreaLightPla
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::model::{Camera, LightSettings};
     use eframe::egui::{Rect, vec2};
+
+    use super::*;
+    use chiaroscuro_scene::{Camera, LightSettings};
 
     fn shown(light: &LightSettings) -> (LightHandleView, AreaLightPlacement) {
         let picture = Rect::from_min_size(Pos2::new(10.0, 20.0), vec2(800.0, 600.0));

@@ -10,7 +10,7 @@ use super::geometry::LightHandleView;
 use super::small_handle::interact_small_handle;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::model::{LightGeometry, SceneLight, Spotlight};
+use chiaroscuro_scene::{LightGeometry, SceneLight, Spotlight};
 
 /// Range of half angles that can be dragged, in degrees; the same as in the side panel.
 const HALF_ANGLES_DEG: RangeInclusive<f64> = 1.0..=89.0;
@@ -123,9 +123,10 @@ impl SpotlightHandle {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::model::Camera;
     use eframe::egui::Pos2;
+
+    use super::*;
+    use chiaroscuro_scene::Camera;
 
     #[test]
     fn the_cone_follows_the_pointer() {

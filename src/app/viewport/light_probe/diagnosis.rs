@@ -2,8 +2,8 @@
 
 use crate::app::text;
 use crate::app::text::common::LengthUnit;
-use crate::model::{LightSettings, LitSides, Settings};
-use crate::plan::{LightArrival, Probe};
+use chiaroscuro_render::plan::{LightArrival, Probe};
+use chiaroscuro_scene::{LightSettings, LitSides, Settings};
 
 /// Share of the possible light from which a point counts as lit.
 const LIT_SHARE: f64 = 0.5;
@@ -181,13 +181,13 @@ impl BrightnessRemedy {
             Self::MoreAmbient => shading.ambient += 0.1,
             Self::BothSides => shading.sides = LitSides::Two,
             Self::Headlight => {
-                if lights.len() < crate::model::MAX_LIGHTS {
+                if lights.len() < chiaroscuro_scene::MAX_LIGHTS {
                     lights.push(LightSettings {
                         name: text::probe::HEADLIGHT_NAME.to_owned(),
                         intensity: 0.4,
                         casts_shadows: false,
                         position: [0.0, 0.0, 3.0],
-                        lock: crate::model::LightLock::Camera,
+                        lock: chiaroscuro_scene::LightLock::Camera,
                         ..LightSettings::default()
                     });
                 }

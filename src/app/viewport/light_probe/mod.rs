@@ -9,14 +9,13 @@ use glam::DVec3;
 
 use self::diagnosis::BrightnessCause;
 use self::tag::ProbeTag;
-
 use crate::app::common::overlay_windows;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::range_decimals;
 use crate::app::text::{self, common::LengthUnit};
-use crate::data::{DataKind, Volume};
-use crate::model::{Camera, LightGeometry, LightSettings, Settings};
-use crate::plan::{LightArrival, Probe, probe};
+use chiaroscuro_render::plan::{LightArrival, Probe, probe};
+use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, Settings};
+use chiaroscuro_volume::{DataKind, Volume};
 
 /// Point of the volume that was clicked.
 #[derive(Debug, Clone, Copy)]
@@ -293,8 +292,8 @@ fn project(camera: &Camera, picture: Rect, point: DVec3) -> Option<Pos2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Samples;
-    use crate::model::LabelLook;
+    use chiaroscuro_scene::LabelLook;
+    use chiaroscuro_volume::Samples;
 
     #[test]
     fn labels_are_named_where_they_are_seen() {

@@ -10,7 +10,7 @@ use crate::app::common::preset_match::PresetMatchCache;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::model::{PRESETS, Settings};
+use chiaroscuro_scene::{PRESETS, Settings};
 
 /// Height of the row, and distance from its bottom to the bottom of the picture, which leaves space for the
 /// orientation letters; both in points.

@@ -2,9 +2,9 @@
 
 use eframe::egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, Ui, pos2};
 
-use crate::data::Volume;
-use crate::export::{PixelRows, marks_layer_of_size};
-use crate::model::{ImageSpec, Settings};
+use chiaroscuro_media::{PixelRows, marks_layer_of_size};
+use chiaroscuro_scene::{ImageSpec, Settings};
+use chiaroscuro_volume::Volume;
 
 /// Longest edge of the marks' texture, in pixels: the width of a wide screen.
 const LONGEST_EDGE: f32 = 2048.0;

@@ -15,9 +15,9 @@ use glam::DVec3;
 use self::outlined_text::paint_outlined_text;
 use super::view_projection::ViewProjection;
 use crate::app::common::theme;
-use crate::export::{SCENE_SIDES, orientation_letters, scale_bar as bar_for};
-use crate::math::SceneSpace;
-use crate::model::{Camera, StandardView};
+use chiaroscuro_media::{SCENE_SIDES, orientation_letters, scale_bar as bar_for};
+use chiaroscuro_scene::{Camera, StandardView};
+use chiaroscuro_volume::math::SceneSpace;
 
 /// Edge length of the unrotated cube, in points.
 const CUBE_EDGE: f32 = 44.0;

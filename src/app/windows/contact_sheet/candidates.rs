@@ -8,12 +8,12 @@ use glam::DVec3;
 use crate::app::common::commands::AppCommand;
 use crate::app::text;
 use crate::app::windows::export::{ExportScene, ExportWorker};
-use crate::data::Volume;
-use crate::gpu::{LightSearch, MeasuredSettings, SearchedLight, downsampled_volume};
-use crate::model::{
+use chiaroscuro_render::{LightSearch, MeasuredSettings, SearchedLight, downsampled_volume};
+use chiaroscuro_scene::{
     Camera, ImageSpec, LightSettings, LightVolumeResolution, LightingRig, PRESETS, Preset,
     ReconstructionKernel, Settings, SlabMode, first_look,
 };
+use chiaroscuro_volume::Volume;
 
 /// Size of a picture in pixels: 4:3, as first looks are framed, and four of them with their gaps are no wider than
 /// the space that a window of 1280 points has beside its panel.
@@ -273,7 +273,7 @@ fn quick_settings(settings: &Settings) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::synthetic::builtin;
+    use chiaroscuro_volume::synthetic::builtin;
 
     #[test]
     fn hours_are_where_a_clock_has_them() {

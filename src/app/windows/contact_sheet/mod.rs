@@ -16,7 +16,7 @@ use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::model::Settings;
+use chiaroscuro_scene::Settings;
 
 pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
 
@@ -298,8 +298,8 @@ fn upload_candidate(ctx: &egui::Context, look: LookCandidate, picture: ColorImag
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Dataset, synthetic::builtin};
-    use crate::gpu::GpuContext;
+    use chiaroscuro_render::GpuContext;
+    use chiaroscuro_volume::{Dataset, synthetic::builtin};
 
     /// Cancel flag of the running thread, if there is one.
     fn cancel_flag(sheet: &ContactSheetWindow) -> Option<Arc<AtomicBool>> {

@@ -9,8 +9,8 @@ use super::{ExportKind, ExportRequest, ExportWindow, destination};
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::shortcuts;
 use crate::app::text::{self, ControlText};
-use crate::export::{AnimationFormat, PictureFormat, frame_names};
-use crate::model::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
+use chiaroscuro_media::{AnimationFormat, PictureFormat, frame_names};
+use chiaroscuro_scene::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
 const EXPORT_KINDS: [(ExportKind, ControlText); 3] = [
     (ExportKind::Still, text::export::STILL),

@@ -15,8 +15,8 @@ use self::worker::SharedExportProgress;
 pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, settings_for_kept};
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::export::{AnimationFormat, AnimationSpec};
-use crate::model::ImageSpec;
+use chiaroscuro_media::{AnimationFormat, AnimationSpec};
+use chiaroscuro_scene::ImageSpec;
 
 /// Longest wait of a closing window for an export to end: a part of a picture takes seconds on slow adapters.
 const CANCEL_TIMEOUT: Duration = Duration::from_secs(10);

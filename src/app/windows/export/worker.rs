@@ -8,15 +8,17 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use eframe::egui;
 
 use crate::app::text;
-use crate::data::{Dataset, Volume};
-use crate::export::{
+use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
+use chiaroscuro_media::{
     Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
     marks_layer, write_picture,
 };
-use crate::fault::{FaultThread, panic_if_injected};
-use crate::gpu::{GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary};
-use crate::model::first_look::ObjectOutline;
-use crate::model::{Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord};
+use chiaroscuro_render::{GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_scene::{
+    Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
+    first_look::ObjectOutline,
+};
+use chiaroscuro_volume::{Dataset, Volume};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.

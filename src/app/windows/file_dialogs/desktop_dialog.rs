@@ -12,8 +12,8 @@ use super::{FileDialogPurpose, desktop};
 use crate::app::common::shortcuts;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::data::load::supported_extensions;
-use crate::model::{EXPORT_EXTENSIONS, IMPORT_EXTENSIONS};
+use chiaroscuro_scene::{EXPORT_EXTENSIONS, IMPORT_EXTENSIONS};
+use chiaroscuro_volume_io::supported_extensions;
 
 /// Shortest time in which a user can read a dialog and close it: a dialog that closes sooner was never open.
 const MIN_OPEN_TIME: Duration = Duration::from_millis(400);

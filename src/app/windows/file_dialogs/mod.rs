@@ -13,9 +13,10 @@ use self::desktop_dialog::{FileDialog, FileDialogOutcome};
 use crate::app::common::{overlay_windows, shortcuts};
 use crate::app::text;
 use crate::app::text::files::FileRequest;
-use crate::data::{ValueRange, ValueRanges, read_small_file};
-use crate::export::may_carry_record;
-use crate::model::{LookRecord, Settings, TransferFunction, export_transfer, import_transfer};
+use chiaroscuro_files::read_small_file;
+use chiaroscuro_media::may_carry_record;
+use chiaroscuro_scene::{LookRecord, Settings, TransferFunction, export_transfer, import_transfer};
+use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Purpose of a file dialog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -209,25 +210,25 @@ pub(crate) fn dropped_files(ctx: &egui::Context) -> Vec<PathBuf> {
 
 /// Returns true if a picture file carries a look in its metadata; PNG files without one are slices.
 pub(crate) fn carries_look(path: &Path) -> bool {
-    may_carry_record(path) && crate::export::read_record(path).is_ok_and(|record| record.is_some())
+    may_carry_record(path) && chiaroscuro_media::read_record(path).is_ok_and(|record| record.is_some())
 }
 
 /// Returns true if a path that may hold a look is a volume: a folder, or a PNG without a look.
 pub(crate) fn is_volume_path(path: &Path) -> bool {
     let is_readable = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    path.is_dir() || is_readable && crate::export::read_record(path).is_ok_and(|record| record.is_none())
+    path.is_dir() || is_readable && chiaroscuro_media::read_record(path).is_ok_and(|record| record.is_none())
 }
 
 /// Writes a file atomically; the previous one is kept beside it as `.bak`.
 pub(crate) fn write_with_backup(path: &Path, contents: &[u8]) -> Result<(), String> {
-    crate::export::keep_backup(path).map_err(|err| err.to_string())?;
-    crate::export::write_atomically(path, contents).map_err(|err| err.to_string())
+    chiaroscuro_files::keep_backup(path).map_err(|err| err.to_string())?;
+    chiaroscuro_files::write_atomically(path, contents).map_err(|err| err.to_string())
 }
 
 /// Reads the record of a session file, a preset or an exported picture.
 pub(crate) fn load_record(path: &Path) -> Result<LookRecord, String> {
     let record = if may_carry_record(path) {
-        let found = crate::export::read_record(path).map_err(|err| err.to_string())?;
+        let found = chiaroscuro_media::read_record(path).map_err(|err| err.to_string())?;
         found.ok_or_else(|| text::files::no_settings(path))?.into_bytes()
     } else {
         read_small_file(path).map_err(|err| text::files::settings_not_read(path, err))?
@@ -254,7 +255,7 @@ pub(crate) fn export_transfer_file(
 ) -> Result<(), String> {
     let range = transfer_exchange_range(settings, ranges);
     let bytes = export_transfer(path, &settings.transfer, range).map_err(|err| err.to_string())?;
-    crate::export::write_atomically(path, &bytes).map_err(|err| err.to_string())
+    chiaroscuro_files::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
 /// Returns true if a file name is that of a look rather than a volume: JSON, or a picture that may carry a record.
@@ -265,7 +266,7 @@ pub(crate) fn may_be_look_file(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{ControlPoint, OpacityInterpolation};
+    use chiaroscuro_scene::{ControlPoint, OpacityInterpolation};
 
     #[test]
     fn settings_are_small_texts() {

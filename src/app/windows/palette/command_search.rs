@@ -3,7 +3,7 @@
 use super::synonyms::{self, Synonym};
 use crate::app::common::commands::{self, AppCommand};
 use crate::app::text;
-use crate::model::SceneAxis;
+use chiaroscuro_scene::SceneAxis;
 
 /// Length from which on a word is also matched inside others, in characters ("light" in "spotlight"): one or two
 /// letters occur in most words.
@@ -97,8 +97,8 @@ fn matches_any(word: &str, among: &[&str]) -> bool {
 mod tests {
     use super::*;
     use crate::app::common::reveal::SettingPlace;
-    use crate::data::load::{ChoiceAspect, FileDimension};
-    use crate::model::{ObjectRotation, StandardView};
+    use chiaroscuro_scene::{ObjectRotation, StandardView};
+    use chiaroscuro_volume::{ChoiceAspect, FileDimension};
 
     /// Commands that a text finds, for a volume without labels.
     fn commands_for(text: &str, up: SceneAxis) -> Vec<AppCommand> {

@@ -10,7 +10,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::shortcuts;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::model::SceneAxis;
+use chiaroscuro_scene::SceneAxis;
 
 /// Number of lines that are shown at once.
 const VISIBLE_LINES: usize = 12;

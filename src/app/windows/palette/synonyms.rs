@@ -4,9 +4,8 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::searchable_settings::SEARCHABLE_SETTINGS;
 use crate::app::text::palette_synonyms::{self, PaletteSynonyms};
 use crate::app::text::{self, sections};
-use crate::data::KindName;
-use crate::data::load::{ChoiceAspect, Downsampling, FileDimension};
-use crate::model::ObjectRotation;
+use chiaroscuro_scene::ObjectRotation;
+use chiaroscuro_volume::{ChoiceAspect, Downsampling, FileDimension, KindName};
 
 /// Search words with the commands that they lead to.
 #[derive(Debug)]

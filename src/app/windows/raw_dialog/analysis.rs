@@ -10,7 +10,7 @@ use eframe::egui;
 use crate::app::text;
 use crate::app::text::raw::RawLengthText;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::data::load::raw::{LayoutProposal, RawBytes, RawNameHints, propose_layouts};
+use chiaroscuro_volume_io::raw::{LayoutProposal, RawBytes, RawNameHints, propose_layouts};
 
 /// Bytes of the file, shared by tasks that read in turn; the first one opens it.
 #[derive(Debug, Clone)]

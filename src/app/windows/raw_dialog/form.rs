@@ -7,9 +7,8 @@ use eframe::egui::{self, DragValue, Response, Ui};
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::text::raw::{RawLengthText, RawSpacingUnit};
-use crate::data::VoxelType;
-use crate::data::load::raw::LayoutProposal;
-use crate::data::load::{Endian, RawGuess, RawLayout};
+use chiaroscuro_volume::VoxelType;
+use chiaroscuro_volume_io::{Endian, RawGuess, RawLayout, raw::LayoutProposal};
 
 /// Longest edge that can be typed, in voxels.
 const MAX_EDGE: usize = 65_536;

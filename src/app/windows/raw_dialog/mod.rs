@@ -14,8 +14,7 @@ use self::form::RawImportForm;
 use self::preview::RawPreview;
 use crate::app::common::{overlay_windows, shortcuts};
 use crate::app::text;
-use crate::data::load::raw::LayoutProposal;
-use crate::data::load::{RawGuess, RawLayout};
+use chiaroscuro_volume_io::{RawGuess, RawLayout, raw::LayoutProposal};
 
 /// Width of the numbers and proposals, in points.
 const NUMBERS_WIDTH: f32 = 356.0;

@@ -12,8 +12,10 @@ use eframe::egui::{
 use super::analysis::{CancelOnDrop, RawAnalysis};
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::data::load::RawLayout;
-use crate::data::load::raw::{MiddleSlices, PreviewSlice, read_middle_slices};
+use chiaroscuro_volume_io::{
+    RawLayout,
+    raw::{MiddleSlices, PreviewSlice, read_middle_slices},
+};
 
 /// Longest edge of a slice, in points.
 const SLICE_EDGE: f32 = 184.0;

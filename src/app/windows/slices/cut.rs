@@ -13,8 +13,8 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::mouse_navigation::wheel_notches;
 use crate::app::viewport::overlay::orientation_letters;
-use crate::data::{DensityMapping, ValueRange, Volume};
-use crate::model::TransferFunction;
+use chiaroscuro_scene::TransferFunction;
+use chiaroscuro_volume::{DensityMapping, ValueRange, Volume};
 
 /// Distance from the edges of a slice to its letters, in points.
 const LETTER_MARGIN: f32 = 3.0;

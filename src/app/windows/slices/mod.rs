@@ -18,9 +18,8 @@ use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::text;
 use crate::app::viewport::view_projection::ViewProjection;
-use crate::data::{ValueRange, Volume};
-use crate::math::SceneSpace;
-use crate::model::{LabelTable, TransferFunction};
+use chiaroscuro_scene::{LabelTable, TransferFunction};
+use chiaroscuro_volume::{ValueRange, Volume, math::SceneSpace};
 
 /// Longest edge of a slice on screen, in points, before the user resizes the window.
 const DEFAULT_EDGE: f32 = 208.0;
@@ -253,7 +252,7 @@ fn grey_window_fields(ui: &mut Ui, grey: &mut GreyWindow, facts: &VolumeFacts) {
 mod tests {
     use super::*;
     use crate::app::worker::loader::ReadChoices;
-    use crate::data::{Dataset, Samples};
+    use chiaroscuro_volume::{Dataset, Samples};
 
     #[test]
     fn greys_are_those_of_the_values_that_matter() {

@@ -8,9 +8,8 @@ use eframe::egui::{Pos2, Rect, Vec2, pos2};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::data::{AnatomicalAxes, Volume};
-use crate::export::orientation_letters_of_plane;
-use crate::math::SceneSpace;
+use chiaroscuro_media::orientation_letters_of_plane;
+use chiaroscuro_volume::{AnatomicalAxes, Volume, math::SceneSpace};
 
 /// Side of the screen on which axial and coronal slices show a body's right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -144,7 +143,7 @@ mod tests {
     use glam::{DAffine3, DMat3};
 
     use super::*;
-    use crate::data::Samples;
+    use chiaroscuro_volume::Samples;
 
     /// Anatomical volume of 2 × 3 × 4 voxels, with grid axes in these directions of right–anterior–superior space.
     fn body(axes: [[f64; 3]; 3]) -> Volume {

@@ -4,8 +4,8 @@ use eframe::egui::ecolor::gamma_u8_from_linear_f32;
 use eframe::egui::{Color32, ColorImage, Vec2};
 
 use super::plane::SlicePlane;
-use crate::data::{ValueRange, Volume};
-use crate::model::TransferFunction;
+use chiaroscuro_scene::TransferFunction;
+use chiaroscuro_volume::{ValueRange, Volume};
 
 /// Number of steps of the lookup table from densities to colours: four times as many greys as can be told apart.
 const LOOKUP_STEPS: usize = 1024;
@@ -90,12 +90,13 @@ pub(crate) fn render_slice(volume: &Volume, plane: &SlicePlane, at: usize, table
 
 #[cfg(test)]
 mod tests {
-    use super::super::plane::ScreenAxis;
-    use super::*;
-    use crate::data::Samples;
-    use crate::model::ControlPoint;
     use eframe::egui::vec2;
     use glam::DVec3;
+
+    use super::super::plane::ScreenAxis;
+    use super::*;
+    use chiaroscuro_scene::ControlPoint;
+    use chiaroscuro_volume::Samples;
 
     /// Volume with the values x + 10 y + 100 z.
     fn volume() -> Volume {

@@ -14,7 +14,8 @@ use crate::app::common::shortcuts::is_typing;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use crate::data::load::{ChoiceAspect, LoadOptions};
+use chiaroscuro_volume::ChoiceAspect;
+use chiaroscuro_volume_io::LoadOptions;
 
 /// Longer edge of a thumbnail, in points.
 const THUMBNAIL_EDGE: f32 = 48.0;

@@ -11,8 +11,8 @@ use image::imageops::{self, FilterType};
 use crate::app::windows::slices::plane::SlicePlane;
 use crate::app::windows::slices::slice_image::{GreyWindow, color_table, render_slice};
 use crate::app::worker::background_task::BackgroundTask;
-use crate::data::load::{LoadControl, LoadOptions, Portion, VolumeChoice, VoxelRegion, VoxelSpan};
-use crate::data::{Volume, open};
+use chiaroscuro_volume::{LoadControl, Portion, Volume, VolumeChoice, VoxelRegion, VoxelSpan};
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Longer edge of a thumbnail, in pixels: twice the points, for high-density screens.
 const THUMBNAIL_PIXELS: f64 = 96.0;
@@ -162,9 +162,10 @@ fn render_middle_slice(volume: &Volume) -> Option<ColorImage> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::data::Samples;
     use glam::DVec3;
+
+    use super::*;
+    use chiaroscuro_volume::Samples;
 
     #[test]
     fn pictures_show_the_middle_in_its_proportions() {

@@ -15,7 +15,8 @@ use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chiaroscuro::data::load::{LoadControl, LoadError, LoadErrorKind, LoadOptions, load};
+use chiaroscuro_volume::{LoadControl, LoadError, LoadErrorKind};
+use chiaroscuro_volume_io::{LoadOptions, load};
 
 use super::FORBIDDEN_FOLDER;
 use super::runner::{FileTrace, run_traced};

@@ -1,0 +1,139 @@
+//! Shadow rays: attenuation of light on the way to a point (P eq. 7 and 8), for every voxel of a light volume or for
+//! every sample of the picture.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::back_project::AttenuationVolume;
+use super::extent::cut::UncutRegion;
+use super::field::classified::TransferSide;
+use super::kernel::KernelProfile;
+use super::{Reference, gather};
+use chiaroscuro_scene::{
+    BakedTransfer, DepositMode, LightGeometry, ReconstructionKernel, SceneLight, SlabQuadrature,
+};
+
+/// Sampler of shadow rays to one light.
+pub(super) struct ShadowRays<'r> {
+    reference: &'r Reference<'r>,
+    /// Point lights that represent the light; usually the light itself.
+    points: Vec<SceneLight>,
+    profile: KernelProfile,
+    quadrature: SlabQuadrature,
+    table: BakedTransfer,
+    remaining: UncutRegion,
+}
+
+impl<'r> ShadowRays<'r> {
+    /// Creates rays to light `index`, with densities reconstructed by a kernel.
+    pub(super) fn new(
+        reference: &'r Reference<'r>,
+        index: usize,
+        kernel: ReconstructionKernel,
+        quadrature: SlabQuadrature,
+    ) -> Self {
+        Self::from_points(reference, reference.points(index), (kernel, quadrature))
+    }
+
+    fn from_points(
+        reference: &'r Reference<'r>,
+        points: Vec<SceneLight>,
+        (kernel, quadrature): (ReconstructionKernel, SlabQuadrature),
+    ) -> Self {
+        Self {
+            reference,
+            points,
+            profile: reference.profile(reference.gathered_kernel(kernel)),
+            quadrature,
+            table: reference.gathered_table(TransferSide::Lighting),
+            remaining: reference.attenuating_region(),
+        }
+    }
+
+    /// Returns the transmittance of the light at an index-space point: the mean over its points.
+    pub(super) fn attenuation(&self, point: DVec3) -> f64 {
+        self.attenuation_above(point, DVec3::ZERO)
+    }
+
+    /// Returns the transmittance at a surface that receives light only from above, in direction `up`; from everywhere
+    /// if `up` is zero.
+    pub(super) fn attenuation_above(&self, point: DVec3, up: DVec3) -> f64 {
+        let place = self.reference.scene.scene_from_index.transform_point3(point);
+        let is_above = |light: &&SceneLight| {
+            let towards = match light.kind {
+                LightGeometry::Parallel => light.direction(),
+                LightGeometry::Perspective => DVec3::from(light.position) - place,
+            };
+            up == DVec3::ZERO || towards.dot(up) > 0.0
+        };
+        let seen = self.points.iter().filter(is_above);
+        seen.map(|light| self.attenuation_of(light, point)).sum::<f64>() / self.points.len() as f64
+    }
+
+    /// Returns ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and a point light, times the share
+    /// that the hood lets through. Point samples: kernels are not stretched.
+    fn attenuation_of(&self, light: &SceneLight, point: DVec3) -> f64 {
+        let reference = self.reference;
+        let place = reference.scene.scene_from_index.transform_point3(point);
+        let (towards, reach) = match light.kind {
+            LightGeometry::Parallel => (light.direction(), f64::INFINITY),
+            LightGeometry::Perspective => {
+                let away = DVec3::from(light.position) - place;
+                (away.normalize_or(DVec3::Z), away.length())
+            }
+        };
+        let cone = light.cone();
+        let step = reference.settings.shadows.ray_step(&reference.scene);
+        let forward = reference.scene.index_from_scene.transform_vector3(towards);
+        let first = match reference.settings.shadows.deposit {
+            DepositMode::Front => 1.0,
+            DepositMode::SlabMean => 0.5,
+        };
+        // There is no material outside the grid.
+        let across = 2.0 * reference.scene.support_radius()
+            + (place.length() - reference.scene.support_radius()).max(0.0);
+        let end = reach.min(across);
+        let begin_of = |k: u32| (f64::from(k) + first - 0.5) * step;
+        // The last step is shortened to the remaining distance.
+        let count = (end / step - first + 0.5).ceil().max(0.0) as u32;
+        let support = reference.scene.support_in_index();
+        let optical_depth: f64 = (0..count)
+            .map(|k| {
+                let length = step.min(end - begin_of(k));
+                let middle = begin_of(k) + 0.5 * length;
+                let at = point + forward * middle;
+                if !(at.cmpge(support.min).all() && at.cmple(support.max).all()) {
+                    return 0.0;
+                }
+                let offsets = self.quadrature.offsets();
+                let density = |offset: &f64| {
+                    let at = point + forward * (middle + offset * length) + reference.kernel_shift();
+                    gather::density(reference, TransferSide::Lighting, &self.profile, at, 0.0)
+                };
+                let there = |offset: &f64| {
+                    let at = point + forward * (middle + offset * length) + reference.kernel_shift();
+                    reference.gathered_presence(&self.profile, at, 0.0)
+                };
+                let there = offsets.iter().map(there).sum::<f64>() / offsets.len() as f64;
+                let density = offsets.iter().map(density).sum::<f64>() / offsets.len() as f64;
+                let share = there * reference.attenuating_share(&self.remaining, at);
+                share * self.table.sample(density)[3] * length * light.density_scale
+            })
+            .sum();
+        (-optical_depth).exp() * cone.attenuation(-cone.axis.dot(towards))
+    }
+}
+
+impl Reference<'_> {
+    /// Computes the attenuation volume of a point light by a ray from every voxel (P §3.4).
+    pub(super) fn raycast(&self, light: &SceneLight, divisor: usize) -> AttenuationVolume {
+        let shadows = &self.settings.shadows;
+        let mut volume = AttenuationVolume::unattenuated(self.scene.dims, divisor);
+        let rays = ShadowRays::from_points(self, vec![*light], (shadows.kernel, shadows.quadrature));
+        volume.values = (0..volume.values.len())
+            .into_par_iter()
+            .map(|voxel| rays.attenuation(volume.voxel_centre(voxel)))
+            .collect();
+        volume
+    }
+}

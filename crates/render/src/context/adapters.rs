@@ -1,0 +1,109 @@
+//! Selection of the graphics adapter, and the error message if there is none.
+
+use super::ADAPTER_HELP;
+use crate::GpuError;
+use chiaroscuro_files::sanitised;
+
+/// Environment variable that selects an adapter by a part of its name.
+const ADAPTER_NAME_VARIABLE: &str = "WGPU_ADAPTER_NAME";
+
+/// Environment variable that selects the graphics APIs (`vulkan`, `metal`, `dx12`).
+const BACKEND_VARIABLE: &str = "WGPU_BACKEND";
+
+/// Maximum number of adapters listed in an error message; more than any machine has.
+const MAX_LISTED_ADAPTERS: usize = 8;
+
+/// Maximum length, in bytes, of an adapter's or variable's name in an error message.
+const MAX_NAME_BYTES: usize = 80;
+
+/// Returns the fastest adapter among those that the environment variables allow.
+///
+/// # Errors
+/// Returns [`GpuError::NoAdapter`] if there is none.
+pub(super) fn fastest_adapter() -> Result<wgpu::Adapter, GpuError> {
+    let asked = |variable: &str| std::env::var(variable).ok().filter(|value| !value.is_empty());
+    // Other packages may compile in further backends (GL), which lack the features that volume rendering needs.
+    let enabled = wgpu::Instance::enabled_backend_features() & wgpu::Backends::PRIMARY;
+    let backends = wgpu::Backends::from_env().unwrap_or(enabled) & enabled;
+    if backends.is_empty() {
+        return Err(no_backend_error(&asked(BACKEND_VARIABLE).unwrap_or_default(), enabled));
+    }
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    let wanted = asked(ADAPTER_NAME_VARIABLE).unwrap_or_default();
+    let lower = wanted.to_lowercase();
+    adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&lower));
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    });
+    adapters
+        .into_iter()
+        .next()
+        .ok_or_else(|| no_adapter_error(&names, &wanted, asked(BACKEND_VARIABLE).as_deref()))
+}
+
+/// Builds the error for a `WGPU_BACKEND` that selects no graphics API of this program.
+fn no_backend_error(asked: &str, enabled: wgpu::Backends) -> GpuError {
+    let names = [
+        (wgpu::Backends::VULKAN, "vulkan"),
+        (wgpu::Backends::METAL, "metal"),
+        (wgpu::Backends::DX12, "dx12"),
+    ];
+    let known: Vec<&str> =
+        names.into_iter().filter(|(backend, _)| enabled.contains(*backend)).map(|(_, name)| name).collect();
+    let reason = format!(
+        "{BACKEND_VARIABLE} is {:?}, and this program supports only {}",
+        sanitised(asked, MAX_NAME_BYTES),
+        known.join(" and ")
+    );
+    GpuError::NoAdapter { reason, help: "unset WGPU_BACKEND" }
+}
+
+/// Builds the error for a machine on which no adapter's name contains `wanted`.
+fn no_adapter_error(names: &[String], wanted: &str, backend: Option<&str>) -> GpuError {
+    if names.is_empty() {
+        let through = backend.map_or_else(String::new, |backend| {
+            format!(" ({BACKEND_VARIABLE} is {:?})", sanitised(backend, MAX_NAME_BYTES))
+        });
+        return GpuError::NoAdapter { reason: format!("no driver offers one{through}"), help: ADAPTER_HELP };
+    }
+    let listed: Vec<String> = names
+        .iter()
+        .take(MAX_LISTED_ADAPTERS)
+        .map(|name| format!("{:?}", sanitised(name, MAX_NAME_BYTES)))
+        .collect();
+    let why = format!(
+        "no adapter is called {:?} ({ADAPTER_NAME_VARIABLE}): there are {}",
+        sanitised(wanted, MAX_NAME_BYTES),
+        listed.join(", ")
+    );
+    GpuError::NoAdapter { reason: why, help: "give a part of one of these names, or unset WGPU_ADAPTER_NAME" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_name_the_cause() {
+        let names = ["llvmpipe (LLVM 15)".to_owned(), "Card\u{1b}[2J".to_owned()];
+        let message = no_adapter_error(&names, "nothing", None).to_string();
+        assert!(message.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME)"), "{message}");
+        assert!(message.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; give"), "{message}");
+        let said = no_adapter_error(&[], "nothing", Some("vulkan")).to_string();
+        assert!(said.contains("no driver offers one (WGPU_BACKEND is \"vulkan\"); install"), "{said}");
+        let said = no_backend_error("gl", wgpu::Backends::VULKAN).to_string();
+        assert!(
+            said.contains("WGPU_BACKEND is \"gl\"") && said.contains("supports only vulkan; unset"),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,338 @@
+//! Eye pass: from density and attenuation volumes to the linear picture.
+
+use super::light_lookup::{
+    AmbientVolumes, LightLookup, light_bind_group, scattered_light_uniform, sky_uniform,
+};
+use crate::light::combined_light::CombinedLight;
+use crate::light::light_uniform::{LightInput, light_uniform};
+use crate::pipelines::binding::{bind_buffer, bind_view};
+use crate::pipelines::pipeline_variant::{
+    GridBoundaries, LightCount, PipelineVariant, ReconstructionVariant, ShaderConstants, ShadingVariant,
+    SkyVariant, deposit_constant, flag, is_cut,
+};
+use crate::pipelines::uniforms;
+use crate::plan::picture_frame;
+use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
+use crate::resources::pass;
+use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
+use crate::volume::{PyramidLevels, VolumeContext};
+use crate::{GpuContext, GpuError, RenderOptions};
+use chiaroscuro_scene::{
+    ClassificationOrder, DepositMode, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm,
+};
+use chiaroscuro_volume::math::{Aabb, SceneSpace};
+
+/// Parameters of the eye pass of one picture, besides the volume.
+#[derive(Debug)]
+pub(crate) struct EyePass {
+    frame: SheetFrame,
+    uniform: uniforms::EyeUniform,
+    /// Reach of a sample's kernel, in cells around its own.
+    dilation: i32,
+    /// Pyramid levels that kernels read.
+    levels: PyramidLevels,
+    variant: EyeVariant,
+}
+
+impl EyePass {
+    /// Prepares the pass for some lights (shadowed ones first, without those that are in the combined volume), and
+    /// for sky visibility and scattered light where there are volumes of them.
+    pub(crate) fn new(
+        scene: &SceneSpace,
+        settings: &Settings,
+        window: PixelWindow,
+        (lights, combined, around): (&[LightInput<'_>], Option<&CombinedLight>, AmbientVolumes<'_>),
+        options: &RenderOptions,
+    ) -> Self {
+        let frame = picture_frame(settings, scene, window);
+        let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
+        let shadowed = lights.iter().filter(|input| input.light.is_shadowed()).count();
+        let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
+        for (slot, input) in packed.iter_mut().zip(lights) {
+            *slot = light_uniform(&input.light.light, input.volume, scene, settings);
+        }
+        let stretch_level = frame.max_stretch_level();
+        let (visible_region, shading_cut) = (settings.cuts.visible_part(), settings.cuts.shadowing_part());
+        let (eye, w) = match settings.camera.projection {
+            Projection::Perspective => (settings.camera.position(), 1.0),
+            Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
+        };
+        let (gradient_pixels, gradient_slabs) = frame.gradient_steps();
+        let uniform = uniforms::EyeUniform {
+            frame: uniforms::SheetFrameUniform::new(&frame),
+            shading: shading_uniform(settings, scene, options),
+            space: uniforms::SpaceUniform::new(scene),
+            eye: eye.as_vec3().extend(w).into(),
+            first_row: 0,
+            end_row: window.size[1],
+            dilation: if options.empty_space_skipping {
+                scatter_reach_bricks(&frame)
+            } else {
+                UNLIMITED_REACH
+            },
+            min_transmittance: options.min_transmittance,
+            gradient_pixels: gradient_pixels as i32,
+            gradient_slabs: gradient_slabs as i32,
+            runs: 1,
+            voxel_edge: scene.smallest_edge() as f32,
+            combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
+            pad0: 0.0,
+            visible_cut: uniforms::CutUniform::new(&visible_region.region(scene)),
+            face_cut: uniforms::CutUniform::new(
+                &visible_region.region(scene).intersection(&Aabb::of_grid(scene.dims, 0.0)),
+            ),
+            shading_cut: uniforms::CutUniform::new(&shading_cut.region(scene)),
+            sky: sky_uniform(settings, scene, around.sky),
+            scattered_light: scattered_light_uniform(settings, scene, around.bounces),
+            lights: packed,
+        };
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
+        if direct {
+            seen = seen.max(ray_reach(&settings.shadows, scene));
+        }
+        let dilation = if options.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
+        // Normals of classified voxels come from the next pyramid level.
+        let is_classified = settings.sampling.classification == ClassificationOrder::Pre;
+        let levels = PyramidLevels::for_stretch(stretch_level > 0.0 || is_classified);
+        let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
+        let variant =
+            EyeVariant::from_settings(settings, count, stretch_level > 0.0).with_combined(combined.is_some());
+        Self { frame, uniform, dilation, levels, variant }
+    }
+
+    /// Returns the number of slabs in the stack.
+    pub(crate) fn slab_count(&self) -> u32 {
+        self.frame.slab_count
+    }
+
+    /// Returns the geometry of the eye's rays and slabs.
+    pub(crate) fn frame(&self) -> &SheetFrame {
+        &self.frame
+    }
+
+    /// Creates the uniform buffer of the whole picture, for the scattering engine; `gradient_slabs` is the distance,
+    /// in slabs, of the sheets that gradients are taken from.
+    pub(crate) fn uniform_buffer(&self, context: &GpuContext, gradient_slabs: u32) -> wgpu::Buffer {
+        let uniform = uniforms::EyeUniform { gradient_slabs: gradient_slabs as i32, ..self.uniform };
+        context.buffer("Eye::uniform", &[uniform], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// Returns the uniform of eye and lights.
+    pub(crate) fn uniform(&self) -> uniforms::EyeUniform {
+        self.uniform
+    }
+
+    /// Returns the shading part of the pipeline variant, for passes that only shade.
+    pub(crate) fn shading_variant(&self) -> ShadingVariant {
+        self.variant.shading
+    }
+
+    /// Returns the sampling part of the pipeline variant, for the scattering engine; `has_gradients` tells if there
+    /// is a gradient texture.
+    pub(crate) fn sampling_variant(&self, has_gradients: bool) -> SamplingVariant {
+        SamplingVariant { has_gradient_texture: has_gradients, ..self.variant.sampling }
+    }
+
+    /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
+    /// volumes have none.
+    pub(crate) fn gradients<'a>(&self, gpu: VolumeContext<'a>) -> Option<&'a wgpu::TextureView> {
+        if self.variant.shading.classification == ClassificationOrder::Pre {
+            return None;
+        }
+        gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
+    }
+
+    /// Returns true if pixels are wider than voxels somewhere in the view.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.variant.is_stretched
+    }
+
+    /// Returns the pyramid levels that kernels read.
+    pub(crate) fn levels(&self) -> PyramidLevels {
+        self.levels
+    }
+
+    /// Draws some rows of the picture.
+    pub(crate) fn draw(
+        &self,
+        gpu: VolumeContext<'_>,
+        tables: &TransferTables,
+        looked_up: LightLookup<'_>,
+        picture: &wgpu::TextureView,
+        rows: std::ops::Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let VolumeContext { context, shaders, .. } = gpu;
+        let gradients = self.gradients(gpu);
+        let ends = tables.boundaries(gpu.volume, self.dilation, self.frame.max_stretch_level());
+        let variant = self.variant.with_gradients(gradients.is_some()).with_boundaries(ends);
+        let pipeline = shaders.pipeline(&variant)?;
+        let tiles = pass::tile_workgroups([self.frame.size[0], rows.end - rows.start]);
+        let runs = pass::interleaved_runs(context, tiles);
+        let uniform = uniforms::EyeUniform { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
+        let uniform = gpu.uniform("Eye::uniform", uniform);
+        let own = gpu.bind(
+            "Eye::bind_group",
+            &pipeline,
+            0,
+            &[
+                bind_buffer("bound_eye", &uniform),
+                bind_buffer("table", tables.eye.lookup_buffer()),
+                bind_view("distances", &tables.eye_distances),
+                bind_view("picture", picture),
+                bind_buffer("lighting_table", tables.lighting.lookup_buffer()),
+                bind_view("light_distances", &tables.light_distances),
+                bind_view("gradients", gradients.unwrap_or(gpu.placeholder)),
+            ],
+        );
+        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels, tables.pyramids(gpu.volume));
+        let of_lights = light_bind_group(gpu, &pipeline, looked_up);
+        pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
+        Ok(())
+    }
+}
+
+/// Pipeline variant of the eye pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct EyeVariant {
+    reconstruction: ReconstructionVariant,
+    /// `true` if pixels are wider than voxels somewhere.
+    is_stretched: bool,
+    sampling: SamplingVariant,
+    /// `true` if slabs are subdivided by need.
+    has_adaptive_slabs: bool,
+    /// `true` if opacity is integrated between the densities at both ends of each step.
+    has_preintegrated_slabs: bool,
+    /// `true` if normals are gradients of the kernel itself.
+    has_kernel_gradients: bool,
+    shading: ShadingVariant,
+    /// Deposit rule of the rays that samples cast to lights; `None` if light volumes are looked up.
+    ray_deposit: Option<DepositMode>,
+}
+
+/// Sources of the normals and of the near-field light at samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct SamplingVariant {
+    /// `true` if normals come from neighbouring sheets.
+    has_sheet_gradients: bool,
+    /// `true` if normals come from the gradient texture.
+    has_gradient_texture: bool,
+    /// Number of steps of near-field rays; 0 without a near field.
+    near_steps: u32,
+}
+
+impl SamplingVariant {
+    /// Returns the values of its override constants and conditions.
+    pub(crate) fn constants(self) -> ShaderConstants {
+        vec![
+            flag("SHEET_GRADIENTS", self.has_sheet_gradients),
+            flag("GRADIENT_TEXTURE", self.has_gradient_texture),
+            ("NEAR_STEPS", f64::from(self.near_steps)),
+        ]
+    }
+}
+
+impl EyeVariant {
+    /// Creates the variant for this number of lights, without the gradient texture; `is_stretched` tells if pixels
+    /// are wider than voxels somewhere.
+    pub(crate) fn from_settings(settings: &Settings, lights: LightCount, is_stretched: bool) -> Self {
+        let Settings { sampling, shadows, cuts, shading, .. } = settings;
+        let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
+        let near_steps = if lights.shadowed > 0 { settings.effective_near_field().step_count() } else { 0 };
+        Self {
+            reconstruction: ReconstructionVariant::new(settings.eye_kernel(), sampling.quadrature),
+            is_stretched,
+            sampling: SamplingVariant {
+                has_sheet_gradients: settings.has_sheet_gradients(),
+                has_gradient_texture: false,
+                near_steps,
+            },
+            has_kernel_gradients: settings.has_kernel_gradients(),
+            has_adaptive_slabs: settings.has_adaptive_slabs(),
+            has_preintegrated_slabs: settings.has_preintegrated_slabs(),
+            shading: ShadingVariant {
+                lights,
+                is_combined: false,
+                // Rays to lights are part of the eye pass, so the cut of the shading applies here, too.
+                is_cut: is_cut(cuts.visible_part())
+                    || (casts_rays || near_steps > 0) && is_cut(cuts.shadowing_part()),
+                sides: shading.sides,
+                classification: sampling.classification,
+                sky: SkyVariant::from_settings(settings),
+                has_scattered_light: settings.has_bounces(),
+                is_anisotropic: settings.scattering.anisotropy != 0.0,
+                has_colored_shadows: settings.has_colored_shadows(),
+            },
+            ray_deposit: casts_rays.then_some(shadows.deposit),
+        }
+    }
+
+    /// Sets if the shadowed lights are in one combined volume.
+    pub(crate) fn with_combined(mut self, is_combined: bool) -> Self {
+        self.shading.is_combined = is_combined;
+        self
+    }
+
+    /// Sets the grid boundaries that samples may meet.
+    pub(crate) fn with_boundaries(mut self, ends: GridBoundaries) -> Self {
+        self.reconstruction = self.reconstruction.with_boundaries(ends);
+        self
+    }
+
+    /// Sets if normals come from the gradient texture.
+    pub(crate) fn with_gradients(mut self, has_gradients: bool) -> Self {
+        self.sampling.has_gradient_texture = has_gradients;
+        self
+    }
+}
+
+impl PipelineVariant for EyeVariant {
+    fn shader(&self) -> &'static str {
+        "eye/gather.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        let mut constants = self.reconstruction.constants();
+        constants.extend(self.shading.constants());
+        constants.extend([
+            flag("STRETCH", self.is_stretched),
+            flag("BY_NEED", self.has_adaptive_slabs),
+            flag("PREINTEGRATED", self.has_preintegrated_slabs),
+            flag("KERNEL_GRADIENTS", self.has_kernel_gradients),
+            flag("DIRECT", self.ray_deposit.is_some()),
+        ]);
+        constants.extend(self.sampling.constants());
+        if let Some(deposit) = self.ray_deposit {
+            constants.push(deposit_constant(deposit));
+        }
+        constants
+    }
+}
+
+/// Builds the uniform of the shading and shadow parameters.
+pub(crate) fn shading_uniform(
+    settings: &Settings,
+    scene: &SceneSpace,
+    options: &RenderOptions,
+) -> uniforms::ShadingUniform {
+    let (shading, shadows) = (&settings.shading, &settings.shadows);
+    let unit = settings.opacity_unit.scene_units(scene).max(1e-9);
+    uniforms::ShadingUniform {
+        emission: shading.emission as f32,
+        ambient: settings.flat_ambient() as f32,
+        diffuse: shading.diffuse as f32,
+        specular: shading.specular as f32,
+        shininess: shading.shininess as f32,
+        surface_gradient: (shading.surface_gradient / unit) as f32,
+        strength: shadows.strength as f32,
+        ambient_offset: shadows.ambient_offset as f32,
+        gain: shadows.gain as f32,
+        bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
+        ray_step: shadows.ray_step(scene) as f32,
+        max_optical_depth: options.max_optical_depth(),
+        anisotropy: settings.scattering.anisotropy as f32,
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
+    }
+}

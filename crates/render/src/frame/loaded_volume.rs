@@ -1,0 +1,188 @@
+//! Loaded volume with all GPU products that are made from it.
+
+use std::sync::Arc;
+
+use crate::light::combined_light::CombinedLight;
+use crate::light::light_volume::LightVolume;
+use crate::plan::{BouncesKey, CombinedKey, FrameKeys, LightKey, RenderRequest, SkyKey, TablesKey};
+use crate::resources::cache_entry::CacheEntry;
+use crate::scatter::voxels::ScatterVoxels;
+use crate::scattered_light::volume::ScatteredLightVolume;
+use crate::sky::volume::SkyVolume;
+use crate::volume::GpuVolume;
+use crate::volume::preclassified::PreclassifiedVoxels;
+use crate::volume::presence::PresenceTexture;
+use crate::volume::transfer_tables::TransferTables;
+use crate::{GpuContext, GpuError, RenderOptions};
+use chiaroscuro_scene::{ClassificationOrder, Settings, SheetOrder};
+use chiaroscuro_volume::Dataset;
+
+/// Inputs for finding or creating the products of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ProductRequest<'a> {
+    pub context: &'a GpuContext,
+    pub request: &'a RenderRequest,
+    pub options: &'a RenderOptions,
+    pub keys: &'a FrameKeys,
+    /// Number of the picture, stored as the last use of cached volumes.
+    pub picture_number: u64,
+}
+
+/// Volume on the GPU, with the products that depend on it.
+#[derive(Debug)]
+pub(crate) struct LoadedVolume {
+    /// Density, pyramid and gradients.
+    pub volume: GpuVolume,
+    /// Dataset that was uploaded: voxels, and the values at densities 0 and 1.
+    pub dataset: Dataset,
+    /// Tables of both transfer functions, with the cells where they are visible.
+    pub tables: CacheEntry<TablesKey, TransferTables>,
+    /// Pre-classified voxels, if a picture has asked for them.
+    materials: Vec<Arc<PreclassifiedVoxels>>,
+    /// Attenuation volumes, most recently used first.
+    pub lights: Vec<CacheEntry<LightKey, LightVolume>>,
+    /// Diffuse light of all shadowed lights in one volume.
+    pub combined: Option<CacheEntry<CombinedKey, CombinedLight>>,
+    /// Cached volumes of sky visibility.
+    pub skies: Vec<CacheEntry<SkyKey, SkyVolume>>,
+    /// Cached volumes of scattered light.
+    pub bounces: Vec<CacheEntry<BouncesKey, ScatteredLightVolume>>,
+    /// Lists of voxels for the scattering engine, if a picture has asked for them.
+    pub scatter_voxels: Option<Arc<ScatterVoxels>>,
+}
+
+impl LoadedVolume {
+    /// Allocates a volume and its tables. Nothing is uploaded yet, except a `presence` texture that is passed in.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold them.
+    pub(crate) fn new(
+        context: &GpuContext,
+        dataset: &Dataset,
+        settings: &Settings,
+        tables_key: &TablesKey,
+        presence: Option<PresenceTexture>,
+    ) -> Result<Self, GpuError> {
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
+        let (tables, _) = TransferTables::new(context, &volume, settings, tables_key, None)?;
+        let tables = CacheEntry::complete(tables_key.clone(), tables);
+        let dataset = dataset.clone();
+        let materials = Vec::new();
+        Ok(Self {
+            volume,
+            dataset,
+            tables,
+            materials,
+            lights: Vec::new(),
+            combined: None,
+            skies: Vec::new(),
+            bounces: Vec::new(),
+            scatter_voxels: None,
+        })
+    }
+
+    /// Returns true if the dataset has the voxel type of the loaded one; equal numbers of another type have another
+    /// texture format.
+    pub(crate) fn has_voxel_type_of(&self, dataset: &Dataset) -> bool {
+        let voxel_type = |dataset: &Dataset| dataset.volume().samples().voxel_type();
+        voxel_type(&self.dataset) == voxel_type(dataset)
+    }
+
+    /// Updates the tables to a key. Returns the number of tables baked.
+    ///
+    /// # Errors
+    /// Returns an error if memory is exhausted.
+    pub(crate) fn refresh_tables(
+        &mut self,
+        context: &GpuContext,
+        settings: &Settings,
+        key: &TablesKey,
+    ) -> Result<u32, GpuError> {
+        if self.tables.is_valid_for(key) {
+            return Ok(0);
+        }
+        let known = Some((self.tables.key(), &self.tables.product));
+        let (fresh, baked) = TransferTables::new(context, &self.volume, settings, key, known)?;
+        self.tables = CacheEntry::complete(key.clone(), fresh);
+        Ok(baked)
+    }
+
+    /// Assigns pre-classified voxels to the tables if the settings classify before reconstruction; new ones have yet
+    /// to be filled.
+    ///
+    /// # Errors
+    /// Returns an error if memory is exhausted.
+    pub(crate) fn refresh_materials(
+        &mut self,
+        context: &GpuContext,
+        settings: &Settings,
+    ) -> Result<(), GpuError> {
+        let tables = &mut self.tables.product;
+        tables.set_materials(None, None);
+        if settings.sampling.classification == ClassificationOrder::Post {
+            return Ok(());
+        }
+        let baked = [&tables.eye, &tables.lighting].map(|table| Arc::clone(table.baked()));
+        // Pre-classified voxels of earlier tables are reused for their textures.
+        let (needed, mut reusable): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
+            .into_iter()
+            .partition(|known| baked.iter().any(|baked| known.matches(baked)));
+        self.materials = needed;
+        let mut found = [None, None];
+        for (baked, found) in baked.iter().zip(&mut found) {
+            let known = self.materials.iter().find(|known| known.matches(baked));
+            let materials = if let Some(known) = known {
+                Arc::clone(known)
+            } else {
+                let left = reusable.pop().and_then(Arc::into_inner);
+                let fresh = Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, left)?);
+                self.materials.push(Arc::clone(&fresh));
+                fresh
+            };
+            *found = Some(materials);
+        }
+        let [eye, lighting] = found;
+        tables.set_materials(eye, lighting);
+        Ok(())
+    }
+
+    /// Returns the voxels that the scattering engine splats.
+    ///
+    /// # Errors
+    /// Returns an error if they exceed the adapter's largest buffer.
+    pub(crate) fn scatter_voxels_for(
+        &mut self,
+        context: &GpuContext,
+        settings: &Settings,
+    ) -> Result<Arc<ScatterVoxels>, GpuError> {
+        // Sheets of summed densities are 0 where no voxel is splatted; voxels splatted one by one are needed even at
+        // the lowest density, if that is visible.
+        let by_voxel = settings.sampling.classification == ClassificationOrder::Pre
+            || settings.sampling.order == SheetOrder::EveryFootprint;
+        let all = by_voxel && self.tables.product.has_extinction_at_zero();
+        if let Some(known) = self.scatter_voxels.as_ref().filter(|known| known.has_empty_bricks || !all) {
+            return Ok(Arc::clone(known));
+        }
+        let fresh = Arc::new(ScatterVoxels::new(context, &self.volume, all)?);
+        self.scatter_voxels = Some(Arc::clone(&fresh));
+        Ok(fresh)
+    }
+
+    /// Returns the size of all attenuation volumes and the combined one, in bytes.
+    pub(crate) fn light_bytes(&self) -> u64 {
+        let combined = self.combined.as_ref().map_or(0, |combined| combined.product.bytes());
+        combined + self.lights.iter().map(|light| light.product.bytes()).sum::<u64>()
+    }
+
+    /// Returns the size of all textures and buffers, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let voxels = self.scatter_voxels.as_ref().map_or(0, |voxels| voxels.bytes());
+        let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();
+        self.volume.bytes()
+            + materials
+            + voxels
+            + self.light_bytes()
+            + self.sky_bytes()
+            + self.bounces_bytes()
+    }
+}

@@ -1,0 +1,87 @@
+//! Pre-compilation of the pipelines for the first pictures and previews: each can take a driver tens of milliseconds,
+//! which would stall the window.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::eye::eye_pass::EyeVariant;
+use crate::eye::floor::FloorVariant;
+use crate::light::backproject::BackprojectVariant;
+use crate::light::march::MarchVariant;
+use crate::output::display::DisplayVariant;
+use crate::pipelines::pipeline_variant::{LightCount, PipelineVariant, SingleVariant};
+use crate::{GpuError, ShaderLibrary};
+use chiaroscuro_scene::{
+    ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SlabMode,
+};
+
+/// Number of lights in a first look.
+const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
+
+/// Kernels and slabs of previews and of pictures.
+const KERNELS_AND_SLABS: [(ReconstructionKernel, SlabMode); 2] = [
+    (ReconstructionKernel::Prefiltered, SlabMode::Preintegrated),
+    (ReconstructionKernel::BSpline, SlabMode::ByNeed),
+];
+
+impl ShaderLibrary {
+    /// Compiles the usual variants of every shader, until `stop` is set. To be called on a separate thread.
+    ///
+    /// # Errors
+    /// Returns an error if the driver rejects a shader.
+    pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
+        for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
+            self.compile_unless_stopped(&SingleVariant(shader), stop)?;
+        }
+        self.compile_unless_stopped(&SingleVariant("light/clear_margin.wgsl"), stop)?;
+        self.compile_unless_stopped(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
+        self.warm_up_passes(&Clipping::default(), stop)
+    }
+
+    fn compile_unless_stopped(
+        &self,
+        variant: &impl PipelineVariant,
+        stop: &AtomicBool,
+    ) -> Result<(), GpuError> {
+        if !stop.load(Ordering::Relaxed) {
+            self.pipeline(variant)?;
+        }
+        Ok(())
+    }
+
+    /// Compiles variants that the user may need later: the floor, and cuts. To be called on a separate thread while
+    /// the program is idle.
+    ///
+    /// # Errors
+    /// Same as [`Self::warm_up`].
+    pub fn warm_up_optional(&self, stop: &AtomicBool) -> Result<(), GpuError> {
+        for (kernel, _) in KERNELS_AND_SLABS {
+            let shadows = ShadowSettings { kernel, ..ShadowSettings::default() };
+            let settings = Settings { shadows, ..Settings::default() };
+            self.compile_unless_stopped(&FloorVariant::from_settings(&settings, FIRST_LIGHTS), stop)?;
+        }
+        let plane = ClipPlane { on: true, ..ClipPlane::default() };
+        self.warm_up_passes(&Clipping { plane, ..Clipping::default() }, stop)
+    }
+
+    /// Compiles the passes of a splatted picture, of the whole volume or with cuts.
+    fn warm_up_passes(&self, cuts: &Clipping, stop: &AtomicBool) -> Result<(), GpuError> {
+        for is_stretched in [false, true] {
+            for (kernel, slabs) in KERNELS_AND_SLABS {
+                let settings = Settings {
+                    sampling: SamplingSettings { kernel, slabs, ..SamplingSettings::default() },
+                    shadows: ShadowSettings { kernel, ..ShadowSettings::default() },
+                    cuts: cuts.clone(),
+                    ..Settings::default()
+                };
+                let eye = EyeVariant::from_settings(&settings, FIRST_LIGHTS, is_stretched);
+                self.compile_unless_stopped(&eye.with_gradients(true), stop)?;
+                self.compile_unless_stopped(
+                    &BackprojectVariant::from_shadows(&self.context, &settings.shadows, is_stretched),
+                    stop,
+                )?;
+                self.compile_unless_stopped(&MarchVariant::from_settings(&settings, is_stretched), stop)?;
+            }
+        }
+        Ok(())
+    }
+}

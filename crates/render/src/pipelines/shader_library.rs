@@ -1,0 +1,252 @@
+//! Shader library: joins embedded sources by `#import "path"` (each file once) and makes pipelines of them.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::binding::{BindingGroup, BindingSlot, ShaderPipeline, ring_format};
+use super::layouts::layouts;
+use super::pipeline_cache::PipelineCache;
+use super::pipeline_variant::PipelineVariant;
+use super::preprocessor::{is_override, preprocess};
+use super::shader_files::SHADERS;
+use crate::context::{COMPILER_ADDRESS_BYTES, check_address_space, pair_format};
+use crate::{GpuContext, GpuError};
+use chiaroscuro_files::{
+    WriteError,
+    fault::{self, InjectedFault},
+};
+
+/// Cache of compute pipelines; joins the sources and compiles each variant once.
+#[derive(Debug, Clone)]
+pub struct ShaderLibrary {
+    pub(crate) context: GpuContext,
+    /// Text replacement in the joined source; see [`Self::with_mutation`].
+    mutation: Option<(String, String)>,
+    pipelines: Arc<Mutex<HashMap<PipelineKey, ShaderPipeline>>>,
+    /// Bind-group layouts, by the address of their slots and the format of targets.
+    groups: Arc<Mutex<HashMap<LayoutKey, BindingGroup>>>,
+    cache: Option<PipelineCache>,
+}
+
+impl ShaderLibrary {
+    /// Creates an empty library for a device.
+    pub fn new(context: &GpuContext) -> Self {
+        Self {
+            context: context.clone(),
+            mutation: None,
+            pipelines: Arc::default(),
+            groups: Arc::default(),
+            cache: None,
+        }
+    }
+
+    /// Creates a library that caches the driver's compiled shaders in a folder, where the backend can.
+    #[must_use]
+    pub fn with_cache(context: &GpuContext, folder: &Path) -> Self {
+        Self { cache: PipelineCache::open(context, folder), ..Self::new(context) }
+    }
+
+    /// Writes the pipeline cache to its file, for the next start.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn save_cache(&self) -> Result<(), WriteError> {
+        self.cache.as_ref().map_or(Ok(()), PipelineCache::save)
+    }
+
+    /// Creates a library that replaces `from` by `to` in every shader that contains it. Tests use it to prove that
+    /// they detect a wrong shader.
+    #[cfg(feature = "testing")]
+    #[must_use]
+    pub fn with_mutation(context: &GpuContext, from: &str, to: &str) -> Self {
+        Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
+    }
+
+    /// Returns a shader with all imports and all its conditional parts, for storage textures of `format` and targets
+    /// of `target`.
+    ///
+    /// # Errors
+    /// Returns an error if a file is missing.
+    pub fn source(
+        name: &str,
+        format: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
+    ) -> Result<String, GpuError> {
+        // Larger than any bound in a condition, so that all parts are included.
+        Self::preprocessed_source(name, format, target, &|_| f64::INFINITY)
+    }
+
+    /// Returns a shader with those conditional parts (`preprocessor.rs`) whose conditions hold; `value` gives the
+    /// number of each name.
+    ///
+    /// # Errors
+    /// Returns an error if a file is missing or a condition is malformed.
+    pub fn preprocessed_source(
+        name: &str,
+        format: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
+        value: &dyn Fn(&str) -> f64,
+    ) -> Result<String, GpuError> {
+        let mut joined = String::new();
+        resolve_imports(name, &mut Vec::new(), &mut joined)?;
+        let joined = preprocess(&joined, value)?;
+        let wgsl = |format| match format {
+            wgpu::TextureFormat::R32Float => "r32float",
+            wgpu::TextureFormat::R8Unorm => "r8unorm",
+            wgpu::TextureFormat::Rgba8Unorm => "rgba8unorm",
+            wgpu::TextureFormat::Rgba16Float => "rgba16float",
+            wgpu::TextureFormat::Rgba32Float => "rgba32float",
+            wgpu::TextureFormat::Rg16Float => "rg16float",
+            wgpu::TextureFormat::Rg32Float => "rg32float",
+            _ => "r16float",
+        };
+        Ok(joined
+            .replace("STORAGE_FORMAT", wgsl(format))
+            .replace("PAIR_FORMAT", wgsl(pair_format(format)))
+            .replace("TARGET_FORMAT", wgsl(target))
+            .replace("RING_FORMAT", wgsl(ring_format(format))))
+    }
+
+    /// Returns the pipeline of a variant, compiled on first use.
+    ///
+    /// # Errors
+    /// Returns an error if the driver rejects the shader.
+    pub(crate) fn pipeline(&self, variant: &impl PipelineVariant) -> Result<ShaderPipeline, GpuError> {
+        self.pipeline_into(variant, self.context.storage_format)
+    }
+
+    /// Returns the pipeline of a variant that writes into textures of the format `target`.
+    ///
+    /// # Errors
+    /// Same as [`Self::pipeline`].
+    pub(crate) fn pipeline_into(
+        &self,
+        variant: &impl PipelineVariant,
+        target: wgpu::TextureFormat,
+    ) -> Result<ShaderPipeline, GpuError> {
+        let (shader, constants) = (variant.shader(), variant.constants());
+        let key = PipelineKey::new(shader, &constants, target);
+        let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = pipelines().get(&key) {
+            return Ok(pipeline.clone());
+        }
+        // The lock is released while compiling: the window must not wait for variants that another thread makes.
+        let pipeline = self.compile(shader, &constants, target)?;
+        pipelines().insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// Returns the number of pipelines made so far.
+    pub fn pipeline_count(&self) -> usize {
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
+    }
+
+    /// Returns the bind groups of a shader; equal ones share one layout.
+    fn bind_groups(
+        &self,
+        shader: &str,
+        target: wgpu::TextureFormat,
+    ) -> Result<Arc<[BindingGroup]>, GpuError> {
+        let declared = layouts().find(|(known, _)| *known == shader);
+        let (_, groups) =
+            declared.ok_or_else(|| GpuError::Rejected(format!("there is no layout for {shader}")))?;
+        let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
+        let group = |slots: &&'static [BindingSlot]| {
+            let fresh = || BindingGroup::new(&self.context, slots, target);
+            known.entry((slots, target)).or_insert_with(fresh).clone()
+        };
+        Ok(groups.iter().map(group).collect())
+    }
+
+    fn compile(
+        &self,
+        shader: &'static str,
+        constants: &[(&'static str, f64)],
+        target: wgpu::TextureFormat,
+    ) -> Result<ShaderPipeline, GpuError> {
+        // Mesa's compiler does not check its allocations and crashes the process when one fails.
+        if self.context.is_software() {
+            check_address_space(&format!("the pipeline of {shader}"), COMPILER_ADDRESS_BYTES)?;
+        }
+        let value = |wanted: &str| {
+            constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
+        };
+        let mut source = Self::preprocessed_source(shader, self.context.storage_format, target, &value)?;
+        let overrides: Vec<_> = constants.iter().filter(|(name, _)| is_override(name)).copied().collect();
+        if let Some((from, to)) = &self.mutation {
+            source = source.replace(from, to);
+        }
+        if fault::is_on(InjectedFault::Shader) {
+            source.push_str("a fault was injected");
+        }
+        let groups = self.bind_groups(shader, target)?;
+        let device = &self.context.device;
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(shader),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let layouts: Vec<_> = groups.iter().map(|group| Some(&group.layout)).collect();
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(shader),
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
+        let raw = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(&format!("{shader} {constants:?} {target:?}")),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &overrides,
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: self.cache.as_ref().map(|known| &known.cache),
+        });
+        match pollster::block_on(scope.pop()) {
+            Some(err) => Err(GpuError::Rejected(format!("{shader}: {err}"))),
+            None => Ok(ShaderPipeline { raw, groups }),
+        }
+    }
+}
+
+/// Key of a bind-group layout: address of the declared slots, and format of targets.
+type LayoutKey = (&'static [BindingSlot], wgpu::TextureFormat);
+
+/// Key of a pipeline: shader, constants in a canonical order, and format of the targets that it writes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct PipelineKey {
+    shader: &'static str,
+    /// Names and the bits of their values, sorted by name.
+    constants: Vec<(&'static str, u64)>,
+    target: wgpu::TextureFormat,
+}
+
+impl PipelineKey {
+    fn new(shader: &'static str, constants: &[(&'static str, f64)], target: wgpu::TextureFormat) -> Self {
+        let mut constants: Vec<_> = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
+        constants.sort_unstable();
+        Self { shader, constants, target }
+    }
+}
+
+fn resolve_imports(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), GpuError> {
+    if seen.iter().any(|known| known == name) {
+        return Ok(());
+    }
+    seen.push(name.to_owned());
+    let (_, text) = SHADERS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .ok_or_else(|| GpuError::Rejected(format!("there is no shader file {name}")))?;
+    for line in text.lines() {
+        if let Some(import) = line.strip_prefix("#import \"").and_then(|rest| rest.strip_suffix('"')) {
+            resolve_imports(import, seen, joined)?;
+        } else {
+            joined.push_str(line);
+            joined.push('\n');
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,37 @@
+//! Key of the displayed picture, apart from its linear light.
+
+use crate::plan::{PixelWindow, RenderOptions, RenderRequest};
+use chiaroscuro_scene::{OutputSettings, PixelFormat};
+
+/// Inputs of the conversion from linear light to the displayed picture: nothing else depends on them, so that a
+/// change costs only one display pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplayKey {
+    output: OutputSettings,
+    transparent: bool,
+    exposure: f32,
+    /// Displayed part; background gradients span the whole picture.
+    shown: PixelWindow,
+    samples: u32,
+    depth: PixelFormat,
+}
+
+impl DisplayKey {
+    /// Creates the key of the displayed picture of a request.
+    pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
+        Self {
+            output: request.settings.output.clone(),
+            transparent: options.transparent,
+            exposure: options.exposure,
+            shown: options.displayed_window(request),
+            samples: options.samples,
+            depth: options.depth,
+        }
+    }
+
+    /// Returns the key with another exposure.
+    #[must_use]
+    pub fn with_exposure(self, exposure: f32) -> Self {
+        Self { exposure, ..self }
+    }
+}

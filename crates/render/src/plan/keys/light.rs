@@ -1,0 +1,184 @@
+//! Key of a light's attenuation volume.
+
+use super::table::{OpacityKey, TransmissionKey};
+use crate::plan::{RenderRequest, VolumeKey};
+use chiaroscuro_scene::{
+    AreaLightSampling, ClassificationOrder, ClippedPart, DepositMode, LightArea, LightGeometry,
+    LightVolumePrecision, LightVolumeResolution, ReconstructionKernel, RenderEngine, ReverseKernel,
+    SamplingSettings, SceneLight, Settings, ShadowAlgorithm, ShadowSettings, SlabQuadrature, Spotlight,
+};
+
+/// Inputs of the attenuation volume of one light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightKey {
+    volume: VolumeKey,
+    kind: LightGeometry,
+    /// Position, or for a parallel light the direction, so that moving it outwards changes nothing.
+    position_or_direction: [f64; 3],
+    /// Angles of the hood in degrees, if there is one.
+    hood_deg: Option<[f64; 2]>,
+    density_scale: f64,
+    /// Area of the light, and the number of points on it; `None` for a point light.
+    area: Option<(LightArea, u32)>,
+    algorithm: ShadowAlgorithm,
+    classification: ClassificationOrder,
+    engine: RenderEngine,
+    opacity: OpacityKey,
+    transmission: Option<TransmissionKey>,
+    first_touch: bool,
+    deposit: DepositMode,
+    kernel: ReconstructionKernel,
+    /// Reverse kernel, which only the gathering engine has.
+    reverse_kernel: ReverseKernel,
+    slab: f64,
+    quadrature: SlabQuadrature,
+    resolution: LightVolumeResolution,
+    precision: LightVolumePrecision,
+    shading_cut: ClippedPart,
+}
+
+/// Maximum number of points on an area light in previews.
+const PREVIEW_SAMPLES: u32 = 16;
+
+impl LightKey {
+    /// Returns the key of this light's volume for a preview, at a resolution that is no finer.
+    #[must_use]
+    pub fn for_preview(&self, resolution: LightVolumeResolution) -> Self {
+        let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
+        Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
+    }
+
+    /// Returns the number of point lights that represent the light.
+    pub fn samples(&self) -> u32 {
+        self.area.map_or(1, |(_, samples)| samples)
+    }
+
+    /// Returns true if there is a transmittance for each colour channel.
+    pub fn has_colors(&self) -> bool {
+        self.transmission.is_some()
+    }
+
+    /// Returns the resolution of the light volume.
+    pub fn resolution(&self) -> LightVolumeResolution {
+        self.resolution
+    }
+
+    /// Returns the storage format of transmittances.
+    pub fn precision(&self) -> LightVolumePrecision {
+        self.precision
+    }
+
+    /// Creates the key of light `index` of a request; `None` if it needs no attenuation volume.
+    pub fn new(request: &RenderRequest, index: usize) -> Option<Self> {
+        let Settings {
+            schema: _,
+            camera,
+            lights,
+            // Part of the volume's key.
+            range: _,
+            // Parts of the keys of the volume and of opacities.
+            labels: _,
+            // Parts of the key of opacities.
+            transfer: _,
+            lighting: _,
+            opacity_unit: _,
+            shading: _,
+            shadows,
+            sky: _,
+            scattering: _,
+            cuts,
+            floor: _,
+            sampling:
+                SamplingSettings {
+                    kernel: _,
+                    slab: _,
+                    slabs: _,
+                    quadrature: _,
+                    gradients: _,
+                    classification: _,
+                    engine,
+                    order: _,
+                },
+            output: _,
+            kept: _,
+            // Part of the identity of the corrected volume.
+            volume: _,
+        } = &request.settings;
+        let light = lights.get(index)?.resolve(camera);
+        let SceneLight {
+            kind,
+            position,
+            color: _,
+            intensity: _,
+            on: _,
+            casts_shadows: _,
+            hood: Spotlight { on: hooded, half_angle_deg, rim_deg },
+            density_scale,
+            area,
+        } = &light;
+        let hooded = *hooded && *kind == LightGeometry::Perspective;
+        let ShadowSettings {
+            algorithm,
+            // Part of the resolution of soft light.
+            least_blocks: _,
+            strength: _,
+            ambient_offset: _,
+            gain: _,
+            bias_voxels: _,
+            balance: _,
+            transmission: _,
+            keep_balanced: _,
+            first_touch,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution: _,
+            precision,
+            storage: _,
+            reverse_kernel,
+            // Applied where light is looked up.
+            near_field: _,
+            area: AreaLightSampling { samples, resolution: _ },
+        } = shadows;
+        let wanted = algorithm.has_volume() && light.needs_volume();
+        wanted.then(|| Self {
+            volume: request.volume_key(),
+            kind: *kind,
+            position_or_direction: match kind {
+                LightGeometry::Parallel => light.direction().into(),
+                LightGeometry::Perspective => *position,
+            },
+            hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
+            density_scale: *density_scale,
+            area: area.map(|area| (area, *samples)),
+            algorithm: *algorithm,
+            classification: request.settings.classification(),
+            // Rays need no sheets.
+            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { RenderEngine::Gather },
+            opacity: OpacityKey::new(&request.settings),
+            transmission: TransmissionKey::new(&request.settings),
+            first_touch: *first_touch,
+            deposit: *deposit,
+            kernel: *kernel,
+            reverse_kernel: if *algorithm == ShadowAlgorithm::Splat
+                && *engine == RenderEngine::Gather
+                && !*first_touch
+            {
+                *reverse_kernel
+            } else {
+                ReverseKernel::Forward
+            },
+            slab: *slab,
+            quadrature: *quadrature,
+            // A combined volume has one resolution for all lights.
+            resolution: if request.settings.combines_lights() {
+                shadows.resolution
+            } else {
+                light.volume_resolution(shadows, request.volume.dims)
+            },
+            precision: *precision,
+            shading_cut: cuts.shadowing_part(),
+        })
+    }
+}

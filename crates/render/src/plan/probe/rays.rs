@@ -1,0 +1,249 @@
+//! Single rays through a volume on the CPU: first visible position, attenuation of light, surface normals.
+
+use glam::DVec3;
+
+use chiaroscuro_scene::BakedTransfer;
+use chiaroscuro_volume::{
+    MissingVoxels, Volume,
+    math::{Aabb, ClipRegion, SceneSpace},
+};
+
+/// Share of the ray's total opacity at which a position counts as visible: half.
+const VISIBLE_SHARE: f64 = 0.5;
+
+/// Opacity of a ray below which nothing is visible.
+const MIN_OPACITY: f64 = 0.03;
+
+/// Optical depth below which a light is hardly attenuated: a tenth.
+const MIN_BLOCKING_DEPTH: f64 = 0.1;
+
+/// Share of the loss that is excluded at either end of its range: the visible surface causes some, too.
+const EXCLUDED_LOSS: f64 = 0.25;
+
+/// Step of a ray, in edges of the smallest voxel.
+const STEP_EDGES: f64 = 0.5;
+
+/// Segment from a point towards a light.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LightSegment {
+    /// Start of the segment, in scene space.
+    pub(super) point: DVec3,
+    /// Unit vector towards the light.
+    pub(super) towards: DVec3,
+    /// Distance to the light in scene units; may be infinite.
+    pub(super) distance: f64,
+}
+
+/// Volume and scene for tracing single rays.
+pub(super) struct VolumeRays<'a> {
+    pub(super) volume: &'a Volume,
+    pub(super) scene: SceneSpace,
+    /// True if voxels are classified before interpolation.
+    pub(super) is_by_label: bool,
+}
+
+impl VolumeRays<'_> {
+    /// Returns the box of voxel centres, in index space: there is nothing outside.
+    fn grid(&self) -> Aabb {
+        Aabb::of_grid(self.volume.dims(), 0.0)
+    }
+
+    fn step(&self) -> f64 {
+        STEP_EDGES * self.scene.smallest_edge()
+    }
+
+    /// Returns the distances at which a ray enters and leaves the uncut part of the grid, not before its origin.
+    fn span(&self, remains: &ClipRegion, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+        let origin = self.scene.index_from_scene.transform_point3(origin);
+        let direction = self.scene.index_from_scene.transform_vector3(direction);
+        let (enter, leave) = remains.intersection(&self.grid()).ray_interval(origin, direction);
+        let enter = enter.max(0.0);
+        (enter < leave).then_some((enter, leave))
+    }
+
+    /// Returns the position at which a ray has reached half of its total opacity.
+    pub(super) fn first_visible(
+        &self,
+        table: &BakedTransfer,
+        seen: &ClipRegion,
+        origin: DVec3,
+        direction: DVec3,
+    ) -> Option<DVec3> {
+        let (enter, leave) = self.span(seen, origin, direction)?;
+        let step = self.step();
+        let mut accumulated = Vec::new();
+        let mut transmittance = 1.0;
+        let mut at = enter + 0.5 * step;
+        while at < leave && transmittance > 0.01 {
+            let tau = self.extinction(table, origin + direction * at) * step;
+            transmittance *= (-tau).exp();
+            accumulated.push((at, 1.0 - transmittance));
+            at += step;
+        }
+        let all = 1.0 - transmittance;
+        if all < MIN_OPACITY {
+            return None;
+        }
+        let (at, _) = accumulated.into_iter().find(|&(_, opacity)| opacity >= VISIBLE_SHARE * all)?;
+        Some(origin + direction * at)
+    }
+
+    /// Iterates over the steps of a ray towards a light, as distance and optical depth. It starts one step away from
+    /// the point, so that a surface does not shade itself.
+    fn steps(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> impl Iterator<Item = (f64, f64)> {
+        let LightSegment { point, towards, distance } = way;
+        let step = self.step();
+        // A ray that misses the grid has no steps.
+        let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
+        let first = (enter / step).ceil().max(1.0) as usize;
+        let last = (leave.min(distance) / step).floor().max(1.0) as usize;
+        (first..last).map(move |k| {
+            let at = (k as f64 + 0.5) * step;
+            (at, self.extinction(table, point + towards * at) * step)
+        })
+    }
+
+    /// Returns ∫ extinction towards a light, from one step away from a point.
+    pub(super) fn optical_depth(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> f64 {
+        self.steps(table, remains, way).map(|(_, depth)| depth).sum()
+    }
+
+    /// Returns the range of distances from a point towards a light that contains all of the loss except a quarter at
+    /// either end; `None` if hardly anything is lost.
+    pub(super) fn blocked_range(
+        &self,
+        table: &BakedTransfer,
+        remains: &ClipRegion,
+        way: LightSegment,
+    ) -> Option<[f64; 2]> {
+        let mut sum = 0.0;
+        let met: Vec<(f64, f64)> = self
+            .steps(table, remains, way)
+            .map(|(at, depth)| {
+                sum += depth;
+                (at, sum)
+            })
+            .collect();
+        let reaches = |share: f64| met.iter().find(|(_, met)| *met >= share * sum).map(|(at, _)| *at);
+        (sum >= MIN_BLOCKING_DEPTH)
+            .then(|| Some([reaches(EXCLUDED_LOSS)?, reaches(1.0 - EXCLUDED_LOSS)?]))
+            .flatten()
+    }
+
+    fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
+        let index = self.scene.index_from_scene.transform_point3(point);
+        if self.is_by_label {
+            let (extinction, presence) = self.interpolate(index, |value| self.voxel_extinction(table, value));
+            return extinction * presence;
+        }
+        let (density, there) = self.field(index, table);
+        table.sample(density)[3] * there
+    }
+
+    /// Returns the extinction of a voxel with the given value.
+    fn voxel_extinction(&self, table: &BakedTransfer, value: f64) -> f64 {
+        table.sample(self.volume.density_of(value))[3]
+    }
+
+    /// Returns the field in which surfaces are found, and the presence: the density, interpolated linearly, clamped
+    /// at the border, and 0 where no voxel nearby is present. For labels, 1 in material and 0 outside is interpolated
+    /// instead.
+    pub(super) fn field(&self, index: DVec3, table: &BakedTransfer) -> (f64, f64) {
+        self.interpolate(index, |value| {
+            if self.is_by_label {
+                f64::from(u8::from(self.voxel_extinction(table, value) > 0.0))
+            } else {
+                self.volume.density_of(value)
+            }
+        })
+    }
+
+    /// Returns the value, interpolated linearly between voxels; for labels, the most visible one nearby, or any that
+    /// is present.
+    pub(super) fn value(&self, index: DVec3, table: &BakedTransfer) -> f64 {
+        if !self.is_by_label {
+            return self.interpolate(index, |value| value).0;
+        }
+        let dims = self.volume.dims();
+        // An invisible voxel counts only if all around it are invisible, too.
+        let seen = |value: f64| self.voxel_extinction(table, value).max(1e-12);
+        let mut parts: Vec<(f64, f64)> = Vec::new();
+        for (voxel, weight) in self.nearest_voxels(index) {
+            let [x, y, z] = voxel;
+            let value = self.volume.value(x, y, z);
+            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
+                continue;
+            }
+            match parts.iter_mut().find(|(known, _)| *known == value) {
+                Some((_, sum)) => *sum += weight * seen(value),
+                None => parts.push((value, weight * seen(value))),
+            }
+        }
+        parts.into_iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0.0, |(value, _)| value)
+    }
+
+    fn is_missing(&self, voxel: usize) -> bool {
+        self.volume.missing().is_some_and(|missing: &MissingVoxels| missing.contains(voxel))
+    }
+
+    /// Iterates over the eight voxels around a point, with their linear weights.
+    fn nearest_voxels(&self, index: DVec3) -> impl Iterator<Item = ([usize; 3], f64)> {
+        let dims = self.volume.dims();
+        let last = DVec3::from(dims.map(|n| (n - 1) as f64));
+        let at = index.clamp(DVec3::ZERO, last);
+        let low = at.floor();
+        let f = at - low;
+        (0..8usize).map(move |side| {
+            let is_high = |axis: usize| side >> axis & 1 == 1;
+            let voxel =
+                [0, 1, 2].map(|axis| (low[axis] as usize + usize::from(is_high(axis))).min(dims[axis] - 1));
+            let weight = (0..3).map(|axis| if is_high(axis) { f[axis] } else { 1.0 - f[axis] }).product();
+            (voxel, weight)
+        })
+    }
+
+    /// Returns the weighted mean of `of` over the present voxels around a point, and the sum of their weights.
+    fn interpolate(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
+        let dims = self.volume.dims();
+        let (mut sum, mut there) = (0.0, 0.0);
+        for ([x, y, z], weight) in self.nearest_voxels(index) {
+            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
+                continue;
+            }
+            sum += weight * of(self.volume.value(x, y, z));
+            there += weight;
+        }
+        if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
+    }
+
+    /// Returns ∇ of the field in scene space, by central differences over a voxel, plus `turned` times that of a
+    /// solid of density 1 which ends at missing voxels, at the faces of the grid and at cuts.
+    pub(super) fn gradient(
+        &self,
+        point: DVec3,
+        seen: &ClipRegion,
+        turned: f64,
+        table: &BakedTransfer,
+    ) -> DVec3 {
+        let edge = self.scene.smallest_edge();
+        let seen = seen.intersection(&self.grid());
+        let index_of = |point| self.scene.index_from_scene.transform_point3(point);
+        let here = self.field(index_of(point), table).0;
+        let at = |offset: DVec3| {
+            let index = index_of(point + offset * edge);
+            let (density, there) = self.field(index, table);
+            if there > 0.0 && seen.contains(index) { density + turned * there } else { here }
+        };
+        DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
+    }
+}

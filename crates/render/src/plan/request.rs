@@ -1,0 +1,109 @@
+//! Request to the renderer: volume, look, size and options of a picture.
+
+use super::PixelWindow;
+use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, PixelFormat, Settings};
+use chiaroscuro_volume::{DensityMapping, VolumeId};
+
+/// Request for a picture: the volume, its look and the size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderRequest {
+    /// Identity of the volume (`Volume::id`), which changes with its voxels and its geometry.
+    pub volume: VolumeId,
+    /// Complete look of the picture.
+    pub settings: Settings,
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    /// Resolution for previews, at which missing light volumes may be filled.
+    pub preview_resolution: Option<LightVolumeResolution>,
+}
+
+/// Identity of a volume as a picture shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeKey {
+    /// Content hash of the volume, `Volume::content_id`.
+    pub content_id: u64,
+    /// Quantity that densities from 0 to 1 represent.
+    pub density_mapping: DensityMapping,
+}
+
+impl RenderRequest {
+    /// Returns the identity of the volume as this picture shows it.
+    pub fn volume_key(&self) -> VolumeKey {
+        let VolumeId { content_id, ranges, .. } = self.volume;
+        VolumeKey { content_id, density_mapping: self.settings.shown_content(&ranges) }
+    }
+}
+
+/// Options of rendering that are not part of the look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Omit the background and write straight (not premultiplied) alpha.
+    pub transparent: bool,
+    /// Exposure, a factor of all displayed light that leaves linear light unchanged; previews need it.
+    pub exposure: f32,
+    /// Skip empty space. Only tests that pictures stay the same, and measurements, switch it off.
+    pub empty_space_skipping: bool,
+    /// Fill light volumes everywhere, not only where the picture looks them up.
+    pub fill_all_light_voxels: bool,
+    /// Minimum transmittance, below which a ray to the eye or from a light ends.
+    pub min_transmittance: f32,
+    /// Number of slabs per chunk of the light march, in place of the choice by memory and time.
+    pub chunk: Option<u32>,
+    /// Number of parts into which each chunk of the light pass is divided, for short submissions.
+    pub light_parts: u32,
+    /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
+    /// kernels without their outermost tails.
+    pub preview: bool,
+    /// Wait after every step, so that the durations of stages in a report are exact.
+    pub timed: bool,
+    /// Part of the picture to draw, if not all of it.
+    pub part: Option<PixelWindow>,
+    /// Number of samples per pixel along an edge.
+    pub samples: u32,
+    /// Bit depth of the displayed picture.
+    pub depth: PixelFormat,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            transparent: false,
+            exposure: 1.0,
+            empty_space_skipping: true,
+            fill_all_light_voxels: false,
+            // 1/16 of an 8-bit step.
+            min_transmittance: 1.0 / 4096.0,
+            chunk: None,
+            light_parts: 1,
+            preview: false,
+            timed: false,
+            part: None,
+            samples: 1,
+            depth: PixelFormat::Eight,
+        }
+    }
+}
+
+impl RenderOptions {
+    /// Creates the options for an exported image.
+    pub fn for_image(image_spec: &ImageSpec) -> Self {
+        let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *image_spec;
+        Self { transparent, samples, depth, ..Self::default() }
+    }
+
+    /// Returns the part of a picture that is displayed.
+    pub fn displayed_window(&self, request: &RenderRequest) -> PixelWindow {
+        self.part.unwrap_or_else(|| request.size.into())
+    }
+
+    /// Returns the samples that are drawn for the displayed part.
+    pub fn sample_window(&self, request: &RenderRequest) -> PixelWindow {
+        self.displayed_window(request).supersampled(self.samples)
+    }
+
+    /// Returns the optical depth that corresponds to [`Self::min_transmittance`].
+    pub fn max_optical_depth(&self) -> f32 {
+        // A minimum transmittance of 0 is never reached by 32-bit optical depths.
+        if self.min_transmittance > 0.0 { -self.min_transmittance.ln() } else { f32::MAX }
+    }
+}

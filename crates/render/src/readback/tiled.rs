@@ -1,0 +1,169 @@
+//! Tiled rendering: pictures of any size, drawn in parts and returned in bands of rows, so that the adapter's texture
+//! limits and memory do not limit their size.
+
+use crate::plan::PixelWindow;
+use crate::plan::picture_frame;
+use crate::resources::textures::{read_floats, read_texture};
+use crate::{GpuError, RenderOptions, Renderer};
+use chiaroscuro_media::PixelRows;
+use chiaroscuro_scene::{ImageSpec, PixelFormat, Settings};
+use chiaroscuro_volume::{Dataset, Volume, math::SceneSpace};
+
+/// Maximum number of samples in a part: a full-HD picture in one part, and about 100 MiB of textures.
+const MAX_PART_SAMPLES: u32 = 1 << 21;
+
+/// Maximum size of a part of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PartLimits {
+    /// Maximum number of samples along an edge.
+    pub edge: u32,
+    /// Maximum number of samples in all.
+    pub samples: u32,
+}
+
+/// Picture in progress, drawn in bands from the top down.
+#[derive(Debug)]
+pub struct PictureBands<'a> {
+    renderer: &'a mut Renderer,
+    dataset: &'a Dataset,
+    settings: &'a Settings,
+    spec: ImageSpec,
+    /// Width of the margin drawn around each part, in pixels.
+    margin: u32,
+    /// Bands yet to be drawn, the next one last.
+    remaining: Vec<Vec<PixelWindow>>,
+    total: usize,
+    /// `true` if the volume is not visible in the bands drawn so far.
+    is_empty: bool,
+}
+
+impl Renderer {
+    /// Begins a picture of any size.
+    pub fn bands<'a>(
+        &'a mut self,
+        dataset: &'a Dataset,
+        settings: &'a Settings,
+        image_spec: &ImageSpec,
+    ) -> PictureBands<'a> {
+        let longest = self.context().device.limits().max_texture_dimension_2d;
+        let largest = PartLimits { edge: longest, samples: MAX_PART_SAMPLES };
+        self.bands_within(dataset, settings, image_spec, largest)
+    }
+
+    /// Begins a picture in parts of at most the given size.
+    pub(crate) fn bands_within<'a>(
+        &'a mut self,
+        dataset: &'a Dataset,
+        settings: &'a Settings,
+        image_spec: &ImageSpec,
+        largest: PartLimits,
+    ) -> PictureBands<'a> {
+        let samples = image_spec.samples.max(1);
+        let margin = gradient_margin(dataset.volume(), settings, image_spec.size, samples);
+        let longest = (largest.edge / samples).saturating_sub(2 * margin);
+        let mut left: Vec<_> =
+            PixelWindow::bands(image_spec.size, longest, largest.samples / (samples * samples)).collect();
+        left.reverse();
+        let total = left.len();
+        let image_spec = ImageSpec { samples, ..*image_spec };
+        PictureBands {
+            renderer: self,
+            dataset,
+            settings,
+            spec: image_spec,
+            margin,
+            remaining: left,
+            total,
+            is_empty: true,
+        }
+    }
+}
+
+impl PictureBands<'_> {
+    /// Returns the number of bands drawn, and the total.
+    pub fn progress(&self) -> (usize, usize) {
+        (self.total - self.remaining.len(), self.total)
+    }
+
+    /// Returns true if the volume is not visible in the bands drawn so far.
+    pub fn is_empty(&self) -> bool {
+        self.is_empty
+    }
+
+    /// Draws the next band; `None` after the last.
+    ///
+    /// # Errors
+    /// Returns an error if the device fails or memory is exhausted.
+    pub fn next_rows(&mut self) -> Result<Option<PixelRows>, GpuError> {
+        let Some(parts) = self.remaining.pop() else { return Ok(None) };
+        let width = self.spec.size[0] as usize;
+        let height = parts.first().map_or(0, |part| part.size[1] as usize);
+        let channels = 4 * width * height;
+        let (mut bytes, mut floats) = (Vec::new(), Vec::new());
+        if self.spec.depth == PixelFormat::Eight {
+            bytes.resize(channels, 0);
+        } else {
+            floats.resize(channels, 0.0);
+        }
+        for part in parts {
+            let drawn = part.widened(self.margin);
+            let options = RenderOptions { part: Some(drawn), ..RenderOptions::for_image(&self.spec) };
+            self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
+            // Tested only until something is visible.
+            self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;
+            let (context, shown) =
+                (self.renderer.context(), &self.renderer.displayed_target()?.display.product.texture);
+            if self.spec.depth == PixelFormat::Eight {
+                copy_part(&mut bytes, &read_texture(context, shown)?, width, drawn, part);
+            } else {
+                copy_part(&mut floats, &read_floats(context, shown)?, width, drawn, part);
+            }
+        }
+        Ok(Some(if self.spec.depth == PixelFormat::Eight {
+            PixelRows::Bytes(bytes)
+        } else {
+            PixelRows::Floats(floats)
+        }))
+    }
+
+    /// Draws all remaining bands at once.
+    ///
+    /// # Errors
+    /// Same as [`Self::next_rows`].
+    pub fn all(mut self) -> Result<PixelRows, GpuError> {
+        let mut whole = match self.spec.depth {
+            PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
+            PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
+        };
+        while let Some(rows) = self.next_rows()? {
+            match (&mut whole, rows) {
+                (PixelRows::Bytes(all), PixelRows::Bytes(more)) => all.extend(more),
+                (PixelRows::Floats(all), PixelRows::Floats(more)) => all.extend(more),
+                _ => {}
+            }
+        }
+        Ok(whole)
+    }
+}
+
+/// Returns the margin that a part needs, in pixels: gradients of scattered sheets are differences of neighbouring
+/// pixels.
+fn gradient_margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples: u32) -> u32 {
+    if !settings.uses_scattering_engine() {
+        return 0;
+    }
+    let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
+    let fine = PixelWindow::from(size).supersampled(samples);
+    let frame = picture_frame(settings, &scene, fine);
+    frame.gradient_steps().0.div_ceil(samples)
+}
+
+/// Copies a part of the drawn texels to its place in a band.
+fn copy_part<T: Copy>(band: &mut [T], texels: &[T], width: usize, drawn: PixelWindow, part: PixelWindow) {
+    let (left, columns) = (part.first[0] as usize, part.size[0] as usize);
+    let [before, above] = [0, 1].map(|axis| (part.first[axis] - drawn.first[axis]) as usize);
+    let rows = texels.chunks_exact(4 * drawn.size[0] as usize).skip(above);
+    for (to, from) in band.chunks_exact_mut(4 * width).zip(rows) {
+        to[4 * left..4 * (left + columns)].copy_from_slice(&from[4 * before..4 * (before + columns)]);
+    }
+}

@@ -1,0 +1,28 @@
+//! Pipeline variants of the pass that computes the emission of blocks (`bounces/source.wgsl`).
+
+use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, flag};
+
+/// Pipeline variant of the pass that computes the emission of blocks for the next bounce.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct SourceVariant {
+    /// True if light of an earlier bounce is in the sums.
+    pub(super) has_bounced: bool,
+    /// True if the rest of the series is extrapolated after this bounce.
+    pub(super) extrapolates: bool,
+    /// True if one colour is followed in place of three.
+    pub(super) one_color: bool,
+}
+
+impl PipelineVariant for SourceVariant {
+    fn shader(&self) -> &'static str {
+        "bounces/source.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        vec![
+            flag("HAS_BOUNCED", self.has_bounced),
+            flag("EXTRAPOLATES", self.extrapolates),
+            flag("ONE_COLOR", self.one_color),
+        ]
+    }
+}

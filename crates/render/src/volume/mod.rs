@@ -1,0 +1,356 @@
+//! Volume on the GPU: density texture with a replicated border, and the pyramid made from it.
+
+pub(super) mod brick_list;
+pub(super) mod cell_list;
+pub(super) mod gradients;
+pub(super) mod preclassified;
+pub(super) mod presence;
+pub(super) mod pyramid;
+mod texture_shapes;
+mod textures;
+pub(super) mod transfer_tables;
+
+pub(crate) use texture_shapes::texture_3d;
+pub(crate) use textures::create_volume_textures;
+#[cfg(feature = "testing")]
+pub use textures::stored_density;
+
+use std::sync::Arc;
+
+use half::f16;
+
+use self::presence::PresenceTexture;
+use self::texture_shapes::pyramid_dims;
+use self::textures::{VolumeTextures, density_is_unorm, unorm16};
+use super::resources::gpu_tools::GpuTools;
+use super::resources::resource_pool::ResourcePool;
+use super::{GpuContext, GpuError};
+use crate::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
+use crate::pipelines::pipeline_variant::GridBoundaries;
+use crate::pipelines::uniforms::GridUniform;
+use chiaroscuro_volume::{BRICK_EDGE, BrickBounds, CELL_EDGE, Volume, math::SceneSpace};
+
+/// Size of an upload step in bytes, small enough for a few milliseconds.
+const UPLOAD_BYTES: usize = 2 << 20;
+
+/// Inputs shared by all passes over a volume: device, pipelines, volume and pool.
+#[derive(Clone, Copy)]
+pub(crate) struct VolumeContext<'a> {
+    pub context: &'a GpuContext,
+    pub shaders: &'a super::ShaderLibrary,
+    pub volume: &'a GpuVolume,
+    /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
+    pub placeholder: &'a wgpu::TextureView,
+    pub pool: &'a ResourcePool,
+}
+
+impl<'a> VolumeContext<'a> {
+    /// Combines the tools of a device with a volume.
+    pub(crate) fn new(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
+        let GpuTools { context, shaders, pool, placeholder } = tools;
+        Self { context, shaders, volume, placeholder, pool }
+    }
+}
+
+impl VolumeContext<'_> {
+    /// Returns a pooled uniform buffer for the submission being recorded.
+    pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: T) -> wgpu::Buffer {
+        self.pool.buffer(self.context, label, &[value], wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// Returns a pooled storage buffer for the submission being recorded; it may be longer than `values`.
+    pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+        self.pool.buffer(self.context, label, values, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Returns a pooled storage buffer of at least `room` bytes, so that lists of any length up to that share one
+    /// buffer.
+    pub(crate) fn storage_of_at_least<T: bytemuck::NoUninit>(
+        &self,
+        label: &'static str,
+        values: &[T],
+        room: u64,
+    ) -> wgpu::Buffer {
+        self.pool.buffer_of_at_least(self.context, label, values, wgpu::BufferUsages::STORAGE, room)
+    }
+
+    /// Creates a bind group, cached in the pool.
+    pub(crate) fn bind(
+        &self,
+        label: &str,
+        pipeline: &ShaderPipeline,
+        group: usize,
+        entries: &[NamedResource<'_>],
+    ) -> wgpu::BindGroup {
+        self.pool.bind(self.context, label, pipeline, group, entries)
+    }
+
+    /// Creates bind group 1 of passes that read a pyramid but not the density texture.
+    pub(crate) fn bind_pyramid(&self, pipeline: &ShaderPipeline, pyramid: &PyramidViews) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(0));
+        self.bind(
+            "Volume::pyramid_bind_group",
+            pipeline,
+            1,
+            &[
+                bind_buffer("bound_grid", &grid),
+                bind_view("pyramid_texture", &pyramid.all),
+                bind_view("presence_texture", self.presence(PyramidLevels::All)),
+                sampler("clamped", &volume.clamped),
+            ],
+        )
+    }
+
+    /// Creates bind group 1 of passes that read a pyramid without presence.
+    pub(crate) fn bind_pyramid_without_presence(
+        &self,
+        pipeline: &ShaderPipeline,
+        pyramid: &PyramidViews,
+    ) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(0));
+        let entries = [
+            bind_buffer("bound_grid", &grid),
+            bind_view("pyramid_texture", &pyramid.all),
+            sampler("clamped", &volume.clamped),
+        ];
+        self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
+    }
+
+    /// Creates bind group 1 of passes that sample density.
+    pub(crate) fn bind_volume(
+        &self,
+        pipeline: &ShaderPipeline,
+        dilation: i32,
+        levels: PyramidLevels,
+        pyramids: PassPyramids<'_>,
+    ) -> wgpu::BindGroup {
+        let volume = self.volume;
+        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        let mut entries = vec![
+            bind_buffer("bound_grid", &grid),
+            bind_view("density_texture", &volume.density_view),
+            bind_view("pyramid_texture", levels.choose(pyramids.primary)),
+            bind_view("presence_texture", self.presence(levels)),
+            sampler("clamped", &volume.clamped),
+            sampler("nearest", &volume.nearest),
+        ];
+        entries.extend(pyramids.lighting.map(|views| bind_view("lighting_pyramid", levels.choose(views))));
+        self.bind("Volume::bind_group", pipeline, 1, &entries)
+    }
+
+    /// Returns the view of the presence texture if voxels are missing, else the placeholder.
+    pub(crate) fn presence(&self, levels: PyramidLevels) -> &wgpu::TextureView {
+        self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
+    }
+}
+
+/// Pyramids that a pass reads: of densities, or of pre-classified voxels ([`preclassified`]).
+#[derive(Clone, Copy)]
+pub(crate) struct PassPyramids<'a> {
+    pub primary: &'a PyramidViews,
+    /// Pyramid of what attenuates light, for eye passes that cast near-field rays.
+    pub lighting: Option<&'a PyramidViews>,
+}
+
+/// Range of pyramid levels that a pass may read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PyramidLevels {
+    /// Level 0 alone, for kernels that are not stretched.
+    Finest,
+    /// All levels, for stretched kernels.
+    All,
+}
+
+impl PyramidLevels {
+    /// Returns the levels that stretched or unstretched kernels need.
+    pub(crate) fn for_stretch(is_stretched: bool) -> Self {
+        if is_stretched { Self::All } else { Self::Finest }
+    }
+
+    /// Selects the view with these levels.
+    pub(crate) fn choose(self, views: &PyramidViews) -> &wgpu::TextureView {
+        match self {
+            Self::Finest => &views.finest,
+            Self::All => &views.all,
+        }
+    }
+}
+
+/// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
+/// computes the level sizes for each lane and fetch, which the second view avoids.
+#[derive(Debug)]
+pub(crate) struct PyramidViews {
+    /// View of all levels of the pyramid.
+    pub all: wgpu::TextureView,
+    /// View of level 0 of the pyramid.
+    finest: wgpu::TextureView,
+}
+
+impl PyramidViews {
+    fn new(texture: &wgpu::Texture) -> Self {
+        let all = wgpu::TextureViewDescriptor::default();
+        let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
+        Self { all: texture.create_view(&all), finest: texture.create_view(&finest) }
+    }
+}
+
+/// Textures, samplers and brick data of a volume.
+#[derive(Debug)]
+pub(crate) struct GpuVolume {
+    /// Volume that is uploaded; kept for later uploads and for the passes' work on the CPU.
+    pub volume: Arc<Volume>,
+    /// Density ranges of bricks of 8³ voxels.
+    pub bricks: Arc<BrickBounds>,
+    /// Transform between index space and scene space.
+    pub scene: SceneSpace,
+    density: wgpu::Texture,
+    pub density_view: wgpu::TextureView,
+    pub pyramid: wgpu::Texture,
+    pub pyramid_views: PyramidViews,
+    /// Presence texture, if voxels are missing.
+    pub presence: Option<PresenceTexture>,
+    /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid.
+    pub filled_levels: Vec<Vec<u32>>,
+    /// Gradients of the pyramid; `None` if they take too much memory.
+    pub gradients: Option<wgpu::Texture>,
+    /// Views of the gradient texture.
+    pub gradients_views: Option<PyramidViews>,
+    pub clamped: wgpu::Sampler,
+    nearest: wgpu::Sampler,
+    is_unorm: bool,
+    grid: GridUniform,
+}
+
+impl GpuVolume {
+    /// Creates the textures. Nothing is uploaded yet, except a `presence` texture that is passed in.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold the textures.
+    pub(crate) fn new(
+        context: &GpuContext,
+        volume: &Arc<Volume>,
+        bricks: &Arc<BrickBounds>,
+        presence: Option<PresenceTexture>,
+    ) -> Result<Self, GpuError> {
+        let dims = volume.dims();
+        let VolumeTextures { density, pyramid } = create_volume_textures(context, volume, dims)?;
+        let presence = match presence {
+            None => PresenceTexture::new(context, volume, dims)?,
+            known => known,
+        };
+        let padded = pyramid_dims(dims);
+        let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
+        let grid = GridUniform {
+            dims: dims.map(|n| n as f32),
+            dilation: 0,
+            density_scale: reciprocal(dims.map(|n| n + 2)),
+            pad0: 0.0,
+            pyramid_scale: reciprocal(padded),
+            pad1: 0.0,
+            cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
+            pad2: 0.0,
+        };
+        let gradients = gradients::gradient_texture(context, &pyramid);
+        Ok(Self {
+            volume: Arc::clone(volume),
+            bricks: Arc::clone(bricks),
+            scene: volume.scene(),
+            density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
+            density,
+            filled_levels: pyramid::nonempty_bricks(bricks, &pyramid, presence.is_some()),
+            gradients_views: gradients.as_ref().map(PyramidViews::new),
+            gradients,
+            pyramid_views: PyramidViews::new(&pyramid),
+            pyramid,
+            presence,
+            clamped: context.sampler("Volume::clamped"),
+            nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("Volume::nearest"),
+                ..Default::default()
+            }),
+            is_unorm: density_is_unorm(context, volume),
+            grid,
+        })
+    }
+
+    /// Returns the number of z-slices per upload step.
+    pub(crate) fn slices_per_step(&self) -> usize {
+        let [nx, ny, _] = self.volume.dims();
+        (UPLOAD_BYTES / (nx * ny * 2)).max(1)
+    }
+
+    /// Uploads some z-slices, each with a replicated border of one voxel; the first and last slices are also
+    /// replicated in front and behind.
+    pub(crate) fn upload(&self, context: &GpuContext, slices: std::ops::Range<usize>) {
+        use rayon::prelude::*;
+        let [nx, ny, nz] = self.volume.dims();
+        let encode =
+            |density: f32| if self.is_unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
+        let first = if slices.start == 0 { 0 } else { slices.start + 1 };
+        let end = if slices.end == nz { nz + 2 } else { slices.end + 1 };
+        // Voxel that a texel of the border replicates.
+        let voxel = |texel: usize, n: usize| texel.saturating_sub(1).min(n - 1);
+        let words: Vec<u16> = (first..end)
+            .into_par_iter()
+            .flat_map_iter(|z| {
+                let slice: Vec<u16> =
+                    self.volume.slice_densities(voxel(z, nz)).into_iter().map(encode).collect();
+                let mut padded = Vec::with_capacity((nx + 2) * (ny + 2));
+                for y in 0..ny + 2 {
+                    let row = &slice[voxel(y, ny) * nx..][..nx];
+                    padded.push(row[0]);
+                    padded.extend_from_slice(row);
+                    padded.push(row[nx - 1]);
+                }
+                padded
+            })
+            .collect();
+        let (width, height) = (nx as u32 + 2, ny as u32 + 2);
+        context.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &self.density,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 0, y: 0, z: first as u32 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytemuck::cast_slice(&words),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(2 * width),
+                rows_per_image: Some(height),
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: (end - first) as u32 },
+        );
+    }
+
+    /// Returns the grid boundaries that can be visible with any transfer function.
+    pub(crate) fn possible_boundaries(&self) -> GridBoundaries {
+        if self.presence.is_some() { GridBoundaries::MissingVoxels } else { GridBoundaries::OppositeFaces }
+    }
+
+    /// Returns the uniform of the grid, for a pass whose samples reach `dilation` cells beyond their own.
+    pub(crate) fn grid(&self, dilation: i32) -> GridUniform {
+        GridUniform { dilation, ..self.grid }
+    }
+
+    /// Returns the size of the textures, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let texels = |texture: &wgpu::Texture| {
+            let size = texture.size();
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+        };
+        // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
+        let channels = if self.presence.is_some() { 2 } else { 1 };
+        let gradients =
+            self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(texels(texture)));
+        let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
+        2 * texels(&self.density) + channels * texels(&self.pyramid) * 16 / 7 + presence + gradients
+    }
+}
+
+/// Returns the number of bricks along each axis of a grid.
+pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| n.div_ceil(BRICK_EDGE))
+}

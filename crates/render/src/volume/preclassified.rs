@@ -1,0 +1,192 @@
+//! Pre-classified volume: voxels with the transfer function applied before reconstruction.
+//!
+//! A pyramid like that of densities, with four channels. The first is extinction relative to the maximum, which takes
+//! the place of density: normals are its gradients, light is attenuated by it, and a table converts it to extinction.
+//! The others are the colours multiplied by it.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::brick_list::two_workgroups_per_brick;
+use super::pyramid::{self, level_buffers, level_view};
+use super::texture_shapes::pyramid_dims;
+use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
+use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, SingleVariant, flag};
+use crate::plan::MAX_STRETCH_LEVEL;
+use crate::resources::pass;
+use crate::volume::brick_list::pack_coordinates;
+use crate::{GpuContext, GpuError};
+use chiaroscuro_scene::BakedTransfer;
+use chiaroscuro_volume::{BRICK_EDGE, memory_budget_bytes};
+
+/// Pre-classified voxels of one transfer function.
+#[derive(Debug)]
+pub(crate) struct PreclassifiedVoxels {
+    /// Transfer function that the voxels are classified with.
+    baked: Arc<BakedTransfer>,
+    texture: wgpu::Texture,
+    pub views: PyramidViews,
+    /// Table that converts relative to absolute extinction, bound in place of the transfer function.
+    pub table: wgpu::Buffer,
+    /// Packed coordinates of the bricks that may be non-empty, for each level.
+    bricks: Vec<Vec<u32>>,
+    /// `true` if the lists contain all bricks.
+    lists_all_bricks: bool,
+    is_complete: AtomicBool,
+}
+
+impl PreclassifiedVoxels {
+    /// Creates the texture for a volume, or reuses that of `left`; nothing is classified yet.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold the texture.
+    pub(crate) fn new(
+        context: &GpuContext,
+        volume: &GpuVolume,
+        baked: &Arc<BakedTransfer>,
+        reusable: Option<Self>,
+    ) -> Result<Self, GpuError> {
+        let shares = BakedTransfer::linear_ramp(baked.max_extinction());
+        let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
+        let (texture, held_all) = match reusable {
+            Some(left) => (left.texture, left.lists_all_bricks),
+            None => (Self::texture(context, volume.volume.dims())?, false),
+        };
+        // Bricks that are not listed have the lowest density, so all are listed if that is visible.
+        let holds_all = held_all || baked.is_lowest_visible();
+        let bricks = if holds_all { all_bricks(&texture) } else { volume.filled_levels.clone() };
+        Ok(Self {
+            baked: Arc::clone(baked),
+            views: PyramidViews::new(&texture),
+            texture,
+            table,
+            bricks,
+            lists_all_bricks: holds_all,
+            is_complete: AtomicBool::new(false),
+        })
+    }
+
+    fn texture(context: &GpuContext, dims: [usize; 3]) -> Result<wgpu::Texture, GpuError> {
+        let bytes = bytes(pyramid_dims(dims).iter().map(|&n| n as u64).product());
+        // Software drivers commit memory when it is first written, and the system then kills the process.
+        if context.is_software() && bytes > memory_budget_bytes() {
+            return Err(GpuError::OutOfMemory {
+                what: "classified voxels".to_owned(),
+                mebibytes: bytes >> 20,
+            });
+        }
+        context.texture(&wgpu::TextureDescriptor {
+            mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
+            ..texture_3d(
+                "Materials::texture",
+                pyramid_dims(dims),
+                wgpu::TextureFormat::Rgba16Float,
+                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            )
+        })
+    }
+
+    /// Returns true if the voxels are classified with the entries of this transfer function.
+    pub(crate) fn matches(&self, baked: &BakedTransfer) -> bool {
+        self.baked.entries == baked.entries
+    }
+
+    /// Marks the pyramid as complete.
+    pub(crate) fn mark_complete(&self) {
+        self.is_complete.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns true if the pyramid is complete.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.is_complete.load(Ordering::Relaxed)
+    }
+
+    /// Returns each level with its bricks, split into short steps; finest first.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
+        pyramid::level_steps(&self.bricks)
+    }
+
+    /// Fills some bricks of one level. The finer level must be complete. `table` holds the transfer function.
+    pub(crate) fn fill(
+        &self,
+        gpu: VolumeContext<'_>,
+        table: &wgpu::Buffer,
+        level: u32,
+        range: &Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
+        let bricks = &self.bricks[level as usize][range.clone()];
+        let pipeline = match level {
+            0 => shaders.pipeline(&MaterialsVariant { has_missing: volume.presence.is_some() })?,
+            _ => shaders.pipeline(&SingleVariant("volume/downsample_materials.wgsl"))?,
+        };
+        let source = match level {
+            0 => volume.density_view.clone(),
+            _ => level_view(&self.texture, level - 1),
+        };
+        let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
+        let (uniform, list) = level_buffers(context, level, bricks);
+        let target = level_view(&self.texture, level);
+        let mut entries = vec![
+            bind_view("source", &source),
+            bind_view("level", &target),
+            bind_buffer("bound_resample", &uniform),
+            bind_buffer("bricks", &list),
+        ];
+        match level {
+            0 => entries.extend([
+                bind_buffer("table", table),
+                bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)),
+            ]),
+            _ => entries.push(sampler("clamped", &volume.clamped)),
+        }
+        let bind_group = pass::bind(context, "Materials::bind_group", &pipeline, 0, &entries);
+        let groups = two_workgroups_per_brick(bricks.len().max(1) as u32);
+        pass::dispatch(encoder, "Materials::fill", &pipeline, &[&bind_group], groups);
+        Ok(())
+    }
+
+    /// Returns the size of the texture, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
+        bytes(texels)
+    }
+}
+
+/// Returns the size in bytes of four 16-bit channels for `texels` texels of the finest level; the coarser levels add
+/// a seventh.
+fn bytes(texels: u64) -> u64 {
+    texels * 64 / 7
+}
+
+/// Pipeline variant of the pass that classifies voxels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct MaterialsVariant {
+    has_missing: bool,
+}
+
+impl PipelineVariant for MaterialsVariant {
+    fn shader(&self) -> &'static str {
+        "volume/materials.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        vec![flag("MISSING", self.has_missing)]
+    }
+}
+
+/// Returns the packed coordinates of all bricks of each level of a texture.
+fn all_bricks(texture: &wgpu::Texture) -> Vec<Vec<u32>> {
+    let size = texture.size();
+    let size = [size.width, size.height, size.depth_or_array_layers];
+    let of_level = |level: u32| {
+        let [nx, ny, nz] = size.map(|n| ((n >> level).max(1) as usize).div_ceil(BRICK_EDGE));
+        let place = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
+        (0..nx * ny * nz).map(|at| pack_coordinates(place(at))).collect()
+    };
+    (0..texture.mip_level_count()).map(of_level).collect()
+}

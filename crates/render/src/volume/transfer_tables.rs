@@ -1,0 +1,382 @@
+//! Transfer-function tables on the GPU, and the cells that are visible with them.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::preclassified::PreclassifiedVoxels;
+use super::{GpuVolume, PassPyramids, PyramidViews, brick_dims};
+use crate::pipelines::pipeline_variant::GridBoundaries;
+use crate::plan::{BrickSet, CellDistances, CellSet, NearFieldOffset, TablesKey};
+use crate::{GpuContext, GpuError};
+use chiaroscuro_scene::{BakedTransfer, LIGHT_COLORS, Settings};
+use chiaroscuro_volume::CELL_EDGE;
+
+/// Distance in voxels between opposite faces from which on no unstretched kernel reaches both: twice `EDGE_REACH` in
+/// `shaders/density/presence.wgsl`.
+const MAX_FACE_DISTANCE: f64 = 3.0;
+
+/// Baked transfer function: its lookup table and the cells where it has extinction (occupied cells).
+#[derive(Debug, Clone)]
+pub(crate) struct TransferTable {
+    /// Lookup table on the CPU.
+    baked: Arc<BakedTransfer>,
+    /// Lookup table in a storage buffer.
+    pub buffer: wgpu::Buffer,
+    /// Bricks with any extinction.
+    pub occupied_bricks: Arc<BrickSet>,
+    /// Distance of each cell to the nearest occupied cell.
+    distances: Arc<CellDistances>,
+    /// Minimum distance, in cells, from occupied cells to the cells at the faces of the grid.
+    cells_to_faces: u8,
+    /// Minimum distance, in cells, from occupied cells to cells with missing voxels; 255 if none are missing.
+    cells_to_missing: u8,
+    /// `true` if no cell is occupied.
+    pub is_empty: bool,
+    /// Pre-classified voxels, if voxels are classified before reconstruction.
+    pub materials: Option<Arc<PreclassifiedVoxels>>,
+    /// Channel of the materials that holds relative extinction.
+    pub extinction_channel: u32,
+}
+
+impl TransferTable {
+    /// Uploads a transfer function and finds its occupied cells, reusing those of a `known` table with the same
+    /// visible densities.
+    fn new<'a>(
+        context: &GpuContext,
+        volume: &GpuVolume,
+        baked: BakedTransfer,
+        bounded: bool,
+        known: impl IntoIterator<Item = &'a Self>,
+    ) -> Self {
+        let buffer = context.buffer("Table::buffer", &baked.to_f32s(), wgpu::BufferUsages::STORAGE);
+        if let Some(known) = known.into_iter().find(|known| baked.has_same_visibility(&known.baked)) {
+            return Self {
+                baked: Arc::new(baked),
+                buffer,
+                materials: None,
+                extinction_channel: 0,
+                ..known.clone()
+            };
+        }
+        let dims = volume.bricks.dims;
+        let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility_test()));
+        let masks = if bounded {
+            volume.bricks.cell_masks(baked.visibility_test())
+        } else {
+            occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
+        };
+        let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
+        let distances = Arc::new(CellDistances::from_set(&CellSet { dims, masks }));
+        let clearance = distances.min_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
+        let [width, height, _] = distances.dims;
+        let distance_of = |voxel: [usize; 3]| {
+            let [x, y, z] = voxel.map(|c| c / CELL_EDGE);
+            distances.values[x + width * (y + height * z)]
+        };
+        let from_missing = volume.volume.missing().map_or(u8::MAX, |missing| missing.min_over(distance_of));
+        Self {
+            baked: Arc::new(baked),
+            buffer,
+            occupied_bricks: Arc::new(occupied),
+            distances,
+            cells_to_faces: clearance,
+            cells_to_missing: from_missing,
+            is_empty,
+            materials: None,
+            extinction_channel: 0,
+        }
+    }
+
+    /// Returns the tables for red, green and blue light, which share the occupied cells of this one.
+    fn color_tables(&self, context: &GpuContext) -> Vec<Self> {
+        let met = |color| {
+            let baked = self.baked.for_light_color(color);
+            let buffer = context.buffer("Table::color", &baked.to_f32s(), wgpu::BufferUsages::STORAGE);
+            Self { baked: Arc::new(baked), buffer, ..self.clone() }
+        };
+        (0..LIGHT_COLORS).map(met).collect()
+    }
+
+    /// Returns the grid boundaries near occupied cells, for samples that reach `dilation` cells beyond their own,
+    /// with kernels stretched up to a level of the pyramid.
+    pub(crate) fn boundaries(&self, volume: &GpuVolume, dilation: i32, level: f64) -> GridBoundaries {
+        if self.materials.is_some() {
+            // Pre-classified voxels outside the grid have no extinction, so no boundary test is needed.
+            return GridBoundaries::None;
+        }
+        // Kernels reach two voxels of their level to either side, and their gradients one voxel more.
+        let near_missing = dilation + (1.5 * level.exp2()).ceil() as i32 + 1;
+        if i32::from(self.cells_to_missing) <= near_missing {
+            return volume.possible_boundaries();
+        }
+        // Faces lie half a voxel outside the first cell.
+        let layers = level.exp2().ceil() as i32;
+        if i32::from(self.cells_to_faces) > layers - 1 + dilation {
+            return GridBoundaries::None;
+        }
+        let thinnest = volume.volume.dims().into_iter().min().unwrap_or_default() as f64;
+        if thinnest < MAX_FACE_DISTANCE * level.exp2() {
+            GridBoundaries::OppositeFaces
+        } else {
+            GridBoundaries::Faces
+        }
+    }
+
+    /// Returns true if a cell is occupied.
+    pub(crate) fn occupies(&self, [x, y, z]: [usize; 3]) -> bool {
+        let [width, height, _] = self.distances.dims;
+        self.distances.values[x + width * (y + height * z)] == 0
+    }
+
+    /// Returns the cells of `divisor`³ voxels, on a grid of `bricks`, within `reach` data cells of occupied cells.
+    pub(crate) fn cells_within(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> CellSet {
+        self.distances.cells_within(reach, divisor, bricks)
+    }
+
+    /// Returns the lookup table on the CPU.
+    pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
+        &self.baked
+    }
+
+    /// Returns the table for gathered values: the transfer function, or for pre-classified voxels the conversion of
+    /// relative extinction.
+    pub(crate) fn lookup_buffer(&self) -> &wgpu::Buffer {
+        self.materials.as_ref().map_or(&self.buffer, |materials| &materials.table)
+    }
+
+    /// Returns the pyramid that values are gathered from.
+    pub(crate) fn pyramid<'a>(&'a self, volume: &'a GpuVolume) -> &'a PyramidViews {
+        self.materials.as_ref().map_or(&volume.pyramid_views, |materials| &materials.views)
+    }
+
+    /// Returns true if the lowest density has extinction.
+    pub(crate) fn has_extinction_at_zero(&self) -> bool {
+        self.baked.is_lowest_visible()
+    }
+
+    /// Returns the maximum extinction of any density, per scene unit.
+    pub(crate) fn largest_extinction(&self) -> f32 {
+        self.baked.max_extinction()
+    }
+}
+
+/// Tables of both transfer functions of the settings.
+#[derive(Debug)]
+pub(crate) struct TransferTables {
+    /// Table of the eye's transfer function.
+    pub eye: TransferTable,
+    /// Table of the lighting transfer function.
+    pub lighting: TransferTable,
+    /// Tables for red, green and blue light if shadows are coloured; else empty.
+    colors: Vec<TransferTable>,
+    /// Distances in cells to the nearest cell that is visible to the eye.
+    pub eye_distances: wgpu::TextureView,
+    /// Distances in cells: r to the nearest cell occupied in either table, g to the nearest that attenuates light.
+    pub light_distances: wgpu::TextureView,
+    /// Distances to cells occupied in either table; the light of eye samples is looked up near them.
+    occupied_distances: Arc<CellDistances>,
+    /// Cells of light volumes that recent pictures have needed, most recent first.
+    needed_cells: RefCell<VecDeque<(CellRequirement, Arc<CellSet>)>>,
+}
+
+/// Parameters of the cell set that a picture needs of a light volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct CellRequirement {
+    /// Maximum distance, in data cells, from cells occupied in either table.
+    pub reach: u8,
+    /// Number of data voxels per light voxel, along an axis.
+    pub divisor: usize,
+    /// Offset of near-field lookups towards the light.
+    pub offset: NearFieldOffset,
+}
+
+/// Maximum number of cached sets of needed cells: for eight lights, two settings and two resolutions.
+const MAX_CACHED_SETS: usize = 32;
+
+impl TransferTables {
+    /// Bakes the tables that differ from `previous`, which belong to the same volume and another key. Returns the
+    /// tables and the number of tables baked.
+    ///
+    /// # Errors
+    /// Returns an error if memory is exhausted.
+    pub(crate) fn new(
+        context: &GpuContext,
+        volume: &GpuVolume,
+        settings: &Settings,
+        key: &TablesKey,
+        previous: Option<(&TablesKey, &Self)>,
+    ) -> Result<(Self, u32), GpuError> {
+        let range = volume.volume.table_range();
+        let bounded = key.cells_are_bounds;
+        let previous = previous.filter(|(known, _)| known.cells_are_bounds == bounded);
+        let known = || previous.into_iter().flat_map(|(_, tables)| [&tables.eye, &tables.lighting]);
+        let mut baked = 0;
+        let eye = if let Some((_, tables)) = previous.filter(|(known, _)| known.eye == key.eye) {
+            tables.eye.clone()
+        } else {
+            baked += 1;
+            TransferTable::new(context, volume, settings.bake_eye(range, &volume.scene), bounded, known())
+        };
+        let is_lit_alike =
+            |known: &TablesKey| (&known.lighting, &known.transmission) == (&key.lighting, &key.transmission);
+        let (lighting, colors) = if let Some((_, tables)) = previous.filter(|(known, _)| is_lit_alike(known))
+        {
+            (tables.lighting.clone(), tables.colors.clone())
+        } else {
+            baked += 1;
+            let lighting = settings.bake_lighting(range, &volume.scene);
+            let lighting = TransferTable::new(context, volume, lighting, bounded, known().chain([&eye]));
+            let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));
+            (lighting, colors.unwrap_or_default())
+        };
+        if let Some((_, tables)) = previous {
+            let is_same = |a: &TransferTable, b: &TransferTable| Arc::ptr_eq(&a.distances, &b.distances);
+            if is_same(&eye, &tables.eye) && is_same(&lighting, &tables.lighting) {
+                let (eye_distances, light_distances) =
+                    (tables.eye_distances.clone(), tables.light_distances.clone());
+                let (shown, needed) = (Arc::clone(&tables.occupied_distances), tables.needed_cells.clone());
+                let tables = Self {
+                    eye,
+                    lighting,
+                    colors,
+                    eye_distances,
+                    light_distances,
+                    occupied_distances: shown,
+                    needed_cells: needed,
+                };
+                return Ok((tables, baked));
+            }
+        }
+        let shown = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
+            Arc::clone(&eye.distances)
+        } else {
+            Arc::new(eye.distances.min(&lighting.distances))
+        };
+        let dims = shown.dims;
+        let pairs: Vec<u8> =
+            shown.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
+        let eye_distances = upload_distances(
+            context,
+            "Tables::eye_distances",
+            dims,
+            &eye.distances.values,
+            wgpu::TextureFormat::R8Unorm,
+        )?;
+        let light_distances = upload_distances(
+            context,
+            "Tables::light_distances",
+            dims,
+            &pairs,
+            wgpu::TextureFormat::Rg8Unorm,
+        )?;
+        let needed = RefCell::default();
+        Ok((
+            Self {
+                eye,
+                lighting,
+                colors,
+                eye_distances,
+                light_distances,
+                occupied_distances: shown,
+                needed_cells: needed,
+            },
+            baked,
+        ))
+    }
+
+    /// Returns the table that attenuates light, or one of its colours.
+    pub(crate) fn lighting_of_color(&self, color: Option<usize>) -> &TransferTable {
+        color.and_then(|color| self.colors.get(color)).unwrap_or(&self.lighting)
+    }
+
+    /// Sets the pre-classified voxels of the tables, if voxels are classified first.
+    pub(crate) fn set_materials(
+        &mut self,
+        eye: Option<Arc<PreclassifiedVoxels>>,
+        lighting: Option<Arc<PreclassifiedVoxels>>,
+    ) {
+        for (table, component) in self.colors.iter_mut().zip(1..) {
+            table.extinction_channel = if lighting.is_some() { component } else { 0 };
+            table.materials.clone_from(&lighting);
+        }
+        (self.eye.materials, self.lighting.materials) = (eye, lighting);
+    }
+
+    /// Returns the pyramids for passes of the eye.
+    pub(crate) fn pyramids<'a>(&'a self, volume: &'a GpuVolume) -> PassPyramids<'a> {
+        PassPyramids { primary: self.eye.pyramid(volume), lighting: Some(self.lighting.pyramid(volume)) }
+    }
+
+    /// Returns the pyramids for passes that follow light.
+    pub(crate) fn lighting_pyramids<'a>(&'a self, volume: &'a GpuVolume) -> PassPyramids<'a> {
+        PassPyramids { primary: self.lighting.pyramid(volume), lighting: None }
+    }
+
+    /// Returns the grid boundaries near cells occupied in either table, for samples of the eye and rays from them.
+    pub(crate) fn boundaries(&self, volume: &GpuVolume, dilation: i32, level: f64) -> GridBoundaries {
+        self.eye.boundaries(volume, dilation, level).max(self.lighting.boundaries(volume, dilation, level))
+    }
+
+    /// Returns the cells of a light volume that a picture needs, cached.
+    pub(crate) fn needed_cells(&self, volume: &GpuVolume, needs: CellRequirement) -> Arc<CellSet> {
+        let known = self
+            .needed_cells
+            .borrow()
+            .iter()
+            .find(|(known, _)| *known == needs)
+            .map(|(_, set)| Arc::clone(set));
+        if let Some(known) = known {
+            return known;
+        }
+        let CellRequirement { reach, divisor, offset: ahead } = needs;
+        let dims = volume.volume.dims();
+        let coarse = brick_dims(dims.map(|n| n.div_ceil(divisor)));
+        let fresh = if ahead == NearFieldOffset::default() {
+            self.occupied_distances.cells_within(reach, divisor, coarse)
+        } else {
+            let still = CellRequirement { divisor: 1, offset: NearFieldOffset::default(), ..needs };
+            let around = self.needed_cells(volume, still);
+            let moved = ahead.shifted_cells((*around).clone(), dims.map(|n| (n - 1) / 2));
+            if divisor > 1 { moved.coarsened(divisor, coarse) } else { moved }
+        };
+        let fresh = Arc::new(fresh);
+        let mut needed = self.needed_cells.borrow_mut();
+        needed.truncate(MAX_CACHED_SETS - 1);
+        needed.push_front((needs, Arc::clone(&fresh)));
+        fresh
+    }
+
+    /// Returns true if either transfer function has extinction at the lowest density, which is also the density
+    /// outside the grid.
+    pub(crate) fn has_extinction_at_zero(&self) -> bool {
+        self.eye.has_extinction_at_zero() || self.lighting.has_extinction_at_zero()
+    }
+}
+
+/// Reach larger than any distance, which disables empty-space skipping.
+pub(crate) const UNLIMITED_REACH: i32 = 255;
+
+/// Uploads a 3D texture of distances, one or two bytes per cell or brick. Shaders sample normalised formats and load
+/// integer formats.
+pub(crate) fn upload_distances(
+    context: &GpuContext,
+    label: &'static str,
+    dims: [usize; 3],
+    distances: &[u8],
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::TextureView, GpuError> {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = context.texture(&super::texture_3d(label, dims, format, usage))?;
+    context.queue.write_texture(
+        texture.as_image_copy(),
+        distances,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some((distances.len() / dims[1].max(1) / dims[2].max(1)) as u32),
+            rows_per_image: Some(dims[1] as u32),
+        },
+        texture.size(),
+    );
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}

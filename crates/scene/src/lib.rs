@@ -1,0 +1,90 @@
+//! Look of an image: one [`Settings`] value, with its presets, session records, transfer functions and automatic first
+//! look.
+//!
+//! Undo, sessions, presets, screenshots and the command line all use this one value; what must be recomputed after a
+//! change follows from comparing the keys that two of them have (`plan` of chiaroscuro-render).
+//!
+//! Begin with [`Settings`] in `settings/mod.rs`. Where do the settings of a newly opened volume come from? From
+//! `first_look/mod.rs`, without rendering; chiaroscuro-render then tries small pictures to choose light, floor and
+//! brightness. `settings_io/` reads and writes settings, and `transfer_exchange/` has the transfer functions of other
+//! programs. CONTRIBUTING.md lists what a new setting touches.
+
+mod comparison_variant;
+mod environment_map;
+pub mod first_look;
+mod image_spec;
+mod light_direction;
+mod lighting_rig;
+mod object_rotation;
+mod settings;
+mod settings_io;
+mod transfer;
+mod transfer_exchange;
+mod turntable;
+
+pub use self::settings::camera_settings::camera::{Camera, FRAME_ASPECT, FovReference, Projection};
+pub use self::settings::camera_settings::scene_axis::SceneAxis;
+pub use self::settings::camera_settings::standard_view::StandardView;
+pub use self::settings::clipping::{
+    ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
+};
+pub use self::settings::density_range::DensityRange;
+pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
+pub use self::settings::label_table::{LabelLook, LabelMaterial, LabelTable};
+pub use self::settings::length::OpacityLength;
+pub use self::settings::light::area_light::{
+    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
+};
+pub use self::settings::light::environment_map::ENVIRONMENT_LIGHT_NAME;
+pub use self::settings::light::horizon_clipping::VisibleLight;
+pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, ScatteringSettings};
+pub use self::settings::light::sky::{
+    EnvironmentLight, MAX_ENVIRONMENT_RADIANCE, SKY_DIRECTIONS, SKY_LOOKUP_DISTANCE, SkyMode, SkyRadiance,
+    SkySettings,
+};
+pub use self::settings::light::{
+    LightGeometry, LightLock, LightSettings, MAX_LIGHTS, MAX_NAME_CHARS, SceneLight, Spotlight, SpotlightCone,
+};
+pub use self::settings::quality::QualityPreset;
+pub use self::settings::sampling::{
+    ClassificationOrder, GradientSource, MAX_SLAB_PARTS, PREINTEGRATED_STEPS, ReconstructionKernel,
+    RenderEngine, SamplingSettings, SheetOrder, SlabMode, SlabQuadrature,
+};
+pub use self::settings::saved_entries::{
+    DIGIT_KEYS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES, SavedContent, SavedEntry, SavedLook,
+};
+pub use self::settings::shadows::{
+    AreaLightSampling, DepositMode, LightStorage, LightVolumePrecision, LightVolumeResolution,
+    MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, MAX_MIN_BLOCKS, NearFieldRay, ReverseKernel, ShadowAlgorithm,
+    ShadowSettings,
+};
+pub use self::settings_io::path_encoding::{decode_path, encode_path};
+pub use self::settings_io::preset_error::PresetError;
+pub use self::settings_io::preset_json::{apply_json, apply_path, load_json, set_value, settings_to_json};
+pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
+pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
+pub use self::settings_io::volume_location::VolumeLocation;
+pub use self::transfer::baked_transfer::BakedTransfer;
+pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
+pub use self::transfer::colored_shadows::LIGHT_COLORS;
+pub use self::transfer::label_colors::label_color;
+pub use self::transfer::oklab::{
+    lab_from_lch, lch_from_lab, linear_from_oklab, oklab_from_linear, srgb_from_lch,
+};
+pub use comparison_variant::ComparisonVariant;
+pub use environment_map::{BrightLight, EnvironmentMap, Panorama};
+pub use image_spec::{Annotations, ImageSpec, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
+pub use light_direction::LightDirection;
+pub use lighting_rig::{LightingRig, key_and_fill};
+pub use object_rotation::{CameraLightRotation, ObjectRotation};
+pub use settings::{
+    Background, LightingTransfer, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA,
+    Settings, ToneMap,
+};
+pub use transfer::{
+    ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,
+    SMOOTH_SEGMENT_PIECES, TransferFunction, linear_from_srgb, srgb_from_linear,
+};
+pub use transfer_exchange::{
+    EXPORT_EXTENSIONS, ExchangeError, IMPORT_EXTENSIONS, export_transfer, import_transfer,
+};

@@ -1,0 +1,387 @@
+//! Settings: the value that holds the complete look of an image.
+
+mod apply_corrections;
+pub(super) mod camera_settings;
+pub(super) mod clipping;
+pub(super) mod density_range;
+pub(super) mod floor;
+pub(super) mod label_table;
+pub(super) mod length;
+pub(super) mod light;
+pub(super) mod quality;
+pub(super) mod sampling;
+pub(super) mod sanitise;
+pub(super) mod saved_entries;
+pub(super) mod shadows;
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    BakedTransfer, Camera, ClassificationOrder, Clipping, DensityRange, FloorSettings, GradientSource,
+    LabelTable, LightSettings, LightStorage, NearFieldRay, OpacityLength, ReconstructionKernel, RenderEngine,
+    SamplingSettings, SavedEntry, ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder,
+    SkySettings, SlabMode, SlabQuadrature, TransferFunction,
+};
+use chiaroscuro_volume::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange, math::SceneSpace};
+
+/// Version of the JSON format. Files of every version are read: settings that they lack keep their defaults, and
+/// unknown settings are reported.
+pub const SCHEMA: u32 = 2;
+
+/// Complete look of an image of a volume, and the corrections of its file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Version of the JSON format, [`SCHEMA`].
+    pub schema: u32,
+    /// Camera and its projection.
+    pub camera: Camera,
+    /// Lights, at most [`super::MAX_LIGHTS`].
+    pub lights: Vec<LightSettings>,
+    /// Range of values that is mapped to densities of 0 … 1.
+    pub range: DensityRange,
+    /// Looks of labels, by number. If it has entries, volumes of integers are shown by their labels, and the transfer
+    /// functions are not used.
+    pub labels: LabelTable,
+    /// Transfer function of the eye: colour and opacity of every value.
+    pub transfer: TransferFunction,
+    /// Opacity that attenuates light.
+    pub lighting: LightingTransfer,
+    /// Length to which opacities refer.
+    pub opacity_unit: OpacityLength,
+    /// Illumination of material: Phong coefficients.
+    pub shading: PhongShading,
+    /// Shadow algorithm and its parameters.
+    pub shadows: ShadowSettings,
+    /// Ambient light from a sky or an environment map.
+    pub sky: SkySettings,
+    /// Multiple scattering of light inside the volume.
+    pub scattering: ScatteringSettings,
+    /// Clipping by a crop box and a plane.
+    pub cuts: Clipping,
+    /// Floor under the volume that receives shadows.
+    pub floor: FloorSettings,
+    /// Sampling of the eye's sheets.
+    pub sampling: SamplingSettings,
+    /// Background, tone mapping and exposure.
+    pub output: OutputSettings,
+    /// Saved views and looks in their display order, at most [`super::MAX_SAVED_ENTRIES`]; they do not affect the
+    /// image.
+    pub kept: Vec<SavedEntry>,
+    /// Corrections of the volume by the user, where its file is wrong. They belong to that file: looks that are meant
+    /// for any volume neither contain nor change them.
+    pub volume: Corrections,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            schema: SCHEMA,
+            camera: Camera::default(),
+            lights: vec![LightSettings::default()],
+            range: DensityRange::Robust,
+            labels: LabelTable::default(),
+            transfer: TransferFunction::default(),
+            lighting: LightingTransfer::default(),
+            opacity_unit: OpacityLength::Voxels(1.0),
+            shading: PhongShading::default(),
+            shadows: ShadowSettings::default(),
+            sky: SkySettings::default(),
+            scattering: ScatteringSettings::default(),
+            cuts: Clipping::default(),
+            floor: FloorSettings::default(),
+            sampling: SamplingSettings::default(),
+            output: OutputSettings::default(),
+            kept: Vec::new(),
+            volume: Corrections::default(),
+        }
+    }
+}
+
+/// Opacity that attenuates light: the eye's, scaled, or a curve of its own (P §4: lower opacities here let light
+/// faintly pass thin opaque structures).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LightingTransfer {
+    /// Uses the eye's opacity instead of the curve.
+    pub linked: bool,
+    /// Factor for the extinction, linked or not.
+    pub scale: f64,
+    /// Opacity curve if not linked; its colours are not used.
+    pub curve: TransferFunction,
+}
+
+impl Default for LightingTransfer {
+    fn default() -> Self {
+        Self { linked: true, scale: 1.0, curve: TransferFunction::default() }
+    }
+}
+
+/// Sides of a surface that receive diffuse light from lights with shadows. Lights without shadows illuminate both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LitSides {
+    /// Side to which opacity falls; highlights lie there, too.
+    One,
+    /// Both sides, as if light came through; highlights lie where density falls.
+    Two,
+}
+
+/// Coefficients of Phong's illumination equation (P eq. 2–4).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PhongShading {
+    /// Emission as a share of the material's colour (`C_e`).
+    pub emission: f64,
+    /// Ambient reflection coefficient `k_a`, 0 … 10.
+    pub ambient: f64,
+    /// Diffuse reflection coefficient `k_d`, 0 … 10.
+    pub diffuse: f64,
+    /// Specular reflection coefficient `k_s`, 0 … 10.
+    pub specular: f64,
+    /// Phong exponent `n_s`, 1 … 1000.
+    pub shininess: f64,
+    /// Density change per opacity unit at which a sample counts half as a surface: below it the direction of the
+    /// gradient is noise, and the sample is lit evenly from all sides.
+    pub surface_gradient: f64,
+    /// Sides of surfaces that are lit.
+    pub sides: LitSides,
+}
+
+impl Default for PhongShading {
+    fn default() -> Self {
+        Self {
+            emission: 0.0,
+            ambient: 0.15,
+            diffuse: 0.85,
+            specular: 0.25,
+            shininess: 32.0,
+            surface_gradient: 0.02,
+            sides: LitSides::One,
+        }
+    }
+}
+
+/// Tone mapping curve from linear light to display colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneMap {
+    /// Identity up to 0.8, then a smooth shoulder that keeps the hue.
+    Neutral,
+    /// Clipping of components at 1.
+    Clip,
+}
+
+/// Vertical colour gradient behind the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Background {
+    /// Colour at the top, sRGB, 0 … 1.
+    pub top: [f32; 3],
+    /// Colour at the bottom, sRGB, 0 … 1.
+    pub bottom: [f32; 3],
+}
+
+/// Output stage: background, tone mapping and exposure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OutputSettings {
+    /// Background behind the volume; left out of transparent images.
+    pub background: Background,
+    /// Tone mapping of the volume, never applied to the background.
+    pub tone_map: ToneMap,
+    /// Factor for the light of the volume and of the floor before tone mapping, never for the background:
+    /// [`MIN_EXPOSURE`] … [`MAX_EXPOSURE`]. Applies to linear images, too, but not to measurements of light and
+    /// shadow.
+    pub exposure: f64,
+}
+
+/// Smallest exposure, four stops down: below it every image is black.
+pub const MIN_EXPOSURE: f64 = 1.0 / 16.0;
+/// Largest exposure, four stops up: above it every image is white.
+pub const MAX_EXPOSURE: f64 = 16.0;
+
+impl Default for OutputSettings {
+    fn default() -> Self {
+        // #14161b … #262a33: dark, but not black, so that shadows stand out from it.
+        let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
+        let background = Background { top: bytes([0x14, 0x16, 0x1b]), bottom: bytes([0x26, 0x2a, 0x33]) };
+        Self { background, tone_map: ToneMap::Neutral, exposure: 1.0 }
+    }
+}
+
+impl Settings {
+    /// Returns the ambient coefficient of unattenuated light, as a share of the material's colour; 0 if there is a
+    /// sky, which replaces it.
+    pub fn flat_ambient(&self) -> f64 {
+        if self.sky.is_on() { 0.0 } else { self.shading.ambient }
+    }
+
+    /// Returns true if material attenuates the light of a sky.
+    pub fn has_sky_volume(&self) -> bool {
+        self.sky.is_on() && self.shadows.algorithm.is_on()
+    }
+
+    /// Returns true if shadows are coloured: transmittance is per colour component.
+    pub fn has_colored_shadows(&self) -> bool {
+        self.shadows.transmission > 0.0 && self.shadows.algorithm.is_on()
+    }
+
+    /// Returns true if every sample casts rays to all points of area lights: more loop iterations than drivers that
+    /// run on the processor allow (Mesa's ends all loops of an invocation after 65,536), so that light is lost there.
+    pub fn casts_rays_to_all_samples(&self) -> bool {
+        let has_size = |light: &LightSettings| light.on && light.resolve(&self.camera).area.is_some();
+        self.shadows.algorithm == ShadowAlgorithm::Direct && self.lights.iter().any(has_size)
+    }
+
+    /// Returns true if light bounces; with shadows off, light does not interact with material.
+    pub fn has_bounces(&self) -> bool {
+        let ScatteringSettings { bounces, albedo, strength, .. } = self.scattering;
+        bounces > 0 && albedo > 0.0 && strength > 0.0 && self.shadows.algorithm.is_on()
+    }
+
+    /// Returns true if voxels are splatted by the scattering engine. Rays from every sample need the volume, so with
+    /// direct shadows the image is gathered with either engine.
+    pub fn uses_scattering_engine(&self) -> bool {
+        self.sampling.engine == RenderEngine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
+    }
+
+    /// Returns true if the diffuse light of all shadowed lights is stored in one combined volume of colours. With
+    /// [`LightStorage::Auto`]: if that takes less memory than a volume per light, and loses neither highlights nor
+    /// near-field rays.
+    pub fn combines_lights(&self) -> bool {
+        let shadowed = self.lights.iter().filter(|light| light.needs_volume()).count();
+        let wanted = match self.shadows.storage {
+            LightStorage::PerLight => false,
+            LightStorage::Combined => true,
+            // Four 16-bit components (colour and weight) against one number per light, or as many with coloured
+            // shadows.
+            LightStorage::Auto => {
+                let alike = if self.has_colored_shadows() { 1 } else { 4 };
+                self.shading.specular == 0.0
+                    && self.shadows.near_field == NearFieldRay::Off
+                    && shadowed > alike
+            }
+        };
+        // Terms that depend on the view direction cannot be stored in a volume.
+        let is_even = self.scattering.anisotropy == 0.0;
+        wanted && is_even && shadowed > 0 && self.shadows.algorithm.has_volume()
+    }
+
+    /// Returns the near-field rays in use. They need a light volume per light to continue from: in a combined volume,
+    /// its voxels' own blur would remove their detail. None either if every footprint is composited, which is shaded
+    /// as in the paper.
+    pub fn effective_near_field(&self) -> NearFieldRay {
+        let looks_up =
+            self.shadows.algorithm.has_volume() && !self.combines_lights() && !self.composites_footprints();
+        if looks_up { self.shadows.near_field } else { NearFieldRay::Off }
+    }
+
+    /// Returns true if the eye's slabs have adaptive thickness. A slab is divided where the gradient indicates that
+    /// it contributes much: not if gradients come from sheets or voxels are classified first; and not with two-point
+    /// quadrature, which does not need it.
+    pub fn has_adaptive_slabs(&self) -> bool {
+        self.sampling.slabs == SlabMode::ByNeed && self.samples_points()
+    }
+
+    /// Returns true if opacity is pre-integrated over the eye's slabs, from the densities at both ends of their
+    /// steps, under the conditions of [`Self::has_adaptive_slabs`]; otherwise slabs are even.
+    pub fn has_preintegrated_slabs(&self) -> bool {
+        self.sampling.slabs == SlabMode::Preintegrated && self.samples_points()
+    }
+
+    /// Returns true if point samples of density determine the image.
+    fn samples_points(&self) -> bool {
+        let SamplingSettings { quadrature, gradients, .. } = self.sampling;
+        !self.uses_scattering_engine()
+            && quadrature == SlabQuadrature::One
+            && gradients != GradientSource::Sheets
+            && self.classification() == ClassificationOrder::Post
+    }
+
+    /// Returns the kernel with which the eye's samples are gathered: the prefiltered one if voxels are classified
+    /// first, otherwise the chosen one.
+    pub fn eye_kernel(&self) -> ReconstructionKernel {
+        self.gathering_kernel(self.sampling.kernel)
+    }
+
+    /// Returns the kernel with which the light pass gathers: the prefiltered one if voxels are classified first,
+    /// otherwise the chosen one.
+    pub fn light_kernel(&self) -> ReconstructionKernel {
+        self.gathering_kernel(self.shadows.kernel)
+    }
+
+    fn gathering_kernel(&self, chosen: ReconstructionKernel) -> ReconstructionKernel {
+        match self.sampling.classification {
+            ClassificationOrder::Post => chosen,
+            ClassificationOrder::Pre => ReconstructionKernel::Prefiltered,
+        }
+    }
+
+    /// Returns the thickness of even slabs with the same look, in smallest voxel edges: adaptive slabs cost as much,
+    /// and err as much, as even ones of half their largest thickness.
+    pub fn equivalent_even_slab(&self) -> f64 {
+        match self.sampling.slabs {
+            SlabMode::Even | SlabMode::Preintegrated => self.sampling.slab,
+            SlabMode::ByNeed => 0.5 * self.sampling.slab,
+        }
+    }
+
+    /// Returns the thickness of the eye's thickest slabs, in smallest voxel edges.
+    pub fn thickest_slab(&self) -> f64 {
+        if self.has_adaptive_slabs() { self.sampling.slab } else { self.equivalent_even_slab() }
+    }
+
+    /// Returns true if the density reconstructed in a cell of 2³ voxels stays within the cell's known bounds
+    /// ([`chiaroscuro_volume::CellBounds`]): not if voxels are classified before they are spread, nor with Gaussians
+    /// much narrower or wider than the B-spline.
+    pub fn cell_bounds_hold(&self) -> bool {
+        let is_bounded = |kernel: ReconstructionKernel| match kernel {
+            ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => true,
+            ReconstructionKernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
+        };
+        self.classification() == ClassificationOrder::Post
+            && is_bounded(self.sampling.kernel)
+            && is_bounded(self.shadows.kernel)
+    }
+
+    /// Returns true if normals are computed from sheets.
+    pub fn has_sheet_gradients(&self) -> bool {
+        self.sampling.gradients == GradientSource::Sheets
+    }
+
+    /// Returns true if normals are analytic gradients of the reconstruction: not if voxels are splatted and no
+    /// density is sampled, and only for the B-spline, whose gradient is continuous.
+    pub fn has_kernel_gradients(&self) -> bool {
+        let is_smooth = self.eye_kernel() == ReconstructionKernel::BSpline;
+        self.sampling.gradients == GradientSource::Kernel && is_smooth && !self.uses_scattering_engine()
+    }
+
+    /// Returns true if voxels are composited one by one, and never summed in sheets.
+    pub fn composites_footprints(&self) -> bool {
+        self.uses_scattering_engine() && self.sampling.order == SheetOrder::EveryFootprint
+    }
+
+    /// Returns the opacity unit in scene units, safe to divide by.
+    fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
+        self.opacity_unit.scene_units(scene).max(1e-9)
+    }
+
+    /// Returns the eye's transfer function as a table over a value range, that of the shown volume
+    /// ([`chiaroscuro_volume::Volume::table_range`]). For labels, call it on the settings [as
+    /// drawn](Self::resolved_for).
+    pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        self.transfer.bake(range, self.opacity_unit_in_scene(scene), 1.0)
+    }
+
+    /// Returns the lighting transfer function as a table over a value range, as [`Self::bake_eye`]. With coloured
+    /// shadows, the table's colours are the shares of extinction that each colour of light meets.
+    pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
+        let baked = function.bake(range, self.opacity_unit_in_scene(scene), self.lighting.scale);
+        if self.has_colored_shadows() {
+            baked.with_extinction_shares(self.shadows.transmission)
+        } else {
+            baked
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Quality levels: presets of slab thickness, shadow algorithm, kernels and near field.
+
+use crate::{
+    GradientSource, NearFieldRay, ReconstructionKernel, ReverseKernel, SamplingSettings, Settings,
+    ShadowAlgorithm, ShadowSettings, SlabMode,
+};
+
+impl Settings {
+    /// Returns this look, rendered at the quality of another: with its slabs, kernels, normals and light volumes, and
+    /// with its shadow algorithm if both have shadows. Classification, and the remedies against dark images, stay
+    /// those of this look.
+    #[must_use]
+    pub fn with_quality_of(self, other: &Self) -> Self {
+        let ShadowSettings {
+            algorithm,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution,
+            precision,
+            storage,
+            reverse_kernel,
+            near_field,
+            area,
+            least_blocks,
+            strength: _,
+            ambient_offset: _,
+            gain: _,
+            bias_voxels: _,
+            balance: _,
+            transmission: _,
+            keep_balanced: _,
+            first_touch: _,
+        } = other.shadows;
+        let own = self.shadows.algorithm;
+        let algorithm = if own.is_on() && algorithm.is_on() { algorithm } else { own };
+        let shadows = ShadowSettings {
+            algorithm,
+            deposit,
+            kernel,
+            slab,
+            quadrature,
+            resolution,
+            precision,
+            storage,
+            reverse_kernel,
+            near_field,
+            area,
+            least_blocks,
+            ..self.shadows
+        };
+        let classification = self.sampling.classification;
+        Self { shadows, sampling: SamplingSettings { classification, ..other.sampling.clone() }, ..self }
+    }
+}
+
+/// Quality level. Settings store the individual values, not the level, so that they can be changed after it was
+/// chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QualityPreset {
+    /// Light volumes, without near-field rays.
+    Fast,
+    /// Light volumes, and short near-field rays.
+    Standard,
+    /// Light volumes, and longer near-field rays.
+    Fine,
+    /// Rays from every sample to the light, and the thinnest slabs.
+    Exact,
+}
+
+/// Settings that a quality level sets.
+struct QualitySettings {
+    algorithm: ShadowAlgorithm,
+    near_field: NearFieldRay,
+    /// Thickness of the eye's slabs, in smallest voxel edges; the largest if they are adaptive.
+    slab: f64,
+    slabs: SlabMode,
+    /// Slab thickness of the light pass or step of shadow rays, in smallest voxel edges.
+    shadow_slab: f64,
+    /// Kernel of the light pass or of shadow rays.
+    shadow_kernel: ReconstructionKernel,
+    gradients: GradientSource,
+}
+
+impl QualityPreset {
+    /// All levels, from the fastest to the most accurate.
+    pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
+
+    fn settings(self) -> QualitySettings {
+        let splat = |near_field, slabs, slab| QualitySettings {
+            algorithm: ShadowAlgorithm::Splat,
+            near_field,
+            slab,
+            slabs,
+            shadow_slab: 1.0,
+            // Its blur beyond the B-spline's is less than that of a light volume, at a sixth of the fetches.
+            shadow_kernel: ReconstructionKernel::Prefiltered,
+            gradients: GradientSource::Volume,
+        };
+        match self {
+            Self::Fast => splat(NearFieldRay::Off, SlabMode::Even, 0.5),
+            // Even slabs of this thickness show as wood grain on steep surfaces.
+            Self::Standard => splat(NearFieldRay::Short, SlabMode::ByNeed, 1.0),
+            // Thinner slabs do not get closer to the converged image.
+            Self::Fine => QualitySettings {
+                gradients: GradientSource::Kernel,
+                ..splat(NearFieldRay::Long, SlabMode::ByNeed, 1.0)
+            },
+            Self::Exact => QualitySettings {
+                algorithm: ShadowAlgorithm::Direct,
+                near_field: NearFieldRay::Short,
+                slab: 0.25,
+                slabs: SlabMode::Even,
+                shadow_slab: 0.25,
+                shadow_kernel: ReconstructionKernel::BSpline,
+                gradients: GradientSource::Kernel,
+            },
+        }
+    }
+
+    /// Applies all settings of the level. Disabled shadows stay disabled.
+    pub fn apply(self, settings: &mut Settings) {
+        let QualitySettings { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
+            self.settings();
+        (settings.sampling.slab, settings.sampling.slabs) = (slab, slabs);
+        settings.sampling.gradients = gradients;
+        let shadows = &mut settings.shadows;
+        (shadows.slab, shadows.kernel) = (shadow_slab, shadow_kernel);
+        shadows.near_field = near_field;
+        shadows.reverse_kernel = ReverseKernel::Tent;
+        if shadows.algorithm.is_on() {
+            shadows.algorithm = algorithm;
+        }
+    }
+
+    /// Returns the level that the settings match, if any.
+    pub fn from_settings(settings: &Settings) -> Option<Self> {
+        Self::ALL.into_iter().find(|level| {
+            let mut applied = settings.clone();
+            level.apply(&mut applied);
+            applied == *settings
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_at_the_level_that_was_applied() {
+        let mut settings = Settings::default();
+        for level in QualityPreset::ALL {
+            level.apply(&mut settings);
+            assert_eq!(QualityPreset::from_settings(&settings), Some(level));
+        }
+        settings.sampling.slab = 0.7;
+        assert_eq!(QualityPreset::from_settings(&settings), None);
+    }
+
+    #[test]
+    fn looks_are_drawn_as_truly_as_others_and_stay_what_they_are() {
+        let mut exact = Settings::default();
+        QualityPreset::Exact.apply(&mut exact);
+        (exact.shadows.gain, exact.shadows.balance, exact.shading.ambient) = (2.0, 3.0, 0.9);
+        let mut look = Settings::default();
+        look.shadows.balance = 1.7;
+        look.sampling.classification = crate::ClassificationOrder::Pre;
+        let drawn = look.clone().with_quality_of(&exact);
+        assert_eq!(QualityPreset::from_settings(&drawn), Some(QualityPreset::Exact));
+        assert_eq!((drawn.shadows.gain, drawn.shadows.balance), (1.0, 1.7));
+        assert_eq!(drawn.sampling.classification, look.sampling.classification);
+        assert_eq!(drawn.shading, look.shading);
+        exact.shadows.algorithm = ShadowAlgorithm::Off;
+        assert_eq!(
+            look.with_quality_of(&exact).shadows.algorithm,
+            ShadowAlgorithm::Splat,
+            "a look has shadows"
+        );
+    }
+
+    #[test]
+    fn shadows_that_are_off_stay_off() {
+        let mut settings = Settings::default();
+        settings.shadows.algorithm = ShadowAlgorithm::Off;
+        QualityPreset::Exact.apply(&mut settings);
+        assert_eq!(settings.shadows.algorithm, ShadowAlgorithm::Off);
+    }
+}

@@ -1,0 +1,20 @@
+//! Import and export of Chiaroscuro's own format: a preset that holds only the transfer function.
+
+use serde_json::{Value, json};
+
+use super::{ExchangeError, format_error};
+use crate::{Settings, TransferFunction, apply_relative};
+use chiaroscuro_volume::{ValueRange, ValueRanges};
+
+/// Reads the transfer function of a preset or a session.
+pub(crate) fn from_preset(tree: &mut Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
+    let overlay = json!({ "transfer": tree["transfer"].take(), "_values": tree["_values"].take() });
+    let applied = apply_relative(&Settings::default(), &overlay, &ValueRanges::without_outliers(range));
+    let (settings, _) = applied.map_err(|err| format_error(&err.to_string()))?;
+    Ok(settings.transfer)
+}
+
+/// Writes a preset that holds only the transfer function.
+pub(crate) fn to_preset(function: &TransferFunction) -> String {
+    format!("{:#}\n", json!({ "transfer": function }))
+}

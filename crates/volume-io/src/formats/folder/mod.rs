@@ -1,0 +1,88 @@
+//! Folders that are opened as a whole: slices of one volume, one file each. DICOM slices may lie in nested folders,
+//! as on media and in archive exports.
+
+mod files;
+
+use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use super::pictures::slices;
+use super::unsupported::unsupported_folder;
+use super::{LoadControl, LoadError, LoadOptions, dicom};
+use chiaroscuro_volume::{LoadContext, Volume};
+use files::{NestedFiles, list_files, list_nested_files};
+
+/// Extensions of pictures that are volumes of their own.
+const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
+
+/// Loads the volume whose slices lie in a folder, restricted to [`LoadOptions::only_files`] where it is given.
+pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "open the folder", path };
+    if let Some(format) = unsupported_folder(path) {
+        return Err(format.refusal(attempt));
+    }
+    let mut files = list_files(attempt, control)?;
+    let mut nested = NestedFiles::default();
+    if let Some(among) = &options.only_files {
+        let selected: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();
+        files.retain(|path| path.file_name().is_some_and(|name| selected.contains(name)));
+    } else {
+        nested = list_nested_files(path, control)?;
+    }
+    let count = nested.files.len();
+    if is_picture_folder(&files, &nested, control)? {
+        nested = NestedFiles::default();
+    }
+    // Each reader selects its own files, the one with the most specific signature first.
+    let all = [files.as_slice(), nested.files.as_slice()].concat();
+    if let Some(volume) = dicom::load_folder(path, &all, nested.remarks(), options, control)? {
+        return Ok(volume);
+    }
+    if let Some(volume) = slices::load(attempt, &files, options, control)? {
+        return Ok(volume);
+    }
+    let within =
+        if count > 0 { format!(" or of the {count} files in its subfolders") } else { String::new() };
+    Err(attempt.bad_input_error(
+        "files",
+        format!("none of its {} files{within} is a slice in a supported format", files.len()),
+        "open a single file",
+    ))
+}
+
+/// Returns true if a folder mainly contains pictures, so that a few DICOM files in nested folders are ignored.
+fn is_picture_folder(
+    files: &[PathBuf],
+    nested: &NestedFiles,
+    control: &LoadControl,
+) -> Result<bool, LoadError> {
+    let is_picture = |path: &&PathBuf| {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        ending.is_some_and(|ending| PICTURES.contains(&ending.as_str()))
+    };
+    let pictures = files.iter().filter(is_picture).count();
+    Ok(pictures > 0 && !nested.files.is_empty() && dicom::count_pictures(&nested.files, control)? <= pictures)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_without_slices_is_no_volume() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("notes.txt"), "x").unwrap();
+        std::fs::write(folder.path().join(".hidden"), "x").unwrap();
+        let load = || crate::load(folder.path(), &LoadOptions::default(), &LoadControl::new());
+        assert!(load().unwrap_err().to_string().contains("none of its 1 files is"));
+        std::fs::create_dir(folder.path().join("within")).unwrap();
+        std::fs::write(folder.path().join("within/notes.txt"), "x").unwrap();
+        assert!(
+            load()
+                .unwrap_err()
+                .to_string()
+                .contains("none of its 1 files or of the 1 files in its subfolders is")
+        );
+    }
+}

@@ -1,0 +1,106 @@
+//! Interpretation of the axes of a NumPy array: the three fastest are a volume, those before count volumes.
+
+use super::super::number::FileNumberType;
+use super::super::{Endian, FileDimension, LoadError};
+use super::header::NumpyHeader;
+use chiaroscuro_volume::{LoadContext, quoted};
+
+/// Array as one or several volumes.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct NumpyGrid {
+    /// Dimensions that count volumes, with their lengths, slowest first.
+    pub(super) outer: Vec<(FileDimension, u64)>,
+    /// Voxels along x, y and z.
+    pub(super) dims: [u64; 3],
+    pub(super) number: FileNumberType,
+    pub(super) endian: Endian,
+    pub(super) components: usize,
+    pub(super) is_color: bool,
+}
+
+impl NumpyGrid {
+    /// Interprets the axes. Axes of length 1 are dropped while there are more than three.
+    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NumpyHeader) -> Result<Self, LoadError> {
+        let (number, endian, mut components) = parse_type_code(&header.descr).ok_or_else(|| {
+            attempt.bad_input_error(
+                "descr",
+                format!("elements of type {} are not supported", quoted(&header.descr)),
+                "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
+            )
+        })?;
+        // Slowest first, as in the file.
+        let mut axes = header.shape.clone();
+        if header.is_fortran {
+            axes.reverse();
+        }
+        let is_color = number == FileNumberType::U8 && axes.len() > 3 && matches!(axes.last(), Some(3 | 4));
+        if is_color {
+            components = axes.pop().unwrap_or(1) as usize;
+        }
+        while axes.len() > 3 {
+            let Some(single) = axes.iter().position(|&n| n == 1) else { break };
+            axes.remove(single);
+        }
+        let count = axes.len();
+        let (outer, dims) = match axes[..] {
+            [y, x] => (vec![], [x, y, 1]),
+            [z, y, x] => (vec![], [x, y, z]),
+            [frames, z, y, x] => (vec![(FileDimension::Frame, frames)], [x, y, z]),
+            [frames, channels, z, y, x] => {
+                (vec![(FileDimension::Frame, frames), (FileDimension::Channel, channels)], [x, y, z])
+            }
+            _ => {
+                return Err(attempt.bad_input_error(
+                    "shape",
+                    format!("an array of {count} axes is not a volume"),
+                    "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
+                ));
+            }
+        };
+        if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
+            return Err(attempt.bad_input_error(
+                "shape",
+                format!("the array has no {}", dimension.plural()),
+                "every axis must have at least one element",
+            ));
+        }
+        Ok(Self { outer, dims, number, endian, components, is_color })
+    }
+}
+
+impl NumpyGrid {
+    /// True for arrays that are likely no image, given the number of their axes: two axes, one of them shorter than
+    /// 16, are an affine, a matrix or a list of points; more axes that end in 2 by 2 to 4 by 4 are a list of
+    /// matrices.
+    pub(super) fn is_likely_table(&self, axes: usize) -> bool {
+        const MIN_PIXELS: u64 = 16;
+        let [x, y, _] = self.dims;
+        if axes == 2 { x < MIN_PIXELS || y < MIN_PIXELS } else { x == y && (2..=4).contains(&x) }
+    }
+}
+
+/// Parses a type code: number type, byte order, and number of components per element.
+fn parse_type_code(descr: &str) -> Option<(FileNumberType, Endian, usize)> {
+    let (endian, code) = match descr.split_at_checked(1)? {
+        (">", code) => (Endian::Big, code),
+        ("<" | "|" | "=", code) => (Endian::Little, code),
+        _ => (Endian::Little, descr),
+    };
+    let (number, components) = match code {
+        "b1" | "u1" => (FileNumberType::U8, 1),
+        "i1" => (FileNumberType::I8, 1),
+        "u2" => (FileNumberType::U16, 1),
+        "i2" => (FileNumberType::I16, 1),
+        "u4" => (FileNumberType::U32, 1),
+        "i4" => (FileNumberType::I32, 1),
+        "u8" => (FileNumberType::U64, 1),
+        "i8" => (FileNumberType::I64, 1),
+        "f2" => (FileNumberType::F16, 1),
+        "f4" => (FileNumberType::F32, 1),
+        "f8" => (FileNumberType::F64, 1),
+        "c8" => (FileNumberType::F32, 2),
+        "c16" => (FileNumberType::F64, 2),
+        _ => return None,
+    };
+    Some((number, endian, components))
+}

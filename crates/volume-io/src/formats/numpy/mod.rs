@@ -1,0 +1,210 @@
+//! NumPy arrays: one in a file (`.npy`), or several in an archive (`.npz`).
+//!
+//! After the definition at <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>, versions 1 to 3.
+
+mod dictionary;
+mod grid;
+mod header;
+#[cfg(test)]
+mod tests;
+mod zip;
+
+use std::io::Read as _;
+
+use flate2::CrcReader;
+
+use super::input::stem;
+use super::number::{ScalarReduction, VoxelEncoding};
+use super::placement::{GridPlacement, VolumeParts};
+use super::reader::{FormatReader, TrailingData, VolumeSource};
+use super::samples::{ReadFault, VoxelLayout, is_corruption, skip_bytes};
+use super::voxels::ReadVoxels;
+use super::{FileDimension, LoadError, VolumeOffer};
+use chiaroscuro_files::sanitised;
+use chiaroscuro_volume::{GridExtent, LoadContext, ValueMetadata, Volume, quoted};
+use grid::NumpyGrid;
+use header::{MAGIC, NumpyHeader};
+use zip::ZipEntry;
+
+pub(super) const NPY: FormatReader = FormatReader {
+    name: "NumPy",
+    extensions: &[".npy", ".npy.gz"],
+    recognises: |start| start.has_at(MAGIC, 0),
+    load: load_array,
+};
+
+pub(super) const NPZ: FormatReader = FormatReader {
+    name: "NumPy archive",
+    extensions: &[".npz"],
+    recognises: |start| zip::begins_with_entry(start.stored(), ENDING),
+    load: load_archive,
+};
+
+/// Extension of arrays in an archive.
+const ENDING: &str = ".npy";
+
+const HELP: &str = "save the array again, or copy the file again";
+
+/// Maximum number of arrays of an archive whose headers are read.
+const MAX_ARRAYS: usize = 1024;
+
+/// Selected volume of an array, and how it is stored.
+struct ChosenNumpyArray {
+    stored: VoxelEncoding,
+    extent: GridExtent,
+    /// Offset of its first voxel in the array's file, in bytes.
+    at: u64,
+    placement: GridPlacement,
+}
+
+/// Selects the volume of an array by the user's choice.
+fn choose_volume(
+    source: &VolumeSource<'_>,
+    attempt: LoadContext<'_>,
+    header: &NumpyHeader,
+    grid: &NumpyGrid,
+) -> Result<ChosenNumpyArray, LoadError> {
+    let part = source.scalar_reduction(attempt, grid.components, grid.is_color)?;
+    let stored = VoxelEncoding {
+        number: grid.number,
+        endian: grid.endian,
+        components: grid.components,
+        reduction: part,
+    };
+    let mut number = 0u64;
+    for &(dimension, count) in &grid.outer {
+        let chosen = source.choose_numbered(attempt, dimension, count, grid.dims, |_| String::new())?;
+        number = number.saturating_mul(count).saturating_add(chosen as u64);
+    }
+    let extent = GridExtent::checked(
+        attempt,
+        "shape",
+        grid.dims,
+        stored.voxel_type(),
+        source.options.limits(source.control),
+    )?;
+    let before = (extent.voxels as u64).saturating_mul(stored.voxel_bytes()).saturating_mul(number);
+    let remark = match part {
+        ScalarReduction::Magnitude => Some("complex numbers are shown as their magnitude"),
+        other => other.remark(),
+    };
+    let placement = GridPlacement::unknown().with_remark(remark);
+    Ok(ChosenNumpyArray { stored, extent, at: header.bytes.saturating_add(before), placement })
+}
+
+/// Loads a file of a single array.
+fn load_array(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the NumPy array", path: source.path };
+    let header = NumpyHeader::read(attempt, &mut source.content())?;
+    let grid = NumpyGrid::from_header(attempt, &header)?;
+    let ChosenNumpyArray { stored, extent, at, placement } = choose_volume(&source, attempt, &header, &grid)?;
+    let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
+    let name = stem(source.path);
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+}
+
+/// Loads an array of an archive.
+fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let attempt = LoadContext { operation: "read the NumPy archive", path: source.path };
+    let entries = zip::read_central_directory(attempt, &mut source.input)?;
+    let mut arrays: Vec<(ZipEntry, NumpyHeader, NumpyGrid)> = Vec::new();
+    let mut refused = Vec::new();
+    for entry in
+        entries.into_iter().filter(|entry| entry.name.strip_suffix(ENDING).is_some()).take(MAX_ARRAYS)
+    {
+        source.control.check()?;
+        let header = zip::open_entry(attempt, &mut source.input, &entry)
+            .and_then(|mut content| NumpyHeader::read(attempt, &mut content));
+        match header.and_then(|header| NumpyGrid::from_header(attempt, &header).map(|grid| (header, grid))) {
+            Ok((header, grid)) => arrays.push((entry, header, grid)),
+            Err(error @ LoadError::Io { .. }) => return Err(error),
+            Err(error) => refused.push(error),
+        }
+    }
+    // Beside a volume, matrices and tables (an affine, directions, a list of points) are no images. One that the user
+    // has named is still read.
+    let named = source.options.choice.array.as_deref();
+    let is_table = |header: &NumpyHeader, grid: &NumpyGrid| grid.is_likely_table(header.shape.len());
+    if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
+        arrays.retain(|(entry, header, grid)| {
+            !is_table(header, grid) || named == Some(array_key(entry).as_str())
+        });
+    }
+    // Nor are one-dimensional arrays offered beside a volume; without any volume, the errors of the arrays are
+    // reported.
+    if arrays.is_empty() {
+        let count = refused.len();
+        return Err(match refused.pop() {
+            Some(only) if count == 1 => only,
+            _ => attempt.bad_input_error(
+                "arrays",
+                format!("none of its {count} arrays is a volume"),
+                "save an array of numbers with three axes: z, y, x",
+            ),
+        });
+    }
+    let offers = arrays.iter().map(|(entry, _, grid)| {
+        let key = array_key(entry);
+        VolumeOffer { name: key.clone(), key, dims: Some(grid.dims) }
+    });
+    let chosen = attempt.resolve_choice(&source.options.choice, FileDimension::Array, offers.collect())?;
+    let (entry, header, grid) = arrays.swap_remove(chosen);
+    let wanted = choose_volume(&source, attempt, &header, &grid)?;
+    let voxels = read_entry(&mut source, attempt, &entry, &wanted)?;
+    let ChosenNumpyArray { extent, placement, .. } = wanted;
+    let name = sanitised(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+}
+
+/// Key by which an array is chosen: its name.
+fn array_key(entry: &ZipEntry) -> String {
+    sanitised(entry.name.trim_end_matches(ENDING), 80)
+}
+
+/// Reads the selected volume of an archive entry.
+fn read_entry(
+    source: &mut VolumeSource<'_>,
+    attempt: LoadContext<'_>,
+    entry: &ZipEntry,
+    wanted: &ChosenNumpyArray,
+) -> Result<ReadVoxels, LoadError> {
+    let ChosenNumpyArray { stored, extent, at, .. } = wanted;
+    let needed = (extent.voxels as u64).saturating_mul(stored.voxel_bytes()).saturating_add(*at);
+    // Before memory is allocated.
+    if needed > entry.bytes {
+        return Err(attempt.bad_input_error(
+            "shape",
+            format!(
+                "the data of {} are truncated: {needed} bytes expected, {} found",
+                quoted(&entry.name),
+                entry.bytes
+            ),
+            HELP,
+        ));
+    }
+    let control = source.control;
+    let layout = VoxelLayout { extent: *extent, voxel_type: stored.voxel_type(), endian: stored.endian };
+    let mut content = CrcReader::new(zip::open_entry(attempt, &mut source.input, entry)?);
+    let mut read = || {
+        if skip_bytes(&mut content, *at, control)? < *at {
+            return Err(ReadFault::Short { got: 0 });
+        }
+        stored.read(&mut content, *extent, control)
+    };
+    let voxels = read().map_err(|fault| match fault {
+        ReadFault::Io(error) if is_corruption(&error) => {
+            broken_entry_error(attempt, entry, &format!("they cannot be decompressed: {error}"))
+        }
+        fault => fault.into_error(attempt, &layout, "bytes", HELP),
+    })?;
+    // The checksum covers the whole array, and can be verified only if all of it was read.
+    let is_all = needed == entry.bytes && content.by_ref().read(&mut [0]).is_ok_and(|more| more == 0);
+    if is_all && content.crc().sum() != entry.checksum {
+        return Err(broken_entry_error(attempt, entry, "their checksum does not match"));
+    }
+    Ok(voxels)
+}
+
+fn broken_entry_error(attempt: LoadContext<'_>, entry: &ZipEntry, why: &str) -> LoadError {
+    attempt.bad_input_error("data", format!("the data of {} are broken: {why}", quoted(&entry.name)), HELP)
+}

@@ -1,0 +1,274 @@
+//! Image stacks: volumes whose slices are files of their own, numbered pictures, and single pictures.
+//!
+//! PNG (<https://www.w3.org/TR/png-3/>), JPEG (ITU-R T.81), BMP and TIFF. The distance of the slices is unknown.
+
+mod counters;
+mod groups;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::slice_reader::read_slices;
+use super::tiff;
+use crate::LoadOptions;
+use crate::reading::input::{InputFile, stem};
+use crate::reading::placement::{GridPlacement, VolumeParts};
+use crate::reading::reader::{FileStart, FormatReader, VolumeSource};
+use crate::reading::voxels::ValueMapping;
+use chiaroscuro_files::sanitised;
+use chiaroscuro_volume::{
+    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume, VolumeOffer,
+    quoted,
+};
+use groups::{SliceGroup, group_slices, name_pattern};
+use picture::{PictureHeader, SliceFormat, read_picture};
+
+/// Maximum number of series whose sizes are looked up for the list: as many as a screen has lines for.
+const MAX_LOOKED_UP: usize = 24;
+
+/// Reader of a single picture, as a volume of one slice.
+pub(crate) const READER: FormatReader = FormatReader {
+    name: "PNG, JPEG, BMP",
+    extensions: &[".png", ".jpg", ".jpeg", ".bmp"],
+    recognises: |start| SliceFormat::detect(start.stored()).is_some_and(|kind| kind != SliceFormat::Tiff),
+    load: load_single_picture,
+};
+
+fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let VolumeSource { path, start, options, control, .. } = source;
+    let attempt = LoadContext { operation: "read the picture", path };
+    let Some(kind) = SliceFormat::detect(start.stored()) else {
+        return Err(attempt.bad_input_error(
+            "header",
+            "its first bytes are not those of a picture",
+            "copy the file again",
+        ));
+    };
+    read_stack(attempt, kind, &[path.to_owned()], stem(path), Vec::new(), options, control)
+}
+
+/// Loads the volume whose slices are among the files of a folder, in natural order; `None` where none is a picture.
+///
+/// # Errors
+/// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not match each
+/// other or are broken.
+pub(crate) fn load(
+    attempt: LoadContext<'_>,
+    files: &[PathBuf],
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Option<Volume>, LoadError> {
+    let (mut pictures, mut others) = (Vec::new(), Vec::new());
+    for path in files {
+        control.check()?;
+        match SliceFormat::detect_file(slice_attempt(path))? {
+            Some(kind) => pictures.push((path.as_path(), kind)),
+            None => others.push(path.as_path()),
+        }
+    }
+    if pictures.iter().all(|&(_, kind)| kind == SliceFormat::Tiff)
+        && let Some(set) = tiff_set_file(&pictures, control)?
+    {
+        return load_tiff(set, options, control).map(Some);
+    }
+    let mut groups = group_slices(pictures.iter().copied());
+    let mut remarks = Vec::new();
+    if options.choice.series.is_none() {
+        drop_stray_pictures(&mut groups, &mut remarks);
+    }
+    if groups.is_empty() {
+        return Ok(None);
+    }
+    let is_one = groups.len() == 1;
+    let offers = offers(&groups, &pictures, options, control);
+    let group = groups.swap_remove(attempt.resolve_choice(&options.choice, FileDimension::Series, offers)?);
+    remarks.extend(damaged_slices_remark(&others, &group, &pictures));
+    let members: Vec<PathBuf> = group.files.iter().map(|&file| pictures[file].0.to_owned()).collect();
+    if group.kind == SliceFormat::Tiff
+        && let [one] = members.as_slice()
+    {
+        let volume = load_tiff(one, options, control)?;
+        let remarks = volume.remarks().iter().cloned().chain(remarks).collect();
+        return Ok(Some(volume.with_remarks(remarks)));
+    }
+    remarks.extend(group.gap);
+    let folder = attempt.path.file_name().unwrap_or_default().to_string_lossy();
+    let name =
+        if is_one && !folder.is_empty() { sanitised(&folder, 120) } else { sanitised(&group.name, 120) };
+    read_stack(attempt, group.kind, &members, name, remarks, options, control).map(Some)
+}
+
+fn slice_attempt(path: &Path) -> LoadContext<'_> {
+    LoadContext { operation: "read the slice", path }
+}
+
+/// Remark about files that are named like slices of a group, or at least like pictures, but are none: truncated or
+/// damaged copies.
+fn damaged_slices_remark(
+    others: &[&Path],
+    group: &SliceGroup,
+    pictures: &[(&Path, SliceFormat)],
+) -> Option<String> {
+    // As many as fit into a line.
+    const MAX_NAMED: usize = 3;
+    let own = group.files.first().map(|&file| name_pattern(pictures[file].0));
+    let known: HashSet<String> = pictures.iter().map(|(path, _)| name_pattern(path)).collect();
+    let is_meant = |path: &&&Path| {
+        let name = name_pattern(path);
+        Some(&name) == own.as_ref() || (has_picture_extension(path) && !known.contains(&name))
+    };
+    let mut names: Vec<String> = others
+        .iter()
+        .filter(is_meant)
+        .map(|path| quoted(&path.file_name().unwrap_or_default().to_string_lossy()))
+        .collect();
+    let count = names.len();
+    if count > MAX_NAMED {
+        names.truncate(MAX_NAMED);
+        names.push(format!("and {} more", count - MAX_NAMED));
+    }
+    (count > 0).then(|| {
+        let (is, they) =
+            if count == 1 { ("is", "it is not a picture") } else { ("are", "they are not pictures") };
+        format!("{} {is} left out: {they}; copy the file again if a slice is missing", names.join(", "))
+    })
+}
+
+fn has_picture_extension(path: &Path) -> bool {
+    let endings = READER.extensions.iter().chain(&[".tif", ".tiff"]);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    endings.into_iter().any(|ending| name.ends_with(ending))
+}
+
+/// Leaves out single pictures beside the slices of one volume: previews and the like.
+fn drop_stray_pictures(groups: &mut Vec<SliceGroup>, remarks: &mut Vec<String>) {
+    // With fewer slices, strays cannot be distinguished from them.
+    const MIN_SLICES: usize = 3;
+    let is_stray = |group: &SliceGroup| group.files.len() == 1;
+    let stacks = groups.iter().filter(|group| !is_stray(group)).count();
+    let is_clear = stacks == 1 && groups.iter().any(|group| group.files.len() >= MIN_SLICES);
+    if is_clear && groups.len() > 1 {
+        remarks.push(format!("{} single pictures beside the slices are left out", groups.len() - 1));
+        groups.retain(|group| !is_stray(group));
+    }
+}
+
+/// List of the volumes to choose from, where there are several.
+fn offers(
+    groups: &[SliceGroup],
+    pictures: &[(&Path, SliceFormat)],
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Vec<VolumeOffer> {
+    let dims = |group: &SliceGroup| {
+        let &first = group.files.first()?;
+        let (path, kind) = *pictures.get(first)?;
+        let (PictureHeader { size: [width, height], .. }, _) =
+            read_picture(slice_attempt(path), kind, options, control, false).ok()?;
+        Some([width, height, group.files.len() as u64])
+    };
+    let is_long = groups.len() > MAX_LOOKED_UP || groups.len() == 1;
+    groups
+        .iter()
+        .enumerate()
+        .map(|(at, group)| VolumeOffer {
+            key: at.to_string(),
+            name: sanitised(&group.name, 80),
+            dims: if is_long { None } else { dims(group) },
+        })
+        .collect()
+}
+
+/// Returns the first file if its metadata describe the whole set of files: it is read in place of all.
+fn tiff_set_file<'a>(
+    pictures: &[(&'a Path, SliceFormat)],
+    control: &LoadControl,
+) -> Result<Option<&'a Path>, LoadError> {
+    let [(first, _), (second, _), ..] = *pictures else { return Ok(None) };
+    let name = second.file_name().unwrap_or_default().to_string_lossy();
+    let is_set = tiff::SingleSlice::open(slice_attempt(first), control)?.describes_set_with(&name);
+    Ok(is_set.then_some(first))
+}
+
+fn load_tiff(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
+    let attempt = slice_attempt(path);
+    let mut input = InputFile::open(attempt)?;
+    let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
+    (tiff::READER.load)(VolumeSource { path, input, start, options, control })
+}
+
+/// Reads the volume from slices of one format.
+fn read_stack(
+    attempt: LoadContext<'_>,
+    kind: SliceFormat,
+    files: &[PathBuf],
+    name: String,
+    remarks: Vec<String>,
+    options: &LoadOptions,
+    control: &LoadControl,
+) -> Result<Volume, LoadError> {
+    let look_at =
+        |path: &PathBuf, is_decoded| read_picture(slice_attempt(path), kind, options, control, is_decoded);
+    let headers: Vec<PictureHeader> = files
+        .par_iter()
+        .map(|path| look_at(path, false).map(|(header, _)| header))
+        .collect::<Result<_, _>>()?;
+    let (Some(&model), Some(first)) = (headers.first(), files.first()) else {
+        return Err(attempt.bad_input_error("files", "there is no slice", "open a single file"));
+    };
+    for (header, path) in headers.iter().zip(files) {
+        check_slices_match(attempt, [(&model, first), (header, path)])?;
+    }
+    let stored = model.stored;
+    let dims = [model.size[0], model.size[1], files.len() as u64];
+    let extent = GridExtent::checked(attempt, "files", dims, stored.voxel_type(), options.limits(control))?;
+    let voxels = read_slices(attempt, &stored, extent, &ValueMapping::identity(None), control, |some| {
+        some.par_iter()
+            .map(|&slice| {
+                let path = &files[slice];
+                let (header, bytes) = look_at(path, true)?;
+                check_slices_match(attempt, [(&model, first), (&header, path)])?;
+                Ok(bytes)
+            })
+            .collect()
+    })?;
+    let mut placement = GridPlacement::unknown();
+    placement.remarks = remarks;
+    placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+}
+
+/// Checks that two slices have equal size and type, and that each file holds only one.
+fn check_slices_match(
+    attempt: LoadContext<'_>,
+    slices: [(&PictureHeader, &PathBuf); 2],
+) -> Result<(), LoadError> {
+    let [(model, _), (header, _)] = slices;
+    let [first, path] =
+        slices.map(|(_, path)| quoted(&path.file_name().unwrap_or_default().to_string_lossy()));
+    if header.pages > 1 {
+        return Err(attempt.bad_input_error(
+            "files",
+            format!("{path} alone holds {} slices", header.pages),
+            "open that file, or choose another series with --series",
+        ));
+    }
+    if header.size == model.size && header.stored == model.stored {
+        return Ok(());
+    }
+    let say = |header: &PictureHeader| {
+        let [width, height] = header.size;
+        let PictureHeader { stored, .. } = header;
+        format!("{width} x {height} pixels of {} x {} bits", stored.components, stored.number.bytes() * 8)
+    };
+    Err(attempt.bad_input_error(
+        "files",
+        format!("{path} has {}, {first} has {}", say(header), say(model)),
+        "put slices of one size and type into a folder of their own",
+    ))
+}

@@ -1,0 +1,76 @@
+//! TIFF file with a single slice, which is part of a numbered stack of files.
+
+use super::file::TiffFile;
+use super::file::page::{TiffPage, tag};
+use super::metadata::ome;
+use super::stack::{check_page_bytes, page_encoding};
+use super::undescribed::usable_pages;
+use crate::LoadOptions;
+use crate::reading::input::InputFile;
+use crate::reading::number::VoxelEncoding;
+use crate::reading::read_files::record_read;
+use chiaroscuro_volume::{LoadContext, LoadControl, LoadError};
+
+/// Single page of a file, with the file.
+pub(crate) struct SingleSlice {
+    tiff: TiffFile,
+    page: TiffPage,
+    number: usize,
+    /// Number of pages that could be slices.
+    pub(crate) pages: usize,
+}
+
+impl SingleSlice {
+    /// Reads the directories of a file.
+    ///
+    /// # Errors
+    /// As the reader of whole volumes.
+    pub(crate) fn open(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
+        let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
+        let pages = usable_pages(&tiff, &mut Vec::new());
+        let Some(&number) = pages.first() else {
+            return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
+        };
+        let page = tiff.pages[number];
+        Ok(Self { tiff, page, number, pages: pages.len() })
+    }
+
+    /// True if its OME-XML describes how several files belong together, and names `file` or refers to the file that
+    /// lists them.
+    pub(crate) fn describes_set_with(&mut self, file: &str) -> bool {
+        let description = self.tiff.text_entry(tag::DESCRIPTION, ome::MAX_XML_BYTES).unwrap_or_default();
+        ome::is_ome(&description) && (description.contains(file) || description.contains("<BinaryOnly"))
+    }
+
+    /// Width and height, in pixels.
+    pub(crate) fn size(&self) -> [u64; 2] {
+        [self.page.width, self.page.height]
+    }
+
+    /// Storage of the samples after decoding.
+    ///
+    /// # Errors
+    /// `BadInput` for unsupported encodings, `Limit` for a page over the budget.
+    pub(crate) fn stored(
+        &self,
+        attempt: LoadContext<'_>,
+        options: &LoadOptions,
+    ) -> Result<VoxelEncoding, LoadError> {
+        check_page_bytes(attempt, &self.page, options)?;
+        page_encoding(attempt, &self.page, None, options)
+    }
+
+    /// Decodes the samples of the page.
+    ///
+    /// # Errors
+    /// `BadInput` where the file is broken.
+    pub(crate) fn decode(
+        mut self,
+        attempt: LoadContext<'_>,
+        control: &LoadControl,
+    ) -> Result<Vec<u8>, LoadError> {
+        record_read(attempt.path);
+        let packed = self.tiff.fetch(attempt, self.number, None, control)?;
+        packed.unpack(attempt, self.number, control)
+    }
+}

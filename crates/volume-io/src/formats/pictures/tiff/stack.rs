@@ -1,0 +1,303 @@
+//! Slices of a TIFF volume, as pages of one or several files, and reading of their voxels.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::file::page::{SampleMeaning, TiffPage};
+use super::file::{TiffFile, alloc_zeroed_bytes};
+use super::messages::HELP;
+use crate::formats::pictures::slice_reader::read_slices;
+use crate::reading::input::{FileChangeGuard, InputFile};
+use crate::reading::number::{ScalarReduction, VoxelEncoding};
+use crate::reading::placement::{GridPlacement, VolumeParts};
+use crate::reading::rescale::rescale;
+use crate::reading::voxels::ValueMapping;
+use crate::{Endian, LoadOptions};
+use chiaroscuro_volume::{
+    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume, VolumeChoice,
+    VolumeOffer,
+};
+
+/// Bytes of compressed pages that are read before they are decoded. Compressed pages are longer than their pixels
+/// only by mistake, or where many pages share the same bytes.
+const PACKED_BYTES: u64 = 32 << 20;
+
+/// Page of one of several files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct TiffSlice {
+    /// Index of the file: 0 is the opened one, others are those of [`TiffStack::other_files`] plus 1.
+    pub(super) file: usize,
+    pub(super) page: usize,
+}
+
+/// Volume before its voxels are read.
+pub(super) struct TiffStack {
+    pub(super) name: String,
+    /// Slices in order; those without a page are empty.
+    pub(super) slices: Vec<Option<TiffSlice>>,
+    /// Files besides the opened one.
+    pub(super) other_files: Vec<PathBuf>,
+    /// Index of the chosen sample, where the samples of a page are channels.
+    pub(super) sample: Option<usize>,
+    pub(super) placement: GridPlacement,
+    pub(super) hints: ValueMetadata,
+    /// Slope and intercept of the values.
+    pub(super) scale: [f64; 2],
+}
+
+/// Numbers of channels and time steps in a file.
+pub(super) struct ChannelsAndTimes {
+    pub(super) dims: [u64; 3],
+    pub(super) channels: usize,
+    pub(super) channel_names: Vec<String>,
+    pub(super) frames: usize,
+}
+
+/// Chosen channel and time step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct ChosenChannelAndTime {
+    pub(super) channel: usize,
+    pub(super) frame: usize,
+    /// True if each time step is one slice, and all together are shown as a volume.
+    pub(super) time_is_depth: bool,
+}
+
+impl ChannelsAndTimes {
+    /// Selects the channel and the time step by the user's choice, where there are several.
+    pub(super) fn choose(
+        &self,
+        attempt: LoadContext<'_>,
+        choice: &VolumeChoice,
+    ) -> Result<ChosenChannelAndTime, LoadError> {
+        let [width, height, slices] = self.dims;
+        // A time series of one slice is a volume only with time as its depth.
+        let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
+        let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
+        let offers = |count: usize| {
+            let name = |at: usize| self.channel_names.get(at).map_or("", String::as_str);
+            (0..count).map(move |at| VolumeOffer::with_number(at, name(at), dims)).collect()
+        };
+        let channel = attempt.resolve_choice(choice, FileDimension::Channel, offers(self.channels))?;
+        let frame = if is_time_depth {
+            0
+        } else {
+            let frames = (0..self.frames).map(|at| VolumeOffer::with_number(at, "", dims)).collect();
+            attempt.resolve_choice(choice, FileDimension::Frame, frames)?
+        };
+        Ok(ChosenChannelAndTime { channel, frame, time_is_depth: is_time_depth })
+    }
+}
+
+impl ChosenChannelAndTime {
+    /// Time step and slice index of each slice of the volume.
+    pub(super) fn slices(&self, slices: usize, frames: usize) -> Vec<[usize; 2]> {
+        if self.time_is_depth {
+            (0..frames).map(|frame| [frame, 0]).collect()
+        } else {
+            (0..slices).map(|slice| [self.frame, slice]).collect()
+        }
+    }
+
+    /// Adds the remark on time as depth to a placement; the scale along it is unknown.
+    pub(super) fn add_time_remark(&self, placement: &mut GridPlacement) {
+        if self.time_is_depth {
+            let remark = "each time step is one slice: they are stacked in the order of time";
+            placement.remarks.push(remark.to_owned());
+            let axes = placement.world_from_index.matrix3;
+            let flat = GridPlacement::from_spacing([1.0, axes.y_axis.length() / axes.x_axis.length(), 1.0]);
+            placement.world_from_index = flat.world_from_index;
+            placement.is_scale_known = false;
+        }
+    }
+}
+
+/// Files of a stack: the first, and one of the others open at a time.
+struct TiffStackFiles<'a> {
+    attempt: LoadContext<'a>,
+    first: TiffFile,
+    beside: &'a [PathBuf],
+    open: Option<(usize, TiffFile, FileChangeGuard)>,
+    control: &'a LoadControl,
+}
+
+impl TiffStackFiles<'_> {
+    /// Calls a function with one of the files.
+    fn with<T>(
+        &mut self,
+        number: usize,
+        what: impl FnOnce(LoadContext<'_>, &mut TiffFile) -> Result<T, LoadError>,
+    ) -> Result<T, LoadError> {
+        let Some(at) = number.checked_sub(1) else { return what(self.attempt, &mut self.first) };
+        let path: &Path = self.beside.get(at).map_or(self.attempt.path, PathBuf::as_path);
+        let attempt = LoadContext { operation: self.attempt.operation, path };
+        let (tiff, witness) = match self.open.take() {
+            Some((open, tiff, witness)) if open == number => (tiff, witness),
+            _ => {
+                let input = InputFile::open(attempt)?;
+                let witness = FileChangeGuard::new(attempt, &input)?;
+                (TiffFile::open(attempt, input, self.control)?, witness)
+            }
+        };
+        let (_, tiff, witness) = self.open.insert((number, tiff, witness));
+        let done = what(attempt, tiff);
+        witness.check_unchanged(attempt, done)
+    }
+}
+
+impl TiffStack {
+    /// Reads the voxels and assembles the volume.
+    ///
+    /// # Errors
+    /// `BadInput` where pages are broken, missing, or differ; `Limit` over the budget.
+    pub(super) fn into_volume(
+        self,
+        attempt: LoadContext<'_>,
+        tiff: TiffFile,
+        options: &LoadOptions,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        let Self {
+            name,
+            slices,
+            other_files: beside,
+            sample,
+            mut placement,
+            mut hints,
+            scale: [slope, intercept],
+        } = self;
+        let mut files = TiffStackFiles { attempt, first: tiff, beside: &beside, open: None, control };
+        let Some(&first) = slices.iter().flatten().next() else {
+            return Err(attempt.bad_input_error("pages", "it has no pages", HELP));
+        };
+        let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
+        let sample = sample.or_else(|| chosen_sample(&model, options));
+        let stored = page_encoding(attempt, &model, sample, options)?;
+        let dims = [model.width, model.height, slices.len() as u64];
+        let extent =
+            GridExtent::checked(attempt, "pages", dims, stored.voxel_type(), options.limits(control))?;
+        check_page_bytes(attempt, &model, options)?;
+        placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
+        // Inversion is a property of display: the stored values are the measurements, or those of the mask.
+        if model.is_inverted {
+            let remark = "0 stands for white (WhiteIsZero): values are shown as stored";
+            placement.remarks.push(remark.to_owned());
+        }
+        // The first page is checked before memory is allocated for all, in case that it lacks the announced data.
+        files.with(first.file, |attempt, tiff| {
+            tiff.check_parts(attempt, first.page, sample.filter(|_| model.is_planar), control)
+        })?;
+        let values = |samples| rescale(attempt, samples, [slope, intercept], options.memory_budget_bytes);
+        let empty_bytes = model.width.saturating_mul(model.height).saturating_mul(stored.voxel_bytes());
+        let meant = ValueMapping { padding: hints.padding, map: &values };
+        let voxels = read_slices(attempt, &stored, extent, &meant, control, |some| {
+            let mut unpacked = Vec::new();
+            let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
+            while slices.peek().is_some() {
+                let (mut packed, mut bytes) = (Vec::new(), 0);
+                while let Some(&slice) = slices.next_if(|_| bytes < PACKED_BYTES) {
+                    let Some(TiffSlice { file, page }) = slice else {
+                        packed.push(None);
+                        continue;
+                    };
+                    let of_page = files.with(file, |attempt, tiff| {
+                        let found = page_of(attempt, tiff, page)?;
+                        if !found.matches(&model) {
+                            return Err(mismatch_error(attempt, page, &found, &model));
+                        }
+                        // Interleaved samples are all read, and one is selected later.
+                        tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                    })?;
+                    bytes += of_page.len();
+                    packed.push(Some((page, of_page)));
+                }
+                let of_slices = packed.par_iter().map(|packed| match packed {
+                    Some((page, packed)) => packed.unpack(attempt, *page, control),
+                    None => alloc_zeroed_bytes(attempt, "pages", empty_bytes),
+                });
+                unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
+            }
+            Ok(unpacked)
+        })?;
+        if let Some([low, high]) = hints.window.take() {
+            hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
+        }
+        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    }
+}
+
+fn page_of(attempt: LoadContext<'_>, tiff: &TiffFile, number: usize) -> Result<TiffPage, LoadError> {
+    let count = tiff.pages.len();
+    tiff.pages.get(number).copied().ok_or_else(|| {
+        let field = format!("page {number}");
+        attempt.bad_input_error(&field, format!("the file has only {count} pages"), HELP)
+    })
+}
+
+/// Component that the user has chosen; channels are chosen as layers.
+fn chosen_component(page: &TiffPage, options: &LoadOptions) -> Option<usize> {
+    match page.meaning {
+        SampleMeaning::Channels => options.choice.resolve_layer(page.samples),
+        _ => options.choice.resolve_component(page.samples, true),
+    }
+}
+
+/// Sample that is read alone, where the user has chosen a component.
+fn chosen_sample(page: &TiffPage, options: &LoadOptions) -> Option<usize> {
+    chosen_component(page, options).filter(|_| page.meaning != SampleMeaning::Channels)
+}
+
+/// Storage of the samples of decoded pages.
+///
+/// # Errors
+/// `BadInput` for unsupported encodings, and for a component that does not exist.
+pub(super) fn page_encoding(
+    attempt: LoadContext<'_>,
+    page: &TiffPage,
+    sample: Option<usize>,
+    options: &LoadOptions,
+) -> Result<VoxelEncoding, LoadError> {
+    page.check_supported(attempt, "first page")?;
+    let Some(number) = page.number() else {
+        return Err(attempt.bad_input_error("first page", "its sample type is not supported", HELP));
+    };
+    let component = sample.or(chosen_component(page, options)).or(match page.meaning {
+        SampleMeaning::Channels => Some(0),
+        _ => None,
+    });
+    let is_color = page.meaning != SampleMeaning::Channels;
+    let part = ScalarReduction::require(attempt, component, page.samples, is_color)?;
+    // A sample in strips of its own is read alone.
+    let is_alone = page.is_planar && sample.is_some();
+    let (components, part) = if is_alone { (1, ScalarReduction::Component(0)) } else { (page.samples, part) };
+    Ok(VoxelEncoding { number, endian: Endian::Little, components, reduction: part })
+}
+
+/// Checks that a decoded page fits into the budget, since pages are decoded as a whole.
+pub(super) fn check_page_bytes(
+    attempt: LoadContext<'_>,
+    page: &TiffPage,
+    options: &LoadOptions,
+) -> Result<(), LoadError> {
+    if page.bytes().is_some_and(|bytes| bytes <= options.memory_budget_bytes) {
+        return Ok(());
+    }
+    Err(attempt.limit_error(
+        "first page",
+        format!("a page of {} x {} pixels of {} samples is too large", page.width, page.height, page.samples),
+        "close other programs, or load a smaller or cropped picture",
+    ))
+}
+
+/// Error for two pages that cannot be slices of one volume.
+fn mismatch_error(attempt: LoadContext<'_>, number: usize, page: &TiffPage, model: &TiffPage) -> LoadError {
+    let say = |page: &TiffPage| {
+        let TiffPage { width, height, bits, samples, .. } = page;
+        format!("{width} x {height} pixels of {samples} x {bits} bits")
+    };
+    attempt.bad_input_error(
+        &format!("page {number}"),
+        format!("it has {}, the first page has {}", say(page), say(model)),
+        "save the pages of one size in a file of their own",
+    )
+}

@@ -1,0 +1,207 @@
+//! Placement of a file's grid in world space, and assembly of the volume from all that was read.
+
+use std::time::Instant;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::LoadError;
+use super::voxels::ReadVoxels;
+use chiaroscuro_volume::{
+    GridExtent, LoadContext, Samples, ValueMetadata, ValueRange, Volume, is_usable_affine, is_usable_spacing,
+    spacing_ratio_error,
+};
+
+/// Affine transform of the grid as the file gives it, with implausible values corrected.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct GridPlacement {
+    /// Transform from voxel indices (centres at integers) to millimetres; right-anterior-superior where it [is
+    /// anatomical](Self::is_anatomical).
+    pub(crate) world_from_index: DAffine3,
+    /// True if the file gives the anatomical orientation.
+    pub(crate) is_anatomical: bool,
+    /// True if the file gives the size of voxels; otherwise it is 1 in an unknown unit.
+    pub(crate) is_scale_known: bool,
+    /// Unit of length in the file, in millimetres.
+    pub(crate) length_unit_mm: f64,
+    /// Corrections that were made, as remarks for the user.
+    pub(crate) remarks: Vec<String>,
+}
+
+impl GridPlacement {
+    /// Placement for files without any geometry: unit spacing, unknown scale.
+    pub(crate) fn unknown() -> Self {
+        Self {
+            world_from_index: DAffine3::IDENTITY,
+            is_anatomical: false,
+            is_scale_known: false,
+            length_unit_mm: 1.0,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// Placement by spacing alone, along the world axes.
+    pub(crate) fn from_spacing(spacing_mm: [f64; 3]) -> Self {
+        let mut remarks = Vec::new();
+        let spacing_mm = repair_spacing(spacing_mm, &mut remarks);
+        let world_from_index = DAffine3::from_mat3(DMat3::from_diagonal(spacing_mm));
+        Self { world_from_index, remarks, is_scale_known: true, ..Self::unknown() }
+    }
+
+    /// Placement by a file's affine transform, in right-anterior-superior millimetres. If its axes are degenerate,
+    /// only the lengths of its columns are used, as spacing.
+    pub(crate) fn from_ras_affine(world_from_index: DAffine3) -> Self {
+        let axes = world_from_index.matrix3;
+        let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
+        if is_usable_affine(&world_from_index) && spacing_ratio_error(lengths).is_none() {
+            return Self { world_from_index, is_anatomical: true, is_scale_known: true, ..Self::unknown() };
+        }
+        let mut placement = Self::from_spacing(lengths);
+        placement
+            .remarks
+            .push("the file's axis directions are unusable: the axes of the grid are used".to_owned());
+        placement
+    }
+
+    /// Placement by an affine transform in left-posterior-superior millimetres; see [`Self::from_ras_affine`].
+    pub(crate) fn from_lps_affine(world_from_index: DAffine3) -> Self {
+        let ras_from_lps = DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0));
+        Self::from_ras_affine(DAffine3::from_mat3(ras_from_lps) * world_from_index)
+    }
+
+    /// Marks the anatomical orientation as unknown.
+    #[must_use]
+    pub(crate) fn without_anatomy(self) -> Self {
+        Self { is_anatomical: false, ..self }
+    }
+
+    /// Marks the scale as unknown, where the file gives relative distances only.
+    #[must_use]
+    pub(crate) fn with_unknown_scale(self) -> Self {
+        Self { is_scale_known: false, ..self }
+    }
+
+    /// Sets the unit of length in the file, in millimetres.
+    #[must_use]
+    pub(crate) fn with_length_unit(self, length_unit_mm: f64) -> Self {
+        Self { length_unit_mm, ..self }
+    }
+
+    /// Adds a remark for the user.
+    #[must_use]
+    pub(crate) fn with_remark(mut self, remark: Option<impl Into<String>>) -> Self {
+        self.remarks.extend(remark.map(Into::into));
+        self
+    }
+}
+
+/// Replaces unusable spacings: a missing or invalid one by 1, all of them by 1 where their ratios are implausible.
+fn repair_spacing(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
+    let mend = |length: f64| if is_usable_spacing(length.abs()) { length.abs() } else { 1.0 };
+    let mut usable = spacing_mm.map(mend);
+    if spacing_ratio_error(usable).is_some() {
+        usable = [1.0; 3];
+    }
+    if usable != spacing_mm {
+        let [x, y, z] = spacing_mm;
+        let [a, b, c] = usable;
+        remarks.push(format!("a voxel spacing of {x} x {y} x {z} mm is unusable: {a} x {b} x {c} is used"));
+    }
+    DVec3::from(usable)
+}
+
+/// Everything that was read of a volume, before it is assembled.
+#[derive(Debug)]
+pub(crate) struct VolumeParts {
+    pub(crate) name: String,
+    /// Grid size, the part that was read and the part that is wanted.
+    pub(crate) extent: GridExtent,
+    /// Placement of the grid in world space.
+    pub(crate) placement: GridPlacement,
+    pub(crate) voxels: ReadVoxels,
+    pub(crate) hints: ValueMetadata,
+}
+
+impl VolumeParts {
+    /// Assembles the volume from the wanted part of the voxels that were read.
+    ///
+    /// # Errors
+    /// `BadInput` where the parts are no valid volume: no value is finite, or the value range overflows.
+    pub(crate) fn into_volume(self, attempt: LoadContext<'_>) -> Result<Volume, LoadError> {
+        self.into_volume_with_help(attempt, "check the header against the data")
+    }
+
+    /// Assembles the volume as [`Self::into_volume`] does, with another help text for errors.
+    pub(crate) fn into_volume_with_help(
+        self,
+        attempt: LoadContext<'_>,
+        help: &str,
+    ) -> Result<Volume, LoadError> {
+        let Self { name, extent, placement, voxels, hints } = self;
+        let GridExtent { read, wanted, .. } = extent;
+        for remark in &placement.remarks {
+            attempt.warn(remark);
+        }
+        let start = Instant::now();
+        let of = |samples: Samples| {
+            let affine = read.world_from_kept(placement.world_from_index);
+            let made = Volume::new(name.clone(), read.dims(), affine, samples).map(|volume| {
+                let volume = if read.is_whole_grid() { volume } else { volume.with_file_portion(&read) };
+                let volume =
+                    volume.with_anatomical_axes(placement.is_anatomical).with_metadata(hints.clone());
+                let volume = volume.with_remarks(placement.remarks.clone());
+                let volume = volume.with_length_unit(placement.length_unit_mm);
+                if placement.is_scale_known { volume } else { volume.with_unknown_scale() }
+            });
+            made.and_then(|volume| match volume.metadata().padding {
+                // A volume of nothing but padding is shown as it is.
+                Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
+                    volume.with_padding(padding)
+                }
+                _ => Ok(volume),
+            })
+        };
+        let ReadVoxels { samples, block_firsts: picked } = voxels;
+        // Means of labels are meaningless: where the first voxels of the blocks prove to be labels, they are used
+        // instead, and the caller reads the file again.
+        let labels = picked.and_then(|picked| of(picked).ok()).filter(Volume::is_label_map);
+        let volume =
+            labels.map_or_else(|| of(samples), Ok).and_then(|volume| volume.extract_portion(&read, &wanted));
+        let volume = volume.map(|volume| volume.with_analysis_time(start.elapsed()));
+        volume.map_err(|error| attempt.bad_input_error("data", error.to_string(), help))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invalid_spacings_are_repaired_and_reported() {
+        for (said, taken) in [
+            ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
+            ([0.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
+            ([-1.5, 2.0, f64::NAN], [1.5, 2.0, 1.0]),
+            ([1e-8, 1.0, 1e8], [1.0; 3]),
+        ] {
+            let placement = GridPlacement::from_spacing(said);
+            let axes = placement.world_from_index.matrix3;
+            assert_eq!([axes.x_axis.x, axes.y_axis.y, axes.z_axis.z], taken);
+            assert_eq!(placement.remarks.is_empty(), said == taken, "{said:?}");
+        }
+    }
+
+    #[test]
+    fn left_posterior_is_turned_to_right_anterior() {
+        let placed = GridPlacement::from_lps_affine(DAffine3::from_translation(DVec3::new(1.0, 2.0, 3.0)));
+        assert_eq!(placed.world_from_index.translation, DVec3::new(-1.0, -2.0, 3.0));
+        assert_eq!(placed.world_from_index.matrix3.x_axis, -DVec3::X);
+        assert!(placed.is_anatomical && placed.remarks.is_empty());
+        let flat = GridPlacement::from_ras_affine(DAffine3::from_mat3(DMat3::from_cols(
+            DVec3::X,
+            DVec3::X * 2.0,
+            DVec3::Z,
+        )));
+        assert_eq!(flat.world_from_index.matrix3, DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)));
+        assert!(!flat.is_anatomical && flat.remarks.len() == 1);
+    }
+}

@@ -1,0 +1,49 @@
+//! Volumes: their voxels, built-in volumes, statistics of their values, bricks, and what opening one needs to say.
+//!
+//! Independent of file formats, settings, the GPU and the window.
+//!
+//! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's longest edge spans
+//! [−1, 1]).
+//!
+//! Begin with [`Volume`] in `volume/mod.rs`, and with [`Dataset`], which adds what is derived from a volume's
+//! densities: bounds of bricks and cells, and a histogram. Where do values become densities? In
+//! `volume/density_mapping.rs`. `load_context/` has what readers of files share with built-in volumes: choices, memory
+//! limits, progress, and errors with advice.
+
+mod bricks;
+mod cancellation;
+mod cells;
+mod dataset;
+mod histogram;
+mod load_context;
+pub mod math;
+pub mod synthetic;
+mod value_metadata;
+mod values;
+mod volume;
+
+pub use bricks::BrickBounds;
+pub use cancellation::{CancelToken, PIECE_VALUES};
+pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
+pub use dataset::Dataset;
+pub use histogram::{HISTOGRAM_BINS, Histogram};
+#[cfg(any(test, feature = "testing"))]
+pub use load_context::with_forced_averaging;
+pub use load_context::{
+    ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
+    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, Portion, ReadContext,
+    ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize, VoxelComponents, VoxelRegion,
+    VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing, memory_budget_bytes,
+    quoted, spacing_ratio_error,
+};
+pub use value_metadata::{
+    FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
+};
+pub use values::range::ValueRange;
+pub use values::robust::ValueRanges;
+pub use values::samples::{Samples, VoxelType};
+pub use volume::{
+    AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
+    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
+    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
+};

@@ -1,0 +1,111 @@
+//! Progress and cancellation of a load, shared between threads.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::error::LoadError;
+use super::memory_estimate::VolumeSize;
+use crate::cancellation::{CancelSignal, CancelToken};
+
+/// Progress counter and cancel token of a load, shared by the loading thread and the waiting one.
+///
+/// The token is checked before every block of at most 1 MiB that is read, and between pieces of the later analysis of
+/// the voxels. Counts are bytes of voxels after decompression.
+#[derive(Debug, Default)]
+pub struct LoadControl {
+    signal: Arc<CancelSignal>,
+    /// Bytes of voxels read until now.
+    pub done_bytes: AtomicU64,
+    /// Bytes of voxels in the whole volume; 0 until the header has been read.
+    pub total_bytes: AtomicU64,
+    size_check: SizeCheck,
+}
+
+/// Callback that decides, by the size of a volume, whether its voxels are read.
+type SizeCallback = dyn Fn(&VolumeSize) -> bool + Send + Sync;
+
+/// Callback that is asked before a volume's voxels are read, if there is one.
+#[derive(Default)]
+struct SizeCheck(Option<Box<SizeCallback>>);
+
+impl fmt::Debug for SizeCheck {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "SizeCheck(set)" } else { "SizeCheck(none)" })
+    }
+}
+
+impl LoadControl {
+    /// Creates a control that is not cancelled.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Creates a control that asks `accepts` once the size of a volume is known, before its voxels take any memory.
+    /// Loading fails with [`LoadError::Cancelled`] if it returns false. It is not asked if the user has already
+    /// chosen a portion.
+    pub fn with_size_check(accepts: impl Fn(&VolumeSize) -> bool + Send + Sync + 'static) -> Self {
+        Self { size_check: SizeCheck(Some(Box::new(accepts))), ..Self::default() }
+    }
+
+    pub(super) fn accepts_size(&self, size: &VolumeSize) -> bool {
+        self.size_check.0.as_ref().is_none_or(|accepts| accepts(size))
+    }
+
+    /// Requests the load to stop; it then fails with [`LoadError::Cancelled`].
+    pub fn cancel(&self) {
+        self.signal.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns true if cancellation was requested.
+    pub fn is_cancelled(&self) -> bool {
+        self.signal.is_cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Returns the completed share, 0 … 1, once the total size is known.
+    pub fn fraction(&self) -> Option<f64> {
+        self.bytes().map(|[done, total]| done as f64 / total as f64)
+    }
+
+    /// Returns completed and total bytes, once the total is known.
+    pub fn bytes(&self) -> Option<[u64; 2]> {
+        let total = self.total_bytes.load(Ordering::Relaxed);
+        (total > 0).then(|| [self.done_bytes.load(Ordering::Relaxed).min(total), total])
+    }
+
+    /// Starts the count of voxels' bytes: none read until now, of `total_bytes` in the whole volume.
+    pub fn start(&self, total_bytes: u64) {
+        self.done_bytes.store(0, Ordering::Relaxed);
+        self.total_bytes.store(total_bytes, Ordering::Relaxed);
+    }
+
+    /// Adds bytes of voxels that have been read, after decompression.
+    pub fn advance(&self, bytes: u64) {
+        self.done_bytes.fetch_add(bytes, Ordering::Relaxed);
+    }
+
+    /// Counts a piece of work about to begin, and returns an error if it must not be done.
+    ///
+    /// # Errors
+    /// [`LoadError::Cancelled`] if cancellation was requested.
+    pub fn check(&self) -> Result<(), LoadError> {
+        if self.signal.should_stop() { Err(LoadError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Runs work that stops early when this control is cancelled; its result must be discarded in that case.
+    pub fn run<T>(&self, work: impl FnOnce() -> T) -> T {
+        CancelToken::new(&self.signal).run(work)
+    }
+
+    /// Number of pieces of work that were begun, such as blocks read or slices counted. No piece takes longer than
+    /// one slice.
+    pub fn pieces_begun(&self) -> u64 {
+        self.signal.begun.load(Ordering::Relaxed)
+    }
+
+    /// Cancels the load automatically after the given number of pieces.
+    #[cfg(any(test, feature = "testing"))]
+    pub fn cancel_after(&self, pieces: u64) {
+        self.signal.cancel_after_pieces.store(pieces.max(1), Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,34 @@
+//! Infrastructure shared by readers and built-in volumes: memory limits, errors with advice, and a control for
+//! progress and cancellation.
+
+mod averaging_while_reading;
+mod choice;
+mod control;
+mod error;
+mod extent;
+mod file_contents;
+mod free_memory;
+mod limits;
+mod memory_estimate;
+mod offer;
+mod portion;
+mod resolved_portion;
+
+#[cfg(any(test, feature = "testing"))]
+pub use averaging_while_reading::with_forced_averaging;
+pub use choice::VolumeChoice;
+pub use control::LoadControl;
+pub use error::{ErrorExplanation, LoadError, LoadErrorKind};
+pub use error::{LoadContext, quoted};
+pub use extent::{GridExtent, ReadContext};
+pub use file_contents::{
+    ChoiceAspect, ContentsRecorder, DefaultComponent, FileContents, VolumeAlternatives, VoxelComponents,
+};
+pub use free_memory::address_bytes_left;
+pub use limits::human_bytes;
+pub use limits::memory_budget_bytes;
+pub use limits::{is_usable_affine, is_usable_spacing, spacing_ratio_error};
+pub use memory_estimate::VolumeSize;
+pub use offer::{FileDimension, VolumeOffer};
+pub use portion::{Downsampling, Portion, VoxelRegion, VoxelSpan};
+pub use resolved_portion::ResolvedPortion;
