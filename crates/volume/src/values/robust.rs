@@ -72,7 +72,8 @@ impl ValueRanges {
     }
 
     /// Finds the robust range of values that span `all`.
-    pub(crate) fn from_samples(samples: &Samples, all: ValueRange) -> Self {
+    #[cfg(test)]
+    fn from_samples(samples: &Samples, all: ValueRange) -> Self {
         Self::from_samples_except(samples, all, f64::NAN)
     }
 

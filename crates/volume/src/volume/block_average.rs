@@ -39,8 +39,8 @@ impl Volume {
             Some(padding) => reduced.with_padding(padding)?,
             None => reduced,
         };
-        let block = self.file_grid.with_blocks(block, 0.5 * (edges - 1.0));
-        Ok(Self { file_grid: block, ..reduced.with_metadata_of(self) })
+        let reduced = reduced.with_metadata_of(self);
+        Ok(Self { grid: reduced.grid.with_blocks_of(&self.grid, block, 0.5 * (edges - 1.0)), ..reduced })
     }
 }
 

@@ -1,7 +1,6 @@
 //! Cropping of a volume to a region of its voxels.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
@@ -23,8 +22,7 @@ impl Volume {
         let world_from_index = self.world_from_index() * DAffine3::from_translation(first);
         let found = region.clone().map(|range| range.len());
         let mut whole = self;
-        let shared = std::mem::replace(&mut whole.samples, Arc::new(Samples::U8(Vec::new())));
-        let mut samples = Arc::unwrap_or_clone(shared);
+        let mut samples = whole.voxels.take_samples();
         compact_box(&mut samples, dims, region);
         let cropped = Self::new(whole.name(), found, world_from_index, samples)?;
         // A region that consists only of padding is shown as it is.
@@ -32,7 +30,8 @@ impl Volume {
             Some(padding) => cropped.clone().with_padding(padding).unwrap_or(cropped),
             None => cropped,
         };
-        Ok(Self { file_dims: found, ..cropped.with_metadata_of(&whole) })
+        let cropped = cropped.with_metadata_of(&whole);
+        Ok(Self { grid: cropped.grid.with_file_dims(found), ..cropped })
     }
 }
 

@@ -1,8 +1,6 @@
 //! Mapping from voxel values or labels to densities.
 
-use std::sync::{Arc, OnceLock};
-
-use super::{DataKind, DetectedKind, LabelSet, Volume};
+use super::{LabelSet, Volume};
 use crate::ValueRange;
 use crate::values::samples::with_samples;
 
@@ -24,47 +22,34 @@ impl Volume {
             // Counted here, so that all clones share the result.
             self.labels();
         }
-        Self { density_mapping: shown, ..self.clone() }
+        let mut volume = self.clone();
+        volume.voxels.density_mapping = shown;
+        volume
     }
 
     /// Returns the quantity that densities represent: the robust range, unless changed by
     /// [`Self::with_density_mapping`].
     pub fn density_mapping(&self) -> DensityMapping {
-        self.density_mapping
+        self.voxels.density_mapping()
     }
 
     /// Returns the labels whose classes densities represent; `None` if densities represent values.
     pub fn shown_labels(&self) -> Option<&LabelSet> {
-        if self.density_mapping == DensityMapping::Labels { self.labels() } else { None }
+        if self.density_mapping() == DensityMapping::Labels { self.labels() } else { None }
     }
 
     /// Returns the range of values with densities from 0 to 1, in data units; for labels the range of all values.
     pub fn shown_range(&self) -> ValueRange {
-        match self.density_mapping {
+        match self.density_mapping() {
             DensityMapping::Range(range) => range,
-            DensityMapping::Labels if self.labels().is_some() => self.ranges.all,
-            DensityMapping::Labels => self.ranges.robust,
+            DensityMapping::Labels if self.labels().is_some() => self.ranges().all,
+            DensityMapping::Labels => self.ranges().robust,
         }
     }
 
     /// Returns the domain of tables over densities: the shown values, or the class indices of labels.
     pub fn table_range(&self) -> ValueRange {
         self.shown_labels().map_or_else(|| self.shown_range(), LabelSet::class_range)
-    }
-
-    /// Returns the labels of the volume, if its values can be labels: see [`LabelSet`]. The first call blocks while
-    /// they are counted: about a second for 512³ voxels.
-    pub fn labels(&self) -> Option<&LabelSet> {
-        self.labels.get_or_init(|| LabelSet::from_volume(self).map(Arc::new)).as_deref()
-    }
-
-    /// Returns the known kind for a volume made of blocks of these voxels: a part of a label map is a label map,
-    /// whatever its detection would say.
-    pub(super) fn inherited_kind(&self) -> OnceLock<DetectedKind> {
-        match self.kind.get() {
-            Some(found) if matches!(found.kind, DataKind::LabelMap { .. }) => OnceLock::from(found.clone()),
-            _ => OnceLock::new(),
-        }
     }
 
     /// Converts a value in data units to a density in [0, 1]: 0 at the lowest shown value and below, 1 at the highest
@@ -93,17 +78,18 @@ impl Volume {
         reason = "one of the eight types is f64 already"
     )]
     pub fn slice_densities(&self, z: usize) -> Vec<f32> {
-        let count = self.dims[0] * self.dims[1];
+        let [nx, ny, _] = self.dims();
+        let count = nx * ny;
         let range = z * count..(z + 1) * count;
         if let Some(labels) = self.shown_labels() {
             return self.slice_classes(z, labels);
         }
         let shown = self.shown_range();
-        let mut densities: Vec<f32> = with_samples!(&*self.samples, values => values[range]
+        let mut densities: Vec<f32> = with_samples!(self.samples(), values => values[range]
             .iter()
             .map(|&value| relative_position(shown, value as f64) as f32)
             .collect());
-        for (at, value) in self.missing.iter().flat_map(|missing| missing.substitutes_in_slice(z)) {
+        for (at, value) in self.missing().iter().flat_map(|missing| missing.substitutes_in_slice(z)) {
             densities[at] = relative_position(shown, value) as f32;
         }
         densities
@@ -111,7 +97,7 @@ impl Volume {
 
     /// Computes [`Self::slice_densities`] for labels.
     fn slice_classes(&self, z: usize, labels: &LabelSet) -> Vec<f32> {
-        let [nx, ny, nz] = self.dims;
+        let [nx, ny, nz] = self.dims();
         // The last result is reused, as neighbours are mostly equal.
         let mut last = (f64::NAN, 0.0);
         let mut density = |value: f64| {
@@ -122,7 +108,7 @@ impl Volume {
         };
         let first = z * nx * ny;
         let mut densities: Vec<f32> =
-            (first..first + nx * ny).map(|voxel| density(self.samples.value(voxel))).collect();
+            (first..first + nx * ny).map(|voxel| density(self.samples().value(voxel))).collect();
         let Some(missing) = self.missing() else { return densities };
         // Sorted by distance: faces, edges, corners.
         let mut beside: Vec<[isize; 3]> =
@@ -136,7 +122,7 @@ impl Volume {
                 Some(x + nx * (y + ny * z)).filter(|&voxel| !missing.contains(voxel))
             };
             let near = beside.iter().find_map(neighbour);
-            densities[at] = near.map_or(0.0, |voxel| density(self.samples.value(voxel)));
+            densities[at] = near.map_or(0.0, |voxel| density(self.samples().value(voxel)));
         }
         densities
     }

@@ -1,12 +1,8 @@
 //! Missing voxels: their values are not finite, or are the padding value of the file. They hold no material, but
 //! reconstruction beside them needs densities, for which means of nearby voxels are substituted.
 
-use std::sync::{Arc, OnceLock};
-
 use rayon::prelude::*;
 
-use super::{DensityMapping, Samples, Volume, VolumeError};
-use crate::ValueRanges;
 use crate::cancellation::{CancelToken, PIECE_VALUES};
 
 /// Number of 64-bit words between two polls for cancellation.
@@ -118,49 +114,6 @@ impl MissingVoxels {
     }
 }
 
-impl Volume {
-    /// Finds the missing voxels, according to the padding value.
-    pub(super) fn with_missing(self) -> Self {
-        let holds_something = |value: f64| value.is_finite() && Some(value) != self.padding_value;
-        let value = |voxel: usize| Some(self.samples.value(voxel)).filter(|&value| holds_something(value));
-        let missing = MissingVoxels::find(self.dims(), value).map(Arc::new);
-        Self { missing, ..self }
-    }
-
-    /// Sets the padding value, as a file declares it. Voxels with this value are missing: they hold no material, and
-    /// are excluded from the value range and from means. For 32-bit floats it is rounded to the nearest float, as
-    /// files write decimals such as 0.1.
-    ///
-    /// # Errors
-    /// Fails if no voxel has another value.
-    pub fn with_padding(mut self, padding_value: f64) -> Result<Self, VolumeError> {
-        let padding_value = match &*self.samples {
-            Samples::F32(_) => f64::from(padding_value as f32),
-            _ => padding_value,
-        };
-        let (value_range, _) =
-            self.samples.finite_range_except(padding_value).ok_or(VolumeError::NothingFinite)?;
-        // The padding value affects what is shown, like the values themselves.
-        self.content_id = self.content_id.rotate_left(9) ^ padding_value.to_bits();
-        self.padding_value = Some(padding_value);
-        self.ranges = ValueRanges::from_samples_except(&self.samples, value_range, padding_value);
-        self.density_mapping = DensityMapping::Range(self.ranges.robust);
-        self.labels = OnceLock::new();
-        self.kind = OnceLock::new();
-        Ok(self.with_missing())
-    }
-
-    /// Returns the missing voxels, if there are any.
-    pub fn missing(&self) -> Option<&MissingVoxels> {
-        self.missing.as_deref()
-    }
-
-    /// Returns the padding value set by [`Self::with_padding`].
-    pub fn padding_value(&self) -> Option<f64> {
-        self.padding_value
-    }
-}
-
 /// Returns the number of blocks of two voxels along each axis.
 fn halved_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| n.div_ceil(2))
@@ -209,7 +162,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::ValueRange;
+    use crate::{Samples, ValueRange, Volume, VolumeError};
 
     #[test]
     fn missing_voxels_get_means_of_nearby_ones() {

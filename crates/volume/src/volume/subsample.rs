@@ -1,7 +1,5 @@
 //! Subsampling of a volume with a stride, and extraction of a portion of a file's grid.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Samples, Volume, VolumeError};
@@ -22,8 +20,7 @@ impl Volume {
         }
         let found = [0, 1, 2].map(|axis| dims[axis].div_ceil(step[axis]));
         let mut whole = self;
-        let shared = std::mem::replace(&mut whole.samples, Arc::new(Samples::U8(Vec::new())));
-        let mut samples = Arc::unwrap_or_clone(shared);
+        let mut samples = whole.voxels.take_samples();
         compact_stride(&mut samples, dims, step);
         let world_from_index = whole.world_from_index() * stride_transform(step);
         let thinned = Self::new(whole.name(), found, world_from_index, samples)?;
@@ -31,8 +28,8 @@ impl Volume {
             Some(padding) => thinned.clone().with_padding(padding).unwrap_or(thinned),
             None => thinned,
         };
-        let block = whole.file_grid.with_blocks(step, DVec3::ZERO);
-        Ok(Self { file_grid: block, ..thinned.with_metadata_of(&whole) })
+        let thinned = thinned.with_metadata_of(&whole);
+        Ok(Self { grid: thinned.grid.with_blocks_of(&whole.grid, step, DVec3::ZERO), ..thinned })
     }
 
     /// Extracts the wanted portion of a grid from a volume that holds the portion that was read: the whole grid, its
@@ -54,14 +51,6 @@ impl Volume {
         });
         let boxed = if read.full_box() == wanted.full_box() { self } else { self.cropped(&within)? };
         if wanted.is_averaged { boxed.block_averaged(wanted.stride) } else { boxed.subsampled(wanted.stride) }
-    }
-
-    /// Records the position of the voxels in the file's grid, of which only this portion was read.
-    #[must_use]
-    pub fn with_file_portion(self, read: &ResolvedPortion) -> Self {
-        let edges = DVec3::from(read.stride.map(|n| n as f64));
-        let first = if read.is_averaged { 0.5 * (edges - 1.0) } else { DVec3::ZERO };
-        Self { file_dims: read.box_dims(), file_grid: self.file_grid.with_blocks(read.stride, first), ..self }
     }
 }
 

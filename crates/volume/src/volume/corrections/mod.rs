@@ -8,7 +8,6 @@ mod spacing;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use apply::AppliedCorrections;
 pub use axes::{AnatomicalAxes, AxisOrder, Flips, Orientation};
 pub use spacing::SpacingUnit;
 

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::volume::Volume;
-
 /// Unit of voxel spacings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -48,7 +46,7 @@ impl SpacingUnit {
     }
 
     /// Finds the unit of exactly this length in mm.
-    fn from_mm(mm: f64) -> Option<Self> {
+    pub(crate) fn from_mm(mm: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| *unit != Self::Voxels && unit.mm().to_bits() == mm.to_bits())
     }
 
@@ -67,28 +65,6 @@ impl SpacingUnit {
             Self::Cm => "cm",
             Self::M => "m",
             Self::Voxels => "voxels",
-        }
-    }
-}
-
-/// Maximum number of units for the object's size at which the file's unit is used; larger numbers have too many
-/// digits.
-const MAX_UNITS_SHOWN: f64 = 1e4;
-
-impl Volume {
-    /// Sets the unit in which the file states lengths, given in mm; a length that is no known unit is ignored.
-    #[must_use]
-    pub fn with_length_unit(self, mm: f64) -> Self {
-        Self { length_unit: SpacingUnit::from_mm(mm).unwrap_or(self.length_unit), ..self }
-    }
-
-    /// Returns the unit in which lengths of the object's size are shown: that of the file, if it suits them.
-    pub fn length_unit(&self) -> SpacingUnit {
-        let length_mm = self.scene().mm_per_unit;
-        match self.length_unit {
-            SpacingUnit::Voxels => SpacingUnit::Voxels,
-            unit if (1.0..=MAX_UNITS_SHOWN).contains(&(length_mm / unit.mm())) => unit,
-            _ => SpacingUnit::suiting_length(length_mm),
         }
     }
 }
@@ -128,7 +104,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::Samples;
+    use crate::{Samples, Volume};
 
     #[test]
     fn distances_are_said_in_units_that_suit_them() {

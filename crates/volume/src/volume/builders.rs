@@ -1,0 +1,85 @@
+//! Builders of a volume: each takes it and returns it with one fact set.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::{Volume, VolumeError, VolumeProvenance};
+use crate::ValueMetadata;
+use crate::load_context::{FileContents, ResolvedPortion};
+
+impl Volume {
+    /// Sets the opacity unit in mm, so that the material looks the same at every resolution; built-in volumes have
+    /// one.
+    #[must_use]
+    pub fn with_unit_mm(mut self, unit_mm: f64) -> Self {
+        self.voxels.opacity_unit_mm = Some(unit_mm);
+        self
+    }
+
+    /// Sets the metadata of the values.
+    #[must_use]
+    pub fn with_metadata(self, hints: ValueMetadata) -> Self {
+        Self { voxels: self.voxels.with_metadata(hints), ..self }
+    }
+
+    /// Sets the padding value, as a file declares it. Voxels with this value are missing: they hold no material, and
+    /// are excluded from the value range and from means. For 32-bit floats it is rounded to the nearest float, as
+    /// files write decimals such as 0.1.
+    ///
+    /// # Errors
+    /// Fails if no voxel has another value.
+    pub fn with_padding(self, padding_value: f64) -> Result<Self, VolumeError> {
+        let voxels = self.voxels.with_padding(self.grid.dims(), padding_value)?;
+        // The padding value affects what is shown, like the values themselves.
+        let padding_bits = voxels.padding_value().unwrap_or(padding_value).to_bits();
+        Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_bits, ..self })
+    }
+
+    /// Sets whether world space is right-anterior-superior, as the file states of a body.
+    #[must_use]
+    pub fn with_anatomical_axes(self, is_anatomical: bool) -> Self {
+        Self { grid: self.grid.with_anatomical_axes(is_anatomical), ..self }
+    }
+
+    /// Marks the size of voxels as unknown: lengths are then in voxels, not in millimetres.
+    #[must_use]
+    pub fn with_unknown_scale(self) -> Self {
+        Self { grid: self.grid.with_unknown_scale(), ..self }
+    }
+
+    /// Sets the unit in which the file states lengths, given in mm; a length that is no known unit is ignored.
+    #[must_use]
+    pub fn with_length_unit(self, mm: f64) -> Self {
+        Self { grid: self.grid.with_length_unit(mm), ..self }
+    }
+
+    /// Records the position of the voxels in the file's grid, of which only this portion was read.
+    #[must_use]
+    pub fn with_file_portion(self, read: &ResolvedPortion) -> Self {
+        Self { grid: self.grid.with_file_portion(read), ..self }
+    }
+
+    /// Sets remarks for the user about how the file was read.
+    #[must_use]
+    pub fn with_remarks(self, remarks: Vec<String>) -> Self {
+        self.with_changed_provenance(|provenance| provenance.remarks = remarks)
+    }
+
+    /// Sets the inventory of the file.
+    #[must_use]
+    pub fn with_contents(self, held: FileContents) -> Self {
+        self.with_changed_provenance(|provenance| provenance.contents = Arc::new(held))
+    }
+
+    /// Sets the time taken to analyse the voxels after reading.
+    #[must_use]
+    pub fn with_analysis_time(self, looking_took: Duration) -> Self {
+        self.with_changed_provenance(|provenance| provenance.analysis_time = looking_took)
+    }
+
+    /// Changes the provenance of this volume, without effect on others that share it.
+    pub(super) fn with_changed_provenance(mut self, change: impl FnOnce(&mut VolumeProvenance)) -> Self {
+        change(Arc::make_mut(&mut self.provenance));
+        self
+    }
+}
