@@ -25,7 +25,7 @@ mod volume;
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
-pub use dataset::Dataset;
+pub use dataset::{Dataset, DatasetField};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 #[cfg(any(test, feature = "testing"))]
 pub use load_context::with_forced_averaging;
