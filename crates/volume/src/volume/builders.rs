@@ -83,3 +83,29 @@ impl Volume {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::{Corrections, Flips, Samples};
+
+    #[test]
+    fn changes_leave_the_volumes_that_share_a_provenance_alone() {
+        let opened = Volume::with_spacing("t", [2, 2, 2], DVec3::ONE, Samples::U8((0..8).collect())).unwrap();
+        let clone = opened.clone();
+        assert!(Arc::ptr_eq(&clone.provenance, &opened.provenance));
+        let told = clone.with_remarks(vec!["told".to_owned()]).with_analysis_time(Duration::from_secs(1));
+        assert_eq!((told.remarks().len(), opened.remarks().len()), (1, 0));
+        assert_eq!(opened.analysis_time(), Duration::ZERO);
+        let by = Corrections { flip: Flips { x: true, ..Flips::default() }, ..Corrections::default() };
+        let corrected = told.corrected(&by).unwrap();
+        assert_eq!((corrected.corrections(), told.corrections()), (&by, &Corrections::default()));
+        // A part is a volume of its own, as if it had been opened.
+        let part = corrected.cropped(&[0..1, 0..2, 0..2]).unwrap();
+        assert_eq!((part.name(), part.remarks()), ("t", told.remarks()));
+        assert!(part.corrections().is_none() && part.opened_id() == part.content_id());
+        assert_eq!(part.analysis_time(), Duration::ZERO);
+    }
+}

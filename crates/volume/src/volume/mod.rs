@@ -59,7 +59,7 @@ pub struct VolumeId {
 pub struct Volume {
     grid: VoxelGrid,
     voxels: VoxelData,
-    /// Source of the volume, shared with clones and with other volumes of the file.
+    /// Source of the volume, which clones share.
     provenance: Arc<VolumeProvenance>,
     /// Hash of grid, samples, padding value and corrections: a fact of none of the parts alone.
     content_id: u64,

@@ -8,9 +8,11 @@ use super::label_set::LabelSet;
 use super::missing::MissingVoxels;
 use crate::{Samples, ValueRanges};
 
-/// Everything that follows from samples, padding value and metadata: the range at once, kind and labels when they are
-/// first asked for. They are one struct so that none can remain from other values: a new padding value replaces them
-/// all, and new metadata the kind, the only one that depends on them.
+/// Everything that follows from samples, padding value and metadata: ranges and missing voxels at once, kind and labels
+/// when they are first asked for.
+///
+/// They are one struct so that none can remain from other values: a new padding value replaces them all, and new
+/// metadata the kind, the only one that depends on them.
 #[derive(Debug, Clone)]
 pub(super) struct VoxelStatistics {
     /// Range of all values and robust range, without padding, in data units.
