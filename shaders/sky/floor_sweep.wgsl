@@ -6,7 +6,7 @@
 
 @group(0) @binding(1) var extinction: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-@group(0) @binding(3) var left: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(3) var transmittance: texture_storage_3d<STORAGE_FORMAT, write>;
 
 // Slice in which a ray meets the floor; fractional, and possibly before the first or behind the last.
 fn slice_of_floor(rays: SweepRaysUniform, start: vec2f, last: f32) -> f32 {
@@ -38,5 +38,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;
         t *= select(exp(-tau), slab_mean_transmittance(tau), n == end);
     }
-    textureStore(left, vec3u(id.xy, id.z), vec4f(t));
+    textureStore(transmittance, vec3u(id.xy, id.z), vec4f(t));
 }

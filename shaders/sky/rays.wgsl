@@ -17,7 +17,8 @@ struct SweepRaysUniform {
     axis: u32,
     // 1 if light travels up the axis, else 0.
     is_ascending: u32,
-    // Radiance that arrives from this direction, for sweeps of light rather than transmittance (bounces/sweep.wgsl).
+    // Radiance that arrives from this direction, for sweeps of light rather than transmittance
+    // (scattered_light/sweep.wgsl).
     incoming_radiance: vec3f,
     // Layer of the first slice in the sheets.
     layer: u32,
@@ -51,7 +52,7 @@ fn to_sweep_axes(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
 }
 
-// Inverse of turned_to.
+// Inverse of to_sweep_axes.
 fn from_sweep_axes(rays: SweepRaysUniform, turned: vec3f) -> vec3f {
     return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
 }

@@ -128,27 +128,7 @@ pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, GroupLay
 /// Layouts of all shaders but those of light, sky and scattered light.
 const COMMON_LAYOUTS: ShaderLayouts = &[
     (
-        "eye/floor.wgsl",
-        &[
-            &[
-                BindingSlot::uniform::<uniforms::FloorUniform>(0, "bound_floor_disc"),
-                TABLE,
-                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
-                BindingSlot::loaded_texture(3, "picture", TextureShape::D2),
-                BindingSlot::storage_texture(
-                    4,
-                    "floor_light",
-                    TextureShape::D2,
-                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-                ),
-                BindingSlot::sampled_texture(5, "sky_map", TextureShape::D3),
-            ],
-            VOLUME,
-            LIGHTS,
-        ],
-    ),
-    (
-        "eye/gather.wgsl",
+        "eye/eye_pass.wgsl",
         &[
             &[
                 EYE,
@@ -166,6 +146,26 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
             ],
             VOLUME_AND_LIGHTING,
             LIGHTS_AND_AMBIENT,
+        ],
+    ),
+    (
+        "eye/floor.wgsl",
+        &[
+            &[
+                BindingSlot::uniform::<uniforms::FloorUniform>(0, "bound_floor_disc"),
+                TABLE,
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::loaded_texture(3, "picture", TextureShape::D2),
+                BindingSlot::storage_texture(
+                    4,
+                    "floor_light",
+                    TextureShape::D2,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+                ),
+                BindingSlot::sampled_texture(5, "sky_map", TextureShape::D3),
+            ],
+            VOLUME,
+            LIGHTS,
         ],
     ),
     ("output/display.wgsl", &[DISPLAY]),
@@ -306,7 +306,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "volume/materials.wgsl",
+        "volume/preclassified.wgsl",
         &[&[
             BindingSlot::loaded_texture(0, "source", TextureShape::D3),
             TABLE,

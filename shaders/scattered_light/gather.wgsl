@@ -1,7 +1,7 @@
 // Gathering of swept light at listed blocks: the sum over the directions of a batch, interpolated between the rays
 // around each block's centre and added to the sums of earlier batches.
 #import "sky/rays.wgsl"
-#import "bounces/bounce.wgsl"
+#import "scattered_light/bounce.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
