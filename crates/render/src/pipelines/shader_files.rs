@@ -47,7 +47,6 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "output/painter.wgsl",
     "output/srgb.wgsl",
     "output/tone_map.wgsl",
-    "output/window.wgsl",
     "scatter/eye.wgsl",
     "scatter/footprint.wgsl",
     "scatter/footprints.wgsl",
