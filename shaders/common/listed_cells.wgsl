@@ -18,3 +18,13 @@ fn listed_voxel(listed: u32, lane: u32) -> u32 {
 fn voxel_of(cell: u32, lane: u32) -> vec3u {
     return unpack_coordinates(cell) * CELL_EDGE + (vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u));
 }
+
+// Voxel of an invocation from the list `cells`, which the importing shader declares; out of range for invocations
+// without one.
+fn voxel_of_listed_cell(group: vec3u, lane: u32) -> vec3u {
+    let listed = listed_cell(group, lane);
+    if (listed >= arrayLength(&cells)) {
+        return vec3u(~0u);
+    }
+    return voxel_of(cells[listed], lane);
+}

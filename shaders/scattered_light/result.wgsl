@@ -9,11 +9,7 @@
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     bounce = bound_bounce;
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let id = voxel_of(cells[listed], lane);
+    let id = voxel_of_listed_cell(group, lane);
     if (any(id >= bounce.dims)) {
         return;
     }

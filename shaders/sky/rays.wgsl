@@ -64,3 +64,9 @@ fn ray_coordinates(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     let n = select(last - turned.x, turned.x, rays.is_ascending == 1u);
     return vec3f(turned.yz - rays.drift * n - rays.first, n);
 }
+
+// Place of a block among the rays of one direction, as texture coordinates of the sheets.
+fn place_in_sheets(rays: SweepRaysUniform, block: vec3f) -> vec3f {
+    let ray = ray_coordinates(rays, block);
+    return (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
+}

@@ -175,12 +175,9 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("sky/moments.wgsl", [64, 1, 1]),
         ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),
-        ("volume/downsample_materials.wgsl", [8, 8, 4]),
-        ("volume/downsample_present.wgsl", [8, 8, 4]),
         ("volume/gradients.wgsl", [8, 8, 4]),
         ("volume/preclassified.wgsl", [8, 8, 4]),
         ("volume/prefilter.wgsl", [8, 8, 4]),
-        ("volume/prefilter_present.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =

@@ -121,7 +121,7 @@ impl PreclassifiedVoxels {
         let bricks = &self.bricks[level as usize][range.clone()];
         let pipeline = match level {
             0 => shaders.pipeline(&MaterialsVariant { has_missing: volume.presence.is_some() })?,
-            _ => shaders.pipeline(&SingleVariant("volume/downsample_materials.wgsl"))?,
+            _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), self.texture.format())?,
         };
         let source = match level {
             0 => volume.density_view.clone(),
