@@ -1,6 +1,6 @@
-// Decoding of dispatches over listed cells of 2³ voxels or blocks (crates/render/src/volume/cell_list.rs): eight cells per
-// workgroup of 64 invocations, in rows of 16384 workgroups because a dispatch has at most 65535 along an axis. A list
-// entry holds the cell's coordinates, packed like those of bricks.
+// Decoding of dispatches over listed cells of 2³ voxels or blocks (crates/render/src/volume/cell_list.rs): eight
+// cells per workgroup of 64 invocations, in rows of 16384 workgroups because a dispatch has at most 65535 along an
+// axis. A list entry holds the cell's coordinates, packed like those of bricks.
 #import "common/sizes.wgsl"
 #import "common/listed_bricks.wgsl"
 

@@ -49,7 +49,8 @@ override FIRST_TOUCH: bool = false;
 // Set if the kernel is wider than a pixel or a slab anywhere, or for cube faces.
 override WIDE: bool = false;
 
-// Width of the kernel across the sheets: minimum in voxels, maximum in pixels (crates/render/src/plan/geometry/light_frame.rs).
+// Width of the kernel across the sheets: minimum in voxels, maximum in pixels
+// (crates/render/src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 

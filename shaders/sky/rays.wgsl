@@ -1,4 +1,5 @@
-// Parallel rays through blocks of voxels, and the position of blocks among them (crates/render/src/plan/geometry/sweep.rs).
+// Parallel rays through blocks of voxels, and the position of blocks among them
+// (crates/render/src/plan/geometry/sweep.rs).
 
 // Maximum number of directions in a batch.
 const MAX_SKY_RAYS = 8;
