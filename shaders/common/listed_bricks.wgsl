@@ -1,6 +1,6 @@
-// Decoding of dispatches over the light voxels of listed bricks (crates/render/src/volume/brick_list.rs): two workgroups of
-// 8 × 8 × 4 invocations per brick of 8³, in rows of 16384 bricks because a dispatch has at most 65535 groups along an
-// axis. A list entry holds the brick's coordinates, ten bits each, and a mask of its 4³ cells.
+// Decoding of dispatches over the light voxels of listed bricks (crates/render/src/volume/brick_list.rs): two
+// workgroups of 8 × 8 × 4 invocations per brick of 8³, in rows of 16384 bricks because a dispatch has at most 65535
+// groups along an axis. A list entry holds the brick's coordinates, ten bits each, and a mask of its 4³ cells.
 #import "common/sizes.wgsl"
 
 // List index of the brick whose half a workgroup processes.

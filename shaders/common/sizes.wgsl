@@ -10,5 +10,6 @@ const LISTED_PER_ROW = 16384;
 const TILE_EDGE = 8;
 const TILE_ROW_BIT = 15;
 const TILE_FIRST_BIT = 31;
-// Bit where the end of the slice range begins in the entry of a tile of rays (crates/render/src/plan/geometry/sweep_tiles.rs).
+// Bit where the end of the slice range begins in the entry of a tile of rays
+// (crates/render/src/plan/geometry/sweep_tiles.rs).
 const END_SLICE_BIT = 16;

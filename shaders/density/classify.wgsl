@@ -1,7 +1,7 @@
 // Classification: from density to material (linear colour and extinction), after or before reconstruction.
 //
-// PRECLASSIFY: voxels are classified before reconstruction. The pyramid then holds materials (volume/materials.wgsl),
-// its first channel takes the place of density, and the table converts it to extinction.
+// PRECLASSIFY: voxels are classified before reconstruction. The pyramid then holds materials
+// (volume/preclassified.wgsl), its first channel takes the place of density, and the table converts it to extinction.
 #import "density/table.wgsl"
 #import "density/volume.wgsl"
 
@@ -29,7 +29,7 @@ struct SlabSample {
     material: vec4f,
     density: f32,
     // Presence, already included in the material's extinction; 1 where it was not evaluated.
-    there: f32,
+    presence: f32,
 }
 
 fn slab_sample(frame: SheetFrameUniform, ray: Ray, k: f32) -> SlabSample {
@@ -39,16 +39,16 @@ fn slab_sample(frame: SheetFrameUniform, ray: Ray, k: f32) -> SlabSample {
 #else
     let density = slab_density(frame, ray, k);
     let material = classify(density);
-    var there = 1.0;
+    var presence = 1.0;
 #if MISSING
     // Most samples are empty; presence is only fetched for the others.
     if (material.a > 0.0) {
-        there = slab_presence(frame, ray, k);
+        presence = slab_presence(frame, ray, k);
     }
 #else
-    there = slab_presence(frame, ray, k);
+    presence = slab_presence(frame, ray, k);
 #endif
-    return SlabSample(vec4f(material.rgb, material.a * there), density, there);
+    return SlabSample(vec4f(material.rgb, material.a * presence), density, presence);
 #endif
 }
 

@@ -1,5 +1,5 @@
-// Crop box and clip plane (crates/volume/src/math/clip_region.rs): region of the volume that remains, and the part of each slab of
-// a ray inside it.
+// Crop box and clip plane (crates/volume/src/math/clip_region.rs): region of the volume that remains, and the part of
+// each slab of a ray inside it.
 #import "sheets/sheet_frame.wgsl"
 
 // Set if the crop box or the clip plane removes anything.

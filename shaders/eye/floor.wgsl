@@ -111,7 +111,7 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
     let hood = cone_attenuation(light, risen.towards.direction) * risen.share;
     let bare = light.color * max(risen.facing, 0.0);
     let s = floor_disc.shading;
-    var left = Transmittance(0.0);
+    var transmittance = Transmittance(0.0);
     if (shadowed) {
         for (var i = 0u; i < light.points; i += 1u) {
             let one = area_light_point(light, i);
@@ -121,15 +121,15 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
                 let direction = index_from_scene_vector(floor_disc.space, way.direction);
                 let cut = floor_disc.shading_cut;
                 let scale = light.extinction_scale;
-                left += share * shadow_ray(p, direction, way.distance, s.ray_step, scale, s.max_optical_depth, cut);
+                transmittance += share * shadow_ray(p, direction, way.distance, s.ray_step, scale, s.max_optical_depth, cut);
             }
         }
-        left /= max(f32(light.points), 1.0);
+        transmittance /= max(f32(light.points), 1.0);
         if (light.points == 0u) {
-            left = Transmittance(map_transmittance(slot, map_coordinates(place)));
+            transmittance = Transmittance(map_transmittance(slot, map_coordinates(place)));
         }
     }
-    let arriving = apply_shadow_cures(s, left) - (1.0 - s.strength) * (1.0 - risen.share);
+    let arriving = apply_shadow_cures(s, transmittance) - (1.0 - s.strength) * (1.0 - risen.share);
     return FloorIrradiance(bare * select(Transmittance(hood), arriving, shadowed), bare * hood);
 }
 
@@ -173,8 +173,8 @@ fn main(
     let place = scene_from_index(floor_disc.space, p);
     let t = clamp((floor_disc.radius - distance(place, floor_disc.up * floor_disc.height)) / floor_disc.fade_width, 0.0, 1.0);
     // Visible from above, and in front of a perspective eye.
-    let is_seen = speed < 0.0 && 1.0 + depth * floor_disc.frame.inverse_distance > 1e-3;
-    let presence = select(0.0, floor_disc.opacity * t * t * (3.0 - 2.0 * t), is_seen);
+    let is_visible = speed < 0.0 && 1.0 + depth * floor_disc.frame.inverse_distance > 1e-3;
+    let presence = select(0.0, floor_disc.opacity * t * t * (3.0 - 2.0 * t), is_visible);
     var result = vec4f(0.0);
     if (presence * (1.0 - textureLoad(picture, pixel, 0).a) > MIN_VISIBLE_OPACITY) {
         var light = vec3f(0.0);

@@ -33,7 +33,7 @@ struct StepEnd {
     // Integral of extinction up to that position.
     integral: f32,
     // Presence at the point.
-    there: f32,
+    presence: f32,
 }
 
 fn step_end(ray: Ray, k: i32) -> StepEnd {
@@ -54,7 +54,7 @@ struct Layer {
     // Sum of contributions times densities.
     densities: f32,
     // Transmittance of the ray behind the layer.
-    left: f32,
+    transmittance: f32,
     // Optical depth of the last step.
     last_depth: f32,
 }
@@ -75,12 +75,12 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     let is_even = abs(half) < 1.0;
     let per_half = 1.0 / select(half, 1.0, is_even);
     let alike = table.entries[nearest_entry(middle)].a;
-    let there = 0.25 * length * (a.there + b.there);
-    let front = there * select((integral - a.integral) * per_half, alike, is_even);
-    let back = there * select((b.integral - integral) * per_half, alike, is_even);
-    let behind_front = layer.left * exp(-front);
+    let present_length = 0.25 * length * (a.presence + b.presence);
+    let front = present_length * select((integral - a.integral) * per_half, alike, is_even);
+    let back = present_length * select((b.integral - integral) * per_half, alike, is_even);
+    let behind_front = layer.transmittance * exp(-front);
     let behind_back = behind_front * exp(-back);
-    let by_front = layer.left - behind_front;
+    let by_front = layer.transmittance - behind_front;
     let by_back = behind_front - behind_back;
     let place = f32(k);
     return Layer(
@@ -123,16 +123,16 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
             steps += select(0, 1, layer.share > MIN_COUNTED_SHARE);
             k = at;
             before = end;
-            let seen = next_visible_slab(walk, k + 1, last);
-            has_skipped = is_empty && seen > k + 1;
-            k = select(k, seen - 1, has_skipped);
+            let visible = next_visible_slab(walk, k + 1, last);
+            has_skipped = is_empty && visible > k + 1;
+            k = select(k, visible - 1, has_skipped);
             // Material behind a gap is shaded separately.
             let is_whole = steps >= select(LAYER_STEPS, LAYER_STEPS - 1, layer.last_depth < SOFT_OPTICAL_DEPTH);
-            if (is_whole || layer.left < eye.min_transmittance || k >= last || (is_empty && layer.share > 0.0)) {
+            if (is_whole || layer.transmittance < eye.min_transmittance || k >= last || (is_empty && layer.share > 0.0)) {
                 break;
             }
         }
-        t = layer.left;
+        t = layer.transmittance;
         if (layer.share > 0.0) {
             let depth = depth_of(eye.frame, layer.places / layer.share);
             let dense = layer.densities / layer.share;

@@ -49,8 +49,8 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
             // Beside missing voxels density continues, but little or no material is present.
             if (share > MAX_UNDIVIDED_SHARE) {
                 let rise = 0.5 * GRADIENT_SAFETY * thick * abs(dot(rising, ray.direction));
-                let there = min(found.there + rise, 1.0);
-                share = t * (1.0 - exp(-there * largest * thick * ray.obliquity));
+                let presence = min(found.presence + rise, 1.0);
+                share = t * (1.0 - exp(-presence * largest * thick * ray.obliquity));
             }
 #endif
 #endif

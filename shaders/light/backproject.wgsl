@@ -49,7 +49,8 @@ override FIRST_TOUCH: bool = false;
 // Set if the kernel is wider than a pixel or a slab anywhere, or for cube faces.
 override WIDE: bool = false;
 
-// Width of the kernel across the sheets: minimum in voxels, maximum in pixels (crates/render/src/plan/geometry/light_frame.rs).
+// Width of the kernel across the sheets: minimum in voxels, maximum in pixels
+// (crates/render/src/plan/geometry/light_frame.rs).
 const MIN_KERNEL_VOXELS = 0.3125;
 const MAX_KERNEL_PIXELS = 4.0;
 
@@ -172,7 +173,7 @@ struct Footprint {
     // so that the chunk does not depend on it.
     final_slab: i32,
     // Set if the voxel belongs to this view, and does not lie in the plane of the light.
-    is_seen: bool,
+    is_visible: bool,
 }
 
 fn footprint_of(voxel: vec3u) -> Footprint {
@@ -193,14 +194,14 @@ fn footprint_of(voxel: vec3u) -> Footprint {
     let slab = (depth - view.frame.first_depth) / view.frame.slab - 0.5;
     let last_slab = i32(view.frame.slab_count) - 1;
     let final_slab = clamp(i32(floor(slab + 2.0 * slabs + point_offset())), 0, last_slab);
-    let is_seen = owned && spread > 1e-3 && all(voxel < view.dims);
-    return Footprint(across / spread - view.first_pixel, slab, pixels, slabs, final_slab, is_seen);
+    let is_visible = owned && spread > 1e-3 && all(voxel < view.dims);
+    return Footprint(across / spread - view.first_pixel, slab, pixels, slabs, final_slab, is_visible);
 }
 
 // Voxel that the chunk completes, and the cells of its brick that the lane has yet to process.
 struct CompletedVoxel {
     is_due: bool,
-    left: vec2u,
+    remaining_cells: vec2u,
     voxel: vec3u,
     found: Footprint,
 }
@@ -209,20 +210,20 @@ struct CompletedVoxel {
 fn next_completed_voxel(brick: u32, lane: u32, cells: vec2u) -> CompletedVoxel {
     let in_cell = vec3u(lane, lane >> 1u, lane >> 2u) & vec3u(1u);
     var next: CompletedVoxel;
-    next.left = cells;
+    next.remaining_cells = cells;
     loop {
-        let left = next.left;
-        if (all(left == vec2u(0u))) {
+        let remaining = next.remaining_cells;
+        if (all(remaining == vec2u(0u))) {
             break;
         }
-        let low = left.x != 0u;
-        let cell = select(firstTrailingBit(left.y) + 32u, firstTrailingBit(left.x), low);
-        next.left = select(vec2u(left.x, left.y & (left.y - 1u)), vec2u(left.x & (left.x - 1u), left.y), low);
+        let low = remaining.x != 0u;
+        let cell = select(firstTrailingBit(remaining.y) + 32u, firstTrailingBit(remaining.x), low);
+        next.remaining_cells = select(vec2u(remaining.x, remaining.y & (remaining.y - 1u)), vec2u(remaining.x & (remaining.x - 1u), remaining.y), low);
         let place = vec3u(cell, cell >> 2u, cell >> 4u) & vec3u(3u);
         next.voxel = unpack_coordinates(brick) * BRICK_EDGE + place * CELL_EDGE + in_cell;
         let found = footprint_of(next.voxel);
         next.found = found;
-        next.is_due = found.is_seen && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
+        next.is_due = found.is_visible && found.final_slab >= i32(view.begin) && found.final_slab < i32(view.end);
         if (next.is_due) {
             break;
         }
@@ -265,7 +266,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
             value = gather_narrow(found.pixel, found.slab);
         }
         textureStore(attenuation, next.voxel, vec4f(value));
-        next = next_completed_voxel(brick.x, lane, next.left);
+        next = next_completed_voxel(brick.x, lane, next.remaining_cells);
         if (!next.is_due) {
             break;
         }

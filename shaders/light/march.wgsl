@@ -11,8 +11,8 @@
 
 // Distances: r to the nearest cell visible in either transfer function, g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<f32>;
-// Tiles to be marched (crates/render/src/plan/geometry/march_tiles.rs): column, row from bit 15, and a bit for the first chunk in
-// which light reaches the tile. The buffer may be longer than the list.
+// Tiles to be marched (crates/render/src/plan/geometry/march_tiles.rs): column, row from bit 15, and a bit for the
+// first chunk in which light reaches the tile. The buffer may be longer than the list.
 @group(0) @binding(5) var<storage, read> tiles: array<u32>;
 
 // Progress of the march along a ray.

@@ -48,18 +48,18 @@ fn sheet_value(pixel: vec2i, k: i32) -> f32 {
     // Extinction, for pre-classified voxels.
     let found = f32(atomicLoad(&sheets[channel_index(at, 4u)])) / FIXED_POINT_ONE;
 #else
-    let there = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
-    let found = f32(atomicLoad(&sheets[at])) / FIXED_POINT_ONE / max(there, MIN_PRESENCE);
+    let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), known);
+    let found = f32(atomicLoad(&sheets[at])) / FIXED_POINT_ONE / max(in_grid, MIN_PRESENCE);
 #endif
     return select(0.0, found, (k >= 0) & (k <= last));
 }
 
 // Material of a sheet: its classified density times presence, or the sum of the voxels' materials.
 fn material_of(pixel: vec2i, k: i32) -> vec4f {
-    let there = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
+    let presence = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
     if (SPLAT != SPLAT_MATERIAL) {
         let material = classify(sheet_value(pixel, k));
-        return vec4f(material.rgb, material.a * there);
+        return vec4f(material.rgb, material.a * presence);
     }
     let at = sheet_index(vec2u(pixel), u32(k));
     let sums = vec4f(
@@ -70,7 +70,7 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
     ) / FIXED_POINT_ONE;
     // Neighbours stand in for missing voxels, but not outside the grid.
     let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), k);
-    let share = select(1.0, there / max(in_grid, MIN_PRESENCE), MISSING);
+    let share = select(1.0, presence / max(in_grid, MIN_PRESENCE), MISSING);
     return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 
@@ -99,7 +99,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     let at = id.y * eye.frame.size.x + id.x;
     let before = rays[at];
-    let left = 1.0 - before.a;
+    let transmittance = 1.0 - before.a;
     let ray = ray_of(eye.frame, vec2f(id.xy));
     let met = crossing_of(ray, f32(k));
     let p = ray.origin + ray.direction * met.depth;
@@ -107,7 +107,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let brick = brick_with_material(p);
     // Set for points in front of a perspective eye.
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
-    if (material.a > 0.0 && left >= eye.min_transmittance && brick.x >= 0 && in_front) {
+    if (material.a > 0.0 && transmittance >= eye.min_transmittance && brick.x >= 0 && in_front) {
         // Sums are complete only near visible bricks.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
@@ -122,7 +122,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             }
             slope += face_slope(p, level, density, presence_gradient(p, level));
             let rgb = shade(VolumeSample(p, slope, density, level), material.rgb);
-            rays[at] = before + left * opacity * vec4f(rgb, 1.0);
+            rays[at] = before + transmittance * opacity * vec4f(rgb, 1.0);
         }
     }
     // Clears the sheet that no later slab reads, for reuse. Uniforms are not used as branch conditions

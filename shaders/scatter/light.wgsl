@@ -33,11 +33,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (i32(textureLoad(distances, brick, 0).g) <= DILATION) {
             // Mean over the existing voxels, times presence.
             let in_grid = slab_in_grid(march.frame, ray, f32(scatter.k));
-            let there = slab_presence(march.frame, ray, f32(scatter.k));
+            let presence = slab_presence(march.frame, ray, f32(scatter.k));
             let mean = sum / max(in_grid, MIN_PRESENCE);
-            let classified = classified_extinction(mean) * there;
+            let classified = classified_extinction(mean) * presence;
             // Neighbours stand in for missing voxels, but not outside the grid.
-            let splatted = select(sum, mean * there, MISSING) * scatter.extinction_unit;
+            let splatted = select(sum, mean * presence, MISSING) * scatter.extinction_unit;
             let extinction = select(classified, splatted, SPLAT == SPLAT_EXTINCTION);
             let place = ray.origin + ray.direction * depth_of(march.frame, f32(scatter.k));
             let share = shading_fraction(march.shading_cut, place);

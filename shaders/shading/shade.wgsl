@@ -5,7 +5,7 @@
 #import "density/volume.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/sky_light.wgsl"
-#import "shading/bounces.wgsl"
+#import "shading/scattered_light.wgsl"
 #import "common/space.wgsl"
 #import "sheets/sheet_frame.wgsl"
 #import "density/cut.wgsl"

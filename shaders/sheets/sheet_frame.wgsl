@@ -1,6 +1,6 @@
-// Rays of a stack of sheet buffers (crates/render/src/plan/geometry/sheet_frame.rs): at depth z along the axis of projection, pixel
-// (i, j) sees the index-space point origin + z * direction. Depth is in scene units from the anchor plane; a parallel
-// projection has inverse_distance 0.
+// Rays of a stack of sheet buffers (crates/render/src/plan/geometry/sheet_frame.rs): at depth z along the axis of
+// projection, pixel (i, j) sees the index-space point origin + z * direction. Depth is in scene units from the anchor
+// plane; a parallel projection has inverse_distance 0.
 struct SheetFrameUniform {
     origin: vec3f,
     first_depth: f32,

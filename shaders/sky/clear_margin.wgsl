@@ -7,11 +7,7 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let block = voxel_of(cells[listed], lane);
+    let block = voxel_of_listed_cell(group, lane);
     if (all(block < textureDimensions(moments))) {
         textureStore(moments, block, vec4f(0.0, 0.0, 0.0, 1.0));
     }

@@ -6,7 +6,7 @@
 #import "sky/floor_place.wgsl"
 
 // Transmittance of each ray where it meets the floor, a layer for each direction (sky/floor_sweep.wgsl).
-@group(0) @binding(1) var left: texture_3d<f32>;
+@group(0) @binding(1) var transmittance: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
 // C₁ in rgb, C₀ in a.
@@ -32,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         // Beyond the first and the last rays there is no occlusion.
         let ray = clamp(ray_coordinates(rays, block).xy, vec2f(-1.0), vec2f(rays.size) - 1.0);
         let place = vec3f(ray + 1.5, f32(i) + 0.5) * sweep.sheet_scale;
-        let passed = textureSampleLevel(left, clamped, place, 0.0).r;
+        let passed = textureSampleLevel(transmittance, clamped, place, 0.0).r;
         sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }
     if (IS_LAST) {

@@ -1,16 +1,16 @@
 // Sweep of the sky's light down to the floor: one thread per ray follows it to the slice in which it meets the floor,
 // and stores the transmittance there, one texel per ray. A row and a column of rays that miss the grid precede them.
-#import "sky/near.wgsl"
+#import "sky/swept_ray.wgsl"
 #import "sky/floor_place.wgsl"
 #import "common/slab_mean.wgsl"
 
 @group(0) @binding(1) var extinction: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-@group(0) @binding(3) var left: texture_storage_3d<STORAGE_FORMAT, write>;
+@group(0) @binding(3) var transmittance: texture_storage_3d<STORAGE_FORMAT, write>;
 
 // Slice in which a ray meets the floor; fractional, and possibly before the first or behind the last.
-fn slice_of_floor(rays: SweepRaysUniform, start: vec2f, last: f32) -> f32 {
-    let begin = from_sweep_axes(rays, vec3f(select(last, 0.0, rays.is_ascending == 1u), start));
+fn slice_of_floor(rays: SweepRaysUniform, ray: SweptRay) -> f32 {
+    let begin = from_sweep_axes(rays, vec3f(select(ray.last, 0.0, rays.is_ascending == 1u), ray.start));
     let step = from_sweep_axes(rays, vec3f(select(-1.0, 1.0, rays.is_ascending == 1u), rays.drift));
     return (map.plane.w - dot(map.plane.xyz, begin)) / dot(map.plane.xyz, step);
 }
@@ -24,19 +24,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy > rays.size)) {
         return;
     }
-    let ray = max(id.xy, vec2u(1u)) - 1u;
-    let size = to_sweep_axes(rays, vec3f(sweep.dims));
-    let last = size.x - 1.0;
-    let start = vec2f(ray) + rays.first;
-    let span = slices_of_ray(rays, ray, start, size);
-    let end = floor(slice_of_floor(rays, start, last) + 0.5);
+    let ray = swept_ray(rays, max(id.xy, vec2u(1u)) - 1u);
+    let end = floor(slice_of_floor(rays, ray) + 0.5);
     let is_beside = any(id.xy == vec2u(0u));
     var t = 1.0;
-    for (var n = span.x; n <= select(min(span.y, end), -1.0, is_beside); n += 1.0) {
-        let slice = select(last - n, n, rays.is_ascending == 1u);
-        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
-        let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;
+    for (var n = ray.span.x; n <= select(min(ray.span.y, end), -1.0, is_beside); n += 1.0) {
+        let tau = textureSampleLevel(extinction, clamped, place_in_blocks(rays, ray, n), 0.0).r * rays.step;
         t *= select(exp(-tau), slab_mean_transmittance(tau), n == end);
     }
-    textureStore(left, vec3u(id.xy, id.z), vec4f(t));
+    textureStore(transmittance, vec3u(id.xy, id.z), vec4f(t));
 }

@@ -20,20 +20,15 @@ override IS_LAST: bool = true;
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     sweep = bound_sweep;
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let id = voxel_of(cells[listed], lane);
+    let id = voxel_of_listed_cell(group, lane);
     if (any(id >= sweep.dims)) {
         return;
     }
-    let at = listed_voxel(listed, lane);
+    let at = listed_voxel(listed_cell(group, lane), lane);
     var sum = sums[at] * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = ray_coordinates(rays, vec3f(id));
-        let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
+        let place = place_in_sheets(rays, vec3f(id));
         let passed = textureSampleLevel(sheets, clamped, place, 0.0).r;
         sum += rays.weight * passed * vec4f(rays.direction_to_light, 1.0);
     }

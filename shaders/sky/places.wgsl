@@ -15,7 +15,7 @@ struct BlocksUniform {
     offset: f32,
     // Optical depth per shortest edge of a voxel, for unit extinction.
     edge: f32,
-    // Fraction of attenuated light that is scattered, not absorbed; used by bounces/blocks.wgsl only.
+    // Fraction of attenuated light that is scattered, not absorbed; used by scattered_light/blocks.wgsl only.
     albedo: f32,
     shading_cut: CutUniform,
 }

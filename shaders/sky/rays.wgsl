@@ -1,4 +1,5 @@
-// Parallel rays through blocks of voxels, and the position of blocks among them (crates/render/src/plan/geometry/sweep.rs).
+// Parallel rays through blocks of voxels, and the position of blocks among them
+// (crates/render/src/plan/geometry/sweep.rs).
 
 // Maximum number of directions in a batch.
 const MAX_SKY_RAYS = 8;
@@ -17,7 +18,8 @@ struct SweepRaysUniform {
     axis: u32,
     // 1 if light travels up the axis, else 0.
     is_ascending: u32,
-    // Radiance that arrives from this direction, for sweeps of light rather than transmittance (bounces/sweep.wgsl).
+    // Radiance that arrives from this direction, for sweeps of light rather than transmittance
+    // (scattered_light/sweep.wgsl).
     incoming_radiance: vec3f,
     // Layer of the first slice in the sheets.
     layer: u32,
@@ -51,7 +53,7 @@ fn to_sweep_axes(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     return select(select(block, block.yzx, rays.axis == 1u), block.zxy, rays.axis == 2u);
 }
 
-// Inverse of turned_to.
+// Inverse of to_sweep_axes.
 fn from_sweep_axes(rays: SweepRaysUniform, turned: vec3f) -> vec3f {
     return select(select(turned, turned.zxy, rays.axis == 1u), turned.yzx, rays.axis == 2u);
 }
@@ -62,4 +64,10 @@ fn ray_coordinates(rays: SweepRaysUniform, block: vec3f) -> vec3f {
     let last = to_sweep_axes(rays, vec3f(sweep.dims)).x - 1.0;
     let n = select(last - turned.x, turned.x, rays.is_ascending == 1u);
     return vec3f(turned.yz - rays.drift * n - rays.first, n);
+}
+
+// Place of a block among the rays of one direction, as texture coordinates of the sheets.
+fn place_in_sheets(rays: SweepRaysUniform, block: vec3f) -> vec3f {
+    let ray = ray_coordinates(rays, block);
+    return (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
 }

@@ -1,7 +1,6 @@
 // Sweep of the sky's light along parallel rays: one thread per ray walks through slices of blocks, and stores the
 // transmittance that it deposits in each, like the light pass does (sheets/march.wgsl).
-#import "sky/rays.wgsl"
-#import "sky/near.wgsl"
+#import "sky/swept_ray.wgsl"
 #import "common/slab_mean.wgsl"
 
 @group(0) @binding(1) var extinction: texture_3d<f32>;
@@ -16,15 +15,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let size = to_sweep_axes(rays, vec3f(sweep.dims));
-    let last = size.x - 1.0;
-    let start = vec2f(id.xy) + rays.first;
-    let span = slices_of_ray(rays, id.xy, start, size);
+    let ray = swept_ray(rays, id.xy);
     var t = 1.0;
-    for (var n = span.x; n <= span.y; n += 1.0) {
-        let slice = select(last - n, n, rays.is_ascending == 1u);
-        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
-        let tau = textureSampleLevel(extinction, clamped, (block + 1.5) * sweep.block_scale, 0.0).r * rays.step;
+    for (var n = ray.span.x; n <= ray.span.y; n += 1.0) {
+        let tau = textureSampleLevel(extinction, clamped, place_in_blocks(rays, ray, n), 0.0).r * rays.step;
         textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), vec4f(t * slab_mean_transmittance(tau)));
         t *= exp(-tau);
     }

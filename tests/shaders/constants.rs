@@ -26,24 +26,24 @@ fn constant(source: &str, name: &str) -> Option<f64> {
 #[test]
 fn constants_are_the_same_in_rust_and_in_the_shaders() {
     let expected: [(&str, f64, &[&str]); 6] = [
-        ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/gather.wgsl"]),
-        ("TABLE_SIZE", LUT_SIZE as f64, &["eye/gather.wgsl", "light/march.wgsl"]),
-        ("THIN_SLABS", f64::from(MAX_SLAB_PARTS), &["eye/gather.wgsl"]),
+        ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/eye_pass.wgsl"]),
+        ("TABLE_SIZE", LUT_SIZE as f64, &["eye/eye_pass.wgsl", "light/march.wgsl"]),
+        ("THIN_SLABS", f64::from(MAX_SLAB_PARTS), &["eye/eye_pass.wgsl"]),
         ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light/backproject.wgsl"]),
         ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light/backproject.wgsl"]),
-        ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/gather.wgsl", "light/march.wgsl"]),
+        ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/eye_pass.wgsl", "light/march.wgsl"]),
     ];
     for (name, value, shaders) in expected {
         for shader in shaders {
             assert_eq!(constant(&shader_source(shader), name), Some(value), "{name} in {shader}");
         }
     }
-    assert_eq!(constant(&shader_source("eye/gather.wgsl"), "NOT_THERE"), None);
+    assert_eq!(constant(&shader_source("eye/eye_pass.wgsl"), "NOT_THERE"), None);
 }
 
 #[test]
 fn the_table_has_room_for_all_entries() {
-    for shader in ["eye/gather.wgsl", "light/march.wgsl"] {
+    for shader in ["eye/eye_pass.wgsl", "light/march.wgsl"] {
         let module = validate_shader(&shader_source(shader)).expect("the shader is valid");
         let (_, table) = module
             .global_variables
@@ -68,8 +68,8 @@ fn the_table_has_room_for_all_entries() {
 fn workgroups_fill_bricks_and_tiles() {
     let (brick, tile) = (BRICK_EDGE as u32, TILE_EDGE);
     let half_bricks =
-        ["light/clear_margin", "light/combine", "light/raycast", "scatter/normalise", "scatter/splat"];
-    let tiles = ["eye/floor", "eye/gather", "light/march"];
+        ["light/clear_margin", "light/combined_light", "light/raycast", "scatter/normalise", "scatter/splat"];
+    let tiles = ["eye/floor", "eye/eye_pass", "light/march"];
     for (names, size) in [(&half_bricks[..], [brick, brick, brick / 2]), (&tiles, [tile, tile, 1])] {
         for name in names {
             let module =
@@ -82,25 +82,41 @@ fn workgroups_fill_bricks_and_tiles() {
 /// Constants of `common/sizes.wgsl`: name, value in Rust, another value of the same number of digits, and shaders
 /// that use it.
 const SIZES: [(&str, usize, usize, &[&str]); 9] = [
-    ("BRICK_EDGE", BRICK_EDGE, 4, &["light/backproject", "light/combine", "light/raycast", "scatter/splat"]),
+    (
+        "BRICK_EDGE",
+        BRICK_EDGE,
+        4,
+        &["light/backproject", "light/combined_light", "light/raycast", "scatter/splat"],
+    ),
     ("BRICK_EDGE", BRICK_EDGE, 4, &["scatter/eye", "scatter/footprints", "scatter/normalise"]),
-    ("CELL_EDGE", CELL_EDGE, 4, &["eye/gather", "light/backproject", "light/march", "light/raycast"]),
+    ("CELL_EDGE", CELL_EDGE, 4, &["eye/eye_pass", "light/backproject", "light/march", "light/raycast"]),
     (
         "CELL_EDGE",
         CELL_EDGE,
         4,
-        &["bounces/blocks", "bounces/gather", "sky/blocks", "sky/clear_margin", "sky/moments"],
+        &[
+            "scattered_light/blocks",
+            "scattered_light/gather",
+            "sky/extinction_blocks",
+            "sky/clear_margin",
+            "sky/moments",
+        ],
     ),
     (
         "LISTED_PER_ROW",
         LISTED_PER_ROW as usize,
         32768,
-        &["light/backproject", "light/combine", "light/march"],
+        &["light/backproject", "light/combined_light", "light/march"],
     ),
-    ("TILE_EDGE", TILE_EDGE as usize, 4, &["bounces/sweep", "eye/floor", "eye/gather", "light/march"]),
+    (
+        "TILE_EDGE",
+        TILE_EDGE as usize,
+        4,
+        &["scattered_light/sweep", "eye/floor", "eye/eye_pass", "light/march"],
+    ),
     ("TILE_ROW_BIT", TILE_ROW_BIT as usize, 14, &["light/march"]),
     ("TILE_FIRST_BIT", TILE_FIRST_BIT as usize, 30, &["light/march"]),
-    ("END_SLICE_BIT", END_SLICE_BIT as usize, 15, &["bounces/sweep", "sky/floor_sweep", "sky/sweep"]),
+    ("END_SLICE_BIT", END_SLICE_BIT as usize, 15, &["scattered_light/sweep", "sky/floor_sweep", "sky/sweep"]),
 ];
 
 #[test]
@@ -125,21 +141,14 @@ fn statements(source: &str) -> String {
 #[test]
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
-        ("bounces/blocks.wgsl", [64, 1, 1]),
-        ("bounces/first.wgsl", [4, 4, 4]),
-        ("bounces/gather.wgsl", [64, 1, 1]),
-        ("bounces/outcome.wgsl", [64, 1, 1]),
-        ("bounces/ratio.wgsl", [256, 1, 1]),
-        ("bounces/source.wgsl", [4, 4, 4]),
-        ("bounces/sweep.wgsl", [8, 8, 1]),
+        ("eye/eye_pass.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
-        ("eye/gather.wgsl", [8, 8, 1]),
+        ("light/area_light.wgsl", [8, 8, 4]),
         // Size given by LANES, which the parser leaves open.
-        ("light/average.wgsl", [8, 8, 4]),
         ("light/backproject.wgsl", [1, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),
-        ("light/colors.wgsl", [8, 8, 4]),
-        ("light/combine.wgsl", [8, 8, 4]),
+        ("light/colored_shadows.wgsl", [8, 8, 4]),
+        ("light/combined_light.wgsl", [8, 8, 4]),
         ("light/floor_shadow.wgsl", [8, 8, 1]),
         ("light/march.wgsl", [8, 8, 1]),
         ("light/raycast.wgsl", [8, 8, 4]),
@@ -152,19 +161,23 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/resolve.wgsl", [8, 8, 1]),
         ("scatter/reverse.wgsl", [8, 8, 1]),
         ("scatter/splat.wgsl", [8, 8, 4]),
-        ("sky/blocks.wgsl", [64, 1, 1]),
+        ("scattered_light/blocks.wgsl", [64, 1, 1]),
+        ("scattered_light/gather.wgsl", [64, 1, 1]),
+        ("scattered_light/ratio.wgsl", [256, 1, 1]),
+        ("scattered_light/result.wgsl", [64, 1, 1]),
+        ("scattered_light/single_scattering.wgsl", [4, 4, 4]),
+        ("scattered_light/source.wgsl", [4, 4, 4]),
+        ("scattered_light/sweep.wgsl", [8, 8, 1]),
         ("sky/clear_margin.wgsl", [64, 1, 1]),
+        ("sky/extinction_blocks.wgsl", [64, 1, 1]),
         ("sky/floor_map.wgsl", [8, 8, 1]),
         ("sky/floor_sweep.wgsl", [8, 8, 1]),
         ("sky/moments.wgsl", [64, 1, 1]),
         ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),
-        ("volume/downsample_materials.wgsl", [8, 8, 4]),
-        ("volume/downsample_present.wgsl", [8, 8, 4]),
         ("volume/gradients.wgsl", [8, 8, 4]),
-        ("volume/materials.wgsl", [8, 8, 4]),
+        ("volume/preclassified.wgsl", [8, 8, 4]),
         ("volume/prefilter.wgsl", [8, 8, 4]),
-        ("volume/prefilter_present.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =

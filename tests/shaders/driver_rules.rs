@@ -44,7 +44,7 @@ fn uniforms_are_copied_before_anything_branches() {
 
 #[test]
 fn uniforms_read_late_are_noticed() {
-    let source = shader_source("eye/gather.wgsl");
+    let source = shader_source("eye/eye_pass.wgsl");
     for (from, to, name) in [
         ("    grid = bound_grid;\n", "", "bound_grid"),
         ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),

@@ -86,12 +86,12 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
         pad1,
     });
     vec![
-        ("eye/gather.wgsl", frame.clone()),
+        ("eye/eye_pass.wgsl", frame.clone()),
         ("light/march.wgsl", frame.clone()),
         ("light/backproject.wgsl", frame),
-        ("eye/gather.wgsl", grid.clone()),
+        ("eye/eye_pass.wgsl", grid.clone()),
         ("light/march.wgsl", grid),
-        ("eye/gather.wgsl", layout!(CutUniform { low, pad0, high, pad1, plane })),
+        ("eye/eye_pass.wgsl", layout!(CutUniform { low, pad0, high, pad1, plane })),
         (
             "light/march.wgsl",
             layout!(MarchUniform {
@@ -109,7 +109,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 shading_cut,
             }),
         ),
-        ("light/average.wgsl", layout!(AverageUniform { dims, bricks, share, pad0, pad1, pad2 })),
+        ("light/area_light.wgsl", layout!(AverageUniform { dims, bricks, share, pad0, pad1, pad2 })),
         (
             "light/floor_shadow.wgsl",
             layout!(FloorShadowUniform {
@@ -166,9 +166,9 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 shading_cut
             }),
         ),
-        ("eye/gather.wgsl", light),
+        ("eye/eye_pass.wgsl", light),
         (
-            "eye/gather.wgsl",
+            "eye/eye_pass.wgsl",
             layout!(SpaceUniform {
                 scene_from_index_x,
                 scene_from_index_y,
@@ -179,7 +179,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             }),
         ),
         (
-            "eye/gather.wgsl",
+            "eye/eye_pass.wgsl",
             layout!(ShadingUniform {
                 emission,
                 ambient,
@@ -200,7 +200,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             }),
         ),
         (
-            "eye/gather.wgsl",
+            "eye/eye_pass.wgsl",
             layout!(EyeUniform {
                 frame,
                 shading,
@@ -259,12 +259,12 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             layout!(FootprintPhaseUniform { u, v, brick_u, brick_v, stride, pad0, pad1, pad2 }),
         ),
         (
-            "eye/gather.wgsl",
+            "eye/eye_pass.wgsl",
             layout!(ScatteredLightUniform { lookup, lookup_distance, share, pad0, pad1, pad2 }),
         ),
-        ("bounces/gather.wgsl", layout!(BounceUniform { dims, share, color, min_extinction })),
+        ("scattered_light/gather.wgsl", layout!(BounceUniform { dims, share, color, min_extinction })),
         (
-            "bounces/first.wgsl",
+            "scattered_light/single_scattering.wgsl",
             layout!(SingleScatteringUniform {
                 space,
                 block_scale,
@@ -280,9 +280,9 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 lights
             }),
         ),
-        ("eye/gather.wgsl", layout!(SkyUniform { red, green, blue, lookup, lookup_distance })),
+        ("eye/eye_pass.wgsl", layout!(SkyUniform { red, green, blue, lookup, lookup_distance })),
         (
-            "sky/blocks.wgsl",
+            "sky/extinction_blocks.wgsl",
             layout!(BlocksUniform { dims, voxel_step, level, offset, edge, albedo, shading_cut }),
         ),
         (
@@ -311,7 +311,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             "sky/sweep.wgsl",
             layout!(SweepUniform { dims, share, block_scale, has_sums, sheet_scale, pad0, rays }),
         ),
-        ("light/combine.wgsl", layout!(CombineUniform { dims, bricks, voxel_step, pad0, pad1, pad2 })),
+        ("light/combined_light.wgsl", layout!(CombineUniform { dims, bricks, voxel_step, pad0, pad1, pad2 })),
         (
             "eye/floor.wgsl",
             layout!(FloorUniform {

@@ -76,7 +76,7 @@ fn every_shared_struct_is_compared() {
     let files = [
         include_str!("../../crates/render/src/pipelines/uniforms/mod.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/light.rs"),
-        include_str!("../../crates/render/src/pipelines/uniforms/bounces.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/scattered_light.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/sky.rs"),
     ];
     let declared: BTreeSet<_> = files

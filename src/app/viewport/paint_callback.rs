@@ -1,5 +1,5 @@
 //! Paint callbacks: pictures and backgrounds of the window as egui shapes, drawn by the viewer's own pipelines
-//! (`shaders/output/window.wgsl` says why).
+//! (`shaders/output/painter.wgsl` says why).
 
 use eframe::egui::{Color32, PaintCallbackInfo, Rect, Shape};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait};

@@ -106,7 +106,7 @@ fn mistakes_in_them_are_noticed() {
     let mut settings = look();
     settings.lights.truncate(1);
     assert!(!differs_in_look(&settings, N, "\u{0}", "", ReferenceFault::None));
-    let volume = "light/average.wgsl";
+    let volume = "light/area_light.wgsl";
     for (from, to) in [
         ("vec4f(sum * average.share)", "vec4f(sum * average.share * 0.97)"),
         ("!IS_FIRST", "false"),
@@ -122,7 +122,7 @@ fn mistakes_in_them_are_noticed() {
     settings.lights[0].angle_deg = 80.0;
     // Near-field rays that enter the material below the terminator of the light's centre.
     let (from, to) = ("half_width * weight;", "half_width * 0.0;");
-    assert_in_shader("eye/gather.wgsl", from);
+    assert_in_shader("eye/eye_pass.wgsl", from);
     assert!(!differs_in_look(&settings, N, "\u{0}", "", ReferenceFault::None));
     assert!(
         differs_in_look(&settings, N, from, to, ReferenceFault::None),
@@ -142,7 +142,7 @@ fn mistakes_in_them_are_noticed() {
         ("disc.y * half_width, disc.x", "disc.y * half_width, 1.0"),
         ("root * (2.0 + u * u) / 3.0", "root * (2.0 + u) / 3.0"),
     ] {
-        assert_in_shader("eye/gather.wgsl", from);
+        assert_in_shader("eye/eye_pass.wgsl", from);
         assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");
     }
 }

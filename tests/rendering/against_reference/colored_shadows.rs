@@ -222,11 +222,16 @@ fn mistakes_are_detected() {
     let mut on_floor = classified.clone();
     on_floor.floor = FloorSettings { on: true, height: -0.8, ..FloorSettings::default() };
     for (settings, shader, from, to) in [
-        (&settings, "light/colors.wgsl", "textureLoad(green, voxel, 0)", "textureLoad(blue, voxel, 0)"),
-        (&settings, "eye/gather.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
-        (&settings, "eye/gather.wgsl", "return texel.rgb;", "return texel.rrr;"),
+        (
+            &settings,
+            "light/colored_shadows.wgsl",
+            "textureLoad(green, voxel, 0)",
+            "textureLoad(blue, voxel, 0)",
+        ),
+        (&settings, "eye/eye_pass.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
+        (&settings, "eye/eye_pass.wgsl", "return texel.rgb;", "return texel.rrr;"),
         (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
-        (&classified, "eye/gather.wgsl", "return texel.gba;", "return texel.rrr;"),
+        (&classified, "eye/eye_pass.wgsl", "return texel.gba;", "return texel.rrr;"),
         (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
     ] {
         assert_in_shader(shader, from);

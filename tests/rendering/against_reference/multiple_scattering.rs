@@ -154,15 +154,15 @@ fn mistakes_in_light_of_one_color_are_noticed() {
     settings.scattering.resolution = LightVolumeResolution::Quarter;
     let right = light(&volume, &settings);
     let mistakes = [
-        ("bounces/outcome.wgsl", "sum.r * bounce.color", "vec3f(sum.r)"),
-        ("bounces/sweep.wgsl", "return rays.incoming_radiance.r;", "return 0.0;"),
-        ("bounces/sweep.wgsl", "return found.g;", "return found.r;"),
+        ("scattered_light/result.wgsl", "sum.r * bounce.color", "vec3f(sum.r)"),
+        ("scattered_light/sweep.wgsl", "return rays.incoming_radiance.r;", "return 0.0;"),
+        ("scattered_light/sweep.wgsl", "return found.g;", "return found.r;"),
         (
-            "bounces/source.wgsl",
+            "scattered_light/source.wgsl",
             "vec4f(given.r, found.a, 0.0, 0.0)",
             "vec4f(given.r, 0.5 * found.a, 0.0, 0.0)",
         ),
-        ("bounces/first.wgsl", "return found.g;", "return found.r;"),
+        ("scattered_light/single_scattering.wgsl", "return found.g;", "return found.r;"),
     ];
     for (shader, from, to) in mistakes {
         assert_in_shader(shader, from);

@@ -206,31 +206,31 @@ macro_rules! sided_mutation {
 
 sided_mutation!(
     light_on_the_wrong_side,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "outer * max(risen.facing, 0.0)",
     "outer * max(-risen.facing, 0.0)"
 );
 sided_mutation!(
     highlights_on_the_wrong_side,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "select(1.0, -1.0, ONE_SIDED && surface.side < 0.0)",
     "1.0"
 );
 sided_mutation!(
     rays_nearby_sampled_at_the_ends_of_steps,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "way + 0.5 * length",
     "way + length"
 );
 sided_mutation!(
     rays_nearby_through_the_eyes_material,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "exp(-depth * light.extinction_scale)",
     "exp(-depth)"
 );
 sided_mutation!(
     light_looked_up_where_rays_end,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "select(0.0, light.last_step_extension, step + 1u == light.near_steps)",
     "0.0"
 );
@@ -247,10 +247,10 @@ fn damaged_gradients_are_noticed() {
     let damages = [
         // Plain central differences.
         (GradientSource::Volume, "volume/gradients.wgsl", "(8.0 * near - far) / 12.0", "0.5 * near"),
-        (GradientSource::Kernel, "eye/gather.wgsl", "g * (2.0 - 1.5 * g)", "g * (2.0 - 1.4 * g)"),
+        (GradientSource::Kernel, "eye/eye_pass.wgsl", "g * (2.0 - 1.5 * g)", "g * (2.0 - 1.4 * g)"),
         (
             GradientSource::Kernel,
-            "eye/gather.wgsl",
+            "eye/eye_pass.wgsl",
             "weighted_sum(cell, wx, wy, kernel_derivatives(f.z))",
             "0.0",
         ),
@@ -293,7 +293,7 @@ fn damaged_slabs_by_need_are_noticed() {
         ("found.density - change, found.density + change", "found.density, found.density"),
     ];
     for (from, to) in damages {
-        assert_in_shader("eye/gather.wgsl", from);
+        assert_in_shader("eye/eye_pass.wgsl", from);
         assert!(
             differs_in_look(&look_by_need(), 40, from, to, ReferenceFault::None),
             "the comparison does not notice {to:?}"
@@ -303,7 +303,7 @@ fn damaged_slabs_by_need_are_noticed() {
 
 gpu_mutation!(
     gpu_kernel_five_percent_wider,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "(-0.5 / (SIGMA * SIGMA))",
     "(-0.5 / (1.1025 * SIGMA * SIGMA))"
 );
@@ -315,7 +315,7 @@ gpu_mutation!(
 );
 gpu_mutation!(
     gpu_no_obliquity_for_the_eye,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "eye.frame.slab * ray.obliquity",
     "eye.frame.slab"
 );
@@ -327,13 +327,13 @@ gpu_mutation!(
 );
 gpu_mutation!(
     gpu_normals_flipped,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "slope * (-1.0 / max(steepness, 1e-9))",
     "slope * (1.0 / max(steepness, 1e-9))"
 );
 gpu_mutation!(
     gpu_kernel_shifted_by_half_a_voxel,
-    "eye/gather.wgsl",
+    "eye/eye_pass.wgsl",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 2.5)",
     "let b = (cell + vec3f(wx.w, wy.w, wz.w) / high + 3.0)"
 );

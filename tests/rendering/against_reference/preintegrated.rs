@@ -22,7 +22,7 @@ fn undamaged_preintegrated_slabs_agree() {
 fn damaged_preintegrated_slabs_are_noticed() {
     let damages = [
         // Twice as dense.
-        ("0.25 * length * (a.there + b.there)", "0.5 * length * (a.there + b.there)"),
+        ("0.25 * length * (a.presence + b.presence)", "0.5 * length * (a.presence + b.presence)"),
         // Half of each step left out.
         ("behind_front * exp(-back)", "behind_front"),
         // Shaded a voxel behind the opacity's position.
@@ -31,7 +31,7 @@ fn damaged_preintegrated_slabs_are_noticed() {
         ("const LAYER_STEPS = 4", "const LAYER_STEPS = 1"),
     ];
     for (from, to) in damages {
-        assert_in_shader("eye/gather.wgsl", from);
+        assert_in_shader("eye/eye_pass.wgsl", from);
         assert!(
             differs_in_look(&look(), 40, from, to, ReferenceFault::None),
             "the comparison does not notice {to:?}"

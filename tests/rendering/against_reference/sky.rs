@@ -120,7 +120,7 @@ fn mistakes_in_where_rays_are_followed_are_noticed() {
         ("sky/sweep.wgsl", "v.x), first)", "v.x), first + 1.0)"),
         ("sky/sweep.wgsl", "rays.first_tile + tile.y * columns", "tile.y * columns"),
         ("sky/moments.wgsl", "listed * 8u + lane % 8u", "listed * 8u"),
-        ("sky/blocks.wgsl", "id + 1u", "id"),
+        ("sky/extinction_blocks.wgsl", "id + 1u", "id"),
     ];
     for (shader, from, to) in mistakes {
         assert_in_shader(shader, from);

@@ -175,8 +175,8 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
     assert!(!disagrees("\u{0}", ""), "undamaged sides agree");
     let mistakes = [
         // Through the floor, instead of to it.
-        ("sky/floor_sweep.wgsl", "min(span.y, end)", "span.y"),
-        ("sky/floor_sweep.wgsl", "min(span.y, end)", "min(span.y, end - 1.0)"),
+        ("sky/floor_sweep.wgsl", "min(ray.span.y, end)", "ray.span.y"),
+        ("sky/floor_sweep.wgsl", "min(ray.span.y, end)", "min(ray.span.y, end - 1.0)"),
         ("sky/floor_sweep.wgsl", "map.plane.w - dot", "-dot"),
         // Transmittance at the floor is lower than the mean over the last slice.
         (
@@ -185,7 +185,7 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
             "slab_mean_transmittance(tau), n > end",
         ),
         // Light that passes beside the grid is taken from its border.
-        ("sky/floor_sweep.wgsl", "select(min(span.y, end), -1.0, is_beside)", "min(span.y, end)"),
+        ("sky/floor_sweep.wgsl", "select(min(ray.span.y, end), -1.0, is_beside)", "min(ray.span.y, end)"),
         ("sky/floor_map.wgsl", "ray + 1.5", "ray + 1.0"),
         ("sky/floor_map.wgsl", "f32(i) + 0.5) * sweep", "0.5) * sweep"),
     ];

@@ -288,7 +288,7 @@ impl EyeVariant {
 
 impl PipelineVariant for EyeVariant {
     fn shader(&self) -> &'static str {
-        "eye/gather.wgsl"
+        "eye/eye_pass.wgsl"
     }
 
     fn constants(&self) -> ShaderConstants {

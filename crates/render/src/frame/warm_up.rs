@@ -9,6 +9,7 @@ use crate::light::backproject::BackprojectVariant;
 use crate::light::march::MarchVariant;
 use crate::output::display::DisplayVariant;
 use crate::pipelines::pipeline_variant::{LightCount, PipelineVariant, SingleVariant};
+use crate::volume::pyramid::PrefilterVariant;
 use crate::{GpuError, ShaderLibrary};
 use chiaroscuro_scene::{
     ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SlabMode,
@@ -29,7 +30,8 @@ impl ShaderLibrary {
     /// # Errors
     /// Returns an error if the driver rejects a shader.
     pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
+        self.compile_unless_stopped(&PrefilterVariant { has_missing: false }, stop)?;
+        for shader in ["volume/downsample.wgsl", "volume/gradients.wgsl"] {
             self.compile_unless_stopped(&SingleVariant(shader), stop)?;
         }
         self.compile_unless_stopped(&SingleVariant("light/clear_margin.wgsl"), stop)?;

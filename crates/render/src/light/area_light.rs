@@ -109,7 +109,7 @@ struct AverageVariant {
 
 impl PipelineVariant for AverageVariant {
     fn shader(&self) -> &'static str {
-        "light/average.wgsl"
+        "light/area_light.wgsl"
     }
 
     fn constants(&self) -> ShaderConstants {

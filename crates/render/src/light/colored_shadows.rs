@@ -44,8 +44,9 @@ impl ColorVolumes {
         if bricks.is_empty() {
             return Ok(());
         }
-        let pipeline =
-            gpu.shaders.pipeline_into(&SingleVariant("light/colors.wgsl"), whole.texture.format())?;
+        let pipeline = gpu
+            .shaders
+            .pipeline_into(&SingleVariant("light/colored_shadows.wgsl"), whole.texture.format())?;
         let list = brick_list::upload_bricks(gpu, bricks);
         let [red, green, blue] = &self.0;
         let entries = [

@@ -28,7 +28,7 @@ struct CombineVariant {
 
 impl PipelineVariant for CombineVariant {
     fn shader(&self) -> &'static str {
-        "light/combine.wgsl"
+        "light/combined_light.wgsl"
     }
 
     fn constants(&self) -> ShaderConstants {

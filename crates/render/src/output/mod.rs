@@ -2,6 +2,7 @@
 
 pub(super) mod display;
 pub(super) mod light_volume_export;
+pub(super) mod painter;
 pub(super) mod picture_distance;
 pub(super) mod render_target;
 pub(super) mod window_painter;

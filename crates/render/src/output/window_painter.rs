@@ -1,15 +1,15 @@
 //! Drawing of pictures into the window, and of the fill under its panels, in a render pass of the window's device.
 
+use super::painter::{PaintMode, PainterPipeline};
 use crate::GpuError;
-use crate::pipelines::shader_library::ShaderLibrary;
 
 /// Pipelines that draw pictures and fills into a target of one format.
 #[derive(Debug, Clone)]
 pub struct WindowPainter {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    picture: wgpu::RenderPipeline,
-    fill: wgpu::RenderPipeline,
+    picture: PainterPipeline,
+    fill: PainterPipeline,
     /// Samplers for pictures that are scaled (linear), and for those with as many pixels as the window has there
     /// (nearest).
     samplers: [wgpu::Sampler; 2],
@@ -21,26 +21,21 @@ pub struct WindowPicture {
     texture: wgpu::Texture,
     is_exact: bool,
     bind_group: wgpu::BindGroup,
-    pipeline: wgpu::RenderPipeline,
+    pipeline: PainterPipeline,
 }
 
 impl WindowPainter {
     /// Creates the pipelines for render passes into `target`, without depth and with one sample per pixel.
     ///
     /// # Errors
-    /// Returns an error if the shader is missing.
+    /// Returns an error if the device cannot render into that format.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         target: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {
-        // The shader writes no storage textures, so these formats are unused.
-        let format = wgpu::TextureFormat::R16Float;
-        let source = ShaderLibrary::source("output/window.wgsl", format, format)?;
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("output/window.wgsl"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
+        let modes = [PaintMode::Picture, PaintMode::Fill];
+        let [picture, fill] = PainterPipeline::for_modes(device, target, modes)?;
         let sampler = |filter| {
             device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("WindowPainter::sampler"),
@@ -50,8 +45,8 @@ impl WindowPainter {
             })
         };
         Ok(Self {
-            picture: pipeline(device, &module, "draw_picture", target),
-            fill: pipeline(device, &module, "draw_fill", target),
+            picture,
+            fill,
             samplers: [sampler(wgpu::FilterMode::Linear), sampler(wgpu::FilterMode::Nearest)],
             device: device.clone(),
             queue: queue.clone(),
@@ -91,25 +86,16 @@ impl WindowPainter {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("WindowPicture::bind_group"),
-            layout: &self.picture.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(&self.samplers[usize::from(is_exact)]),
-                },
-            ],
-        });
+        let sampler = &self.samplers[usize::from(is_exact)];
+        let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(sampler)];
+        let bind_group = self.picture.bind(&self.device, "WindowPicture::bind_group", &resources);
         WindowPicture { texture, is_exact, bind_group, pipeline: self.picture.clone() }
     }
 
     /// Fills the viewport of a pass with an sRGB colour.
     pub fn fill(&self, pass: &mut wgpu::RenderPass<'_>, [red, green, blue]: [u8; 3]) {
         let number = u32::from_le_bytes([red, green, blue, 0]);
-        pass.set_pipeline(&self.fill);
-        pass.draw(0..3, number..number + 1);
+        self.fill.draw(pass, None, number);
     }
 }
 
@@ -123,46 +109,6 @@ impl WindowPicture {
     /// its own pixels; the area that the shift uncovers repeats the pixels of the edge.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, opacity: u8, shift: i16) {
         let number = u32::from(opacity) | (u32::from(shift.wrapping_sub(i16::MIN) as u16) << 8);
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bind_group, &[]);
-        pass.draw(0..3, number..number + 1);
+        self.pipeline.draw(pass, Some(&self.bind_group), number);
     }
-}
-
-fn pipeline(
-    device: &wgpu::Device,
-    module: &wgpu::ShaderModule,
-    entry_point: &str,
-    target: wgpu::TextureFormat,
-) -> wgpu::RenderPipeline {
-    let constants = [("LINEAR_TARGET", f64::from(u8::from(target.is_srgb())))];
-    let options = wgpu::PipelineCompilationOptions {
-        constants: &constants,
-        ..wgpu::PipelineCompilationOptions::default()
-    };
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry_point),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("triangle_corner"),
-            buffers: &[],
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry_point),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: target,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            compilation_options: options,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -1,7 +1,6 @@
 //! Shader bindings by name: declared slots, and the resources bound to them.
 
 use crate::GpuContext;
-use crate::context::pair_format;
 
 /// Binding of a shader: its number in the group, its name in WGSL, and the kind of resource it takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -61,8 +60,6 @@ pub(crate) enum StorageFormat {
     Fixed(wgpu::TextureFormat),
     /// Single-channel storage format of the adapter.
     Storage,
-    /// Two-channel format with the precision of the storage format.
-    Pair,
     /// Format passed when the pipeline is made, for example that of a light volume.
     Target,
     /// Four-channel format of the ring of sheets.
@@ -145,7 +142,6 @@ impl BindingSlot {
                     StorageFormat::Fixed(format) => format,
                     StorageFormat::Storage => storage,
                     StorageFormat::Target => target,
-                    StorageFormat::Pair => pair_format(storage),
                     StorageFormat::Ring => ring_format(storage),
                 },
                 view_dimension: shape.dimension(),

@@ -10,7 +10,7 @@ use super::pipeline_cache::PipelineCache;
 use super::pipeline_variant::PipelineVariant;
 use super::preprocessor::{is_override, preprocess};
 use super::shader_files::SHADERS;
-use crate::context::{COMPILER_ADDRESS_BYTES, check_address_space, pair_format};
+use crate::context::{COMPILER_ADDRESS_BYTES, check_address_space};
 use crate::{GpuContext, GpuError};
 use chiaroscuro_files::{
     WriteError,
@@ -103,7 +103,6 @@ impl ShaderLibrary {
         };
         Ok(joined
             .replace("STORAGE_FORMAT", wgsl(format))
-            .replace("PAIR_FORMAT", wgsl(pair_format(format)))
             .replace("TARGET_FORMAT", wgsl(target))
             .replace("RING_FORMAT", wgsl(ring_format(format))))
     }

@@ -147,7 +147,7 @@ impl ScatteredLightFill {
                 if extrapolates {
                     self.record_block_pass(
                         gpu,
-                        &SingleVariant("bounces/ratio.wgsl"),
+                        &SingleVariant("scattered_light/ratio.wgsl"),
                         &shared,
                         volume,
                         encoder,
@@ -161,7 +161,7 @@ impl ScatteredLightFill {
                 let shared = self.bounce_uniform(gpu, volume, SweepSource::LastBounce);
                 self.record_block_pass(
                     gpu,
-                    &self.color_variant("bounces/outcome.wgsl"),
+                    &self.color_variant("scattered_light/result.wgsl"),
                     &shared,
                     volume,
                     encoder,
@@ -211,7 +211,7 @@ impl ScatteredLightFill {
     ) -> Result<(), GpuError> {
         let scattering = &settings.scattering;
         let pass = BlocksPass {
-            shader: "bounces/blocks.wgsl",
+            shader: "scattered_light/blocks.wgsl",
             dims: volume.dims,
             divisor: volume.divisor,
             density_scale: scattering.density_scale,
@@ -250,7 +250,7 @@ impl ScatteredLightFill {
         };
         let batches = self.batches(followed);
         let pass = SweepPass {
-            shader: "bounces/sweep.wgsl",
+            shader: "scattered_light/sweep.wgsl",
             one_color: self.one_color.is_some(),
             rays: batches.rays(batch),
             dims: volume.dims,
@@ -261,7 +261,8 @@ impl ScatteredLightFill {
         let entries = [bind_view("medium", medium), bind_view("sheets", &sheets.view)];
         let uniform = pass.record(gpu, &entries, arriving, encoder)?;
 
-        let gather = gpu.shaders.pipeline(&SweepGatherVariant::new("bounces/gather.wgsl", batches))?;
+        let gather =
+            gpu.shaders.pipeline(&SweepGatherVariant::new("scattered_light/gather.wgsl", batches))?;
         let shared = self.bounce_uniform(gpu, volume, followed);
         let entries = [
             bind_buffer("bound_sweep", &uniform),
@@ -313,7 +314,7 @@ impl ScatteredLightFill {
         };
         let uniform = gpu.uniform("Bounces::first", uniform);
         let shared = self.bounce_uniform(gpu, volume, SweepSource::Sky);
-        let pipeline = gpu.shaders.pipeline(&self.color_variant("bounces/first.wgsl"))?;
+        let pipeline = gpu.shaders.pipeline(&self.color_variant("scattered_light/single_scattering.wgsl"))?;
         let entries = [
             bind_buffer("bound_scene", &uniform),
             bind_view("medium", &self.textures.medium),
@@ -353,7 +354,7 @@ impl ScatteredLightFill {
         let mut entries: Vec<NamedResource<'_>> =
             vec![bind_buffer("bound_bounce", shared), bind_buffer("sums", sums)];
         match shader {
-            "bounces/source.wgsl" => entries.extend([
+            "scattered_light/source.wgsl" => entries.extend([
                 bind_buffer("scattering", scattering),
                 bind_buffer("first", first),
                 bind_buffer("last", last),
@@ -361,7 +362,7 @@ impl ScatteredLightFill {
                 bind_view("medium", medium),
                 bind_buffer("ratio", ratio),
             ]),
-            "bounces/ratio.wgsl" => entries.extend([
+            "scattered_light/ratio.wgsl" => entries.extend([
                 bind_buffer("scattering", scattering),
                 bind_buffer("last", last),
                 bind_buffer("change", change),
@@ -372,8 +373,8 @@ impl ScatteredLightFill {
         let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
         let groups = match shader {
-            "bounces/ratio.wgsl" => [1; 3],
-            "bounces/outcome.wgsl" => self.output_cells.workgroups(),
+            "scattered_light/ratio.wgsl" => [1; 3],
+            "scattered_light/result.wgsl" => self.output_cells.workgroups(),
             _ => workgroups_over_blocks(volume),
         };
         pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);

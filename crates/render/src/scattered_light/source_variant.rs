@@ -1,4 +1,4 @@
-//! Pipeline variants of the pass that computes the emission of blocks (`bounces/source.wgsl`).
+//! Pipeline variants of the pass that computes the emission of blocks (`scattered_light/source.wgsl`).
 
 use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, flag};
 
@@ -15,7 +15,7 @@ pub(super) struct SourceVariant {
 
 impl PipelineVariant for SourceVariant {
     fn shader(&self) -> &'static str {
-        "bounces/source.wgsl"
+        "scattered_light/source.wgsl"
     }
 
     fn constants(&self) -> ShaderConstants {

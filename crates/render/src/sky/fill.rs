@@ -115,7 +115,7 @@ impl SkyFill {
     ) -> Result<(), GpuError> {
         volume.clear_margin(gpu, encoder)?;
         let pass = BlocksPass {
-            shader: "sky/blocks.wgsl",
+            shader: "sky/extinction_blocks.wgsl",
             dims: volume.dims,
             divisor: volume.divisor,
             density_scale: self.density_scale,
@@ -176,8 +176,7 @@ impl SkyFill {
         batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let SkyTextures { blocks, floor: Some(FloorTextures { transmittance: left, sums }), .. } =
-            &self.textures
+        let SkyTextures { blocks, floor: Some(FloorTextures { transmittance, sums }), .. } = &self.textures
         else {
             return Ok(());
         };
@@ -190,13 +189,13 @@ impl SkyFill {
             one_color: false,
             rays: self.upper_directions.rays(batch),
             dims: volume.dims,
-            sheets: left,
+            sheets: transmittance,
             is_first: batch == 0,
             share: 0.0,
         };
         let entries = [
             bind_view("extinction", blocks),
-            bind_view("left", &left.view),
+            bind_view("transmittance", &transmittance.view),
             bind_buffer("bound_map", &place),
         ];
         let uniform = pass.record(gpu, &entries, |_| DVec3::ZERO, encoder)?;
@@ -205,7 +204,7 @@ impl SkyFill {
         let entries = [
             bind_buffer("bound_sweep", &uniform),
             bind_buffer("bound_map", &place),
-            bind_view("left", &left.view),
+            bind_view("transmittance", &transmittance.view),
             sampler("clamped", &gpu.volume.clamped),
             bind_buffer("sums", sums),
             bind_view("moments", &floor.view),
@@ -242,8 +241,9 @@ impl SkyTextures {
         let of_floor = |floor: &FloorSkyMap| {
             // Before the rays there are a column and a row of rays that miss the grid.
             let [width, height] = above.max_size().map(|n| n + 1);
-            let left = RaySheets::new(context, [width, height, above.directions_per_batch()], format)?;
-            Ok(FloorTextures { transmittance: left, sums: sums("Sky::floor_sums", floor.texels()) })
+            let transmittance =
+                RaySheets::new(context, [width, height, above.directions_per_batch()], format)?;
+            Ok(FloorTextures { transmittance, sums: sums("Sky::floor_sums", floor.texels()) })
         };
         let floor = volume.floor.as_ref().map(of_floor).transpose()?;
         let sums = sums("Sky::sums", looked_up);

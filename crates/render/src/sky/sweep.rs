@@ -16,7 +16,7 @@ use crate::volume::VolumeContext;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SweepPass<'a> {
     pub shader: &'static str,
-    /// `true` if all light has the same colour (`bounces/sweep.wgsl`).
+    /// `true` if all light has the same colour (`scattered_light/sweep.wgsl`).
     pub one_color: bool,
     pub rays: &'a [DirectionRays],
     /// Number of blocks along x, y and z.

@@ -38,7 +38,7 @@ pub(crate) struct PreclassifiedVoxels {
 }
 
 impl PreclassifiedVoxels {
-    /// Creates the texture for a volume, or reuses that of `left`; nothing is classified yet.
+    /// Creates the texture for a volume, or takes that of `reusable`; nothing is classified yet.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the texture.
@@ -51,7 +51,7 @@ impl PreclassifiedVoxels {
         let shares = BakedTransfer::linear_ramp(baked.max_extinction());
         let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
         let (texture, held_all) = match reusable {
-            Some(left) => (left.texture, left.lists_all_bricks),
+            Some(voxels) => (voxels.texture, voxels.lists_all_bricks),
             None => (Self::texture(context, volume.volume.dims())?, false),
         };
         // Bricks that are not listed have the lowest density, so all are listed if that is visible.
@@ -121,7 +121,7 @@ impl PreclassifiedVoxels {
         let bricks = &self.bricks[level as usize][range.clone()];
         let pipeline = match level {
             0 => shaders.pipeline(&MaterialsVariant { has_missing: volume.presence.is_some() })?,
-            _ => shaders.pipeline(&SingleVariant("volume/downsample_materials.wgsl"))?,
+            _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), self.texture.format())?,
         };
         let source = match level {
             0 => volume.density_view.clone(),
@@ -171,7 +171,7 @@ struct MaterialsVariant {
 
 impl PipelineVariant for MaterialsVariant {
     fn shader(&self) -> &'static str {
-        "volume/materials.wgsl"
+        "volume/preclassified.wgsl"
     }
 
     fn constants(&self) -> ShaderConstants {

@@ -1,17 +1,17 @@
 //! Pyramid of prefiltered density: level 0 by `volume/prefilter.wgsl`, coarser levels by `volume/downsample.wgsl`.
 //!
-//! Volumes with missing voxels use `volume/prefilter_present.wgsl` and `volume/downsample_present.wgsl`.
+//! Volumes with missing voxels have presence as a second channel.
 
 use std::ops::Range;
 
-use super::GpuVolume;
+use super::{GpuVolume, VolumeContext};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
-use crate::pipelines::pipeline_variant::SingleVariant;
+use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, SingleVariant, flag};
 use crate::pipelines::uniforms;
 use crate::plan::BrickSet;
 use crate::resources::pass;
 use crate::volume::brick_list;
-use crate::{GpuContext, GpuError, ShaderLibrary};
+use crate::{GpuContext, GpuError};
 use chiaroscuro_volume::BrickBounds;
 
 /// Number of bricks per step: 2^18 texels with eight fetches each, some 40 ms on a software adapter.
@@ -94,30 +94,42 @@ pub(crate) fn level_buffers(
     )
 }
 
+/// Pipeline variant of the pass that blurs the volume into level 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct PrefilterVariant {
+    /// `true` if presence is stored as a second channel.
+    pub has_missing: bool,
+}
+
+impl PipelineVariant for PrefilterVariant {
+    fn shader(&self) -> &'static str {
+        "volume/prefilter.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        vec![flag("MISSING", self.has_missing)]
+    }
+}
+
 /// Fills some bricks of one level. The finer level must be complete.
 pub(crate) fn fill_pyramid(
-    context: &GpuContext,
-    shaders: &ShaderLibrary,
-    volume: &GpuVolume,
+    gpu: VolumeContext<'_>,
     level: u32,
     range: &Range<usize>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
+    let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let shader = match (level, &volume.presence) {
-        (0, None) => "volume/prefilter.wgsl",
-        (_, None) => "volume/downsample.wgsl",
-        (0, Some(_)) => "volume/prefilter_present.wgsl",
-        (_, Some(_)) => "volume/downsample_present.wgsl",
+    let format = volume.pyramid.format();
+    let pipeline = match level {
+        0 => shaders.pipeline_into(&PrefilterVariant { has_missing: volume.presence.is_some() }, format)?,
+        _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), format)?,
     };
     let source = match level {
         0 => volume.density_view.clone(),
         _ => level_view(&volume.pyramid, level - 1),
     };
-    // Coarser levels take presence from the finer one.
-    let presence =
-        volume.presence.as_ref().filter(|_| level == 0).map(|presence| level_view(&presence.texture, 0));
-    let pipeline = shaders.pipeline(&SingleVariant(shader))?;
+    let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
     let (uniform, list) = level_buffers(context, level, bricks);
     let target = level_view(&volume.pyramid, level);
     let mut entries = vec![
@@ -127,7 +139,10 @@ pub(crate) fn fill_pyramid(
         bind_buffer("bound_resample", &uniform),
         bind_buffer("bricks", &list),
     ];
-    entries.extend(presence.iter().map(|view| bind_view("presence_level", view)));
+    // Coarser levels take presence from the finer one.
+    if level == 0 {
+        entries.push(bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)));
+    }
     let bind_group = pass::bind(context, "Pyramid::bind_group", &pipeline, 0, &entries);
     let groups = brick_list::two_workgroups_per_brick(bricks.len().max(1) as u32);
     pass::dispatch(encoder, "Pyramid::fill", &pipeline, &[&bind_group], groups);

@@ -43,7 +43,7 @@ impl RenderJob<'_> {
             }
             RenderStep::Pyramid(level, bricks) => {
                 self.report.step_counts.volume += 1;
-                pyramid::fill_pyramid(context, &self.tools.shaders, volume, *level, bricks, encoder)
+                pyramid::fill_pyramid(VolumeContext::new(self.tools, volume), *level, bricks, encoder)
             }
             RenderStep::Gradients(level, bricks) => {
                 self.report.step_counts.volume += 1;

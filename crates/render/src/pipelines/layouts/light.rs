@@ -7,7 +7,7 @@ use crate::pipelines::uniforms;
 /// Layouts of the shaders in `shaders/light`.
 pub(super) const LAYOUTS: ShaderLayouts = &[
     (
-        "light/average.wgsl",
+        "light/area_light.wgsl",
         &[&[
             BindingSlot::uniform::<uniforms::AverageUniform>(0, "bound_average"),
             BindingSlot::storage(1, "bricks", 16, BufferAccess::Read),
@@ -43,7 +43,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "light/colors.wgsl",
+        "light/colored_shadows.wgsl",
         &[&[
             BindingSlot::storage(0, "bricks", 16, BufferAccess::Read),
             BindingSlot::loaded_texture(1, "red", TextureShape::D3),
@@ -53,7 +53,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "light/combine.wgsl",
+        "light/combined_light.wgsl",
         &[
             &[
                 EYE,

@@ -84,7 +84,7 @@ const LIGHTS_AND_AMBIENT: &[BindingSlot] = &[
 const RESAMPLE: &[BindingSlot] = &[
     BindingSlot::sampled_texture(0, "source", TextureShape::D3),
     BindingSlot::bind_sampler(1, "clamped"),
-    BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Storage),
+    BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Target),
     BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
     BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
 ];
@@ -128,27 +128,7 @@ pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, GroupLay
 /// Layouts of all shaders but those of light, sky and scattered light.
 const COMMON_LAYOUTS: ShaderLayouts = &[
     (
-        "eye/floor.wgsl",
-        &[
-            &[
-                BindingSlot::uniform::<uniforms::FloorUniform>(0, "bound_floor_disc"),
-                TABLE,
-                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
-                BindingSlot::loaded_texture(3, "picture", TextureShape::D2),
-                BindingSlot::storage_texture(
-                    4,
-                    "floor_light",
-                    TextureShape::D2,
-                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-                ),
-                BindingSlot::sampled_texture(5, "sky_map", TextureShape::D3),
-            ],
-            VOLUME,
-            LIGHTS,
-        ],
-    ),
-    (
-        "eye/gather.wgsl",
+        "eye/eye_pass.wgsl",
         &[
             &[
                 EYE,
@@ -166,6 +146,26 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
             ],
             VOLUME_AND_LIGHTING,
             LIGHTS_AND_AMBIENT,
+        ],
+    ),
+    (
+        "eye/floor.wgsl",
+        &[
+            &[
+                BindingSlot::uniform::<uniforms::FloorUniform>(0, "bound_floor_disc"),
+                TABLE,
+                BindingSlot::sampled_texture(2, "distances", TextureShape::D3),
+                BindingSlot::loaded_texture(3, "picture", TextureShape::D2),
+                BindingSlot::storage_texture(
+                    4,
+                    "floor_light",
+                    TextureShape::D2,
+                    StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+                ),
+                BindingSlot::sampled_texture(5, "sky_map", TextureShape::D3),
+            ],
+            VOLUME,
+            LIGHTS,
         ],
     ),
     ("output/display.wgsl", &[DISPLAY]),
@@ -267,31 +267,6 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
     (
-        "volume/downsample_materials.wgsl",
-        &[&[
-            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
-            BindingSlot::bind_sampler(1, "clamped"),
-            BindingSlot::storage_texture(
-                2,
-                "level",
-                TextureShape::D3,
-                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-            ),
-            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
-            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
-        ]],
-    ),
-    (
-        "volume/downsample_present.wgsl",
-        &[&[
-            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
-            BindingSlot::bind_sampler(1, "clamped"),
-            BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Pair),
-            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
-            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
-        ]],
-    ),
-    (
         "volume/gradients.wgsl",
         &[&[
             BindingSlot::loaded_texture(0, "source", TextureShape::D3),
@@ -306,7 +281,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "volume/materials.wgsl",
+        "volume/preclassified.wgsl",
         &[&[
             BindingSlot::loaded_texture(0, "source", TextureShape::D3),
             TABLE,
@@ -321,16 +296,15 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
             BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
-    ("volume/prefilter.wgsl", &[RESAMPLE]),
     (
-        "volume/prefilter_present.wgsl",
+        "volume/prefilter.wgsl",
         &[&[
-            BindingSlot::sampled_texture(0, "source", TextureShape::D3),
-            BindingSlot::bind_sampler(1, "clamped"),
-            BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Pair),
-            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
+            RESAMPLE[0],
+            RESAMPLE[1],
+            RESAMPLE[2],
+            RESAMPLE[3],
             BindingSlot::loaded_texture(4, "presence_level", TextureShape::D3),
-            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
+            RESAMPLE[4],
         ]],
     ),
 ];

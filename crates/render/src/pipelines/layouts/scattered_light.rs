@@ -11,10 +11,10 @@ const BOUNCE: BindingSlot = BindingSlot::uniform::<uniforms::BounceUniform>(3, "
 const SCATTERING: BindingSlot = BindingSlot::storage(4, "scattering", 16, BufferAccess::Read);
 const SUMS: BindingSlot = BindingSlot::storage(5, "sums", 16, BufferAccess::Read);
 
-/// Layouts of the shaders in `shaders/bounces`.
+/// Layouts of the shaders in `shaders/scattered_light`.
 pub(super) const LAYOUTS: ShaderLayouts = &[
     (
-        "bounces/blocks.wgsl",
+        "scattered_light/blocks.wgsl",
         &[
             &[
                 BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
@@ -29,19 +29,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ],
     ),
     (
-        "bounces/first.wgsl",
-        &[&[
-            BindingSlot::uniform::<uniforms::SingleScatteringUniform>(0, "bound_scene"),
-            BindingSlot::sampled_texture(1, "medium", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
-            BOUNCE,
-            SCATTERING,
-            SUMS,
-            BindingSlot::storage(6, "first", 16, BufferAccess::ReadWrite),
-        ]],
-    ),
-    (
-        "bounces/gather.wgsl",
+        "scattered_light/gather.wgsl",
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "sheets", TextureShape::D3),
@@ -53,16 +41,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "bounces/outcome.wgsl",
-        &[&[
-            BOUNCE,
-            SUMS,
-            BindingSlot::storage(6, "cells", 4, BufferAccess::Read),
-            BindingSlot::storage_texture(10, "bounced", TextureShape::D3, RGBA16),
-        ]],
-    ),
-    (
-        "bounces/ratio.wgsl",
+        "scattered_light/ratio.wgsl",
         &[&[
             BOUNCE,
             SCATTERING,
@@ -73,7 +52,28 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "bounces/source.wgsl",
+        "scattered_light/result.wgsl",
+        &[&[
+            BOUNCE,
+            SUMS,
+            BindingSlot::storage(6, "cells", 4, BufferAccess::Read),
+            BindingSlot::storage_texture(10, "bounced", TextureShape::D3, RGBA16),
+        ]],
+    ),
+    (
+        "scattered_light/single_scattering.wgsl",
+        &[&[
+            BindingSlot::uniform::<uniforms::SingleScatteringUniform>(0, "bound_scene"),
+            BindingSlot::sampled_texture(1, "medium", TextureShape::D3),
+            BindingSlot::bind_sampler(2, "clamped"),
+            BOUNCE,
+            SCATTERING,
+            SUMS,
+            BindingSlot::storage(6, "first", 16, BufferAccess::ReadWrite),
+        ]],
+    ),
+    (
+        "scattered_light/source.wgsl",
         &[&[
             BOUNCE,
             SCATTERING,
@@ -86,7 +86,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "bounces/sweep.wgsl",
+        "scattered_light/sweep.wgsl",
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "medium", TextureShape::D3),

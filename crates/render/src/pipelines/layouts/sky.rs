@@ -18,18 +18,6 @@ const FLOOR_PLACE: BindingSlot = BindingSlot::uniform::<uniforms::FloorSkyMapUni
 /// Layouts of the shaders in `shaders/sky`.
 pub(super) const LAYOUTS: ShaderLayouts = &[
     (
-        "sky/blocks.wgsl",
-        &[
-            &[
-                BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
-                TABLE,
-                CELLS,
-                BindingSlot::storage_texture(3, "extinction", TextureShape::D3, StorageFormat::Storage),
-            ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED],
-        ],
-    ),
-    (
         "sky/clear_margin.wgsl",
         &[&[
             BindingSlot::storage(0, "cells", 4, BufferAccess::Read),
@@ -42,10 +30,22 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
+        "sky/extinction_blocks.wgsl",
+        &[
+            &[
+                BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
+                TABLE,
+                CELLS,
+                BindingSlot::storage_texture(3, "extinction", TextureShape::D3, StorageFormat::Storage),
+            ],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED],
+        ],
+    ),
+    (
         "sky/floor_map.wgsl",
         &[&[
             SWEEP,
-            BindingSlot::sampled_texture(1, "left", TextureShape::D3),
+            BindingSlot::sampled_texture(1, "transmittance", TextureShape::D3),
             BindingSlot::bind_sampler(2, "clamped"),
             BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite),
             BindingSlot::storage_texture(
@@ -63,7 +63,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             SWEEP,
             BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
             BindingSlot::bind_sampler(2, "clamped"),
-            BindingSlot::storage_texture(3, "left", TextureShape::D3, StorageFormat::Storage),
+            BindingSlot::storage_texture(3, "transmittance", TextureShape::D3, StorageFormat::Storage),
             TILES,
             FLOOR_PLACE,
         ]],

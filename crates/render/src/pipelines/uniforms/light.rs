@@ -65,7 +65,7 @@ pub struct RaycastUniform {
     pub shading_cut: CutUniform,
 }
 
-/// Parameters of averaging an area light's points, as declared in `light/average.wgsl`.
+/// Parameters of averaging an area light's points, as declared in `light/area_light.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct AverageUniform {

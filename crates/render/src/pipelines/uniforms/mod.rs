@@ -6,12 +6,12 @@
     expect(missing_docs, reason = "each field is documented where the shader declares it")
 )]
 
-mod bounces;
 mod light;
+mod scattered_light;
 mod sky;
 
-pub use self::bounces::{BounceUniform, ScatteredLightUniform, SingleScatteringUniform};
 pub use self::light::{AverageUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform};
+pub use self::scattered_light::{BounceUniform, ScatteredLightUniform, SingleScatteringUniform};
 pub use self::sky::{
     BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyUniform, SweepRaysUniform, SweepUniform,
 };
@@ -228,7 +228,7 @@ pub struct BackprojectionUniform {
     pub pad1: f32,
 }
 
-/// Parameters of combining lights, as declared in `light/combine.wgsl`.
+/// Parameters of combining lights, as declared in `light/combined_light.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct CombineUniform {

@@ -1,5 +1,5 @@
 // Result of the bounces: stores the light that listed blocks receive with the last one.
-#import "bounces/bounce.wgsl"
+#import "scattered_light/bounce.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
@@ -9,11 +9,7 @@
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     bounce = bound_bounce;
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let id = voxel_of(cells[listed], lane);
+    let id = voxel_of_listed_cell(group, lane);
     if (any(id >= bounce.dims)) {
         return;
     }

@@ -1,6 +1,6 @@
 // Ratio of successive bounces for each colour, ρ = ⟨dₙ, dₙ₋₁⟩ / ⟨dₙ₋₁, dₙ₋₁⟩ over all blocks that scatter light. Each
 // further bounce brings ρ times the previous one, in total ρ / (1 − ρ) times the last.
-#import "bounces/bounce.wgsl"
+#import "scattered_light/bounce.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(7) var<storage, read> last: array<vec4f>;

@@ -10,11 +10,7 @@
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     blocks = bound_blocks;
     grid = bound_grid;
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let id = voxel_of(cells[listed], lane);
+    let id = voxel_of_listed_cell(group, lane);
     if (any(id >= blocks.dims)) {
         return;
     }

@@ -1,7 +1,7 @@
 // Emission of blocks for the next bounce: scattered direct light, and scattered light of the last bounce. Stores the
 // increase over the bounce before. Every other time the limit of the series is extrapolated from the last two bounces
-// (bounces/ratio.wgsl), and bouncing continues from there, which converges in fewer bounces.
-#import "bounces/bounce.wgsl"
+// (scattered_light/ratio.wgsl), and bouncing continues from there, which converges in fewer bounces.
+#import "scattered_light/bounce.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(6) var<storage, read> first: array<vec4f>;

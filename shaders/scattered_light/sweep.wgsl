@@ -1,8 +1,7 @@
 // Sweep of scattered light along parallel rays: one thread per ray walks through slices of blocks, and stores the
 // mean light in each: attenuated light from behind, L, and emission of the slice, S. For a slab of optical depth τ
 // with m = (1 − e^−τ)/τ the mean is L m + S (1 − m), and L e^−τ + S (1 − e^−τ) leaves it.
-#import "sky/rays.wgsl"
-#import "sky/near.wgsl"
+#import "sky/swept_ray.wgsl"
 #import "common/slab_source.wgsl"
 #import "common/most_light.wgsl"
 
@@ -58,15 +57,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let size = to_sweep_axes(rays, vec3f(sweep.dims));
-    let last = size.x - 1.0;
-    let start = vec2f(id.xy) + rays.first;
-    let span = slices_of_ray(rays, id.xy, start, size);
+    let ray = swept_ray(rays, id.xy);
     var light = incoming_radiance(rays);
-    for (var n = span.x; n <= span.y; n += 1.0) {
-        let slice = select(last - n, n, rays.is_ascending == 1u);
-        let block = from_sweep_axes(rays, vec3f(slice, start + rays.drift * n));
-        let found = textureSampleLevel(medium, clamped, (block + 1.5) * sweep.block_scale, 0.0) * rays.step;
+    for (var n = ray.span.x; n <= ray.span.y; n += 1.0) {
+        let found = textureSampleLevel(medium, clamped, place_in_blocks(rays, ray, n), 0.0) * rays.step;
         let tau = extinction_in(found);
         let given = emission_of(found);
         let share = slab_emission_share(tau);

@@ -1,4 +1,5 @@
-// Range of slices in which a ray of a sweep is followed: near the grid, and where it is attenuated or looked up.
+// Ray of a sweep: the slices in which it is followed, which are near the grid and where it is attenuated or looked up,
+// and the blocks that it passes there.
 #import "common/sizes.wgsl"
 #import "sky/rays.wgsl"
 
@@ -25,4 +26,27 @@ fn slices_of_ray(rays: SweepRaysUniform, ray: vec2u, start: vec2f, size: vec3f) 
     let first = f32(entry & ((1u << END_SLICE_BIT) - 1u));
     let end = f32(entry >> END_SLICE_BIT);
     return vec2f(max(max(u.x, v.x), first), min(min(u.y, v.y), end - 1.0));
+}
+
+// Ray of a sweep on its way through the slices.
+struct SweptRay {
+    // Position where the ray crosses the first slice.
+    start: vec2f,
+    // Number of the grid's last slice.
+    last: f32,
+    // First and last slice in which the ray is followed.
+    span: vec2f,
+}
+
+fn swept_ray(rays: SweepRaysUniform, ray: vec2u) -> SweptRay {
+    let size = to_sweep_axes(rays, vec3f(sweep.dims));
+    let start = vec2f(ray) + rays.first;
+    return SweptRay(start, size.x - 1.0, slices_of_ray(rays, ray, start, size));
+}
+
+// Place in slice n of a ray, as texture coordinates of the blocks with their border.
+fn place_in_blocks(rays: SweepRaysUniform, ray: SweptRay, n: f32) -> vec3f {
+    let slice = select(ray.last - n, n, rays.is_ascending == 1u);
+    let block = from_sweep_axes(rays, vec3f(slice, ray.start + rays.drift * n));
+    return (block + 1.5) * sweep.block_scale;
 }

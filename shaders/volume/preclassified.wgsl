@@ -30,11 +30,11 @@ fn voxel_material(place: vec3i) -> vec4f {
     let share = material.a / max(table.peaks[10u * TABLE_SIZE], 1e-20);
 #if MISSING
     // Neighbours stand in for missing voxels, and the sum is multiplied by presence.
-    let is_there = true;
+    let is_in_grid = true;
 #else
-    let is_there = all(voxel == place + 1);
+    let is_in_grid = all(voxel == place + 1);
 #endif
-    return select(vec4f(0.0), vec4f(share, material.rgb * share), is_there);
+    return select(vec4f(0.0), vec4f(share, material.rgb * share), is_in_grid);
 }
 
 @compute @workgroup_size(8, 8, 4)

@@ -1,4 +1,4 @@
-// Scattered light (bounces/outcome.wgsl), as shading passes look it up.
+// Scattered light (scattered_light/result.wgsl), as shading passes look it up.
 struct ScatteredLightUniform {
     // Scale from index space to texture coordinates: (p + ½) × lookup.
     lookup: vec3f,

@@ -155,7 +155,7 @@ struct RayResult {
     // Linear, premultiplied colour.
     color: vec3f,
     // Remaining transmittance of the ray.
-    left: f32,
+    transmittance: f32,
 }
 
 fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> RayResult {
@@ -205,13 +205,13 @@ fn main(
     let span = span_within(eye.visible_cut, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
 #if BY_NEED
-    let seen = adaptive_slabs(ray, span, inside);
+    let result = adaptive_slabs(ray, span, inside);
 #else
 #if PREINTEGRATED
-    let seen = preintegrated_slabs(ray, span, inside);
+    let result = preintegrated_slabs(ray, span, inside);
 #else
-    let seen = even_slabs(ray, span, inside, pixel);
+    let result = even_slabs(ray, span, inside, pixel);
 #endif
 #endif
-    textureStore(picture, pixel, vec4f(seen.color, 1.0 - seen.left));
+    textureStore(picture, pixel, vec4f(result.color, 1.0 - result.transmittance));
 }

@@ -1,7 +1,7 @@
 // Gathering of swept light at listed blocks: the sum over the directions of a batch, interpolated between the rays
 // around each block's centre and added to the sums of earlier batches.
 #import "sky/rays.wgsl"
-#import "bounces/bounce.wgsl"
+#import "scattered_light/bounce.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(1) var sheets: texture_3d<f32>;
@@ -16,11 +16,7 @@ override DIRECTIONS: u32 = 4u;
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     sweep = bound_sweep;
     bounce = bound_bounce;
-    let listed = listed_cell(group, lane);
-    if (listed >= arrayLength(&cells)) {
-        return;
-    }
-    let id = voxel_of(cells[listed], lane);
+    let id = voxel_of_listed_cell(group, lane);
     if (any(id >= sweep.dims)) {
         return;
     }
@@ -31,8 +27,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     var sum = sums[at].rgb * sweep.has_sums;
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
-        let ray = ray_coordinates(rays, vec3f(id));
-        let place = (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
+        let place = place_in_sheets(rays, vec3f(id));
         sum += rays.weight * textureSampleLevel(sheets, clamped, place, 0.0).rgb;
     }
     sums[at] = vec4f(sum, 0.0);

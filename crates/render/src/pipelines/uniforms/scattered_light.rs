@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{LightUniform, SpaceUniform};
 
-/// Look-up of scattered light, as declared in `shading/bounces.wgsl`.
+/// Look-up of scattered light, as declared in `shading/scattered_light.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct ScatteredLightUniform {
@@ -16,7 +16,7 @@ pub struct ScatteredLightUniform {
     pub pad2: f32,
 }
 
-/// Parameters of passes over blocks of scattered light, as declared in `bounces/bounce.wgsl`.
+/// Parameters of passes over blocks of scattered light, as declared in `scattered_light/bounce.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct BounceUniform {
@@ -26,7 +26,7 @@ pub struct BounceUniform {
     pub min_extinction: f32,
 }
 
-/// Scene of the single-scattering pass, as declared in `bounces/first.wgsl`.
+/// Scene of the single-scattering pass, as declared in `scattered_light/single_scattering.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct SingleScatteringUniform {

@@ -2,7 +2,7 @@
 //
 // A light that gives a white surface facing it the radiance E/π has a mean radiance over all directions of a quarter
 // of that: E / 4π.
-#import "bounces/bounce.wgsl"
+#import "scattered_light/bounce.wgsl"
 #import "common/slab_mean.wgsl"
 #import "common/space.wgsl"
 #import "shading/lights.wgsl"
@@ -96,11 +96,11 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
         for (var number = 0u; number < whole.points; number += 1u) {
             let one = area_light_point(whole, number);
             let towards = to_light(one, position);
-            var left = cone_attenuation(one, towards.direction);
-            if (i < scene.shadowed && left > 0.0) {
-                left *= transmittance_to_light(one, block, found.a, towards);
+            var transmittance = cone_attenuation(one, towards.direction);
+            if (i < scene.shadowed && transmittance > 0.0) {
+                transmittance *= transmittance_to_light(one, block, found.a, towards);
             }
-            arriving += left;
+            arriving += transmittance;
         }
         light += whole.color * (0.25 * arriving / f32(whole.points));
     }
