@@ -7,6 +7,7 @@
 //! included. Panels see settings and read-only facts.
 
 mod common;
+mod document;
 mod kept_views;
 mod layout;
 mod panels;
@@ -34,22 +35,16 @@ use eframe::egui;
 
 use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
-use self::common::volume_facts::VolumeFacts;
 use self::common::{light_keys, reveal, shortcuts};
+use self::document::Document;
 use self::kept_views::KeptStrip;
 use self::layout::WindowLayout;
 use self::persistence::{PersistentState, RecentThumbnails};
-use self::shell::auto_balance::AutoBalance;
+use self::shell::automatic_changes::LightSearchTask;
 use self::shell::file_tasks::FileTasks;
-use self::shell::history::{History, HistoryWindow};
-use self::shell::light_placement::{LightPlacement, LightSearchTask};
+use self::shell::history::HistoryWindow;
 use self::shell::messages::MessageLog;
-use self::shell::object::corrections::CorrectionState;
-use self::shell::object::data_kind::KindOverride;
-use self::shell::object::orientation::OrientationTasks;
-use self::shell::object::outline::OutlineCache;
 use self::shell::opening::{NeighbourSearch, PendingLook};
-use self::shell::session::SessionFile;
 use self::shell::status_file;
 use self::shell::status_file::StatusFile;
 use self::start::handover::HandoverSlot;
@@ -92,14 +87,7 @@ const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
-    settings: Settings,
-    /// First look at the open volume, which the reset buttons restore.
-    defaults: Settings,
-    volume: Option<VolumeFacts>,
-    kind_override: KindOverride,
-    orientation_task: OrientationTasks,
-    corrections_task: CorrectionState,
-    outline_task: OutlineCache,
+    document: Document,
     viewport: Viewport,
     /// Painter of the window's background colour.
     window: WindowPainter,
@@ -124,12 +112,9 @@ pub struct App {
     pending_look: Option<PendingLook>,
     balance: Option<BackgroundTask<Result<f64, GpuError>>>,
     file_tasks: FileTasks,
-    keep_balanced: AutoBalance,
-    first_lights: LightPlacement,
     light_search: Option<LightSearchTask>,
     export: ExportWindow,
     files: FileDialogs,
-    session: Option<SessionFile>,
     recovery_dialog: RecoveryDialog,
     /// True while the default volume waits for the user's answer about reopening the last session.
     default_open_waits: bool,
@@ -138,7 +123,6 @@ pub struct App {
     /// True until the session's look has been applied over the first look.
     session_is_due: bool,
     adjust_first_look: Option<SettingsAdjustment>,
-    history: History,
     history_list: HistoryWindow,
     handles: LightHandles,
     cut_handles: CutHandles,
@@ -163,7 +147,6 @@ pub struct App {
     /// Search for the next file in the folder, while it runs.
     next_file_search: Option<NeighbourSearch>,
     editor: TransferEditor,
-    selected_light: usize,
     layout: WindowLayout,
     kept_strip: KeptStrip,
     help: HelpWindows,
@@ -194,8 +177,8 @@ impl Drop for App {
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
-            .field("settings", &self.settings)
-            .field("volume", &self.volume)
+            .field("settings", &self.document.settings)
+            .field("volume", &self.document.volume)
             .finish_non_exhaustive()
     }
 }
@@ -203,7 +186,7 @@ impl std::fmt::Debug for App {
 impl App {
     /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
-        &self.settings
+        &self.document.settings
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
@@ -211,26 +194,28 @@ impl App {
     pub fn is_idle(&self) -> bool {
         self.is_complete()
             && !self.is_making_look()
-            && !self.first_lights.is_due()
-            && self.knows_outline()
-            && !self.keep_balanced.is_due(&self.settings)
+            && !self.document.first_lights.is_due()
+            && self.document.knows_outline(self.viewport.dataset().as_ref())
+            && !self.document.keep_balanced.is_due(&self.document.settings)
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
     /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
-        self.kind_override.is_busy() || self.orientation_task.is_busy()
+        self.document.is_making_look()
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
     /// read or corrected.
     fn is_complete(&self) -> bool {
-        self.is_volume_ready() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.is_volume_ready() && self.viewport.is_idle(&self.compare.looks(&self.document.settings))
     }
 
     /// Returns true if no volume is being opened, read or corrected.
     fn is_volume_ready(&self) -> bool {
-        self.loader.progress().is_none() && self.file_tasks.path().is_none() && !self.is_correcting()
+        self.loader.progress().is_none()
+            && self.file_tasks.path().is_none()
+            && !self.document.is_correcting(self.viewport.dataset().as_ref())
     }
 
     /// Rectangle of the picture in points, and its size in physical pixels.
@@ -255,7 +240,7 @@ impl App {
 
     /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
-        self.volume.as_ref().map(|volume| volume.name.as_str())
+        self.document.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
     /// Error messages since the volume was opened.
@@ -310,30 +295,30 @@ impl eframe::App for App {
             &self.window,
             ui.visuals().panel_fill,
         ));
-        self.drag_cancel.begin(&ctx, &self.settings);
+        self.drag_cancel.begin(&ctx, &self.document.settings);
         let mut commands = Vec::new();
         let dropped = file_dialogs::dropped_files(&ctx);
         if !dropped.is_empty() {
             commands.push(AppCommand::OpenDropped(dropped));
         }
-        let facts = self.viewport.renderer_status(&self.compare.looks(&self.settings));
-        self.palette.ui(&ctx, self.settings.camera.up, self.volume.as_ref(), &mut commands);
-        self.volume_chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
+        let facts = self.viewport.renderer_status(&self.compare.looks(&self.document.settings));
+        self.palette.ui(&ctx, self.document.settings.camera.up, self.document.volume.as_ref(), &mut commands);
+        self.volume_chooser.ui(&ctx, self.document.volume.as_ref(), self.loader.options(), &mut commands);
         self.show_outer_panels(ui, &facts, &mut commands);
         self.show_picture(ui, &facts, &mut commands);
         shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
+        light_keys::nudge(&ctx, &mut self.document.settings, self.document.selected_light);
         self.show_windows(frame, &ctx, &mut commands);
-        self.drag_cancel.end(&mut self.settings);
+        self.drag_cancel.end(&mut self.document.settings);
         self.ask_for_volume(frame, &ctx);
-        self.history.observe(&ctx, &self.history_step());
+        self.document.history.observe(&ctx, &self.document.history_step());
         commands.extend(self.finish_framing());
         commands.extend(self.update_outline(&ctx));
-        let before = self.settings.camera.clone();
+        let before = self.document.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
         }
-        self.camera_animation.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
+        self.camera_animation.begin(&before, &self.document.settings.camera, ctx.input(|input| input.time));
         self.cancel_files_by_key(&ctx);
         self.leave_picture_only(&ctx);
         self.update_corrections(&ctx);
@@ -354,7 +339,7 @@ impl eframe::App for App {
             response: self.viewport.response_times(),
             loading: self.loader.progress().is_some() || self.file_tasks.path().is_some(),
             idle,
-            canvas: self.canvas.filter(|_| self.volume.is_some()),
+            canvas: self.canvas.filter(|_| self.document.volume.is_some()),
             handles: self.handles.positions(),
             light_rebuilds: self.light_rebuilds(),
             errors: self.messages.errors(),

@@ -18,14 +18,14 @@ impl App {
         commands: &mut Vec<AppCommand>,
     ) {
         self.layout.theme = ui.ctx().options(|options| options.theme_preference);
-        self.help.ui(ui.ctx(), facts, self.settings.camera.up);
+        self.help.ui(ui.ctx(), facts, self.document.settings.camera.up);
         if self.layout.picture_only {
             dock::hide(ui.ctx());
             return;
         }
         let menu_title = self.menu_title();
-        let step = self.history_step();
-        let history = &self.history;
+        let step = self.document.history_step();
+        let history = &self.document.history;
         let name_of_step = |is_back: bool| history.describe_next(&step, is_back);
         let shown = menu::WindowParts {
             side: self.layout.side,
@@ -39,11 +39,11 @@ impl App {
         menu::show(
             ui,
             &mut menu::MenuInputs {
-                settings: &mut self.settings,
+                settings: &mut self.document.settings,
                 title: menu_title,
                 describe_step: &name_of_step,
                 parts: shown,
-                alternatives: self.volume.as_ref().map(|volume| &volume.held),
+                alternatives: self.document.volume.as_ref().map(|volume| &volume.held),
                 recent: self.memory.recent(),
                 recent_pictures: &mut self.recent_pictures,
                 keeps_look: self.keeps_look_for_next,
@@ -57,7 +57,7 @@ impl App {
             reading: self.file_tasks.path(),
             exporting: self.export.background_progress(),
         };
-        let undone_step = self.history.last_step(&self.settings);
+        let undone_step = self.document.history.last_step(&self.document.settings);
         let status = status::StatusBar {
             facts,
             busy: file_progress,
@@ -65,9 +65,9 @@ impl App {
             last_step: undone_step,
         };
         status::show(ui, status, &mut self.messages, commands);
-        if let Some(volume) = &self.volume {
+        if let Some(volume) = &self.document.volume {
             // The label table has a default height of its own.
-            let (name, height) = if volume.is_shown_by_label(&self.settings) {
+            let (name, height) = if volume.is_shown_by_label(&self.document.settings) {
                 ("labels", theme::LABEL_TABLE_HEIGHT)
             } else {
                 ("transfer", theme::EDITOR_HEIGHT)
@@ -76,21 +76,21 @@ impl App {
             let panel = panel.frame(theme::panel(ui));
             let panel = panel.size_range(90.0..=420.0);
             panel.show_collapsible(ui, &mut self.layout.transfer, |ui| {
-                self.editor.ui(ui, &mut self.settings, volume, self.light_probe.value(), commands);
+                self.editor.ui(ui, &mut self.document.settings, volume, self.light_probe.value(), commands);
             });
         }
         let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
         let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
-        let treated_as = self.kind_override.kind();
+        let treated_as = self.document.kind_override.kind();
         panel.show_collapsible(ui, &mut self.layout.side, |ui| {
             panels::show(
                 ui,
                 &mut panels::PanelContext {
-                    settings: &mut self.settings,
-                    first_look: &self.defaults,
-                    volume: self.volume.as_ref(),
+                    settings: &mut self.document.settings,
+                    first_look: &self.document.defaults,
+                    volume: self.document.volume.as_ref(),
                     treated_as,
-                    selected_light: &mut self.selected_light,
+                    selected_light: &mut self.document.selected_light,
                     compare: &mut self.compare,
                     facts,
                     is_balancing: self.balance.is_some(),
@@ -107,7 +107,7 @@ impl App {
 
     /// Title in the menu bar: name, dimensions and spacing of the open volume.
     fn menu_title(&self) -> Option<menu::VolumeTitle> {
-        let volume = self.volume.as_ref()?;
+        let volume = self.document.volume.as_ref()?;
         let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
         Some(menu::VolumeTitle { name: volume.name.clone(), facts })
     }
@@ -115,8 +115,8 @@ impl App {
     /// Task beside the pictures that the user waits for, in words; the first that is running.
     fn background_task_name(&self) -> Option<&'static str> {
         [
-            (self.is_correcting(), text::status::CORRECTING),
-            (self.is_making_look(), text::status::PREPARING_LOOK),
+            (self.document.is_correcting(self.viewport.dataset().as_ref()), text::status::CORRECTING),
+            (self.document.is_making_look(), text::status::PREPARING_LOOK),
             (self.light_search.is_some(), text::status::PLACING_LIGHTS),
             (self.balance.is_some(), text::status::BALANCING),
         ]

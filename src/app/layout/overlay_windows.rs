@@ -53,13 +53,16 @@ impl App {
             self.handle_chosen_file(purpose, &path, ctx);
         }
         let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
-        let settings_as_drawn =
-            volume.as_ref().filter(|_| self.slices.open).map(|volume| self.settings.resolved_for(volume));
-        let transfer = settings_as_drawn.as_ref().map_or(&self.settings.transfer, |drawn| &drawn.transfer);
-        let look = SliceLook { transfer, labels: &self.settings.labels };
-        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), look);
+        let settings_as_drawn = volume
+            .as_ref()
+            .filter(|_| self.slices.open)
+            .map(|volume| self.document.settings.resolved_for(volume));
+        let transfer =
+            settings_as_drawn.as_ref().map_or(&self.document.settings.transfer, |drawn| &drawn.transfer);
+        let look = SliceLook { transfer, labels: &self.document.settings.labels };
+        self.slices.ui(ctx, volume.as_ref(), self.document.volume.as_ref(), look);
         let scene = light_slice::LightSliceContext {
-            settings: &self.settings,
+            settings: &self.document.settings,
             dataset: self.viewport.dataset(),
             context: self.viewport.context(),
             is_idle: self.is_complete(),
@@ -69,7 +72,7 @@ impl App {
             Ok(true) => self.files.open_dialog(FileDialogPurpose::ExportLight, frame, ctx),
             Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
-        let is_anatomical = self.volume.as_ref().is_some_and(|volume| volume.is_anatomical);
+        let is_anatomical = self.document.is_anatomical();
         match self.export.ui(ctx, self.viewport_size(), is_anatomical) {
             None => {}
             Some(export::ExportRequest::ChooseFile) => {

@@ -6,13 +6,13 @@ use eframe::egui::{self, gui_zoom};
 
 use crate::app::common::commands::AppCommand;
 use crate::app::common::{light_keys, reveal};
+use crate::app::kept_views::compare_kept_items;
 use crate::app::text;
 use crate::app::viewport::mouse_navigation::OrbitDrag;
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::export;
 use crate::app::windows::export::ExportOutcome;
 use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
-use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::LoadOutcome;
 use crate::app::{App, panels};
 use chiaroscuro_render::GpuError;
@@ -46,8 +46,7 @@ impl App {
             AppCommand::LoadSettings => self.files.open_dialog(FileDialogPurpose::LoadSettings, frame, ctx),
             AppCommand::Export => {
                 let size = self.viewport_size();
-                let volume = self.volume.as_ref().map_or("", |volume| volume.name.as_str());
-                self.export.open(size, self.layout.exports.as_deref(), volume);
+                self.export.open(size, self.layout.exports.as_deref(), self.document.volume_name());
             }
             AppCommand::CancelExport => self.export.cancel(),
             AppCommand::CopyPicture => self.copy_picture(ctx),
@@ -59,27 +58,33 @@ impl App {
             AppCommand::ToggleMessages => self.messages.list_open ^= true,
             AppCommand::ResetView => {
                 if self.ensure_first_look_up(Some(command), ctx) {
-                    self.settings.camera = self.defaults.camera.clone();
+                    self.document.settings.camera = self.document.defaults.camera.clone();
                 }
             }
             AppCommand::AddLight => {
-                if let Some(index) = panels::add_light(&mut self.settings) {
-                    self.selected_light = index;
+                if let Some(index) = panels::add_light(&mut self.document.settings) {
+                    self.document.selected_light = index;
                 }
             }
-            AppCommand::AutomaticTransfer => self.use_automatic_transfer(ctx),
-            AppCommand::TreatAs(kind) => self.treat_as(kind, ctx),
+            AppCommand::AutomaticTransfer => {
+                let started = self.document.use_automatic_transfer(self.viewport.dataset(), ctx);
+                self.messages.report(text::messages::LOOK_NOT_MADE, started);
+            }
+            AppCommand::TreatAs(kind) => {
+                let started = self.document.treat_as(kind, self.viewport.dataset(), ctx);
+                self.messages.report(text::messages::LOOK_NOT_MADE, started);
+            }
             AppCommand::UsePreset(preset) => {
-                if let Some(volume) = &self.volume {
-                    match preset.apply(&self.settings, &volume.ranges) {
-                        Ok(settings) => self.settings = settings,
+                if let Some(volume) = &self.document.volume {
+                    match preset.apply(&self.document.settings, &volume.ranges) {
+                        Ok(settings) => self.document.settings = settings,
                         Err(err) => self.messages.error(text::messages::PRESET_NOT_APPLIED, err.to_string()),
                     }
                 }
             }
             AppCommand::UseColors(at, reversed) => {
                 if let Some(map) = COLOR_MAPS.get(at) {
-                    self.settings.transfer.apply_color_map(map, reversed);
+                    self.document.settings.transfer.apply_color_map(map, reversed);
                 }
             }
             AppCommand::ImportTransfer => {
@@ -88,60 +93,77 @@ impl App {
             AppCommand::ExportTransfer => {
                 self.files.open_dialog(FileDialogPurpose::ExportTransfer, frame, ctx);
             }
-            AppCommand::InvertTransfer => self.settings.transfer.mirror(),
+            AppCommand::InvertTransfer => self.document.settings.transfer.mirror(),
             AppCommand::ToggleCrop => {
-                self.settings.cuts.crop.on ^= true;
-                self.show_section(ctx, text::sections::CUTS, self.settings.cuts.crop.on);
+                self.document.settings.cuts.crop.on ^= true;
+                self.show_section(ctx, text::sections::CUTS, self.document.settings.cuts.crop.on);
             }
             AppCommand::TogglePlane => {
-                self.settings.cuts.plane.on ^= true;
-                self.show_section(ctx, text::sections::CUTS, self.settings.cuts.plane.on);
+                self.document.settings.cuts.plane.on ^= true;
+                self.show_section(ctx, text::sections::CUTS, self.document.settings.cuts.plane.on);
             }
             AppCommand::FacePlane => {
-                let Camera { target, .. } = self.settings.camera;
-                self.settings
+                let Camera { target, .. } = self.document.settings.camera;
+                self.document
+                    .settings
                     .cuts
                     .plane
-                    .place_facing(self.settings.camera.scene_from_view().z_axis, target.into());
+                    .place_facing(self.document.settings.camera.scene_from_view().z_axis, target.into());
             }
             AppCommand::ToggleFloor => {
-                self.settings.floor.on ^= true;
-                self.show_section(ctx, text::sections::FLOOR, self.settings.floor.on);
+                self.document.settings.floor.on ^= true;
+                self.show_section(ctx, text::sections::FLOOR, self.document.settings.floor.on);
             }
             AppCommand::Balance => self.start_balance(ctx),
             AppCommand::FrameAll => {
                 if self.can_frame(command, ctx) {
-                    self.frame_object();
+                    self.document.frame_object(self.viewport.dataset().as_ref());
                 }
             }
-            AppCommand::TurnObject(turn) => self.turn_object(turn, ctx),
+            AppCommand::TurnObject(turn) => {
+                let started = self.document.turn_object(turn, self.viewport.dataset(), ctx);
+                self.messages.report(text::messages::TURN_FAILED, started);
+            }
             AppCommand::RotateObject => {
                 if self.can_frame(command, ctx) {
-                    let outline = self.outline();
-                    let orbit = OrbitDrag::begin(&self.settings.camera, outline.as_deref());
-                    self.settings.camera.orbit(90.0, 0.0);
-                    orbit.keep_in_frame(&mut self.settings.camera, outline.as_deref());
+                    let outline = self.document.outline(self.viewport.dataset().as_ref());
+                    let orbit = OrbitDrag::begin(&self.document.settings.camera, outline.as_deref());
+                    self.document.settings.camera.orbit(90.0, 0.0);
+                    orbit.keep_in_frame(&mut self.document.settings.camera, outline.as_deref());
                 }
             }
             AppCommand::LookFrom(view) => {
                 if self.can_frame(command, ctx) {
-                    if self.volume.as_ref().is_some_and(|volume| volume.is_anatomical) {
-                        self.settings.camera.set_standard_view_of_body(view);
+                    if self.document.is_anatomical() {
+                        self.document.settings.camera.set_standard_view_of_body(view);
                     } else {
-                        self.settings.camera.set_standard_view(view);
+                        self.document.settings.camera.set_standard_view(view);
                     }
-                    self.frame_object();
+                    self.document.frame_object(self.viewport.dataset().as_ref());
                 }
             }
-            AppCommand::ToggleProjection => self.settings.camera.toggle_projection(),
-            AppCommand::SaveView => self.keep_current_view(),
-            AppCommand::SaveLookInStrip => self.keep_current_look(),
-            AppCommand::StoreView(slot) => self.keep_view_under(slot),
+            AppCommand::ToggleProjection => self.document.settings.camera.toggle_projection(),
+            AppCommand::SaveView => {
+                let note = self.document.save_current_view();
+                self.report_kept_item(note);
+            }
+            AppCommand::SaveLookInStrip => {
+                let note = self.document.save_current_look();
+                self.report_kept_item(note);
+            }
+            AppCommand::StoreView(slot) => {
+                let note = self.document.save_view_under(slot);
+                self.report_kept_item(note);
+            }
             AppCommand::RecallView(slot) => self.apply_kept_digit(slot, ctx),
             AppCommand::GoToSaved(at, with_view) => self.apply_kept_item(at, with_view, ctx),
-            AppCommand::ReplaceSaved(at) => self.replace_kept_item(at),
+            AppCommand::ReplaceSaved(at) => {
+                if !self.document.replace_saved_item(at) {
+                    self.messages.error(text::saved_views::TOO_MANY, String::new());
+                }
+            }
             AppCommand::CompareSaved(left, right) => {
-                self.compare_kept_items(left, right);
+                compare_kept_items(&mut self.compare, &self.document.settings, left, right);
                 reveal::show_section(ctx, text::sections::COMPARE, true);
             }
             AppCommand::ExportContactSheet => {
@@ -159,19 +181,20 @@ impl App {
             AppCommand::ToggleProbe => self.light_probe.is_active ^= true,
             AppCommand::ShowPalette => self.palette.open(),
             AppCommand::UseRig(rig) => {
-                self.settings.lights = rig.lights(&self.settings.camera);
-                self.selected_light = 0;
+                self.document.settings.lights = rig.lights(&self.document.settings.camera);
+                self.document.selected_light = 0;
             }
             AppCommand::UseLights(lights) => {
-                self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
-                self.settings.lights = lights;
+                self.document.selected_light =
+                    self.document.selected_light.min(lights.len().saturating_sub(1));
+                self.document.settings.lights = lights;
             }
             AppCommand::UseLook(look) => {
                 // A suggested look leaves saved views, render quality, cuts and corrections of the file as they are.
-                let look = look.with_quality_of(&self.settings);
-                let Settings { cuts, kept, volume, .. } = std::mem::take(&mut self.settings);
-                self.settings = Settings { cuts, kept, volume, ..look };
-                self.selected_light = 0;
+                let look = look.with_quality_of(&self.document.settings);
+                let Settings { cuts, kept, volume, .. } = std::mem::take(&mut self.document.settings);
+                self.document.settings = Settings { cuts, kept, volume, ..look };
+                self.document.selected_light = 0;
             }
             AppCommand::TryLooks => {
                 // Suggested looks derive from the first look, which must have the current up axis.
@@ -187,12 +210,14 @@ impl App {
             AppCommand::TryPresets => self.contact_sheet.open(ContactSheetKind::Presets),
             AppCommand::NextLight | AppCommand::PreviousLight => {
                 let by = if command == AppCommand::NextLight { 1 } else { -1 };
-                let count = self.settings.lights.len();
-                self.selected_light = light_keys::cycle(count, self.selected_light, by);
+                let count = self.document.settings.lights.len();
+                self.document.selected_light = light_keys::cycle(count, self.document.selected_light, by);
             }
-            AppCommand::Solo => light_keys::solo(&mut self.settings.lights, self.selected_light),
+            AppCommand::Solo => {
+                light_keys::solo(&mut self.document.settings.lights, self.document.selected_light)
+            }
             AppCommand::Mute | AppCommand::Brighter | AppCommand::Dimmer => {
-                if let Some(light) = self.settings.lights.get_mut(self.selected_light) {
+                if let Some(light) = self.document.settings.lights.get_mut(self.document.selected_light) {
                     match command {
                         AppCommand::Mute => light.on ^= true,
                         AppCommand::Brighter => light_keys::brighten(light, 1),
@@ -256,23 +281,7 @@ impl App {
         self.take_neighbour(ctx);
         self.finish_kind_task(ctx);
         self.finish_file_tasks(ctx);
-        if let Some(result) = self.balance.as_ref().and_then(BackgroundTask::take_result) {
-            self.balance = None;
-            match result {
-                Ok(Ok(balance)) => {
-                    self.settings.shadows.balance = balance;
-                    self.settings.sanitise();
-                }
-                Ok(Err(err)) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
-                Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
-            }
-        }
-        if let Some(found) = self.viewport.take_balance() {
-            self.keep_balanced.set_result(ctx.input(|input| input.time), found.as_ref().ok().copied());
-            if let Err(err) = found {
-                self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
-            }
-        }
+        self.take_balances(ctx);
         match self.export.take_result() {
             None => {}
             Some(Ok(ExportOutcome::File(path))) => {
@@ -334,7 +343,11 @@ impl App {
             FileDialogPurpose::EnvironmentMap => self.read_environment_map(path, ctx),
             FileDialogPurpose::ImportTransfer => self.import_transfer(path, ctx),
             FileDialogPurpose::ExportTransfer => {
-                match file_dialogs::export_transfer_file(path, &self.settings, &self.value_ranges()) {
+                match file_dialogs::export_transfer_file(
+                    path,
+                    &self.document.settings,
+                    &self.document.value_ranges(),
+                ) {
                     Ok(()) => self.messages.note(text::messages::written(path)),
                     Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
@@ -350,15 +363,15 @@ impl App {
             return None;
         };
         // Ignores a correction in progress: the picture shows the volume that is loaded.
-        let settings = Settings { volume: *dataset.volume().corrections(), ..self.settings.clone() };
+        let settings = Settings { volume: *dataset.volume().corrections(), ..self.document.settings.clone() };
         Some(export::ExportScene {
             context: self.viewport.context().clone(),
             dataset,
             settings,
-            first_look: self.defaults.clone(),
-            source: self.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
-            selected_light: self.selected_light,
-            outline: self.outline(),
+            first_look: self.document.defaults.clone(),
+            source: self.document.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
+            selected_light: self.document.selected_light,
+            outline: self.document.outline(self.viewport.dataset().as_ref()),
         })
     }
 

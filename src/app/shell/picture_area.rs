@@ -243,14 +243,14 @@ impl App {
         facts: &RendererStatus,
         commands: &mut Vec<AppCommand>,
     ) {
-        let outline = self.outline();
+        let outline = self.document.outline(self.viewport.dataset().as_ref());
         let inputs = PictureInputs {
-            settings: &mut self.settings,
-            defaults: &self.defaults,
+            settings: &mut self.document.settings,
+            defaults: &self.document.defaults,
             viewport: &mut self.viewport,
             handles: &mut self.handles,
             cut_handles: &mut self.cut_handles,
-            selected_light: &mut self.selected_light,
+            selected_light: &mut self.document.selected_light,
             compare: &mut self.compare,
             overlay: self.overlay,
             probe: &mut self.light_probe,
@@ -262,7 +262,7 @@ impl App {
             slices: &mut self.slices,
             hints: &mut self.first_run_hints,
             ct_looks: &mut self.ct_looks,
-            volume: self.volume.as_ref(),
+            volume: self.document.volume.as_ref(),
             facts,
             commands,
         };
@@ -275,16 +275,7 @@ impl App {
         if let Err(err) = result {
             self.handle_render_error(&err, ui.ctx());
         }
-        self.update_shown_range();
-    }
-
-    /// Updates the facts for editor and panels to the range of values that the picture shows.
-    fn update_shown_range(&mut self) {
-        if let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &mut self.volume)
-            && dataset.volume().density_mapping() != facts.shown
-        {
-            facts.update(&dataset);
-        }
+        self.document.update_shown_range(self.viewport.dataset().as_ref());
     }
 }
 

@@ -6,43 +6,30 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 
 use super::error::AppError;
-use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::document::Document;
 use crate::app::layout::WindowLayout;
 use crate::app::persistence::PersistentState;
-use crate::app::shell::history::History;
-use crate::app::shell::light_placement::LightPlacement;
 use crate::app::shell::messages::MessageLog;
-use crate::app::shell::object::corrections::CorrectionState;
-use crate::app::shell::object::data_kind::KindOverride;
 use crate::app::shell::opening::PendingLook;
-use crate::app::shell::session::SessionFile;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use chiaroscuro_scene::{QualityPreset, Settings};
+use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume::Dataset;
 use chiaroscuro_volume_io::LoadOptions;
 
 /// State of the user's work: the look with its history, the volume in host memory, and the session file.
 #[derive(Debug)]
 pub(crate) struct WindowHandover {
-    settings: Settings,
-    defaults: Settings,
-    history: History,
-    treated: KindOverride,
-    corrected: CorrectionState,
-    first_lights: LightPlacement,
-    volume: Option<VolumeFacts>,
+    document: Document,
     dataset: Option<Dataset>,
-    session: Option<SessionFile>,
     session_is_due: bool,
     trusts_paths: bool,
     memory: PersistentState,
     keeps_look: bool,
     compare: Compare,
-    selected_light: usize,
     /// All messages since the start.
     messages: MessageLog,
     layout: WindowLayout,
@@ -81,21 +68,13 @@ impl App {
         let opening =
             self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
         let carried = WindowHandover {
-            settings: std::mem::take(&mut self.settings),
-            defaults: std::mem::take(&mut self.defaults),
-            history: std::mem::take(&mut self.history),
-            treated: std::mem::take(&mut self.kind_override),
-            corrected: std::mem::take(&mut self.corrections_task),
-            first_lights: std::mem::take(&mut self.first_lights),
-            volume: self.volume.take(),
+            document: std::mem::take(&mut self.document),
             dataset: self.viewport.dataset(),
-            session: self.session.take(),
             session_is_due: self.session_is_due,
             trusts_paths: self.trusts_paths,
             memory: std::mem::take(&mut self.memory),
             keeps_look: self.keeps_look_for_next,
             compare: self.compare.clone(),
-            selected_light: self.selected_light,
             messages: std::mem::take(&mut self.messages),
             layout: self.layout.clone(),
             probe_on: self.light_probe.is_active,
@@ -118,21 +97,13 @@ impl App {
         asks: bool,
     ) -> Result<Self, AppError> {
         let WindowHandover {
-            settings,
-            defaults,
-            history,
-            treated,
-            corrected,
-            first_lights,
-            volume,
+            document,
             dataset,
-            session,
             session_is_due,
             trusts_paths,
             memory,
             keeps_look,
             compare,
-            selected_light,
             messages,
             layout,
             probe_on: probes,
@@ -144,12 +115,9 @@ impl App {
             on_cpu: _,
         } = carried;
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
-        app.keep_balanced.accept(&settings);
-        (app.settings, app.defaults, app.history) = (settings, defaults, history);
-        (app.kind_override, app.corrections_task, app.first_lights) =
-            (treated, corrected, first_lights.restarted());
-        (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
-        (app.keeps_look_for_next, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
+        app.document = document.restarted();
+        app.session_is_due = session_is_due;
+        (app.keeps_look_for_next, app.compare) = (keeps_look, compare);
         (app.pending_look, app.trusts_paths, app.export) = (pending, trusts_paths, export);
         app.handed_over_dataset = dataset;
         layout.apply(&cc.egui_ctx);
@@ -162,7 +130,7 @@ impl App {
         }
         if let Some((source, reading)) = opening {
             app.start_loading(&source, reading, &cc.egui_ctx);
-        } else if app.volume.is_none() {
+        } else if app.document.volume.is_none() {
             app.open_first(None, None, &cc.egui_ctx);
         }
         Ok(app)
@@ -182,7 +150,7 @@ impl App {
         match answer {
             DeviceLossAnswer::TryAgain => self.restore_volume(ctx),
             DeviceLossAnswer::LowerQuality => {
-                QualityPreset::Fast.apply(&mut self.settings);
+                QualityPreset::Fast.apply(&mut self.document.settings);
                 self.restore_volume(ctx);
             }
             DeviceLossAnswer::UseCpu => {

@@ -8,19 +8,14 @@ use super::options::WindowOptions;
 use crate::app::common::drag_cancel::DragCancel;
 use crate::app::common::input_pacing::InputPacing;
 use crate::app::common::theme;
+use crate::app::document::Document;
+use crate::app::document::session::SessionFile;
 use crate::app::kept_views::KeptStrip;
 use crate::app::layout::WindowLayout;
 use crate::app::persistence::PersistentState;
-use crate::app::shell::auto_balance::AutoBalance;
 use crate::app::shell::file_tasks::FileTasks;
-use crate::app::shell::history::{History, HistoryWindow};
-use crate::app::shell::light_placement::LightPlacement;
+use crate::app::shell::history::HistoryWindow;
 use crate::app::shell::messages::MessageLog;
-use crate::app::shell::object::corrections::CorrectionState;
-use crate::app::shell::object::data_kind::KindOverride;
-use crate::app::shell::object::orientation::OrientationTasks;
-use crate::app::shell::object::outline::OutlineCache;
-use crate::app::shell::session::SessionFile;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::Viewport;
@@ -52,7 +47,7 @@ use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
 use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
 use chiaroscuro_render::{GpuContext, GpuError, WindowPainter};
-use chiaroscuro_scene::{QualityPreset, Settings};
+use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
 
 /// Counter of the frames of all windows, for fault injection.
@@ -84,10 +79,10 @@ impl App {
         (app.slices.open, app.light_slice.open) = (app.layout.slices, app.layout.light_slice);
         app.slices.convention = app.layout.slice_convention;
         app.session_is_due = session.is_some();
-        app.session = session.map(SessionFile::from_command_line);
+        app.document.session = session.map(SessionFile::from_command_line);
         app.adjust_first_look = adjust;
         app.trusts_paths = trust_paths;
-        let is_named = source.is_some() || volume.is_some() || app.session.is_some();
+        let is_named = source.is_some() || volume.is_some() || app.document.session.is_some();
         if is_named || !app.recovery_dialog.is_open() {
             app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
         } else {
@@ -139,13 +134,7 @@ impl App {
         let layout = WindowLayout::restore(cc.storage);
         layout.apply(&cc.egui_ctx);
         Ok(Self {
-            settings: Settings::default(),
-            defaults: Settings::default(),
-            volume: None,
-            kind_override: KindOverride::default(),
-            orientation_task: OrientationTasks::default(),
-            corrections_task: CorrectionState::default(),
-            outline_task: OutlineCache::default(),
+            document: Document::default(),
             viewport: Viewport::new(context.clone(), window.clone(), &cc.egui_ctx)?,
             canvas: None,
             loader: Loader::new(context, load, storage.as_deref())?,
@@ -155,19 +144,15 @@ impl App {
             pending_look: None,
             balance: None,
             file_tasks: FileTasks::default(),
-            keep_balanced: AutoBalance::new(&Settings::default(), true),
-            first_lights: LightPlacement::default(),
             light_search: None,
             export: ExportWindow::default(),
             files: FileDialogs::default(),
             session_is_due: false,
-            session: None,
             recovery_dialog: RecoveryDialog::default(),
             default_open_waits: false,
             quit_dialog: QuitDialog::default(),
             device_loss_dialog: DeviceLossDialog::default(),
             adjust_first_look: None,
-            history: History::default(),
             history_list: HistoryWindow::default(),
             handles: LightHandles::default(),
             cut_handles: CutHandles::default(),
@@ -196,7 +181,6 @@ impl App {
             handed_over_dataset: None,
             is_device_lost: false,
             wants_cpu: false,
-            selected_light: 0,
             layout,
             kept_strip: KeptStrip::default(),
             help: HelpWindows::default(),

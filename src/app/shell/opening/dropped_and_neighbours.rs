@@ -90,7 +90,7 @@ impl App {
     pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
         // Pressing the key again goes on from the file that is being opened.
         let opening = self.loader.progress().map(|progress| progress.source.to_owned());
-        let from = opening.or_else(|| self.volume.as_ref().map(|volume| volume.source.clone()));
+        let from = opening.or_else(|| self.document.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
             return self.messages.note(text::opening::NO_FOLDER);
         };

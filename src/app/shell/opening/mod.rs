@@ -10,20 +10,18 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::shell::auto_balance::AutoBalance;
+use crate::app::document::auto_balance::AutoBalance;
+use crate::app::document::corrections::CorrectionState;
+use crate::app::document::data_kind::KindOverride;
+use crate::app::document::light_placement::LightPlacement;
 use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
-use crate::app::shell::history::{History, HistoryStep};
-use crate::app::shell::light_placement::LightPlacement;
-use crate::app::shell::object::corrections::CorrectionState;
-use crate::app::shell::object::data_kind::KindOverride;
-use crate::app::shell::object::orientation::OrientationTasks;
 use crate::app::windows::file_dialogs;
 use crate::app::windows::raw_dialog::RawDialogResult;
 use crate::app::worker::loader::{OpenedVolume, ReadChoices, RememberedFileSettings};
 use crate::app::{App, text};
 use chiaroscuro_files::provenance_mark;
 use chiaroscuro_scene::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation};
-use chiaroscuro_volume::{Corrections, Downsampling, Portion, Volume, VolumeChoice};
+use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
 
 pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
 use self::dropped_and_neighbours::VolumeSimilarity;
@@ -99,7 +97,7 @@ impl App {
 
     /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
     pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
-        let is_empty = self.volume.is_none() && self.viewport.dataset().is_none();
+        let is_empty = self.document.volume.is_none() && self.viewport.dataset().is_none();
         let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(ReadPurpose::Open);
         if reason == ReadPurpose::Open && is_empty && !is_busy {
             self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default(), ctx);
@@ -109,7 +107,7 @@ impl App {
     /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
     /// or being opened.
     pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
-        let is_free = self.volume.is_none()
+        let is_free = self.document.volume.is_none()
             && self.loader.progress().is_none()
             && !self.untrusted_path_dialog.is_open();
         if std::mem::take(&mut self.default_open_waits) && is_free {
@@ -119,7 +117,7 @@ impl App {
 
     /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
-        let session = self.session.as_ref().map(|session| session.path().to_owned());
+        let session = self.document.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
         let path = session.clone();
         self.read_file(ReadPurpose::Open, &path, ctx, file_dialogs::load_record, move |app, read, ctx| {
@@ -161,8 +159,8 @@ impl App {
 
     /// Reads the open volume again with another subsampling; the look stays.
     pub(crate) fn reload_subsampled(&mut self, thinning: Downsampling, ctx: &egui::Context) {
-        let Some(volume) = &self.volume else { return };
-        let mut settings = self.settings.clone();
+        let Some(volume) = &self.document.volume else { return };
+        let mut settings = self.document.settings.clone();
         // The opacity unit keeps its thickness, whatever the number of voxels.
         if let OpacityLength::Voxels(_) = settings.opacity_unit {
             let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
@@ -195,17 +193,6 @@ impl App {
         started.is_ok()
     }
 
-    /// Creates the history of a volume that was just opened: remembered corrections can be undone.
-    fn history_of(&self, volume: &Volume) -> History {
-        let by = self.settings.volume;
-        if by.is_none() || by != *volume.corrections() {
-            return History::default();
-        }
-        let mut settings = self.settings.clone();
-        settings.apply_corrections(Corrections::default(), volume);
-        History::with_previous(&HistoryStep { settings, treated_as: None })
-    }
-
     /// Identifier of the open file's volume.
     pub(super) fn opened_id(&self) -> Option<u64> {
         self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
@@ -220,8 +207,8 @@ impl App {
 
     /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
     pub(crate) fn autosave_look(&mut self) {
-        if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
-            self.memory.autosave(&self.settings, &volume.source, opened_id, &volume.held.choice());
+        if let Some((volume, opened_id)) = self.document.volume.as_ref().zip(self.opened_id()) {
+            self.memory.autosave(&self.document.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.autosave_thumbnail(picture);
             }
@@ -235,7 +222,7 @@ impl App {
 
     /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
     pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.session.as_ref().filter(|_| self.session_is_due);
+        let session = self.document.session.as_ref().filter(|_| self.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
                 self.read_file(
@@ -265,8 +252,8 @@ impl App {
         self.messages.clear();
         self.kept_strip.reset();
         // Saved views are useful on other volumes, too.
-        let kept = self.settings.kept.clone();
-        let likeness = match (&self.pending_look, &self.volume) {
+        let kept = self.document.settings.kept.clone();
+        let likeness = match (&self.pending_look, &self.document.volume) {
             (Some(PendingLook::CurrentIfSimilar), Some(open)) => VolumeSimilarity::between(open, &volume),
             _ => VolumeSimilarity::Different,
         };
@@ -274,10 +261,14 @@ impl App {
             self.pending_look = (likeness == VolumeSimilarity::SameGrid).then_some(PendingLook::Current);
         }
         // Another file has corrections of its own.
-        let by = if likeness == VolumeSimilarity::SameGrid { settings.volume } else { self.settings.volume };
+        let by = if likeness == VolumeSimilarity::SameGrid {
+            settings.volume
+        } else {
+            self.document.settings.volume
+        };
         let is_current = matches!(self.pending_look, Some(PendingLook::Current));
-        let current = is_current.then(|| Settings { volume: by, ..self.settings.clone() });
-        let selected_light = if current.is_some() { self.selected_light } else { 0 };
+        let current = is_current.then(|| Settings { volume: by, ..self.document.settings.clone() });
+        let selected_light = if current.is_some() { self.document.selected_light } else { 0 };
         if let Some(before) = too_many {
             self.messages.note(text::opening::downsampled(before, volume.dims()));
         }
@@ -287,21 +278,21 @@ impl App {
         if !volume.corrections().is_none() {
             self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
         }
-        self.defaults = settings.clone();
-        let is_kept =
-            (self.keeps_look_for_next || likeness == VolumeSimilarity::SameKind) && self.volume.is_some();
+        self.document.defaults = settings.clone();
+        let is_kept = (self.keeps_look_for_next || likeness == VolumeSimilarity::SameKind)
+            && self.document.volume.is_some();
         if is_kept {
             // The look stays, apart from the position of the object: the new one may have another up axis.
-            let mut before = std::mem::take(&mut self.settings);
+            let mut before = std::mem::take(&mut self.document.settings);
             before.rotate_object(ObjectRotation::MakeUpright(settings.camera.up));
             let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
             kept.floor.height = settings.floor.height;
-            self.settings = kept;
+            self.document.settings = kept;
         } else {
-            self.settings = settings;
+            self.document.settings = settings;
         }
         // Measurements belong to the volume before; a first look is balanced, a kept look is not.
-        self.keep_balanced = AutoBalance::new(&self.settings, !is_kept);
+        self.document.keep_balanced = AutoBalance::new(&self.document.settings, !is_kept);
         let is_named = is_kept
             || session_read.is_some()
             || self.pending_look.is_some()
@@ -310,7 +301,7 @@ impl App {
         // Session and command line apply to the first volume only.
         self.session_is_due = false;
         if let Some(read) = session_read
-            && let Some(mut session) = self.session.take()
+            && let Some(mut session) = self.document.session.take()
         {
             session.set_record(read.as_ref().ok());
             match read {
@@ -318,19 +309,19 @@ impl App {
                 Ok(_) => {}
                 Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
             }
-            self.session = Some(session);
+            self.document.session = Some(session);
         }
         self.memory.add_recent(&source, &volume.contents().choice());
         self.recent_pictures.clear();
         match self.pending_look.take() {
             None => {}
             Some(PendingLook::Settings(settings)) => {
-                self.settings = *settings;
-                self.keep_balanced.accept(&self.settings);
+                self.document.settings = *settings;
+                self.document.keep_balanced.accept(&self.document.settings);
             }
             Some(PendingLook::Current | PendingLook::CurrentIfSimilar) => {
-                self.settings = current.unwrap_or_default();
-                self.keep_balanced.accept(&self.settings);
+                self.document.settings = current.unwrap_or_default();
+                self.document.keep_balanced.accept(&self.document.settings);
             }
             Some(PendingLook::Record(record)) => {
                 if record.volume.as_ref().is_some_and(|of| !of.matches_content(volume.opened_id())) {
@@ -340,25 +331,26 @@ impl App {
             }
         }
         if let Some(adjust) = self.adjust_first_look.take() {
-            self.settings = adjust(std::mem::take(&mut self.settings));
-            self.settings.sanitise();
+            self.document.settings = adjust(std::mem::take(&mut self.document.settings));
+            self.document.settings.sanitise();
         }
-        if self.settings.kept.is_empty() {
-            self.settings.kept = kept;
+        if self.document.settings.kept.is_empty() {
+            self.document.settings.kept = kept;
         }
         // A look that the user has chosen stays.
-        self.first_lights =
-            if is_named { LightPlacement::default() } else { LightPlacement::new(&self.settings) };
+        self.document.first_lights =
+            if is_named { LightPlacement::default() } else { LightPlacement::new(&self.document.settings) };
         self.light_search = None;
         self.contact_sheet.discard();
-        self.volume = Some(VolumeFacts::new(source, reading, &dataset));
+        self.document.volume = Some(VolumeFacts::new(source, reading, &dataset));
         // Treated as its own kind of data, with its own up axis.
-        (self.kind_override, self.orientation_task) = (KindOverride::default(), OrientationTasks::default());
+        self.document.kind_override = KindOverride::default();
+        self.document.drop_turns();
         self.viewport.set_scene(renderer, dataset);
-        self.history = self.history_of(&volume);
-        self.corrections_task = CorrectionState::new(stamp, self.settings.volume);
-        self.selected_light = selected_light;
-        let title = text::opening::title(self.volume_name().unwrap_or_default());
+        self.document.start_history(&volume);
+        self.document.corrections = CorrectionState::new(stamp, self.document.settings.volume);
+        self.document.selected_light = selected_light;
+        let title = text::opening::title(self.document.volume_name());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 }

@@ -1,18 +1,11 @@
-//! History window: the list of undo steps with their changes; a click goes to a step.
+//! Undo and redo in the window, and the history window: the list of undo steps with their changes.
 
 use eframe::egui;
 
-use super::{History, HistoryStep};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::overlay_windows;
+use crate::app::document::history::{HistoryStep, HistorySteps};
 use crate::app::{App, text};
-
-/// Descriptions of all steps, the oldest first, and the number of steps that are done, 0 at the start.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct HistorySteps {
-    pub names: Vec<String>,
-    pub current: usize,
-}
 
 /// Cached list, and the step for which it was made.
 #[derive(Debug, Default)]
@@ -23,34 +16,6 @@ pub(crate) struct HistoryWindow {
     steps: HistorySteps,
 }
 
-impl History {
-    /// Lists all undo and redo steps around `now`.
-    pub(super) fn list_steps(&self, now: &HistoryStep) -> HistorySteps {
-        let names = |is_back: bool| {
-            // A step is known only by taking it, here on a copy.
-            let mut history = Self { undoer: self.undoer.clone(), last_step: None };
-            let (mut at, mut names) = (now.clone(), Vec::new());
-            while if is_back { history.can_undo(&at) } else { history.can_redo(&at) } {
-                let before = at.clone();
-                let changed = if is_back {
-                    history.undo(&mut at);
-                    text::change_descriptions::describe_change(&at.settings, &before.settings)
-                } else {
-                    history.redo(&mut at);
-                    text::change_descriptions::describe_change(&before.settings, &at.settings)
-                };
-                names.push(changed.unwrap_or_else(|| text::change_descriptions::KIND_OF_DATA.to_owned()));
-            }
-            names
-        };
-        let mut all = names(true);
-        all.reverse();
-        let taken = all.len();
-        all.extend(names(false));
-        HistorySteps { names: all, current: taken }
-    }
-}
-
 impl App {
     /// Shows the history window, if it is open.
     pub(crate) fn show_history(&mut self, ctx: &egui::Context, commands: &mut Vec<AppCommand>) {
@@ -58,11 +23,11 @@ impl App {
             self.history_list.listed_for = None;
             return;
         }
-        let now = self.history_step();
+        let now = self.document.history_step();
         // Listing takes every step: not during a drag, which is no step yet.
         let is_new = self.history_list.listed_for.is_none() || ctx.dragged_id().is_none();
         if is_new && self.history_list.listed_for.as_ref() != Some(&now) {
-            self.history_list.steps = self.history.list_steps(&now);
+            self.history_list.steps = self.document.history.list_steps(&now);
             self.history_list.listed_for = Some(now);
         }
         let HistorySteps { names, current: taken } = &self.history_list.steps;
@@ -105,6 +70,31 @@ impl App {
         }
         if steps != 0 {
             self.undo_or_redo(steps < 0, ctx);
+        }
+    }
+
+    /// Takes one step back or forward and shows it in the status bar.
+    pub(super) fn undo_or_redo(&mut self, is_back: bool, ctx: &egui::Context) {
+        let what = self.document.history.describe_next(&self.document.history_step(), is_back);
+        self.take_step(is_back, ctx);
+        if let Some(what) = what {
+            let words = text::messages::undone(is_back, &what);
+            if self.layout.picture_only {
+                // Without panels there is no status bar.
+                self.messages.note(words.clone());
+            } else {
+                self.messages.note_step(&words);
+            }
+            self.document.history.set_last_step(words, &self.document.settings);
+        }
+    }
+
+    /// Takes a step as [`Self::undo_or_redo`] does, without a message.
+    fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
+        // Only a step that has turned the object changes the remembered up axis.
+        if self.document.take_step(is_back) {
+            self.ensure_first_look_up(None, ctx);
+            self.document.remember_up(&mut self.memory);
         }
     }
 }
