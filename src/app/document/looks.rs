@@ -52,6 +52,12 @@ impl Document {
         Ok(note)
     }
 
+    /// Replaces all settings by others whose balance is part of them.
+    pub(crate) fn replace_settings(&mut self, settings: Settings) {
+        self.settings = settings;
+        self.keep_balanced.accept(&self.settings);
+    }
+
     /// Writes the look to a file, which becomes the session; `opened_id` is the identifier of the open file's volume.
     pub(crate) fn save_session(&mut self, path: &Path, opened_id: Option<u64>) -> Result<(), String> {
         let record = self.volume.as_ref().zip(opened_id).map(|(volume, opened_id)| {

@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use super::PendingLook;
+use super::plan::PendingLook;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};

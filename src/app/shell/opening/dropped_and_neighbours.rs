@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::PendingLook;
-use crate::app::common::volume_facts::VolumeFacts;
+use super::plan::PendingLook;
 use crate::app::windows::file_dialogs;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use chiaroscuro_volume::{LoadControl, Volume};
+use chiaroscuro_volume::LoadControl;
 use chiaroscuro_volume_io::neighbour_volume;
 
 /// File extensions of possible slices of one volume; DICOM files often have none.
@@ -28,35 +27,6 @@ pub(crate) struct NeighbourSearch {
 impl Drop for NeighbourSearch {
     fn drop(&mut self) {
         self.control.cancel();
-    }
-}
-
-/// Similarity of the next volume to the open one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum VolumeSimilarity {
-    /// Same kind of data in the same grid: even the view is worth keeping.
-    SameGrid,
-    /// Same kind of data in another grid.
-    SameKind,
-    /// Different data, for which the look is useless.
-    Different,
-}
-
-impl VolumeSimilarity {
-    /// Compares the next volume with the open one. Looks refer to values: with another range, a look would show
-    /// nothing of the next volume.
-    pub(super) fn between(open: &VolumeFacts, next: &Volume) -> Self {
-        let is_same_kind = std::mem::discriminant(&open.kind) == std::mem::discriminant(&next.kind().kind);
-        let (a, b) = (open.ranges.robust, next.ranges().robust);
-        let shared = a.high.min(b.high) - a.low.max(b.low);
-        // Half of the longer range: usual between scans of one protocol, rare between scans of two protocols.
-        let are_same_values = 2.0 * shared >= a.span().max(b.span());
-        let spacing: [f64; 3] = next.spacing_mm().into();
-        match is_same_kind && are_same_values {
-            false => Self::Different,
-            true if open.dims == next.dims() && open.spacing_mm == spacing => Self::SameGrid,
-            true => Self::SameKind,
-        }
     }
 }
 
@@ -154,10 +124,7 @@ fn slice_folder(paths: &[PathBuf]) -> Option<&Path> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use chiaroscuro_volume::{Dataset, Samples};
 
     #[test]
     fn slices_are_of_one_kind_and_in_one_folder() {
@@ -180,22 +147,5 @@ mod tests {
         for others in [&["1.dcm"][..], &["1.dcm", "2.png"], &["a.nrrd", "b.nrrd"], &["1.dcm", "s/2.dcm"]] {
             assert_eq!(slice_folder(&files(others)), None, "{others:?}");
         }
-    }
-
-    #[test]
-    fn looks_are_kept_for_what_is_alike() {
-        let volume = |dims: [usize; 3], high: u8| {
-            let values = (0..dims.iter().product::<usize>()).map(|at| (at % usize::from(high)) as u8);
-            Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(values.collect())).unwrap()
-        };
-        let open =
-            VolumeFacts::new("a".into(), ReadChoices::default(), &Dataset::new(volume([8, 8, 8], 200)));
-        assert_eq!(VolumeSimilarity::between(&open, &volume([8, 8, 8], 190)), VolumeSimilarity::SameGrid);
-        assert_eq!(VolumeSimilarity::between(&open, &volume([9, 8, 8], 190)), VolumeSimilarity::SameKind);
-        assert_eq!(
-            VolumeSimilarity::between(&open, &volume([8, 8, 8], 60)),
-            VolumeSimilarity::Different,
-            "other values"
-        );
     }
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use super::{DEFAULT_SOURCE, PendingLook};
+use super::DEFAULT_SOURCE;
+use super::plan::PendingLook;
 use crate::app::document::looks::AppliedLook;
 use crate::app::shell::file_tasks::ReadPurpose;
 use crate::app::windows::file_dialogs::{self, FileDialogPurpose};

@@ -3,44 +3,28 @@
 mod alternatives;
 mod dropped_and_neighbours;
 mod look_files;
+mod opened;
+mod plan;
+mod similarity;
 
 use std::path::Path;
-use std::sync::Arc;
 
 use eframe::egui;
 
-use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::document::auto_balance::AutoBalance;
-use crate::app::document::corrections::CorrectionState;
-use crate::app::document::data_kind::KindOverride;
-use crate::app::document::light_placement::LightPlacement;
-use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
+use crate::app::shell::file_tasks::ReadPurpose;
 use crate::app::windows::file_dialogs;
 use crate::app::windows::raw_dialog::RawDialogResult;
-use crate::app::worker::loader::{OpenedVolume, ReadChoices, RememberedFileSettings};
+use crate::app::worker::loader::{ReadChoices, RememberedFileSettings};
 use crate::app::{App, text};
 use chiaroscuro_files::provenance_mark;
-use chiaroscuro_scene::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation};
+use chiaroscuro_scene::{OpacityLength, VolumeLocation};
 use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
 
 pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
-use self::dropped_and_neighbours::VolumeSimilarity;
+pub(crate) use self::plan::PendingLook;
 
 /// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
-
-/// Look that waits for the volume that is being opened.
-#[derive(Debug)]
-pub(crate) enum PendingLook {
-    /// Look of a file, applied to the first look of the volume.
-    Record(Box<LookRecord>),
-    /// All settings, replacing the first look.
-    Settings(Box<Settings>),
-    /// Current look at the time when the volume is ready.
-    Current,
-    /// Current look, if the volume is similar enough to the one before.
-    CurrentIfSimilar,
-}
 
 impl App {
     /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
@@ -218,139 +202,5 @@ impl App {
                 self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
             }
         }
-    }
-
-    /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
-    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().filter(|_| self.session_is_due);
-        match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
-            Some(path) => {
-                self.read_file(
-                    ReadPurpose::Session,
-                    &path,
-                    ctx,
-                    file_dialogs::load_record,
-                    |app, read, ctx| {
-                        app.show_opened(opened, Some(read), ctx);
-                    },
-                );
-            }
-            None => self.show_opened(opened, None, ctx),
-        }
-    }
-
-    /// Replaces the open volume by one that is ready, with the session that was read for it.
-    fn show_opened(
-        &mut self,
-        opened: OpenedVolume,
-        session_read: Option<Result<LookRecord, FileReadFailure>>,
-        ctx: &egui::Context,
-    ) {
-        let OpenedVolume { source, reading, dataset, original_dims: too_many, renderer, settings, stamp } =
-            opened;
-        let volume = Arc::clone(dataset.volume());
-        self.messages.clear();
-        self.kept_strip.reset();
-        // Saved views are useful on other volumes, too.
-        let kept = self.document.settings.kept.clone();
-        let likeness = match (&self.pending_look, &self.document.volume) {
-            (Some(PendingLook::CurrentIfSimilar), Some(open)) => VolumeSimilarity::between(open, &volume),
-            _ => VolumeSimilarity::Different,
-        };
-        if let Some(PendingLook::CurrentIfSimilar) = self.pending_look {
-            self.pending_look = (likeness == VolumeSimilarity::SameGrid).then_some(PendingLook::Current);
-        }
-        // Another file has corrections of its own.
-        let by = if likeness == VolumeSimilarity::SameGrid {
-            settings.volume
-        } else {
-            self.document.settings.volume
-        };
-        let is_current = matches!(self.pending_look, Some(PendingLook::Current));
-        let current = is_current.then(|| Settings { volume: by, ..self.document.settings.clone() });
-        let selected_light = if current.is_some() { self.document.selected_light } else { 0 };
-        if let Some(before) = too_many {
-            self.messages.note(text::opening::downsampled(before, volume.dims()));
-        }
-        for remark in volume.remarks() {
-            self.messages.note(remark.clone());
-        }
-        if !volume.corrections().is_none() {
-            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
-        }
-        self.document.defaults = settings.clone();
-        let is_kept = (self.keeps_look_for_next || likeness == VolumeSimilarity::SameKind)
-            && self.document.volume.is_some();
-        if is_kept {
-            // The look stays, apart from the position of the object: the new one may have another up axis.
-            let mut before = std::mem::take(&mut self.document.settings);
-            before.rotate_object(ObjectRotation::MakeUpright(settings.camera.up));
-            let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
-            kept.floor.height = settings.floor.height;
-            self.document.settings = kept;
-        } else {
-            self.document.settings = settings;
-        }
-        // Measurements belong to the volume before; a first look is balanced, a kept look is not.
-        self.document.keep_balanced = AutoBalance::new(&self.document.settings, !is_kept);
-        let is_named = is_kept
-            || session_read.is_some()
-            || self.pending_look.is_some()
-            || self.adjust_first_look.is_some();
-        let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
-        // Session and command line apply to the first volume only.
-        self.session_is_due = false;
-        if let Some(read) = session_read
-            && let Some(mut session) = self.document.session.take()
-        {
-            session.set_record(read.as_ref().ok());
-            match read {
-                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.protect_invalid(),
-                Ok(_) => {}
-                Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
-            }
-            self.document.session = Some(session);
-        }
-        self.memory.add_recent(&source, &volume.contents().choice());
-        self.recent_pictures.clear();
-        match self.pending_look.take() {
-            None => {}
-            Some(PendingLook::Settings(settings)) => {
-                self.document.settings = *settings;
-                self.document.keep_balanced.accept(&self.document.settings);
-            }
-            Some(PendingLook::Current | PendingLook::CurrentIfSimilar) => {
-                self.document.settings = current.unwrap_or_default();
-                self.document.keep_balanced.accept(&self.document.settings);
-            }
-            Some(PendingLook::Record(record)) => {
-                if record.volume.as_ref().is_some_and(|of| !of.matches_content(volume.opened_id())) {
-                    self.messages.note(text::opening::OTHER_VALUES);
-                }
-                self.apply_record(&record, &ranges, opened_id);
-            }
-        }
-        if let Some(adjust) = self.adjust_first_look.take() {
-            self.document.settings = adjust(std::mem::take(&mut self.document.settings));
-            self.document.settings.sanitise();
-        }
-        if self.document.settings.kept.is_empty() {
-            self.document.settings.kept = kept;
-        }
-        // A look that the user has chosen stays.
-        self.document.first_lights =
-            if is_named { LightPlacement::default() } else { LightPlacement::new(&self.document.settings) };
-        self.light_search = None;
-        self.contact_sheet.discard();
-        self.document.volume = Some(VolumeFacts::new(source, reading, &dataset));
-        // Treated as its own kind of data, with its own up axis.
-        self.document.kind_override = KindOverride::default();
-        self.document.drop_turns();
-        self.viewport.set_scene(renderer, dataset);
-        self.document.start_history(&volume);
-        self.document.corrections = CorrectionState::new(stamp, self.document.settings.volume);
-        self.document.selected_light = selected_light;
-        let title = text::opening::title(self.document.volume_name());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 }
