@@ -67,22 +67,24 @@ impl App {
     pub(crate) fn show_kept_strip(&mut self, ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
         self.render_missing_thumbnails(ui.ctx());
         if self.layout.kept && self.document.volume.is_some() {
-            self.kept_strip.show(ui, &mut self.document.settings, commands);
+            self.panels.kept_strip.show(ui, &mut self.document.settings, commands);
         }
     }
 
     /// Renders missing thumbnails of kept items while nothing else is being computed.
     fn render_missing_thumbnails(&mut self, ctx: &egui::Context) {
-        self.kept_strip.thumbnails.collect(ctx);
+        self.panels.kept_strip.thumbnails.collect(ctx);
         if !self.layout.kept {
             return;
         }
         let id = self.viewport.dataset().map(|dataset| dataset.volume().content_id());
-        let Some(wanted) = self.kept_strip.thumbnails.missing(&self.document.settings, id) else { return };
+        let Some(wanted) = self.panels.kept_strip.thumbnails.missing(&self.document.settings, id) else {
+            return;
+        };
         if self.is_complete()
-            && !self.export.is_busy()
+            && !self.windows.export.is_busy()
             && let Some(subject) = self.export_subject()
-            && let Err(err) = self.kept_strip.thumbnails.start(wanted, subject, ctx)
+            && let Err(err) = self.panels.kept_strip.thumbnails.start(wanted, subject, ctx)
         {
             log::warn!("thumbnails of saved views and looks cannot be rendered: {err}");
         }

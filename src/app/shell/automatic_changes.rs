@@ -29,18 +29,29 @@ impl Drop for LightSearchTask {
     }
 }
 
+/// Tasks whose results change the look.
+#[derive(Default)]
+pub(crate) struct LookTasks {
+    /// Measurement of the balance that the user has asked for.
+    pub balance: Option<BackgroundTask<Result<f64, GpuError>>>,
+    /// Search for the lights of the first look.
+    pub light_search: Option<LightSearchTask>,
+}
+
 impl App {
     /// Finishes the first look of the volume with the lights found, unless the user has edited it.
     pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
-        if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take_result()) {
-            self.light_search = None;
+        if let Some(result) =
+            self.look_tasks.light_search.as_ref().and_then(|seeking| seeking.work.take_result())
+        {
+            self.look_tasks.light_search = None;
             self.document.first_lights.set_result(result.unwrap_or_else(|panic| {
                 log::error!("the search for a light position failed: {panic}");
                 Ok(None)
             }));
         }
         if !self.document.first_lights.is_due() {
-            self.light_search = None;
+            self.look_tasks.light_search = None;
         }
         let now_s = ctx.input(|input| input.time);
         let is_complete = self.is_complete();
@@ -80,7 +91,9 @@ impl App {
             Ok(search.finish())
         };
         match BackgroundTask::start("light-search", ctx, task) {
-            Ok(work) => self.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted }),
+            Ok(work) => {
+                self.look_tasks.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted })
+            }
             Err(err) => {
                 log::warn!("the search for a light position could not start: {err}");
                 self.document.first_lights.stop();
@@ -90,7 +103,7 @@ impl App {
 
     /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
     pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.look_tasks.balance.is_none()) else {
             return;
         };
         let (context, settings) = (self.viewport.context().clone(), self.document.settings.clone());
@@ -99,7 +112,7 @@ impl App {
             chiaroscuro_render::measure_balance(&mut renderer, &dataset, &settings)
         };
         match BackgroundTask::start("balance", ctx, task) {
-            Ok(work) => self.balance = Some(work),
+            Ok(work) => self.look_tasks.balance = Some(work),
             Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
         }
     }
@@ -108,13 +121,14 @@ impl App {
     pub(crate) fn update_balance(&mut self, ctx: &egui::Context) {
         let now_s = ctx.input(|input| input.time);
         let (held, busy, has_its_volume) =
-            (is_user_active(ctx), self.balance.is_some(), self.is_volume_ready());
+            (is_user_active(ctx), self.look_tasks.balance.is_some(), self.is_volume_ready());
         let is_due = self.document.keep_balanced.is_due(&self.document.settings);
         self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
         let act = self.document.keep_balanced.next_action(BalanceFrame {
             now_s,
             settings: &self.document.settings,
-            is_shown: has_its_volume && self.viewport.displays(&self.compare.looks(&self.document.settings)),
+            is_shown: has_its_volume
+                && self.viewport.displays(&self.picture.compare.looks(&self.document.settings)),
             user_active: held,
             busy,
         });
@@ -131,8 +145,8 @@ impl App {
 
     /// Takes the results of the measurements of balance.
     pub(super) fn take_balances(&mut self, ctx: &egui::Context) {
-        if let Some(result) = self.balance.as_ref().and_then(BackgroundTask::take_result) {
-            self.balance = None;
+        if let Some(result) = self.look_tasks.balance.as_ref().and_then(BackgroundTask::take_result) {
+            self.look_tasks.balance = None;
             match result {
                 Ok(Ok(balance)) => {
                     self.document.settings.shadows.balance = balance;

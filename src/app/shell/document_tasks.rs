@@ -44,7 +44,7 @@ impl App {
     pub(super) fn finish_kind_task(&mut self, ctx: &egui::Context) {
         let is_new = self.document.finish_kind_task(self.viewport.dataset(), ctx);
         if self.messages.report(text::messages::LOOK_NOT_MADE, is_new) {
-            self.light_search = None;
+            self.look_tasks.light_search = None;
         }
     }
 
@@ -54,8 +54,8 @@ impl App {
         let corrected = self.document.take_corrected(self.viewport.dataset().as_ref(), now_s);
         if let Some(dataset) = self.messages.report(text::corrections::CORRECTION_FAILED, corrected) {
             // Results in progress belong to the volume before.
-            (self.light_search, self.balance) = (None, None);
-            self.contact_sheet.discard();
+            (self.look_tasks.light_search, self.look_tasks.balance) = (None, None);
+            self.windows.contact_sheet.discard();
             self.viewport.set_dataset(dataset);
             ctx.request_repaint();
         }

@@ -22,12 +22,16 @@ impl App {
     /// Executes a command of the user.
     pub(crate) fn execute(&mut self, command: AppCommand, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
-            AppCommand::OpenDialog => self.files.open_dialog(FileDialogPurpose::OpenVolume, frame, ctx),
-            AppCommand::OpenFolder => self.files.open_dialog(FileDialogPurpose::OpenFolder, frame, ctx),
+            AppCommand::OpenDialog => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::OpenVolume, frame, ctx)
+            }
+            AppCommand::OpenFolder => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::OpenFolder, frame, ctx)
+            }
             AppCommand::OpenDropped(paths) => self.open_dropped(&paths, ctx),
             AppCommand::NextFile => self.seek_neighbour(true, ctx),
             AppCommand::PreviousFile => self.seek_neighbour(false, ctx),
-            AppCommand::OpenPath => self.files.open_typed_path(FileDialogPurpose::OpenVolume),
+            AppCommand::OpenPath => self.dialogs.files.open_typed_path(FileDialogPurpose::OpenVolume),
             AppCommand::Open(source) => self.open(&source, ctx),
             AppCommand::OpenAgain(path, choice) => self.open_again(&path, &choice, ctx),
             AppCommand::ShowChooser(aspect) => self.show_chooser(aspect),
@@ -41,19 +45,21 @@ impl App {
             AppCommand::CancelOpening => self.cancel_files(ctx),
             AppCommand::SaveSettings => match self.session_to_save() {
                 Some(path) => self.save_settings(&path),
-                None => self.files.open_dialog(FileDialogPurpose::SaveSettings, frame, ctx),
+                None => self.dialogs.files.open_dialog(FileDialogPurpose::SaveSettings, frame, ctx),
             },
-            AppCommand::LoadSettings => self.files.open_dialog(FileDialogPurpose::LoadSettings, frame, ctx),
+            AppCommand::LoadSettings => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::LoadSettings, frame, ctx)
+            }
             AppCommand::Export => {
                 let size = self.viewport_size();
-                self.export.open(size, self.layout.exports.as_deref(), self.document.volume_name());
+                self.windows.export.open(size, self.layout.exports.as_deref(), self.document.volume_name());
             }
-            AppCommand::CancelExport => self.export.cancel(),
+            AppCommand::CancelExport => self.windows.export.cancel(),
             AppCommand::CopyPicture => self.copy_picture(ctx),
-            AppCommand::ToggleKeepLook => self.keeps_look_for_next ^= true,
+            AppCommand::ToggleKeepLook => self.opening.requests.keeps_look ^= true,
             AppCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             AppCommand::Undo | AppCommand::Redo => self.undo_or_redo(command == AppCommand::Undo, ctx),
-            AppCommand::ToggleHistory => self.history_list.open ^= true,
+            AppCommand::ToggleHistory => self.windows.history.open ^= true,
             AppCommand::GoSteps(steps) => self.go_steps(steps, ctx),
             AppCommand::ToggleMessages => self.messages.list_open ^= true,
             AppCommand::ResetView => {
@@ -88,10 +94,10 @@ impl App {
                 }
             }
             AppCommand::ImportTransfer => {
-                self.files.open_dialog(FileDialogPurpose::ImportTransfer, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::ImportTransfer, frame, ctx);
             }
             AppCommand::ExportTransfer => {
-                self.files.open_dialog(FileDialogPurpose::ExportTransfer, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::ExportTransfer, frame, ctx);
             }
             AppCommand::InvertTransfer => self.document.settings.transfer.mirror(),
             AppCommand::ToggleCrop => {
@@ -163,11 +169,11 @@ impl App {
                 }
             }
             AppCommand::CompareSaved(left, right) => {
-                compare_kept_items(&mut self.compare, &self.document.settings, left, right);
+                compare_kept_items(&mut self.picture.compare, &self.document.settings, left, right);
                 reveal::show_section(ctx, text::sections::COMPARE, true);
             }
             AppCommand::ExportContactSheet => {
-                self.files.open_dialog(FileDialogPurpose::ExportKept, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::ExportKept, frame, ctx);
             }
             AppCommand::ToggleStrip => self.layout.kept ^= true,
             AppCommand::Scale(1) => gui_zoom::zoom_in(ctx),
@@ -177,9 +183,9 @@ impl App {
                 let is_full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
             }
-            AppCommand::ToggleOverlay => self.overlay.visible ^= true,
-            AppCommand::ToggleProbe => self.light_probe.is_active ^= true,
-            AppCommand::ShowPalette => self.palette.open(),
+            AppCommand::ToggleOverlay => self.picture.overlay.visible ^= true,
+            AppCommand::ToggleProbe => self.picture.light_probe.is_active ^= true,
+            AppCommand::ShowPalette => self.windows.palette.open(),
             AppCommand::UseRig(rig) => {
                 self.document.settings.lights = rig.lights(&self.document.settings.camera);
                 self.document.selected_light = 0;
@@ -199,15 +205,15 @@ impl App {
             AppCommand::TryLooks => {
                 // Suggested looks derive from the first look, which must have the current up axis.
                 if self.ensure_first_look_up(Some(command), ctx) {
-                    self.contact_sheet.open(ContactSheetKind::Looks);
+                    self.windows.contact_sheet.open(ContactSheetKind::Looks);
                 }
             }
-            AppCommand::TryLights => self.contact_sheet.open(ContactSheetKind::Lights),
+            AppCommand::TryLights => self.windows.contact_sheet.open(ContactSheetKind::Lights),
             AppCommand::UseEnvironmentMap => {
-                self.files.open_dialog(FileDialogPurpose::EnvironmentMap, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::EnvironmentMap, frame, ctx);
             }
-            AppCommand::SuggestLight => self.contact_sheet.open(ContactSheetKind::Suggestions),
-            AppCommand::TryPresets => self.contact_sheet.open(ContactSheetKind::Presets),
+            AppCommand::SuggestLight => self.windows.contact_sheet.open(ContactSheetKind::Suggestions),
+            AppCommand::TryPresets => self.windows.contact_sheet.open(ContactSheetKind::Presets),
             AppCommand::NextLight | AppCommand::PreviousLight => {
                 let by = if command == AppCommand::NextLight { 1 } else { -1 };
                 let count = self.document.settings.lights.len();
@@ -228,10 +234,10 @@ impl App {
             AppCommand::ToggleSide => self.layout.side ^= true,
             AppCommand::ToggleTransfer => self.layout.transfer ^= true,
             AppCommand::TogglePictureOnly => self.toggle_picture_only(),
-            AppCommand::ToggleHandles => self.handles.is_hidden ^= true,
+            AppCommand::ToggleHandles => self.picture.handles.is_hidden ^= true,
             AppCommand::ToggleCompare => {
-                self.compare.on ^= true;
-                self.show_section(ctx, text::sections::COMPARE, self.compare.on);
+                self.picture.compare.on ^= true;
+                self.show_section(ctx, text::sections::COMPARE, self.picture.compare.on);
             }
             AppCommand::Reveal(place) => {
                 let is_of_editor = [text::transfer::TITLE, text::labels::TITLE].contains(&place.section);
@@ -239,13 +245,13 @@ impl App {
                 self.layout.picture_only = false;
                 reveal::reveal(ctx, place);
             }
-            AppCommand::ShowSlices => self.slices.open ^= true,
-            AppCommand::ShowLightVolume => self.light_slice.open = true,
+            AppCommand::ShowSlices => self.windows.slices.open ^= true,
+            AppCommand::ShowLightVolume => self.windows.light_slice.open = true,
             AppCommand::CompareWithFile => {
-                self.files.open_dialog(FileDialogPurpose::CompareSettings, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::CompareSettings, frame, ctx);
             }
-            AppCommand::ShowHelp => self.help.keys_open ^= true,
-            AppCommand::ShowAbout => self.help.about_open = true,
+            AppCommand::ShowHelp => self.windows.help.keys_open ^= true,
+            AppCommand::ShowAbout => self.windows.help.about_open = true,
         }
         ctx.request_repaint();
     }
@@ -263,18 +269,18 @@ impl App {
             Some(LoadOutcome::Opened(opened)) => self.show_opened_with_session(*opened, ctx),
             Some(LoadOutcome::Uploaded { renderer, dataset }) => self.viewport.set_scene(*renderer, dataset),
             Some(LoadOutcome::Cancelled) => {
-                self.pending_look = None;
+                self.opening.requests.pending_look = None;
                 self.messages.note(text::messages::OPENING_CANCELLED);
             }
             Some(LoadOutcome::UnknownRawFormat { path, why, guess }) => {
-                self.raw_dialog.open(&path, why, guess, ctx);
+                self.dialogs.raw.open(&path, why, guess, ctx);
             }
             // A look that is pending for this volume stays pending.
             Some(LoadOutcome::NeedsMemoryDecision { source, reading, weighed }) => {
-                self.large_volume_dialog.open(source, *reading, weighed);
+                self.dialogs.large_volume.open(source, *reading, weighed);
             }
             Some(LoadOutcome::Failed { short, details }) => {
-                self.pending_look = None;
+                self.opening.requests.pending_look = None;
                 self.messages.error(short, details);
             }
         }
@@ -282,7 +288,7 @@ impl App {
         self.finish_kind_task(ctx);
         self.finish_file_tasks(ctx);
         self.take_balances(ctx);
-        match self.export.take_result() {
+        match self.windows.export.take_result() {
             None => {}
             Some(Ok(ExportOutcome::File(path))) => {
                 self.layout.exports =
@@ -296,21 +302,21 @@ impl App {
             Some(Ok(ExportOutcome::Cancelled)) => self.messages.note(text::messages::EXPORT_CANCELLED),
             Some(Err(err)) => self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
         }
-        if self.files.take_refused() {
+        if self.dialogs.files.take_refused() {
             self.messages.note(text::files::DIALOG_IS_OPEN);
         }
-        if let Some((purpose, path)) = self.files.take_choice(ctx) {
+        if let Some((purpose, path)) = self.dialogs.files.take_choice(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
             if purpose == FileDialogPurpose::ExportPicture {
                 // The desktop's file dialog has already asked before overwriting.
-                self.export.allow_replacing(&path);
+                self.windows.export.allow_replacing(&path);
             }
         }
     }
 
     pub(crate) fn viewport_size(&self) -> [u32; 2] {
         // Before there is a picture: the resolution of the smallest common screens.
-        self.canvas.map_or([1280, 720], |canvas| canvas.available_size.map(|n| n.max(1)))
+        self.picture.canvas.map_or([1280, 720], |canvas| canvas.available_size.map(|n| n.max(1)))
     }
 
     /// Handles a file that was chosen in a dialog or typed.
@@ -323,18 +329,18 @@ impl App {
         match purpose {
             FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.open(path, ctx),
             FileDialogPurpose::VolumeOfLook => self.open_for_look(path, ctx),
-            FileDialogPurpose::ExportPicture => self.export.set_path(path),
+            FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
             FileDialogPurpose::SaveSettings => self.save_settings(path),
             FileDialogPurpose::ExportKept => {
                 if let Some(subject) = self.export_subject()
-                    && let Err(err) = self.export.export_kept_sheet(subject, path, ctx)
+                    && let Err(err) = self.windows.export.export_kept_sheet(subject, path, ctx)
                 {
                     self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
                 }
             }
             FileDialogPurpose::ExportLight => {
                 let Some(dataset) = self.viewport.dataset() else { return };
-                match self.light_slice.export(path, dataset.volume()) {
+                match self.windows.light_slice.export(path, dataset.volume()) {
                     Ok(()) => self.messages.note(text::messages::exported(path)),
                     Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
@@ -377,17 +383,17 @@ impl App {
 
     pub(crate) fn start_export(&mut self, ctx: &egui::Context) {
         if let Some(subject) = self.export_subject()
-            && let Err(err) = self.export.start(subject, ctx)
+            && let Err(err) = self.windows.export.start(subject, ctx)
         {
             self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
         }
     }
 
     fn copy_picture(&mut self, ctx: &egui::Context) {
-        if self.export.is_busy() {
+        if self.windows.export.is_busy() {
             self.messages.note(text::messages::EXPORT_RUNS);
         } else if let Some(subject) = self.export_subject()
-            && let Err(err) = self.export.copy_to_clipboard(subject, self.viewport_size(), ctx)
+            && let Err(err) = self.windows.export.copy_to_clipboard(subject, self.viewport_size(), ctx)
         {
             self.messages.error(text::messages::PICTURE_NOT_COPIED, err);
         }

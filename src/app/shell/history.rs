@@ -19,20 +19,20 @@ pub(crate) struct HistoryWindow {
 impl App {
     /// Shows the history window, if it is open.
     pub(crate) fn show_history(&mut self, ctx: &egui::Context, commands: &mut Vec<AppCommand>) {
-        if !self.history_list.open {
-            self.history_list.listed_for = None;
+        if !self.windows.history.open {
+            self.windows.history.listed_for = None;
             return;
         }
         let now = self.document.history_step();
         // Listing takes every step: not during a drag, which is no step yet.
-        let is_new = self.history_list.listed_for.is_none() || ctx.dragged_id().is_none();
-        if is_new && self.history_list.listed_for.as_ref() != Some(&now) {
-            self.history_list.steps = self.document.history.list_steps(&now);
-            self.history_list.listed_for = Some(now);
+        let is_new = self.windows.history.listed_for.is_none() || ctx.dragged_id().is_none();
+        if is_new && self.windows.history.listed_for.as_ref() != Some(&now) {
+            self.windows.history.steps = self.document.history.list_steps(&now);
+            self.windows.history.listed_for = Some(now);
         }
-        let HistorySteps { names, current: taken } = &self.history_list.steps;
+        let HistorySteps { names, current: taken } = &self.windows.history.steps;
         let window =
-            egui::Window::new(text::history::TITLE).open(&mut self.history_list.open).collapsible(false);
+            egui::Window::new(text::history::TITLE).open(&mut self.windows.history.open).collapsible(false);
         let window = window
             .default_size([260.0, 320.0])
             .default_pos([40.0, 80.0])
@@ -58,7 +58,7 @@ impl App {
         if let Some(at) = chosen {
             commands.push(AppCommand::GoSteps(at as i32 - *taken as i32));
         }
-        self.history_list.open &=
+        self.windows.history.open &=
             !overlay_windows::escape_closes(ctx, shown.as_ref().map(|shown| &shown.response));
     }
 

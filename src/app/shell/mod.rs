@@ -11,3 +11,4 @@ pub(super) mod opening;
 pub(super) mod picture_area;
 pub(super) mod status;
 pub(super) mod status_file;
+pub(super) mod tool_windows;

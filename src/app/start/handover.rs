@@ -10,7 +10,7 @@ use crate::app::document::Document;
 use crate::app::layout::WindowLayout;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
-use crate::app::shell::opening::PendingLook;
+use crate::app::shell::opening::OpenRequests;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
@@ -20,26 +20,23 @@ use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume::Dataset;
 use chiaroscuro_volume_io::LoadOptions;
 
-/// State of the user's work: the look with its history, the volume in host memory, and the session file.
+/// State of the user's work: the document with its volume in host memory, and what is being opened or exported.
 #[derive(Debug)]
 pub(crate) struct WindowHandover {
     document: Document,
     dataset: Option<Dataset>,
-    session_is_due: bool,
-    trusts_paths: bool,
+    requests: OpenRequests,
+    /// File that was being opened, with its options.
+    opening: Option<(PathBuf, ReadChoices)>,
     memory: PersistentState,
-    keeps_look: bool,
-    compare: Compare,
     /// All messages since the start.
     messages: MessageLog,
     layout: WindowLayout,
+    compare: Compare,
     /// True while the probe is on.
     probe_on: bool,
     /// Running export, which goes on: it has a device of its own.
     export: ExportWindow,
-    /// File that was being opened, with its options.
-    opening: Option<(PathBuf, ReadChoices)>,
-    pending: Option<PendingLook>,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
     /// True if the user has chosen the software adapter (CPU).
@@ -52,9 +49,9 @@ pub(crate) type HandoverSlot = Arc<Mutex<Option<WindowHandover>>>;
 impl App {
     /// Ends this window without drawing any further after the loss of its device; a successor takes its place.
     pub(crate) fn close_for_successor(&mut self, ctx: &egui::Context) {
-        if !self.is_device_lost {
+        if !self.device.is_lost {
             log::warn!("{}", text::messages::DEVICE_LOST);
-            self.is_device_lost = true;
+            self.device.is_lost = true;
             if let Some(words) = self.memory.emergency_save() {
                 words.write();
             }
@@ -70,22 +67,19 @@ impl App {
         let carried = WindowHandover {
             document: std::mem::take(&mut self.document),
             dataset: self.viewport.dataset(),
-            session_is_due: self.session_is_due,
-            trusts_paths: self.trusts_paths,
+            requests: std::mem::take(&mut self.opening.requests),
+            opening,
             memory: std::mem::take(&mut self.memory),
-            keeps_look: self.keeps_look_for_next,
-            compare: self.compare.clone(),
             messages: std::mem::take(&mut self.messages),
             layout: self.layout.clone(),
-            probe_on: self.light_probe.is_active,
-            export: std::mem::take(&mut self.export),
-            opening,
-            pending: self.pending_look.take(),
+            compare: self.picture.compare.clone(),
+            probe_on: self.picture.light_probe.is_active,
+            export: std::mem::take(&mut self.windows.export),
             load: self.loader.options().clone(),
-            storage: self.storage.clone(),
-            on_cpu: self.wants_cpu,
+            storage: self.device.storage.clone(),
+            on_cpu: self.device.wants_cpu,
         };
-        *self.handover.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
+        *self.device.handover.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
     }
 
     /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
@@ -96,39 +90,21 @@ impl App {
         legacy: HandoverSlot,
         asks: bool,
     ) -> Result<Self, AppError> {
-        let WindowHandover {
-            document,
-            dataset,
-            session_is_due,
-            trusts_paths,
-            memory,
-            keeps_look,
-            compare,
-            messages,
-            layout,
-            probe_on: probes,
-            export,
-            opening,
-            pending,
-            load,
-            storage,
-            on_cpu: _,
-        } = carried;
-        let mut app = Self::build(cc, load, storage, memory, legacy)?;
-        app.document = document.restarted();
-        app.session_is_due = session_is_due;
-        (app.keeps_look_for_next, app.compare) = (keeps_look, compare);
-        (app.pending_look, app.trusts_paths, app.export) = (pending, trusts_paths, export);
-        app.handed_over_dataset = dataset;
-        layout.apply(&cc.egui_ctx);
-        (app.messages, app.layout, app.light_probe.is_active) = (messages, layout, probes);
+        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
+        app.document = carried.document.restarted();
+        app.opening.requests = carried.requests;
+        app.device.handed_over_dataset = carried.dataset;
+        carried.layout.apply(&cc.egui_ctx);
+        (app.messages, app.layout) = (carried.messages, carried.layout);
+        (app.picture.compare, app.picture.light_probe.is_active) = (carried.compare, carried.probe_on);
+        app.windows.export = carried.export;
         if asks {
-            app.device_loss_dialog.open();
+            app.dialogs.device_loss.open();
         } else {
             app.messages.note(text::messages::DEVICE_REPLACED);
             app.restore_volume(&cc.egui_ctx);
         }
-        if let Some((source, reading)) = opening {
+        if let Some((source, reading)) = carried.opening {
             app.start_loading(&source, reading, &cc.egui_ctx);
         } else if app.document.volume.is_none() {
             app.open_first(None, None, &cc.egui_ctx);
@@ -138,7 +114,7 @@ impl App {
 
     /// Shows the volume again that the earlier window had open.
     pub(crate) fn restore_volume(&mut self, ctx: &egui::Context) {
-        if let Some(dataset) = self.handed_over_dataset.take()
+        if let Some(dataset) = self.device.handed_over_dataset.take()
             && let Err(err) = self.loader.upload(dataset, ctx)
         {
             self.messages.error(text::messages::NOT_RENDERED, err);
@@ -154,7 +130,7 @@ impl App {
                 self.restore_volume(ctx);
             }
             DeviceLossAnswer::UseCpu => {
-                self.wants_cpu = true;
+                self.device.wants_cpu = true;
                 self.close_for_successor(ctx);
             }
             DeviceLossAnswer::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),

@@ -13,7 +13,7 @@ impl App {
     pub(crate) fn show_chooser(&mut self, aspect: ChoiceAspect) {
         let held = self.document.volume.as_ref().map(|volume| &volume.held);
         match held.and_then(|held| Alternatives::new(held, aspect)) {
-            Some(all) => self.volume_chooser.open(aspect, &all),
+            Some(all) => self.windows.volume_chooser.open(aspect, &all),
             None => self.messages.note(text::chooser::single_item(aspect)),
         }
     }
@@ -27,7 +27,7 @@ impl App {
         let next = if is_forward { Some(all.current() + 1) } else { all.current().checked_sub(1) };
         if let Some(next) = next.filter(|&next| next < all.count()) {
             let choice = all.choice(next);
-            self.open_choice(&choice, self.volume_chooser.keeps_look(aspect), ctx);
+            self.open_choice(&choice, self.windows.volume_chooser.keeps_look(aspect), ctx);
         }
     }
 
@@ -43,7 +43,7 @@ impl App {
         let source = volume.source.clone();
         let reading = ReadChoices { choice: Some(choice.clone()), ..volume.reading.clone() };
         if self.start_loading(&source, reading, ctx) {
-            self.pending_look = keeps_look.then_some(PendingLook::Current);
+            self.opening.requests.pending_look = keeps_look.then_some(PendingLook::Current);
         }
     }
 }

@@ -45,7 +45,7 @@ impl App {
             self.messages.dismiss();
             let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
             if self.start_loading(folder, reading, ctx) {
-                self.pending_look = None;
+                self.opening.requests.pending_look = None;
                 self.messages.note(text::opening::part_of_folder(paths.len(), folder));
             }
             return;
@@ -70,21 +70,21 @@ impl App {
         let task =
             move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
         match BackgroundTask::start("next-file", ctx, task) {
-            Ok(work) => self.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
+            Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
             Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
         }
     }
 
     /// Opens the file that the search has found.
     pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
-        let Some(neighbour) = &self.next_file_search else { return };
+        let Some(neighbour) = &self.opening.next_file_search else { return };
         let Some(found) = neighbour.work.take_result() else { return };
         let is_forward = neighbour.is_forward;
-        self.next_file_search = None;
+        self.opening.next_file_search = None;
         match found {
             Ok(Some(path)) => {
                 if self.start_loading(&path, ReadChoices::default(), ctx) {
-                    self.pending_look = Some(PendingLook::CurrentIfSimilar);
+                    self.opening.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
                 }
             }
             Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),

@@ -63,9 +63,9 @@ impl App {
                 match self.locate_volume(&volume, path) {
                     VolumeLocation::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
                     VolumeLocation::InRecordFolder(path) => self.open_with(&path, record, ctx),
-                    VolumeLocation::OtherFolder(path) => self.untrusted_path_dialog.open(path, record),
+                    VolumeLocation::OtherFolder(path) => self.dialogs.untrusted_path.open(path, record),
                     VolumeLocation::Refused(why) => {
-                        self.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                        self.dialogs.untrusted_path.open_refused(&volume.source, why, record);
                     }
                 }
             }
@@ -89,14 +89,14 @@ impl App {
     /// open what the user has opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
         let is_known = || self.memory.recent().iter().any(|known| known.path == volume);
-        self.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
+        self.opening.requests.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
     }
 
     /// Applies a look to the volume that is open or being opened.
     fn apply_look(&mut self, record: LookRecord, ctx: &egui::Context) {
         if self.loader.progress().is_some() {
             // The user will see it on the volume that is being opened.
-            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+            self.opening.requests.pending_look = Some(PendingLook::Record(Box::new(record)));
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
@@ -108,18 +108,18 @@ impl App {
     pub(super) fn open_with(&mut self, source: &Path, record: LookRecord, ctx: &egui::Context) {
         let choice = record.volume.as_ref().map(|volume| volume.choice.clone()).unwrap_or_default();
         if self.start_loading(source, self.reading_options(&choice), ctx) {
-            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+            self.opening.requests.pending_look = Some(PendingLook::Record(Box::new(record)));
         }
     }
 
     /// Asks for confirmation before a look opens its volume, and handles the answer.
     pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
-        let Some(answer) = self.untrusted_path_dialog.ui(ctx) else { return };
+        let Some(answer) = self.dialogs.untrusted_path.ui(ctx) else { return };
         if answer == UntrustedPathAnswer::ChooseOther {
             // The dialog stays open, since choosing may be cancelled.
-            return self.files.open_dialog(FileDialogPurpose::VolumeOfLook, frame, ctx);
+            return self.dialogs.files.open_dialog(FileDialogPurpose::VolumeOfLook, frame, ctx);
         }
-        match self.untrusted_path_dialog.close() {
+        match self.dialogs.untrusted_path.close() {
             Some((record, Some(path))) if answer == UntrustedPathAnswer::Open => {
                 self.open_with(&path, record, ctx);
             }
@@ -130,7 +130,7 @@ impl App {
 
     /// Opens the file that the user has chosen for the look in question.
     pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
-        match self.untrusted_path_dialog.close() {
+        match self.dialogs.untrusted_path.close() {
             Some((record, _)) => self.open_with(path, record, ctx),
             None => self.open(path, ctx),
         }
@@ -166,7 +166,7 @@ impl App {
                             if let Some(note) = note {
                                 app.messages.note(note);
                             }
-                            app.compare.start_with(settings);
+                            app.picture.compare.start_with(settings);
                         }
                         Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                     }

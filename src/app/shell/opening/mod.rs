@@ -6,6 +6,7 @@ mod look_files;
 mod opened;
 mod plan;
 mod similarity;
+mod state;
 
 use std::path::Path;
 
@@ -20,8 +21,9 @@ use chiaroscuro_files::provenance_mark;
 use chiaroscuro_scene::{OpacityLength, VolumeLocation};
 use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
 
-pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
-pub(crate) use self::plan::PendingLook;
+use self::plan::PendingLook;
+pub use self::state::SettingsAdjustment;
+pub(crate) use self::state::{OpenRequests, OpeningState};
 
 /// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -43,14 +45,14 @@ impl App {
     /// Opens a volume with its own first look.
     pub(super) fn open_volume(&mut self, source: &Path, ctx: &egui::Context) {
         if self.start_loading(source, ReadChoices::default(), ctx) {
-            self.pending_look = None;
+            self.opening.requests.pending_look = None;
         }
     }
 
     /// Opens one of several volumes of a file; a choice on the command line has precedence over a remembered one.
     pub(crate) fn open_chosen(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
         if self.start_loading(source, self.reading_options(choice), ctx) {
-            self.pending_look = None;
+            self.opening.requests.pending_look = None;
         }
     }
 
@@ -82,7 +84,8 @@ impl App {
     /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
     pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
         let is_empty = self.document.volume.is_none() && self.viewport.dataset().is_none();
-        let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(ReadPurpose::Open);
+        let is_busy =
+            self.loader.progress().is_some() || self.opening.file_tasks.is_reading(ReadPurpose::Open);
         if reason == ReadPurpose::Open && is_empty && !is_busy {
             self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default(), ctx);
         }
@@ -93,8 +96,8 @@ impl App {
     pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
         let is_free = self.document.volume.is_none()
             && self.loader.progress().is_none()
-            && !self.untrusted_path_dialog.is_open();
-        if std::mem::take(&mut self.default_open_waits) && is_free {
+            && !self.dialogs.untrusted_path.is_open();
+        if std::mem::take(&mut self.opening.default_open_waits) && is_free {
             self.open_first(None, None, ctx);
         }
     }
@@ -111,9 +114,9 @@ impl App {
             match app.locate_volume(&volume, &session) {
                 VolumeLocation::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
                 VolumeLocation::InRecordFolder(path) => app.open_chosen(&path, &volume.choice, ctx),
-                VolumeLocation::OtherFolder(path) => app.untrusted_path_dialog.open(path, record),
+                VolumeLocation::OtherFolder(path) => app.dialogs.untrusted_path.open(path, record),
                 VolumeLocation::Refused(why) => {
-                    app.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                    app.dialogs.untrusted_path.open_refused(&volume.source, why, record);
                 }
             }
         });
@@ -156,16 +159,16 @@ impl App {
         let reading = ReadChoices { choice, takes_all_memory: false, ..volume.reading.clone() };
         let source = volume.source.clone();
         if self.start_loading(&source, reading, ctx) {
-            self.pending_look = Some(PendingLook::Settings(Box::new(settings)));
+            self.opening.requests.pending_look = Some(PendingLook::Settings(Box::new(settings)));
         }
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: ReadChoices, ctx: &egui::Context) -> bool {
         // Requests and dialogs for the previous file are obsolete, and so is a file to open.
-        self.file_tasks.drop_purpose(ReadPurpose::Open);
-        self.file_tasks.drop_purpose(ReadPurpose::Session);
-        self.raw_dialog.close();
-        self.large_volume_dialog.close();
+        self.opening.file_tasks.drop_purpose(ReadPurpose::Open);
+        self.opening.file_tasks.drop_purpose(ReadPurpose::Session);
+        self.dialogs.raw.close();
+        self.dialogs.large_volume.close();
         let known = RememberedFileSettings {
             up: self.memory.up_of(source),
             corrections: self.memory.corrections_of(source),

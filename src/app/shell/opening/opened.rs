@@ -33,7 +33,7 @@ fn kept_look(mut look: Settings, first: &Settings) -> Settings {
 impl App {
     /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
     pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().filter(|_| self.session_is_due);
+        let session = self.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
                 let read = file_dialogs::load_record;
@@ -52,20 +52,20 @@ impl App {
         self.report_opened(&volume, original_dims);
         let open = self.document.volume.as_ref();
         let plan = OpenPlan::new(OpenRequest {
-            requested: self.pending_look.take(),
-            keeps_look: self.keeps_look_for_next,
+            requested: self.opening.requests.pending_look.take(),
+            keeps_look: self.opening.requests.keeps_look,
             similarity: open.map(|open| VolumeSimilarity::between(open, &volume)),
             has_session: session.is_some(),
-            has_adjustment: self.adjust_first_look.is_some(),
+            has_adjustment: self.opening.adjust_first_look.is_some(),
         });
         // Session and command line apply to the first volume only.
-        self.session_is_due = false;
+        self.opening.requests.session_is_due = false;
         self.apply_plan(plan, settings, session, &volume);
         self.memory.add_recent(&source, &volume.contents().choice());
-        self.recent_pictures.clear();
-        self.light_search = None;
-        self.contact_sheet.discard();
-        self.kept_strip.reset();
+        self.panels.recent_pictures.clear();
+        self.look_tasks.light_search = None;
+        self.windows.contact_sheet.discard();
+        self.panels.kept_strip.reset();
         let facts = VolumeFacts::new(source, reading, &dataset);
         self.viewport.set_scene(renderer, dataset);
         let document = &mut self.document;
@@ -133,7 +133,7 @@ impl App {
                     self.document.replace_settings(Settings { volume, ..before.clone() });
                 }
                 LookChange::Adjustment => {
-                    if let Some(adjust) = self.adjust_first_look.take() {
+                    if let Some(adjust) = self.opening.adjust_first_look.take() {
                         self.document.settings = adjust(std::mem::take(&mut self.document.settings));
                         self.document.settings.sanitise();
                     }
