@@ -8,6 +8,7 @@ pub(super) mod auto_balance;
 pub(super) mod corrections;
 pub(super) mod data_kind;
 pub(super) mod easing;
+mod edits;
 pub(super) mod history;
 pub(super) mod light_placement;
 pub(super) mod looks;

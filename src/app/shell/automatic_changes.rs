@@ -92,7 +92,7 @@ impl App {
         };
         match BackgroundTask::start("light-search", ctx, task) {
             Ok(work) => {
-                self.look_tasks.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted })
+                self.look_tasks.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted });
             }
             Err(err) => {
                 log::warn!("the search for a light position could not start: {err}");

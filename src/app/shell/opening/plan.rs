@@ -113,16 +113,6 @@ impl OpenPlan {
 mod tests {
     use super::*;
 
-    fn request() -> OpenRequest {
-        OpenRequest {
-            requested: None,
-            keeps_look: false,
-            similarity: None,
-            has_session: false,
-            has_adjustment: false,
-        }
-    }
-
     /// Returns the plan in words, for the table: the start, the changes in order, and what else is done.
     fn in_words(plan: &OpenPlan) -> String {
         let start = match plan.start {
@@ -143,14 +133,14 @@ mod tests {
         format!("{start}; {}; {}", list(changes.collect()), list(also.collect()))
     }
 
-    fn record() -> Option<PendingLook> {
+    fn record() -> PendingLook {
         let text =
             LookRecord::to_json_with_unknown(&Settings::default(), None, None, &serde_json::Value::Null);
-        Some(PendingLook::Record(Box::new(LookRecord::parse(&text).unwrap())))
+        PendingLook::Record(Box::new(LookRecord::parse(&text).unwrap()))
     }
 
-    fn settings() -> Option<PendingLook> {
-        Some(PendingLook::Settings(Box::default()))
+    fn settings() -> PendingLook {
+        PendingLook::Settings(Box::default())
     }
 
     #[test]
@@ -165,19 +155,19 @@ mod tests {
             (None, None, [false, true, false], "first; session; "),
             (None, None, [false, false, true], "first; adjustment; "),
             (None, None, [true, true, true], "first; session, adjustment; "),
-            (record(), None, [false, false, false], "first; record; "),
-            (record(), None, [false, true, true], "first; session, record, adjustment; "),
-            (settings(), None, [false, false, false], "first; settings; "),
+            (Some(record()), None, [false, false, false], "first; record; "),
+            (Some(record()), None, [false, true, true], "first; session, record, adjustment; "),
+            (Some(settings()), None, [false, false, false], "first; settings; "),
             (Some(CurrentIfSimilar), None, [false, false, false], "first; ; lights"),
             // Another volume; its similarity matters only if it was asked for.
             (None, Some(SameGrid), [false, false, false], "first; ; lights"),
             (None, Some(SameKind), [false, false, false], "first; ; lights"),
             (None, Some(Different), [false, false, false], "first; ; lights"),
             (None, Some(Different), [true, false, false], "kept; ; "),
-            (record(), Some(SameKind), [false, false, false], "first; record; "),
-            (record(), Some(SameKind), [true, false, false], "kept; record; "),
-            (settings(), Some(SameGrid), [false, false, false], "first; settings; "),
-            (settings(), Some(SameGrid), [true, false, false], "kept; settings; "),
+            (Some(record()), Some(SameKind), [false, false, false], "first; record; "),
+            (Some(record()), Some(SameKind), [true, false, false], "kept; record; "),
+            (Some(settings()), Some(SameGrid), [false, false, false], "first; settings; "),
+            (Some(settings()), Some(SameGrid), [true, false, false], "kept; settings; "),
             // Another series, channel, time step or component of the file.
             (Some(Current), Some(SameGrid), [false, false, false], "first; current; selection"),
             (Some(Current), Some(Different), [false, false, false], "first; current; selection"),
@@ -206,9 +196,5 @@ mod tests {
                 OpenPlan::new(OpenRequest { requested, keeps_look, similarity, has_session, has_adjustment });
             assert_eq!(in_words(&plan), wanted, "{case}");
         }
-        assert_eq!(
-            OpenPlan::new(OpenRequest { requested: settings(), ..request() }).changes,
-            [LookChange::Settings(Box::default())]
-        );
     }
 }

@@ -126,7 +126,7 @@ impl PictureInputs<'_> {
     }
 
     /// Shows the bounding box, the cursor of the slices, and the handles of cuts and lights.
-    fn show_handles(&mut self, ui: &mut egui::Ui, response: &Response) {
+    fn show_handles(&mut self, ui: &egui::Ui, response: &Response) {
         let (is_one_view, area) = (self.is_one_view(), response.rect);
         let Some(scene) = self.document.volume.as_ref().map(|volume| volume.scene) else { return };
         let (settings, tools) = (&mut self.document.settings, &mut *self.tools);
