@@ -1,6 +1,7 @@
 //! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
+//! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
+//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
 //! the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
 //! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
 //! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
@@ -60,19 +61,29 @@ const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
+    /// Look that is edited, and the volume that it shows.
     document: Document,
+    /// Requests for the next volume, and files that are being read.
     opening: OpeningState,
+    /// Tasks whose results change the look.
     look_tasks: LookTasks,
+    /// Picture on screen, and the connection to the render thread.
     viewport: Viewport,
+    /// Handles, overlays and other tools over the picture.
     picture: PictureTools,
     windows: ToolWindows,
     dialogs: AppDialogs,
+    /// Panels around the picture.
     panels: OuterPanels,
+    /// Panels and tool windows that are shown, as stored between runs.
     layout: WindowLayout,
     messages: MessageLog,
+    /// Cancelling of drags by Escape.
     drag_cancel: DragCancel,
     loader: Loader,
+    /// State that outlives a run.
     memory: PersistentState,
+    /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
 }
