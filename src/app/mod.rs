@@ -1,12 +1,14 @@
 //! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
+//! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
+//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
 //! the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
 //! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
 //! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
 //! included. Panels see settings and read-only facts.
 
 mod common;
+mod document;
 mod kept_views;
 mod layout;
 mod panels;
@@ -21,157 +23,68 @@ mod worker;
 
 #[cfg(feature = "cli")]
 pub(crate) use self::persistence::save_before_termination;
+pub use self::shell::opening::SettingsAdjustment;
 pub use self::start::desktop_error::show_on_desktop;
 pub use self::start::error::AppError;
 pub use self::start::main_loop::{run, storage_folder, wgpu_setup};
-pub use self::start::options::{SettingsAdjustment, WindowOptions};
+pub use self::start::options::WindowOptions;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use eframe::egui;
 
 use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
-use self::common::volume_facts::VolumeFacts;
 use self::common::{light_keys, reveal, shortcuts};
-use self::kept_views::KeptStrip;
+use self::document::Document;
 use self::layout::WindowLayout;
-use self::persistence::{PersistentState, RecentThumbnails};
-use self::shell::auto_balance::AutoBalance;
-use self::shell::file_tasks::FileTasks;
-use self::shell::history::{History, HistoryWindow};
-use self::shell::light_placement::{LightPlacement, LightSearchTask};
+use self::layout::outer_panels::OuterPanels;
+use self::persistence::PersistentState;
+use self::shell::automatic_changes::LookTasks;
 use self::shell::messages::MessageLog;
-use self::shell::object::corrections::CorrectionState;
-use self::shell::object::data_kind::KindOverride;
-use self::shell::object::orientation::OrientationTasks;
-use self::shell::object::outline::OutlineCache;
-use self::shell::opening::{NeighbourSearch, PendingLook};
-use self::shell::session::SessionFile;
+use self::shell::opening::OpeningState;
+use self::shell::picture_area::PictureTools;
 use self::shell::status_file;
 use self::shell::status_file::StatusFile;
-use self::start::handover::HandoverSlot;
-use self::transfer_editor::TransferEditor;
-use self::viewport::camera_transition::CameraTransition;
-use self::viewport::canvas::Canvas;
-use self::viewport::compare::Compare;
-use self::viewport::cut_handles::CutHandles;
-use self::viewport::first_use_hints::FirstUseHints;
-use self::viewport::light_handles::LightHandles;
-use self::viewport::light_probe::LightProbe;
-use self::viewport::mouse_navigation::OrbitDrag;
-use self::viewport::overlay::ViewportOverlay;
-use self::viewport::overlay::ct_preset_row::CtPresetRow;
-use self::viewport::overlay::export_marks_preview::ExportMarksPreview;
+use self::shell::tool_windows::{AppDialogs, ToolWindows};
+use self::start::window_device::WindowDevice;
 use self::viewport::{Viewport, paint_callback};
-use self::windows::contact_sheet::ContactSheetWindow;
-use self::windows::device_loss::DeviceLossDialog;
-use self::windows::export::ExportWindow;
 use self::windows::file_dialogs;
-use self::windows::file_dialogs::FileDialogs;
-use self::windows::help::HelpWindows;
-use self::windows::large_volume::LargeVolumeDialog;
-use self::windows::light_slice::LightSliceWindow;
-use self::windows::palette::CommandPalette;
-use self::windows::quit_dialog::QuitDialog;
-use self::windows::raw_dialog::RawDialog;
-use self::windows::recovery::RecoveryDialog;
-use self::windows::slices::SlicesWindow;
-use self::windows::untrusted_path::UntrustedPathDialog;
-use self::windows::volume_chooser::VolumeChooser;
-use self::worker::background_task::{self, BackgroundTask};
+use self::worker::background_task;
 use self::worker::loader::Loader;
-use chiaroscuro_render::{GpuContext, GpuError, WindowPainter};
 use chiaroscuro_scene::Settings;
-use chiaroscuro_volume::Dataset;
 
 /// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
 const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
-    settings: Settings,
-    /// First look at the open volume, which the reset buttons restore.
-    defaults: Settings,
-    volume: Option<VolumeFacts>,
-    kind_override: KindOverride,
-    orientation_task: OrientationTasks,
-    corrections_task: CorrectionState,
-    outline_task: OutlineCache,
+    /// Look that is edited, and the volume that it shows.
+    document: Document,
+    /// Requests for the next volume, and files that are being read.
+    opening: OpeningState,
+    /// Tasks whose results change the look.
+    look_tasks: LookTasks,
+    /// Picture on screen, and the connection to the render thread.
     viewport: Viewport,
-    /// Painter of the window's background colour.
-    window: WindowPainter,
-    /// Graphics device that draws the window.
-    window_context: GpuContext,
-    storage: Option<PathBuf>,
-    /// State that this window hands over to its successor after a lost device.
-    handover: HandoverSlot,
-    /// Volume handed over from an earlier window, until the user has chosen how to go on.
-    handed_over_dataset: Option<Dataset>,
-    /// True once the device is lost; nothing is drawn any more.
-    is_device_lost: bool,
-    /// True if the next window is to be drawn by the CPU (software adapter).
-    wants_cpu: bool,
-    canvas: Option<Canvas>,
-    loader: Loader,
-    memory: PersistentState,
-    recent_pictures: RecentThumbnails,
-    /// True if the next volume keeps the current look instead of getting its own first look.
-    keeps_look_for_next: bool,
-    /// Look for the volume that is being opened, applied when the volume arrives.
-    pending_look: Option<PendingLook>,
-    balance: Option<BackgroundTask<Result<f64, GpuError>>>,
-    file_tasks: FileTasks,
-    keep_balanced: AutoBalance,
-    first_lights: LightPlacement,
-    light_search: Option<LightSearchTask>,
-    export: ExportWindow,
-    files: FileDialogs,
-    session: Option<SessionFile>,
-    recovery_dialog: RecoveryDialog,
-    /// True while the default volume waits for the user's answer about reopening the last session.
-    default_open_waits: bool,
-    quit_dialog: QuitDialog,
-    device_loss_dialog: DeviceLossDialog,
-    /// True until the session's look has been applied over the first look.
-    session_is_due: bool,
-    adjust_first_look: Option<SettingsAdjustment>,
-    history: History,
-    history_list: HistoryWindow,
-    handles: LightHandles,
-    cut_handles: CutHandles,
-    compare: Compare,
-    overlay: ViewportOverlay,
-    /// Preview of the marks that would be drawn over an exported picture.
-    export_marks: ExportMarksPreview,
-    orbit: OrbitDrag,
-    camera_animation: CameraTransition,
-    light_probe: LightProbe,
-    palette: CommandPalette,
-    light_slice: LightSliceWindow,
-    slices: SlicesWindow,
-    raw_dialog: RawDialog,
-    large_volume_dialog: LargeVolumeDialog,
-    untrusted_path_dialog: UntrustedPathDialog,
-    /// True if volumes named by looks from outside are opened without asking the user.
-    trusts_paths: bool,
-    contact_sheet: ContactSheetWindow,
-    volume_chooser: VolumeChooser,
-    drag_cancel: DragCancel,
-    /// Search for the next file in the folder, while it runs.
-    next_file_search: Option<NeighbourSearch>,
-    editor: TransferEditor,
-    selected_light: usize,
+    /// Handles, overlays and other tools over the picture.
+    picture: PictureTools,
+    windows: ToolWindows,
+    dialogs: AppDialogs,
+    /// Panels around the picture.
+    panels: OuterPanels,
+    /// Panels and tool windows that are shown, as stored between runs.
     layout: WindowLayout,
-    kept_strip: KeptStrip,
-    help: HelpWindows,
-    first_run_hints: FirstUseHints,
-    ct_looks: CtPresetRow,
     messages: MessageLog,
-    /// Longest frame so far on the window's thread, in ms; written by `status_file`.
-    longest_ui_ms: f64,
+    /// Cancelling of drags by Escape.
+    drag_cancel: DragCancel,
+    loader: Loader,
+    /// State that outlives a run.
+    memory: PersistentState,
+    /// Graphics device that draws the window.
+    device: WindowDevice,
     status_file: StatusFile,
 }
 
@@ -181,11 +94,11 @@ const TASK_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 impl Drop for App {
     fn drop(&mut self) {
         // The results of these tasks are no longer needed.
-        self.light_search = None;
-        self.contact_sheet.discard();
-        self.kept_strip.reset();
+        self.look_tasks.light_search = None;
+        self.windows.contact_sheet.discard();
+        self.panels.kept_strip.reset();
         // If another window replaces this one, that window waits for the tasks when it closes.
-        if !self.is_device_lost {
+        if !self.device.is_lost {
             background_task::wait_for_all_tasks(TASK_SHUTDOWN_TIMEOUT);
         }
     }
@@ -194,8 +107,8 @@ impl Drop for App {
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
-            .field("settings", &self.settings)
-            .field("volume", &self.volume)
+            .field("settings", &self.document.settings)
+            .field("volume", &self.document.volume)
             .finish_non_exhaustive()
     }
 }
@@ -203,7 +116,7 @@ impl std::fmt::Debug for App {
 impl App {
     /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
-        &self.settings
+        &self.document.settings
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
@@ -211,36 +124,38 @@ impl App {
     pub fn is_idle(&self) -> bool {
         self.is_complete()
             && !self.is_making_look()
-            && !self.first_lights.is_due()
-            && self.knows_outline()
-            && !self.keep_balanced.is_due(&self.settings)
+            && !self.document.first_lights.is_due()
+            && self.document.knows_outline(self.viewport.dataset().as_ref())
+            && !self.document.keep_balanced.is_due(&self.document.settings)
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
     /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
-        self.kind_override.is_busy() || self.orientation_task.is_busy()
+        self.document.is_making_look()
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
     /// read or corrected.
     fn is_complete(&self) -> bool {
-        self.is_volume_ready() && self.viewport.is_idle(&self.compare.looks(&self.settings))
+        self.is_volume_ready() && self.viewport.is_idle(&self.picture.compare.looks(&self.document.settings))
     }
 
     /// Returns true if no volume is being opened, read or corrected.
     fn is_volume_ready(&self) -> bool {
-        self.loader.progress().is_none() && self.file_tasks.path().is_none() && !self.is_correcting()
+        self.loader.progress().is_none()
+            && self.opening.file_tasks.path().is_none()
+            && !self.document.is_correcting(self.viewport.dataset().as_ref())
     }
 
     /// Rectangle of the picture in points, and its size in physical pixels.
     pub fn viewport_rect(&self) -> Option<(egui::Rect, [u32; 2])> {
-        self.canvas.map(|canvas| (canvas.rect, canvas.size))
+        self.picture.canvas.map(|canvas| (canvas.rect, canvas.size))
     }
 
     /// Positions of the handles of the enabled lights, in points.
     pub fn light_handle_positions(&self) -> &[egui::Pos2] {
-        self.handles.positions()
+        self.picture.handles.positions()
     }
 
     /// Number of light volume refills since this volume was opened.
@@ -255,7 +170,7 @@ impl App {
 
     /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
-        self.volume.as_ref().map(|volume| volume.name.as_str())
+        self.document.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
     /// Error messages since the volume was opened.
@@ -275,14 +190,14 @@ impl App {
 
     /// Exports the picture as the export window does, replacing an existing file.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
-        self.export.set_size(size);
-        self.export.allow_replacing(path);
+        self.windows.export.set_size(size);
+        self.windows.export.allow_replacing(path);
         self.start_export(ctx);
     }
 
     /// Returns true while an export is being rendered or written.
     pub fn is_exporting(&self) -> bool {
-        self.export.is_busy()
+        self.windows.export.is_busy()
     }
 }
 
@@ -290,8 +205,8 @@ impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.inject_faults();
         // Checked before anything is drawn, because drawing on a lost device would panic.
-        let is_lost = self.window_context.is_lost() || self.viewport.context().is_known_lost();
-        if self.is_device_lost || is_lost {
+        let is_lost = self.device.context.is_lost() || self.viewport.context().is_known_lost();
+        if self.device.is_lost || is_lost {
             return self.close_for_successor(ctx);
         }
         self.collect_results(ctx);
@@ -300,40 +215,54 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if self.is_device_lost {
+        if self.device.is_lost {
             return;
         }
         let ctx = ui.ctx().clone();
         let start = std::time::Instant::now();
         ui.painter().add(paint_callback::fill_shape(
             ctx.viewport_rect(),
-            &self.window,
+            &self.device.painter,
             ui.visuals().panel_fill,
         ));
-        self.drag_cancel.begin(&ctx, &self.settings);
+        self.drag_cancel.begin(&ctx, &self.document.settings);
         let mut commands = Vec::new();
         let dropped = file_dialogs::dropped_files(&ctx);
         if !dropped.is_empty() {
             commands.push(AppCommand::OpenDropped(dropped));
         }
-        let facts = self.viewport.renderer_status(&self.compare.looks(&self.settings));
-        self.palette.ui(&ctx, self.settings.camera.up, self.volume.as_ref(), &mut commands);
-        self.volume_chooser.ui(&ctx, self.volume.as_ref(), self.loader.options(), &mut commands);
+        let facts = self.viewport.renderer_status(&self.picture.compare.looks(&self.document.settings));
+        self.windows.palette.ui(
+            &ctx,
+            self.document.settings.camera.up,
+            self.document.volume.as_ref(),
+            &mut commands,
+        );
+        self.windows.volume_chooser.ui(
+            &ctx,
+            self.document.volume.as_ref(),
+            self.loader.options(),
+            &mut commands,
+        );
         self.show_outer_panels(ui, &facts, &mut commands);
         self.show_picture(ui, &facts, &mut commands);
         shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.settings, self.selected_light);
+        light_keys::nudge(&ctx, &mut self.document.settings, self.document.selected_light);
         self.show_windows(frame, &ctx, &mut commands);
-        self.drag_cancel.end(&mut self.settings);
+        self.drag_cancel.end(&mut self.document.settings);
         self.ask_for_volume(frame, &ctx);
-        self.history.observe(&ctx, &self.history_step());
+        self.document.history.observe(&ctx, &self.document.history_step());
         commands.extend(self.finish_framing());
         commands.extend(self.update_outline(&ctx));
-        let before = self.settings.camera.clone();
+        let before = self.document.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
         }
-        self.camera_animation.begin(&before, &self.settings.camera, ctx.input(|input| input.time));
+        self.picture.camera_animation.begin(
+            &before,
+            &self.document.settings.camera,
+            ctx.input(|input| input.time),
+        );
         self.cancel_files_by_key(&ctx);
         self.leave_picture_only(&ctx);
         self.update_corrections(&ctx);
@@ -344,26 +273,26 @@ impl eframe::App for App {
         if ui_ms > SLOW_FRAME_MS {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");
         }
-        self.longest_ui_ms = self.longest_ui_ms.max(ui_ms);
+        self.status_file.longest_ui_ms = self.status_file.longest_ui_ms.max(ui_ms);
         let idle = self.is_idle();
         if idle {
             self.loader.warm_up_rest();
         }
         let state = status_file::WindowStatus {
-            longest_ui_ms: self.longest_ui_ms,
+            longest_ui_ms: self.status_file.longest_ui_ms,
             response: self.viewport.response_times(),
-            loading: self.loader.progress().is_some() || self.file_tasks.path().is_some(),
+            loading: self.loader.progress().is_some() || self.opening.file_tasks.path().is_some(),
             idle,
-            canvas: self.canvas.filter(|_| self.volume.is_some()),
-            handles: self.handles.positions(),
+            canvas: self.picture.canvas.filter(|_| self.document.volume.is_some()),
+            handles: self.picture.handles.positions(),
             light_rebuilds: self.light_rebuilds(),
             errors: self.messages.errors(),
-            path_window: self.files.typed_path_title(),
+            path_window: self.dialogs.files.typed_path_title(),
             places: if self.status_file.is_on() { reveal::reported_areas(&ctx) } else { BTreeMap::new() },
             pixels_per_point: ctx.pixels_per_point(),
         };
         self.status_file.update(&state);
-        if self.loader.progress().is_some() || self.export.is_busy() {
+        if self.loader.progress().is_some() || self.windows.export.is_busy() {
             // The progress bar moves; and an export started by an earlier window cannot wake this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }
@@ -375,10 +304,10 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.autosave_look();
-        if self.is_device_lost {
+        if self.device.is_lost {
             self.hand_over();
         } else {
-            self.export.cancel_and_wait();
+            self.windows.export.cancel_and_wait();
         }
     }
 

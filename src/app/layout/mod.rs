@@ -1,7 +1,7 @@
 //! Layout of the main window: which panels and tool windows are shown. egui itself stores their sizes, the open
 //! sections, and the zoom factor.
 
-mod outer_panels;
+pub(super) mod outer_panels;
 mod overlay_windows;
 
 use std::collections::BTreeSet;

@@ -18,7 +18,7 @@ impl App {
         ctx: &egui::Context,
         commands: &mut Vec<AppCommand>,
     ) {
-        if let Some(answer) = self.recovery_dialog.ui(ctx) {
+        if let Some(answer) = self.dialogs.recovery.ui(ctx) {
             self.memory.acknowledge_crashes();
             if let recovery::RecoveryAnswer::Restore(look) = answer {
                 self.open_record(&look, ctx);
@@ -26,54 +26,57 @@ impl App {
             self.open_deferred(ctx);
         }
         self.show_history(ctx, commands);
-        self.quit_dialog.ui(ctx, self.export.is_busy());
-        if let Some(answer) = self.device_loss_dialog.ui(ctx, self.viewport.context().is_software()) {
+        self.dialogs.quit.ui(ctx, self.windows.export.is_busy());
+        if let Some(answer) = self.dialogs.device_loss.ui(ctx, self.viewport.context().is_software()) {
             self.answer_loss(answer, ctx);
         }
-        if self.contact_sheet.needs_start() {
+        if self.windows.contact_sheet.needs_start() {
             let subject = self.export_subject();
-            if let Err(err) = self.contact_sheet.start(subject, ctx) {
+            if let Err(err) = self.windows.contact_sheet.start(subject, ctx) {
                 self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
             }
         }
-        if let Err(err) = self.contact_sheet.ui(ctx, commands) {
+        if let Err(err) = self.windows.contact_sheet.ui(ctx, commands) {
             self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
         }
-        if let Some(raw_description) = self.raw_dialog.ui(ctx) {
+        if let Some(raw_description) = self.dialogs.raw.ui(ctx) {
             self.open_raw(&raw_description, ctx);
         }
-        match self.large_volume_dialog.ui(ctx) {
+        match self.dialogs.large_volume.ui(ctx) {
             None => {}
-            Some(large_volume::LargeVolumeAnswer::Cancel) => self.pending_look = None,
+            Some(large_volume::LargeVolumeAnswer::Cancel) => self.opening.requests.pending_look = None,
             Some(large_volume::LargeVolumeAnswer::Read { source, reading }) => {
                 self.start_loading(&source, *reading, ctx);
             }
         }
-        if let Some((purpose, path)) = self.files.typed_path_ui(ctx) {
+        if let Some((purpose, path)) = self.dialogs.files.typed_path_ui(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
         }
         let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
-        let settings_as_drawn =
-            volume.as_ref().filter(|_| self.slices.open).map(|volume| self.settings.resolved_for(volume));
-        let transfer = settings_as_drawn.as_ref().map_or(&self.settings.transfer, |drawn| &drawn.transfer);
-        let look = SliceLook { transfer, labels: &self.settings.labels };
-        self.slices.ui(ctx, volume.as_ref(), self.volume.as_ref(), look);
+        let settings_as_drawn = volume
+            .as_ref()
+            .filter(|_| self.windows.slices.open)
+            .map(|volume| self.document.settings.resolved_for(volume));
+        let transfer =
+            settings_as_drawn.as_ref().map_or(&self.document.settings.transfer, |drawn| &drawn.transfer);
+        let look = SliceLook { transfer, labels: &self.document.settings.labels };
+        self.windows.slices.ui(ctx, volume.as_ref(), self.document.volume.as_ref(), look);
         let scene = light_slice::LightSliceContext {
-            settings: &self.settings,
+            settings: &self.document.settings,
             dataset: self.viewport.dataset(),
             context: self.viewport.context(),
             is_idle: self.is_complete(),
         };
-        match self.light_slice.ui(ctx, &scene) {
+        match self.windows.light_slice.ui(ctx, &scene) {
             Ok(false) => {}
-            Ok(true) => self.files.open_dialog(FileDialogPurpose::ExportLight, frame, ctx),
+            Ok(true) => self.dialogs.files.open_dialog(FileDialogPurpose::ExportLight, frame, ctx),
             Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
-        let is_anatomical = self.volume.as_ref().is_some_and(|volume| volume.is_anatomical);
-        match self.export.ui(ctx, self.viewport_size(), is_anatomical) {
+        let is_anatomical = self.document.is_anatomical();
+        match self.windows.export.ui(ctx, self.viewport_size(), is_anatomical) {
             None => {}
             Some(export::ExportRequest::ChooseFile) => {
-                self.files.open_dialog(FileDialogPurpose::ExportPicture, frame, ctx);
+                self.dialogs.files.open_dialog(FileDialogPurpose::ExportPicture, frame, ctx);
             }
             Some(export::ExportRequest::Export) => self.start_export(ctx),
             Some(export::ExportRequest::FileManagerFailed(why)) => {

@@ -92,6 +92,8 @@ impl WindowStatus<'_> {
 /// Writer of the status file, if the environment names one.
 #[derive(Debug)]
 pub(crate) struct StatusFile {
+    /// Longest frame so far on the window's thread, in ms.
+    pub longest_ui_ms: f64,
     path: Option<PathBuf>,
     written: String,
 }
@@ -99,7 +101,8 @@ pub(crate) struct StatusFile {
 impl StatusFile {
     /// Creates the writer for the path in the environment.
     pub(crate) fn from_environment() -> Self {
-        Self { path: std::env::var_os(STATUS_PATH_VARIABLE).map(PathBuf::from), written: String::new() }
+        let path = std::env::var_os(STATUS_PATH_VARIABLE).map(PathBuf::from);
+        Self { longest_ui_ms: 0.0, path, written: String::new() }
     }
 
     /// True if the environment names a status file.

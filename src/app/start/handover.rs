@@ -6,53 +6,37 @@ use std::sync::{Arc, Mutex, PoisonError};
 use eframe::egui;
 
 use super::error::AppError;
-use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::document::Document;
 use crate::app::layout::WindowLayout;
 use crate::app::persistence::PersistentState;
-use crate::app::shell::history::History;
-use crate::app::shell::light_placement::LightPlacement;
 use crate::app::shell::messages::MessageLog;
-use crate::app::shell::object::corrections::CorrectionState;
-use crate::app::shell::object::data_kind::KindOverride;
-use crate::app::shell::opening::PendingLook;
-use crate::app::shell::session::SessionFile;
+use crate::app::shell::opening::OpenRequests;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use chiaroscuro_scene::{QualityPreset, Settings};
+use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume::Dataset;
 use chiaroscuro_volume_io::LoadOptions;
 
-/// State of the user's work: the look with its history, the volume in host memory, and the session file.
+/// State of the user's work: the document with its volume in host memory, and what is being opened or exported.
 #[derive(Debug)]
 pub(crate) struct WindowHandover {
-    settings: Settings,
-    defaults: Settings,
-    history: History,
-    treated: KindOverride,
-    corrected: CorrectionState,
-    first_lights: LightPlacement,
-    volume: Option<VolumeFacts>,
+    document: Document,
     dataset: Option<Dataset>,
-    session: Option<SessionFile>,
-    session_is_due: bool,
-    trusts_paths: bool,
+    requests: OpenRequests,
+    /// File that was being opened, with its options.
+    opening: Option<(PathBuf, ReadChoices)>,
     memory: PersistentState,
-    keeps_look: bool,
-    compare: Compare,
-    selected_light: usize,
     /// All messages since the start.
     messages: MessageLog,
     layout: WindowLayout,
+    compare: Compare,
     /// True while the probe is on.
     probe_on: bool,
     /// Running export, which goes on: it has a device of its own.
     export: ExportWindow,
-    /// File that was being opened, with its options.
-    opening: Option<(PathBuf, ReadChoices)>,
-    pending: Option<PendingLook>,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
     /// True if the user has chosen the software adapter (CPU).
@@ -65,9 +49,9 @@ pub(crate) type HandoverSlot = Arc<Mutex<Option<WindowHandover>>>;
 impl App {
     /// Ends this window without drawing any further after the loss of its device; a successor takes its place.
     pub(crate) fn close_for_successor(&mut self, ctx: &egui::Context) {
-        if !self.is_device_lost {
+        if !self.device.is_lost {
             log::warn!("{}", text::messages::DEVICE_LOST);
-            self.is_device_lost = true;
+            self.device.is_lost = true;
             if let Some(words) = self.memory.emergency_save() {
                 words.write();
             }
@@ -81,32 +65,21 @@ impl App {
         let opening =
             self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
         let carried = WindowHandover {
-            settings: std::mem::take(&mut self.settings),
-            defaults: std::mem::take(&mut self.defaults),
-            history: std::mem::take(&mut self.history),
-            treated: std::mem::take(&mut self.kind_override),
-            corrected: std::mem::take(&mut self.corrections_task),
-            first_lights: std::mem::take(&mut self.first_lights),
-            volume: self.volume.take(),
+            document: std::mem::take(&mut self.document),
             dataset: self.viewport.dataset(),
-            session: self.session.take(),
-            session_is_due: self.session_is_due,
-            trusts_paths: self.trusts_paths,
+            requests: std::mem::take(&mut self.opening.requests),
+            opening,
             memory: std::mem::take(&mut self.memory),
-            keeps_look: self.keeps_look_for_next,
-            compare: self.compare.clone(),
-            selected_light: self.selected_light,
             messages: std::mem::take(&mut self.messages),
             layout: self.layout.clone(),
-            probe_on: self.light_probe.is_active,
-            export: std::mem::take(&mut self.export),
-            opening,
-            pending: self.pending_look.take(),
+            compare: self.picture.compare.clone(),
+            probe_on: self.picture.light_probe.is_active,
+            export: std::mem::take(&mut self.windows.export),
             load: self.loader.options().clone(),
-            storage: self.storage.clone(),
-            on_cpu: self.wants_cpu,
+            storage: self.device.storage.clone(),
+            on_cpu: self.device.wants_cpu,
         };
-        *self.handover.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
+        *self.device.handover.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
     }
 
     /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
@@ -117,52 +90,23 @@ impl App {
         legacy: HandoverSlot,
         asks: bool,
     ) -> Result<Self, AppError> {
-        let WindowHandover {
-            settings,
-            defaults,
-            history,
-            treated,
-            corrected,
-            first_lights,
-            volume,
-            dataset,
-            session,
-            session_is_due,
-            trusts_paths,
-            memory,
-            keeps_look,
-            compare,
-            selected_light,
-            messages,
-            layout,
-            probe_on: probes,
-            export,
-            opening,
-            pending,
-            load,
-            storage,
-            on_cpu: _,
-        } = carried;
-        let mut app = Self::build(cc, load, storage, memory, legacy)?;
-        app.keep_balanced.accept(&settings);
-        (app.settings, app.defaults, app.history) = (settings, defaults, history);
-        (app.kind_override, app.corrections_task, app.first_lights) =
-            (treated, corrected, first_lights.restarted());
-        (app.volume, app.session, app.session_is_due) = (volume, session, session_is_due);
-        (app.keeps_look_for_next, app.compare, app.selected_light) = (keeps_look, compare, selected_light);
-        (app.pending_look, app.trusts_paths, app.export) = (pending, trusts_paths, export);
-        app.handed_over_dataset = dataset;
-        layout.apply(&cc.egui_ctx);
-        (app.messages, app.layout, app.light_probe.is_active) = (messages, layout, probes);
+        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
+        app.document = carried.document.restarted();
+        app.opening.requests = carried.requests;
+        app.device.handed_over_dataset = carried.dataset;
+        carried.layout.apply(&cc.egui_ctx);
+        (app.messages, app.layout) = (carried.messages, carried.layout);
+        (app.picture.compare, app.picture.light_probe.is_active) = (carried.compare, carried.probe_on);
+        app.windows.export = carried.export;
         if asks {
-            app.device_loss_dialog.open();
+            app.dialogs.device_loss.open();
         } else {
             app.messages.note(text::messages::DEVICE_REPLACED);
             app.restore_volume(&cc.egui_ctx);
         }
-        if let Some((source, reading)) = opening {
+        if let Some((source, reading)) = carried.opening {
             app.start_loading(&source, reading, &cc.egui_ctx);
-        } else if app.volume.is_none() {
+        } else if app.document.volume.is_none() {
             app.open_first(None, None, &cc.egui_ctx);
         }
         Ok(app)
@@ -170,7 +114,7 @@ impl App {
 
     /// Shows the volume again that the earlier window had open.
     pub(crate) fn restore_volume(&mut self, ctx: &egui::Context) {
-        if let Some(dataset) = self.handed_over_dataset.take()
+        if let Some(dataset) = self.device.handed_over_dataset.take()
             && let Err(err) = self.loader.upload(dataset, ctx)
         {
             self.messages.error(text::messages::NOT_RENDERED, err);
@@ -182,11 +126,11 @@ impl App {
         match answer {
             DeviceLossAnswer::TryAgain => self.restore_volume(ctx),
             DeviceLossAnswer::LowerQuality => {
-                QualityPreset::Fast.apply(&mut self.settings);
+                QualityPreset::Fast.apply(&mut self.document.settings);
                 self.restore_volume(ctx);
             }
             DeviceLossAnswer::UseCpu => {
-                self.wants_cpu = true;
+                self.device.wants_cpu = true;
                 self.close_for_successor(ctx);
             }
             DeviceLossAnswer::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),

@@ -7,3 +7,4 @@ mod icon;
 pub(super) mod main_loop;
 mod new_window;
 pub(super) mod options;
+pub(super) mod window_device;

@@ -2,11 +2,8 @@
 
 use std::path::PathBuf;
 
-use chiaroscuro_scene::Settings;
+use crate::app::shell::opening::SettingsAdjustment;
 use chiaroscuro_volume_io::LoadOptions;
-
-/// Function that changes settings once.
-pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 
 /// Options of the window, from the command line.
 #[derive(Default)]

@@ -29,18 +29,14 @@ impl AppCommand {
     /// Returns the name of the command for menus and help.
     pub(crate) fn label(&self) -> Cow<'static, str> {
         let label = match self {
-            Self::LookFrom(view) => {
-                return text::commands::look_from(view.name(SceneAxis::default())).into();
-            }
+            Self::LookFrom(view) => return text::commands::look_from(view.name(SceneAxis::default())).into(),
             Self::TurnObject(ObjectRotation::MakeUpright(axis)) => {
                 return text::commands::upright(text::camera::axis(*axis).name).into();
             }
             Self::TurnObject(ObjectRotation::TipBack) => text::commands::TILT,
             Self::RotateObject => text::commands::ROTATE,
             Self::UseRig(rig) => return text::commands::use_rig(rig.name()).into(),
-            Self::UsePreset(preset) => {
-                return text::commands::use_preset(preset.title).into();
-            }
+            Self::UsePreset(preset) => return text::commands::use_preset(preset.title).into(),
             Self::UseColors(at, back) => {
                 let name = COLOR_MAPS.get(*at).map_or("", |map| map.name);
                 return text::commands::use_colors(name, *back).into();

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::{gain_of, look, remember};
-use crate::app::shell::session::SessionFile;
+use crate::app::document::session::SessionFile;
 use chiaroscuro_scene::{LookRecord, VolumeRecord};
 use chiaroscuro_volume::VolumeChoice;
 

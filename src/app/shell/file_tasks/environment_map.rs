@@ -14,8 +14,8 @@ impl App {
         let read = |path: &Path| read_environment_map(path).map_err(|err| err.to_string());
         self.read_file(ReadPurpose::Surroundings, path, ctx, read, |app, read, _ctx| match read {
             Ok(surroundings) => {
-                app.settings.apply_environment_map(&surroundings);
-                app.selected_light = 0;
+                app.document.settings.apply_environment_map(&surroundings);
+                app.document.selected_light = 0;
                 let has_light = surroundings.light.is_some();
                 app.messages.note(text::messages::environment_map_applied(&surroundings.name, has_light));
             }

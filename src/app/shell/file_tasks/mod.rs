@@ -151,7 +151,7 @@ impl App {
         read: impl FnOnce(&Path) -> Result<T, String> + Send + 'static,
         then: impl FnOnce(&mut Self, Result<T, FileReadFailure>, &egui::Context) + 'static,
     ) {
-        if let Err((err, then)) = self.file_tasks.start(reason, path, ctx, read, Box::new(then)) {
+        if let Err((err, then)) = self.opening.file_tasks.start(reason, path, ctx, read, Box::new(then)) {
             then(self, Err(FileReadFailure::Failed(text::files::no_thread(err))), ctx);
         }
     }
@@ -166,7 +166,7 @@ impl App {
 
     /// Runs the continuations of the tasks that have ended.
     pub(crate) fn finish_file_tasks(&mut self, ctx: &egui::Context) {
-        for (reason, finish) in self.file_tasks.take_finished() {
+        for (reason, finish) in self.opening.file_tasks.take_finished() {
             finish(self, ctx);
             self.open_default_if_empty(reason, ctx);
         }
@@ -175,7 +175,8 @@ impl App {
     /// Cancels opening a volume and reading other files.
     pub(crate) fn cancel_files(&mut self, ctx: &egui::Context) {
         self.loader.cancel();
-        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.file_tasks.running) {
+        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.opening.file_tasks.running)
+        {
             task.cancel()(self, ctx);
             self.open_default_if_empty(reason, ctx);
         }
@@ -183,7 +184,7 @@ impl App {
 
     /// Cancels opening and reading when Escape was pressed and no window or widget takes the key.
     pub(crate) fn cancel_files_by_key(&mut self, ctx: &egui::Context) {
-        let is_reading = self.file_tasks.path().is_some() || self.loader.progress().is_some();
+        let is_reading = self.opening.file_tasks.path().is_some() || self.loader.progress().is_some();
         if is_reading && overlay_windows::escape_for_picture(ctx) {
             self.cancel_files(ctx);
         }
@@ -212,6 +213,6 @@ impl App {
 
     /// Path of the file that is being read.
     pub fn file_being_read(&self) -> Option<&Path> {
-        self.file_tasks.path()
+        self.opening.file_tasks.path()
     }
 }

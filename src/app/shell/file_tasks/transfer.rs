@@ -12,12 +12,13 @@ use chiaroscuro_scene::LabelTable;
 impl App {
     /// Reads a transfer function of another program on a thread and applies it to the look.
     pub fn import_transfer(&mut self, path: &Path, ctx: &egui::Context) {
-        let range = file_dialogs::transfer_exchange_range(&self.settings, &self.value_ranges());
+        let range =
+            file_dialogs::transfer_exchange_range(&self.document.settings, &self.document.value_ranges());
         let read = move |path: &Path| file_dialogs::import_transfer_file(path, range);
         self.read_file(ReadPurpose::Transfer, path, ctx, read, |app, read, _ctx| match read {
             Ok(function) => {
-                app.settings.transfer = function;
-                app.settings.labels = LabelTable::default();
+                app.document.settings.transfer = function;
+                app.document.settings.labels = LabelTable::default();
             }
             Err(why) => app.report_read_failure(text::messages::TRANSFER_NOT_IMPORTED, why),
         });

@@ -4,6 +4,7 @@ mod list;
 mod notification;
 
 use std::collections::VecDeque;
+use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use chiaroscuro_files::{sanitised, without_controls};
@@ -74,6 +75,14 @@ impl MessageLog {
         log::error!("{short}: {details}");
         self.errors.push(sanitised(&short, MAX_HEADLINE_CHARS));
         self.show(UserMessage { headline: short, details, is_error: true });
+    }
+
+    /// Returns the value of a result. Shows an error if there is one, and returns the type's default value then.
+    pub(crate) fn report<T: Default>(&mut self, short: &str, result: Result<T, impl Display>) -> T {
+        result.unwrap_or_else(|err| {
+            self.error(short, err.to_string());
+            T::default()
+        })
     }
 
     /// Shows a note that disappears automatically.

@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use super::PendingLook;
+use super::plan::PendingLook;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
@@ -11,30 +11,30 @@ use chiaroscuro_volume::{ChoiceAspect, VolumeChoice};
 impl App {
     /// Opens the chooser of an aspect of the open file.
     pub(crate) fn show_chooser(&mut self, aspect: ChoiceAspect) {
-        let held = self.volume.as_ref().map(|volume| &volume.held);
+        let held = self.document.volume.as_ref().map(|volume| &volume.held);
         match held.and_then(|held| Alternatives::new(held, aspect)) {
-            Some(all) => self.volume_chooser.open(aspect, &all),
+            Some(all) => self.windows.volume_chooser.open(aspect, &all),
             None => self.messages.note(text::chooser::single_item(aspect)),
         }
     }
 
     /// Opens the next or the previous volume of the open file.
     pub(crate) fn step_choice(&mut self, aspect: ChoiceAspect, is_forward: bool, ctx: &egui::Context) {
-        let held = self.volume.as_ref().map(|volume| &volume.held);
+        let held = self.document.volume.as_ref().map(|volume| &volume.held);
         let Some(all) = held.and_then(|held| Alternatives::new(held, aspect)) else {
             return self.messages.note(text::chooser::single_item(aspect));
         };
         let next = if is_forward { Some(all.current() + 1) } else { all.current().checked_sub(1) };
         if let Some(next) = next.filter(|&next| next < all.count()) {
             let choice = all.choice(next);
-            self.open_choice(&choice, self.volume_chooser.keeps_look(aspect), ctx);
+            self.open_choice(&choice, self.windows.volume_chooser.keeps_look(aspect), ctx);
         }
     }
 
     /// Opens another volume of the open file; the current one stays until it is ready, and `keeps_look` keeps the
     /// look for it.
     pub(crate) fn open_choice(&mut self, choice: &VolumeChoice, keeps_look: bool, ctx: &egui::Context) {
-        let Some(volume) = &self.volume else { return };
+        let Some(volume) = &self.document.volume else { return };
         if volume.held.choice() == *choice {
             // Cancels a choice in progress.
             self.loader.cancel();
@@ -43,7 +43,7 @@ impl App {
         let source = volume.source.clone();
         let reading = ReadChoices { choice: Some(choice.clone()), ..volume.reading.clone() };
         if self.start_loading(&source, reading, ctx) {
-            self.pending_look = keeps_look.then_some(PendingLook::Current);
+            self.opening.requests.pending_look = keeps_look.then_some(PendingLook::Current);
         }
     }
 }

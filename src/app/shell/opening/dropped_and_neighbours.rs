@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::PendingLook;
-use crate::app::common::volume_facts::VolumeFacts;
+use super::plan::PendingLook;
 use crate::app::windows::file_dialogs;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
-use chiaroscuro_volume::{LoadControl, Volume};
+use chiaroscuro_volume::LoadControl;
 use chiaroscuro_volume_io::neighbour_volume;
 
 /// File extensions of possible slices of one volume; DICOM files often have none.
@@ -31,35 +30,6 @@ impl Drop for NeighbourSearch {
     }
 }
 
-/// Similarity of the next volume to the open one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum VolumeSimilarity {
-    /// Same kind of data in the same grid: even the view is worth keeping.
-    SameGrid,
-    /// Same kind of data in another grid.
-    SameKind,
-    /// Different data, for which the look is useless.
-    Different,
-}
-
-impl VolumeSimilarity {
-    /// Compares the next volume with the open one. Looks refer to values: with another range, a look would show
-    /// nothing of the next volume.
-    pub(super) fn between(open: &VolumeFacts, next: &Volume) -> Self {
-        let is_same_kind = std::mem::discriminant(&open.kind) == std::mem::discriminant(&next.kind().kind);
-        let (a, b) = (open.ranges.robust, next.ranges().robust);
-        let shared = a.high.min(b.high) - a.low.max(b.low);
-        // Half of the longer range: usual between scans of one protocol, rare between scans of two protocols.
-        let are_same_values = 2.0 * shared >= a.span().max(b.span());
-        let spacing: [f64; 3] = next.spacing_mm().into();
-        match is_same_kind && are_same_values {
-            false => Self::Different,
-            true if open.dims == next.dims() && open.spacing_mm == spacing => Self::SameGrid,
-            true => Self::SameKind,
-        }
-    }
-}
-
 impl App {
     /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
     /// of other files the first is opened.
@@ -75,7 +45,7 @@ impl App {
             self.messages.dismiss();
             let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
             if self.start_loading(folder, reading, ctx) {
-                self.pending_look = None;
+                self.opening.requests.pending_look = None;
                 self.messages.note(text::opening::part_of_folder(paths.len(), folder));
             }
             return;
@@ -90,7 +60,7 @@ impl App {
     pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
         // Pressing the key again goes on from the file that is being opened.
         let opening = self.loader.progress().map(|progress| progress.source.to_owned());
-        let from = opening.or_else(|| self.volume.as_ref().map(|volume| volume.source.clone()));
+        let from = opening.or_else(|| self.document.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
             return self.messages.note(text::opening::NO_FOLDER);
         };
@@ -100,21 +70,21 @@ impl App {
         let task =
             move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
         match BackgroundTask::start("next-file", ctx, task) {
-            Ok(work) => self.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
+            Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
             Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
         }
     }
 
     /// Opens the file that the search has found.
     pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
-        let Some(neighbour) = &self.next_file_search else { return };
+        let Some(neighbour) = &self.opening.next_file_search else { return };
         let Some(found) = neighbour.work.take_result() else { return };
         let is_forward = neighbour.is_forward;
-        self.next_file_search = None;
+        self.opening.next_file_search = None;
         match found {
             Ok(Some(path)) => {
                 if self.start_loading(&path, ReadChoices::default(), ctx) {
-                    self.pending_look = Some(PendingLook::CurrentIfSimilar);
+                    self.opening.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
                 }
             }
             Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),
@@ -154,10 +124,7 @@ fn slice_folder(paths: &[PathBuf]) -> Option<&Path> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use chiaroscuro_volume::{Dataset, Samples};
 
     #[test]
     fn slices_are_of_one_kind_and_in_one_folder() {
@@ -180,22 +147,5 @@ mod tests {
         for others in [&["1.dcm"][..], &["1.dcm", "2.png"], &["a.nrrd", "b.nrrd"], &["1.dcm", "s/2.dcm"]] {
             assert_eq!(slice_folder(&files(others)), None, "{others:?}");
         }
-    }
-
-    #[test]
-    fn looks_are_kept_for_what_is_alike() {
-        let volume = |dims: [usize; 3], high: u8| {
-            let values = (0..dims.iter().product::<usize>()).map(|at| (at % usize::from(high)) as u8);
-            Volume::with_spacing("t", dims, DVec3::ONE, Samples::U8(values.collect())).unwrap()
-        };
-        let open =
-            VolumeFacts::new("a".into(), ReadChoices::default(), &Dataset::new(volume([8, 8, 8], 200)));
-        assert_eq!(VolumeSimilarity::between(&open, &volume([8, 8, 8], 190)), VolumeSimilarity::SameGrid);
-        assert_eq!(VolumeSimilarity::between(&open, &volume([9, 8, 8], 190)), VolumeSimilarity::SameKind);
-        assert_eq!(
-            VolumeSimilarity::between(&open, &volume([8, 8, 8], 60)),
-            VolumeSimilarity::Different,
-            "other values"
-        );
     }
 }

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use super::{DEFAULT_SOURCE, PendingLook};
+use super::DEFAULT_SOURCE;
+use super::plan::PendingLook;
+use crate::app::document::looks::AppliedLook;
 use crate::app::shell::file_tasks::ReadPurpose;
-use crate::app::shell::session::SessionFile;
 use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
 use crate::app::windows::untrusted_path::UntrustedPathAnswer;
 use crate::app::{App, text};
-use chiaroscuro_scene::{LookRecord, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_scene::{LookRecord, VolumeLocation, VolumeRecord};
 use chiaroscuro_volume::ValueRanges;
 
 impl App {
@@ -62,13 +63,13 @@ impl App {
                 match self.locate_volume(&volume, path) {
                     VolumeLocation::Builtin(name) => self.open_with(Path::new(&name), record, ctx),
                     VolumeLocation::InRecordFolder(path) => self.open_with(&path, record, ctx),
-                    VolumeLocation::OtherFolder(path) => self.untrusted_path_dialog.open(path, record),
+                    VolumeLocation::OtherFolder(path) => self.dialogs.untrusted_path.open(path, record),
                     VolumeLocation::Refused(why) => {
-                        self.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                        self.dialogs.untrusted_path.open_refused(&volume.source, why, record);
                     }
                 }
             }
-            Some(_) => drop(self.apply_record(&record, &self.value_ranges(), self.opened_id())),
+            Some(_) => drop(self.apply_record(&record, &self.document.value_ranges(), self.opened_id())),
             None => self.apply_look(record, ctx),
         }
     }
@@ -88,18 +89,18 @@ impl App {
     /// open what the user has opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
         let is_known = || self.memory.recent().iter().any(|known| known.path == volume);
-        self.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
+        self.opening.requests.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
     }
 
     /// Applies a look to the volume that is open or being opened.
     fn apply_look(&mut self, record: LookRecord, ctx: &egui::Context) {
         if self.loader.progress().is_some() {
             // The user will see it on the volume that is being opened.
-            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+            self.opening.requests.pending_look = Some(PendingLook::Record(Box::new(record)));
         } else if self.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
-            self.apply_record(&record, &self.value_ranges(), self.opened_id());
+            self.apply_record(&record, &self.document.value_ranges(), self.opened_id());
         }
     }
 
@@ -107,18 +108,18 @@ impl App {
     pub(super) fn open_with(&mut self, source: &Path, record: LookRecord, ctx: &egui::Context) {
         let choice = record.volume.as_ref().map(|volume| volume.choice.clone()).unwrap_or_default();
         if self.start_loading(source, self.reading_options(&choice), ctx) {
-            self.pending_look = Some(PendingLook::Record(Box::new(record)));
+            self.opening.requests.pending_look = Some(PendingLook::Record(Box::new(record)));
         }
     }
 
     /// Asks for confirmation before a look opens its volume, and handles the answer.
     pub(crate) fn ask_for_volume(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
-        let Some(answer) = self.untrusted_path_dialog.ui(ctx) else { return };
+        let Some(answer) = self.dialogs.untrusted_path.ui(ctx) else { return };
         if answer == UntrustedPathAnswer::ChooseOther {
             // The dialog stays open, since choosing may be cancelled.
-            return self.files.open_dialog(FileDialogPurpose::VolumeOfLook, frame, ctx);
+            return self.dialogs.files.open_dialog(FileDialogPurpose::VolumeOfLook, frame, ctx);
         }
-        match self.untrusted_path_dialog.close() {
+        match self.dialogs.untrusted_path.close() {
             Some((record, Some(path))) if answer == UntrustedPathAnswer::Open => {
                 self.open_with(&path, record, ctx);
             }
@@ -129,7 +130,7 @@ impl App {
 
     /// Opens the file that the user has chosen for the look in question.
     pub(crate) fn open_for_look(&mut self, path: &Path, ctx: &egui::Context) {
-        match self.untrusted_path_dialog.close() {
+        match self.dialogs.untrusted_path.close() {
             Some((record, _)) => self.open_with(path, record, ctx),
             None => self.open(path, ctx),
         }
@@ -148,7 +149,7 @@ impl App {
                     if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.matches_content(open)) {
                         app.messages.note(text::opening::OTHER_VOLUME);
                     }
-                    app.apply_record(&record, &app.value_ranges(), app.opened_id());
+                    app.apply_record(&record, &app.document.value_ranges(), app.opened_id());
                 }
                 Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
             },
@@ -159,36 +160,20 @@ impl App {
     pub(crate) fn compare_with_file(&mut self, path: &Path, ctx: &egui::Context) {
         self.read_file(ReadPurpose::Comparison, path, ctx, file_dialogs::load_record, |app, read, _ctx| {
             match read {
-                Ok(record) => match app.settings_with_record(&record, &app.value_ranges()) {
-                    Ok(look) => app.compare.start_with(look),
-                    Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
-                },
+                Ok(record) => {
+                    match app.document.settings_with_record(&record, &app.document.value_ranges()) {
+                        Ok(AppliedLook { settings, note }) => {
+                            if let Some(note) = note {
+                                app.messages.note(note);
+                            }
+                            app.picture.compare.start_with(settings);
+                        }
+                        Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+                    }
+                }
                 Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
             }
         });
-    }
-
-    /// Returns the ranges of values of the open volume.
-    pub(crate) fn value_ranges(&self) -> ValueRanges {
-        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
-    }
-
-    /// Applies a record to a copy of the settings, for a volume with these ranges of values.
-    pub(crate) fn settings_with_record(
-        &mut self,
-        record: &LookRecord,
-        ranges: &ValueRanges,
-    ) -> Result<Settings, String> {
-        let (settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
-        if !warnings.is_empty() {
-            self.messages.note(warnings.join("; "));
-        }
-        let mut settings = settings;
-        // A look without saved views leaves the existing ones.
-        if settings.kept.is_empty() {
-            settings.kept.clone_from(&self.settings.kept);
-        }
-        Ok(settings)
     }
 
     /// Applies a record to the settings and returns true if it succeeded. Its corrections are applied only to the
@@ -199,43 +184,29 @@ impl App {
         ranges: &ValueRanges,
         opened_id: Option<u64>,
     ) -> bool {
-        match self.settings_with_record(record, ranges) {
-            Ok(settings) => {
-                self.settings = settings;
-                if let Some(by) = opened_id.and_then(|open| record.corrections_for(open)) {
-                    self.settings.volume = by;
-                    self.corrections_task.accept(by);
-                }
-                if record.has_balance() {
-                    self.keep_balanced.accept(&self.settings);
-                }
-                true
-            }
-            Err(err) => {
-                self.messages.error(text::opening::SETTINGS_NOT_LOADED, err);
-                false
-            }
+        let note = self.document.apply_record(record, ranges, opened_id);
+        let is_applied = note.is_ok();
+        if let Some(note) = self.messages.report(text::opening::SETTINGS_NOT_LOADED, note) {
+            self.messages.note(note);
         }
+        is_applied
     }
 
     /// Returns path and identifier of the open volume, for records.
     pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        Some((&self.volume.as_ref()?.source, self.opened_id()?))
+        Some((&self.document.volume.as_ref()?.source, self.opened_id()?))
     }
 
     /// Returns the path to which Ctrl+S writes; if the file is protected, shows the reason and returns `None`.
     pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
-        let session = self.session.as_ref()?;
+        let session = self.document.session.as_ref()?;
         let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
         self.messages.note(text::persistence::session_protected(path, why));
         None
     }
 
     pub(crate) fn save_settings(&mut self, path: &Path) {
-        let record = self.volume.as_ref().zip(self.opened_id()).map(|(volume, opened_id)| {
-            VolumeRecord::new(&volume.source, opened_id, path.parent()).with_choice(volume.held.choice())
-        });
-        match SessionFile::save(&mut self.session, path, &self.settings, record.as_ref()) {
+        match self.document.save_session(path, self.opened_id()) {
             Ok(()) => self.messages.note(text::opening::session_saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
         }

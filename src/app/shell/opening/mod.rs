@@ -3,46 +3,30 @@
 mod alternatives;
 mod dropped_and_neighbours;
 mod look_files;
+mod opened;
+mod plan;
+mod similarity;
+mod state;
 
 use std::path::Path;
-use std::sync::Arc;
 
 use eframe::egui;
 
-use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::shell::auto_balance::AutoBalance;
-use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
-use crate::app::shell::history::{History, HistoryStep};
-use crate::app::shell::light_placement::LightPlacement;
-use crate::app::shell::object::corrections::CorrectionState;
-use crate::app::shell::object::data_kind::KindOverride;
-use crate::app::shell::object::orientation::OrientationTasks;
+use crate::app::shell::file_tasks::ReadPurpose;
 use crate::app::windows::file_dialogs;
 use crate::app::windows::raw_dialog::RawDialogResult;
-use crate::app::worker::loader::{OpenedVolume, ReadChoices, RememberedFileSettings};
+use crate::app::worker::loader::{ReadChoices, RememberedFileSettings};
 use crate::app::{App, text};
 use chiaroscuro_files::provenance_mark;
-use chiaroscuro_scene::{LookRecord, ObjectRotation, OpacityLength, Settings, VolumeLocation};
-use chiaroscuro_volume::{Corrections, Downsampling, Portion, Volume, VolumeChoice};
+use chiaroscuro_scene::{OpacityLength, VolumeLocation};
+use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
 
-pub(crate) use self::dropped_and_neighbours::NeighbourSearch;
-use self::dropped_and_neighbours::VolumeSimilarity;
+use self::plan::PendingLook;
+pub use self::state::SettingsAdjustment;
+pub(crate) use self::state::{OpenRequests, OpeningState};
 
 /// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
-
-/// Look that waits for the volume that is being opened.
-#[derive(Debug)]
-pub(crate) enum PendingLook {
-    /// Look of a file, applied to the first look of the volume.
-    Record(Box<LookRecord>),
-    /// All settings, replacing the first look.
-    Settings(Box<Settings>),
-    /// Current look at the time when the volume is ready.
-    Current,
-    /// Current look, if the volume is similar enough to the one before.
-    CurrentIfSimilar,
-}
 
 impl App {
     /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
@@ -61,14 +45,14 @@ impl App {
     /// Opens a volume with its own first look.
     pub(super) fn open_volume(&mut self, source: &Path, ctx: &egui::Context) {
         if self.start_loading(source, ReadChoices::default(), ctx) {
-            self.pending_look = None;
+            self.opening.requests.pending_look = None;
         }
     }
 
     /// Opens one of several volumes of a file; a choice on the command line has precedence over a remembered one.
     pub(crate) fn open_chosen(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
         if self.start_loading(source, self.reading_options(choice), ctx) {
-            self.pending_look = None;
+            self.opening.requests.pending_look = None;
         }
     }
 
@@ -99,8 +83,9 @@ impl App {
 
     /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
     pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
-        let is_empty = self.volume.is_none() && self.viewport.dataset().is_none();
-        let is_busy = self.loader.progress().is_some() || self.file_tasks.is_reading(ReadPurpose::Open);
+        let is_empty = self.document.volume.is_none() && self.viewport.dataset().is_none();
+        let is_busy =
+            self.loader.progress().is_some() || self.opening.file_tasks.is_reading(ReadPurpose::Open);
         if reason == ReadPurpose::Open && is_empty && !is_busy {
             self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default(), ctx);
         }
@@ -109,17 +94,17 @@ impl App {
     /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
     /// or being opened.
     pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
-        let is_free = self.volume.is_none()
+        let is_free = self.document.volume.is_none()
             && self.loader.progress().is_none()
-            && !self.untrusted_path_dialog.is_open();
-        if std::mem::take(&mut self.default_open_waits) && is_free {
+            && !self.dialogs.untrusted_path.is_open();
+        if std::mem::take(&mut self.opening.default_open_waits) && is_free {
             self.open_first(None, None, ctx);
         }
     }
 
     /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
-        let session = self.session.as_ref().map(|session| session.path().to_owned());
+        let session = self.document.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
         let path = session.clone();
         self.read_file(ReadPurpose::Open, &path, ctx, file_dialogs::load_record, move |app, read, ctx| {
@@ -129,9 +114,9 @@ impl App {
             match app.locate_volume(&volume, &session) {
                 VolumeLocation::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
                 VolumeLocation::InRecordFolder(path) => app.open_chosen(&path, &volume.choice, ctx),
-                VolumeLocation::OtherFolder(path) => app.untrusted_path_dialog.open(path, record),
+                VolumeLocation::OtherFolder(path) => app.dialogs.untrusted_path.open(path, record),
                 VolumeLocation::Refused(why) => {
-                    app.untrusted_path_dialog.open_refused(&volume.source, why, record);
+                    app.dialogs.untrusted_path.open_refused(&volume.source, why, record);
                 }
             }
         });
@@ -161,8 +146,8 @@ impl App {
 
     /// Reads the open volume again with another subsampling; the look stays.
     pub(crate) fn reload_subsampled(&mut self, thinning: Downsampling, ctx: &egui::Context) {
-        let Some(volume) = &self.volume else { return };
-        let mut settings = self.settings.clone();
+        let Some(volume) = &self.document.volume else { return };
+        let mut settings = self.document.settings.clone();
         // The opacity unit keeps its thickness, whatever the number of voxels.
         if let OpacityLength::Voxels(_) = settings.opacity_unit {
             let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
@@ -174,16 +159,16 @@ impl App {
         let reading = ReadChoices { choice, takes_all_memory: false, ..volume.reading.clone() };
         let source = volume.source.clone();
         if self.start_loading(&source, reading, ctx) {
-            self.pending_look = Some(PendingLook::Settings(Box::new(settings)));
+            self.opening.requests.pending_look = Some(PendingLook::Settings(Box::new(settings)));
         }
     }
 
     pub(crate) fn start_loading(&mut self, source: &Path, reading: ReadChoices, ctx: &egui::Context) -> bool {
         // Requests and dialogs for the previous file are obsolete, and so is a file to open.
-        self.file_tasks.drop_purpose(ReadPurpose::Open);
-        self.file_tasks.drop_purpose(ReadPurpose::Session);
-        self.raw_dialog.close();
-        self.large_volume_dialog.close();
+        self.opening.file_tasks.drop_purpose(ReadPurpose::Open);
+        self.opening.file_tasks.drop_purpose(ReadPurpose::Session);
+        self.dialogs.raw.close();
+        self.dialogs.large_volume.close();
         let known = RememberedFileSettings {
             up: self.memory.up_of(source),
             corrections: self.memory.corrections_of(source),
@@ -193,17 +178,6 @@ impl App {
             self.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
-    }
-
-    /// Creates the history of a volume that was just opened: remembered corrections can be undone.
-    fn history_of(&self, volume: &Volume) -> History {
-        let by = self.settings.volume;
-        if by.is_none() || by != *volume.corrections() {
-            return History::default();
-        }
-        let mut settings = self.settings.clone();
-        settings.apply_corrections(Corrections::default(), volume);
-        History::with_previous(&HistoryStep { settings, treated_as: None })
     }
 
     /// Identifier of the open file's volume.
@@ -220,8 +194,8 @@ impl App {
 
     /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
     pub(crate) fn autosave_look(&mut self) {
-        if let Some((volume, opened_id)) = self.volume.as_ref().zip(self.opened_id()) {
-            self.memory.autosave(&self.settings, &volume.source, opened_id, &volume.held.choice());
+        if let Some((volume, opened_id)) = self.document.volume.as_ref().zip(self.opened_id()) {
+            self.memory.autosave(&self.document.settings, &volume.source, opened_id, &volume.held.choice());
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.autosave_thumbnail(picture);
             }
@@ -231,134 +205,5 @@ impl App {
                 self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
             }
         }
-    }
-
-    /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
-    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.session.as_ref().filter(|_| self.session_is_due);
-        match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
-            Some(path) => {
-                self.read_file(
-                    ReadPurpose::Session,
-                    &path,
-                    ctx,
-                    file_dialogs::load_record,
-                    |app, read, ctx| {
-                        app.show_opened(opened, Some(read), ctx);
-                    },
-                );
-            }
-            None => self.show_opened(opened, None, ctx),
-        }
-    }
-
-    /// Replaces the open volume by one that is ready, with the session that was read for it.
-    fn show_opened(
-        &mut self,
-        opened: OpenedVolume,
-        session_read: Option<Result<LookRecord, FileReadFailure>>,
-        ctx: &egui::Context,
-    ) {
-        let OpenedVolume { source, reading, dataset, original_dims: too_many, renderer, settings, stamp } =
-            opened;
-        let volume = Arc::clone(dataset.volume());
-        self.messages.clear();
-        self.kept_strip.reset();
-        // Saved views are useful on other volumes, too.
-        let kept = self.settings.kept.clone();
-        let likeness = match (&self.pending_look, &self.volume) {
-            (Some(PendingLook::CurrentIfSimilar), Some(open)) => VolumeSimilarity::between(open, &volume),
-            _ => VolumeSimilarity::Different,
-        };
-        if let Some(PendingLook::CurrentIfSimilar) = self.pending_look {
-            self.pending_look = (likeness == VolumeSimilarity::SameGrid).then_some(PendingLook::Current);
-        }
-        // Another file has corrections of its own.
-        let by = if likeness == VolumeSimilarity::SameGrid { settings.volume } else { self.settings.volume };
-        let is_current = matches!(self.pending_look, Some(PendingLook::Current));
-        let current = is_current.then(|| Settings { volume: by, ..self.settings.clone() });
-        let selected_light = if current.is_some() { self.selected_light } else { 0 };
-        if let Some(before) = too_many {
-            self.messages.note(text::opening::downsampled(before, volume.dims()));
-        }
-        for remark in volume.remarks() {
-            self.messages.note(remark.clone());
-        }
-        if !volume.corrections().is_none() {
-            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
-        }
-        self.defaults = settings.clone();
-        let is_kept =
-            (self.keeps_look_for_next || likeness == VolumeSimilarity::SameKind) && self.volume.is_some();
-        if is_kept {
-            // The look stays, apart from the position of the object: the new one may have another up axis.
-            let mut before = std::mem::take(&mut self.settings);
-            before.rotate_object(ObjectRotation::MakeUpright(settings.camera.up));
-            let mut kept = Settings { camera: settings.camera.clone(), volume: settings.volume, ..before };
-            kept.floor.height = settings.floor.height;
-            self.settings = kept;
-        } else {
-            self.settings = settings;
-        }
-        // Measurements belong to the volume before; a first look is balanced, a kept look is not.
-        self.keep_balanced = AutoBalance::new(&self.settings, !is_kept);
-        let is_named = is_kept
-            || session_read.is_some()
-            || self.pending_look.is_some()
-            || self.adjust_first_look.is_some();
-        let (ranges, opened_id) = (volume.ranges(), Some(volume.opened_id()));
-        // Session and command line apply to the first volume only.
-        self.session_is_due = false;
-        if let Some(read) = session_read
-            && let Some(mut session) = self.session.take()
-        {
-            session.set_record(read.as_ref().ok());
-            match read {
-                Ok(record) if !self.apply_record(&record, &ranges, opened_id) => session.protect_invalid(),
-                Ok(_) => {}
-                Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
-            }
-            self.session = Some(session);
-        }
-        self.memory.add_recent(&source, &volume.contents().choice());
-        self.recent_pictures.clear();
-        match self.pending_look.take() {
-            None => {}
-            Some(PendingLook::Settings(settings)) => {
-                self.settings = *settings;
-                self.keep_balanced.accept(&self.settings);
-            }
-            Some(PendingLook::Current | PendingLook::CurrentIfSimilar) => {
-                self.settings = current.unwrap_or_default();
-                self.keep_balanced.accept(&self.settings);
-            }
-            Some(PendingLook::Record(record)) => {
-                if record.volume.as_ref().is_some_and(|of| !of.matches_content(volume.opened_id())) {
-                    self.messages.note(text::opening::OTHER_VALUES);
-                }
-                self.apply_record(&record, &ranges, opened_id);
-            }
-        }
-        if let Some(adjust) = self.adjust_first_look.take() {
-            self.settings = adjust(std::mem::take(&mut self.settings));
-            self.settings.sanitise();
-        }
-        if self.settings.kept.is_empty() {
-            self.settings.kept = kept;
-        }
-        // A look that the user has chosen stays.
-        self.first_lights =
-            if is_named { LightPlacement::default() } else { LightPlacement::new(&self.settings) };
-        self.light_search = None;
-        self.contact_sheet.discard();
-        self.volume = Some(VolumeFacts::new(source, reading, &dataset));
-        // Treated as its own kind of data, with its own up axis.
-        (self.kind_override, self.orientation_task) = (KindOverride::default(), OrientationTasks::default());
-        self.viewport.set_scene(renderer, dataset);
-        self.history = self.history_of(&volume);
-        self.corrections_task = CorrectionState::new(stamp, self.settings.volume);
-        self.selected_light = selected_light;
-        let title = text::opening::title(self.volume_name().unwrap_or_default());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 }

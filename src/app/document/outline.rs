@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use crate::app::App;
+use super::Document;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::background_task::BackgroundTask;
 use chiaroscuro_scene::{
     Clipping, DensityRange, LabelTable, Settings, TransferFunction, first_look::ObjectOutline,
 };
+use chiaroscuro_volume::Dataset;
 
 /// Inputs on which an outline depends.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,64 +46,71 @@ pub(crate) struct OutlineCache {
     waiting: Option<AppCommand>,
 }
 
-impl App {
-    /// Content identifier of the volume that is shown.
-    fn shown_id(&self) -> Option<u64> {
-        self.viewport.dataset().map(|dataset| dataset.volume().content_id())
-    }
+/// Content identifier of the volume that is shown.
+fn content_id(dataset: Option<&Dataset>) -> Option<u64> {
+    dataset.map(|dataset| dataset.volume().content_id())
+}
 
+impl Document {
     /// Returns true if the outline of the current look is known, or cannot be found.
-    pub(crate) fn knows_outline(&self) -> bool {
-        self.shown_id().is_none_or(|id| {
+    pub(crate) fn knows_outline(&self, dataset: Option<&Dataset>) -> bool {
+        content_id(dataset).is_none_or(|id| {
             let is_known =
-                self.outline_task.known.as_ref().is_some_and(|(of, _)| of.matches(&self.settings, id));
-            is_known || self.outline_task.failed == Some(id)
+                self.outline_cache.known.as_ref().is_some_and(|(of, _)| of.matches(&self.settings, id));
+            is_known || self.outline_cache.failed == Some(id)
         })
     }
 
     /// Returns the latest outline of the volume shown; it may be of an earlier look while a newer one is not known.
-    pub(crate) fn outline(&self) -> Option<Arc<ObjectOutline>> {
-        let (of, outline) = self.outline_task.known.as_ref()?;
-        (Some(of.content_id) == self.shown_id()).then(|| Arc::clone(outline))
+    pub(crate) fn outline(&self, dataset: Option<&Dataset>) -> Option<Arc<ObjectOutline>> {
+        let (of, outline) = self.outline_cache.known.as_ref()?;
+        (Some(of.content_id) == content_id(dataset)).then(|| Arc::clone(outline))
     }
 
     /// Returns true if a command that needs the outline can run; otherwise it is queued until the outline is known.
-    pub(crate) fn can_frame(&mut self, command: AppCommand, ctx: &egui::Context) -> bool {
-        if self.knows_outline() {
+    pub(crate) fn can_frame(
+        &mut self,
+        command: AppCommand,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> bool {
+        if self.knows_outline(dataset.as_ref()) {
             return true;
         }
-        self.outline_task.waiting = Some(command);
-        self.start_outline_search(ctx);
+        self.outline_cache.waiting = Some(command);
+        self.start_outline_search(dataset, ctx);
         false
     }
 
-    /// Takes over an outline from its thread, and starts a search when the window is idle and the look has changed.
-    /// Returns the command that has waited for the outline.
-    pub(crate) fn update_outline(&mut self, ctx: &egui::Context) -> Option<AppCommand> {
-        if let Some((_, work)) = &self.outline_task.work
+    /// Takes over an outline from its thread.
+    pub(crate) fn take_outline(&mut self) {
+        if let Some((_, work)) = &self.outline_cache.work
             && let Some(found) = work.take_result()
-            && let Some((of, _)) = self.outline_task.work.take()
+            && let Some((of, _)) = self.outline_cache.work.take()
         {
             match found {
-                Ok(outline) => self.outline_task.known = Some((of, Arc::new(outline))),
+                Ok(outline) => self.outline_cache.known = Some((of, Arc::new(outline))),
                 Err(panic) => {
                     log::warn!("the search for the outline of the object failed: {panic}");
-                    self.outline_task.failed = Some(of.content_id);
+                    self.outline_cache.failed = Some(of.content_id);
                 }
             }
         }
-        if self.knows_outline() {
-            return self.outline_task.waiting.take();
-        }
-        if self.outline_task.waiting.is_some() || self.is_complete() {
-            self.start_outline_search(ctx);
-        }
-        None
+    }
+
+    /// Takes the command that has waited for the outline.
+    pub(crate) fn take_waiting_command(&mut self) -> Option<AppCommand> {
+        self.outline_cache.waiting.take()
+    }
+
+    /// Returns true while a command waits for the outline.
+    pub(crate) fn is_outline_awaited(&self) -> bool {
+        self.outline_cache.waiting.is_some()
     }
 
     /// Starts the search for the current outline, unless one is running.
-    fn start_outline_search(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.outline_task.work.is_none()) else {
+    pub(crate) fn start_outline_search(&mut self, dataset: Option<Dataset>, ctx: &egui::Context) {
+        let Some(dataset) = dataset.filter(|_| self.outline_cache.work.is_none()) else {
             return;
         };
         let settings = self.settings.clone();
@@ -112,19 +120,19 @@ impl App {
             ObjectOutline::from_settings(&settings, dataset.volume())
         }) {
             Ok(work) => {
-                self.outline_task.work =
+                self.outline_cache.work =
                     Some((OutlineInputs { content_id, transfer, labels, range, cuts }, work));
             }
             Err(err) => {
                 log::warn!("the search for the outline of the object could not start: {err}");
-                self.outline_task.failed = Some(content_id);
+                self.outline_cache.failed = Some(content_id);
             }
         }
     }
 
     /// Frames the visible object from the current direction.
-    pub(crate) fn frame_object(&mut self) {
-        match self.outline().filter(|outline| !outline.is_empty()) {
+    pub(crate) fn frame_object(&mut self, dataset: Option<&Dataset>) {
+        match self.outline(dataset).filter(|outline| !outline.is_empty()) {
             Some(outline) => outline.frame(&mut self.settings.camera),
             // Nothing is visible: framed as the first look was.
             None => self.settings.camera.copy_framing(&self.defaults.camera),

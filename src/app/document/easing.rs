@@ -8,7 +8,7 @@ use eframe::egui;
 pub(super) const EASE_S: f64 = 0.3;
 
 /// Returns true while the user holds a pointer button or a key, or edits text.
-pub(super) fn is_user_active(ctx: &egui::Context) -> bool {
+pub(crate) fn is_user_active(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
 }
 

@@ -4,22 +4,13 @@
 //! result is eased in. A look that the user has edited by then is left alone. Times are in seconds of any monotonic
 //! clock.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
-use eframe::egui;
 use glam::DVec3;
 
-use super::easing::{eased_progress, interpolate_factor, is_user_active};
-use crate::app::App;
-use crate::app::shell::history::HistoryStep;
-use crate::app::worker::background_task::BackgroundTask;
-use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, SearchedLight};
+use super::Document;
+use super::easing::{eased_progress, interpolate_factor};
+use super::history::HistoryStep;
+use chiaroscuro_render::{GpuError, LightSearchResult};
 use chiaroscuro_scene::{LightSettings, Settings};
-
-/// Pause between two candidate positions: long enough for another thread to take the device.
-const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
 
 /// State of the window in one frame.
 #[derive(Debug, Clone, Copy)]
@@ -199,85 +190,20 @@ fn interpolate_lights(from: &[LightSettings], to: &[LightSettings], share: f64) 
         .collect()
 }
 
-/// Running light search. Dropping this value cancels the search at its next step and discards the result.
-pub(crate) struct LightSearchTask {
-    work: BackgroundTask<Result<Option<LightSearchResult>, GpuError>>,
-    is_cancelled: Arc<AtomicBool>,
-}
-
-impl Drop for LightSearchTask {
-    fn drop(&mut self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
-    }
-}
-
-impl App {
-    /// Finishes the first look of the volume with the lights found, unless the user has edited it.
-    pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
-        if let Some(result) = self.light_search.as_ref().and_then(|seeking| seeking.work.take_result()) {
-            self.light_search = None;
-            self.first_lights.set_result(result.unwrap_or_else(|panic| {
-                log::error!("the search for a light position failed: {panic}");
-                Ok(None)
-            }));
-        }
-        if !self.first_lights.is_due() {
-            self.light_search = None;
-        }
-        let now_s = ctx.input(|input| input.time);
-        let moment = LightPlacementFrame {
-            now_s,
-            settings: &self.settings,
-            // The search refers to the picture with the final balance, so a pending change comes first.
-            picture_complete: self.is_complete() && !self.keep_balanced.is_due(&self.settings),
-            user_active: is_user_active(ctx),
-        };
-        match self.first_lights.next_action(moment) {
-            LightPlacementAction::Nothing => {}
-            LightPlacementAction::Search => self.start_light_search(ctx),
-            LightPlacementAction::Set(next) => {
-                let before = self.history_step();
-                self.settings = *next;
-                // Part of the first look: there is nothing to undo, even if the view has changed since, and resets
-                // lead here.
-                self.history.merge_into_all(now_s, &before, |step| {
-                    with_automatic_lights(step, &before, &self.settings)
-                });
-                let Settings { lights, floor, shadows, output, .. } = &self.settings;
-                self.defaults.lights.clone_from(lights);
-                self.defaults.floor.clone_from(floor);
-                self.defaults.shadows.balance = shadows.balance;
-                self.defaults.output.exposure = output.exposure;
-                self.keep_balanced.accept(&self.settings);
-                ctx.request_repaint();
-            }
-        }
-    }
-
-    /// Starts a light search on a thread, on the render device, whose pipelines are compiled already.
-    fn start_light_search(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset() else { return self.first_lights.stop() };
-        let (shaders, settings) = (self.loader.shaders().clone(), self.settings.clone());
-        let is_unwanted = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&is_unwanted);
-        let task = move || -> Result<Option<LightSearchResult>, GpuError> {
-            let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
-            while search.step()? {
-                if asked.load(Ordering::Relaxed) {
-                    return Ok(None);
-                }
-                // Lets pictures that were requested meanwhile go first.
-                std::thread::sleep(CANDIDATE_PAUSE);
-            }
-            Ok(search.finish())
-        };
-        match BackgroundTask::start("light-search", ctx, task) {
-            Ok(work) => self.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted }),
-            Err(err) => {
-                log::warn!("the search for a light position could not start: {err}");
-                self.first_lights.stop();
-            }
-        }
+impl Document {
+    /// Applies a step of the light placement. It is part of the first look: there is nothing to undo, even if the view
+    /// has changed since, and resets lead here.
+    pub(crate) fn apply_placed_lights(&mut self, next: Settings, now_s: f64) {
+        let before = self.history_step();
+        self.settings = next;
+        self.history
+            .merge_into_all(now_s, &before, |step| with_automatic_lights(step, &before, &self.settings));
+        let Settings { lights, floor, shadows, output, .. } = &self.settings;
+        self.defaults.lights.clone_from(lights);
+        self.defaults.floor.clone_from(floor);
+        self.defaults.shadows.balance = shadows.balance;
+        self.defaults.output.exposure = output.exposure;
+        self.keep_balanced.accept(&self.settings);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Tests of the automatic light placement, in virtual time.
 
 use super::*;
-use crate::app::shell::easing::EASE_S;
+use crate::app::document::easing::EASE_S;
 use chiaroscuro_render::LightSuggestion;
 use chiaroscuro_scene::LightingRig;
 

@@ -4,14 +4,8 @@
 //! whenever and wherever it is made. The picture may be a preview: until the balance is known, none is drawn at full
 //! quality, so that a change is refined once. Times are in seconds of any monotonic clock.
 
-use std::time::Duration;
-
-use eframe::egui;
-
-use super::easing::{eased_progress, interpolate_factor, is_user_active};
-use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
-use chiaroscuro_render::Renderer;
+use super::Document;
+use super::easing::{eased_progress, interpolate_factor};
 use chiaroscuro_scene::{RenderEngine, SamplingSettings, Settings, ShadowSettings};
 
 /// Debounce time without changes, in seconds: longer than the pauses within one movement of a hand.
@@ -162,49 +156,14 @@ impl AutoBalance {
     }
 }
 
-impl App {
-    /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
-    pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.balance.is_none()) else {
-            return;
-        };
-        let (context, settings) = (self.viewport.context().clone(), self.settings.clone());
-        let task = move || {
-            let mut renderer = Renderer::new(&context.second_device()?)?;
-            chiaroscuro_render::measure_balance(&mut renderer, &dataset, &settings)
-        };
-        match BackgroundTask::start("balance", ctx, task) {
-            Ok(work) => self.balance = Some(work),
-            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
-        }
-    }
-
-    /// Keeps the picture as bright as without shadows, if the setting is on.
-    pub(crate) fn update_balance(&mut self, ctx: &egui::Context) {
-        let now_s = ctx.input(|input| input.time);
-        let (held, busy, has_its_volume) =
-            (is_user_active(ctx), self.balance.is_some(), self.is_volume_ready());
-        let is_due = self.keep_balanced.is_due(&self.settings);
-        self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
-        let act = self.keep_balanced.next_action(BalanceFrame {
-            now_s,
-            settings: &self.settings,
-            is_shown: has_its_volume && self.viewport.displays(&self.compare.looks(&self.settings)),
-            user_active: held,
-            busy,
-        });
-        match act {
-            BalanceAction::Nothing => {}
-            BalanceAction::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
-            BalanceAction::Measure => self.viewport.measure_balance(&self.settings),
-            BalanceAction::Set(balance) => {
-                let before = self.history_step();
-                self.settings.shadows.balance = balance;
-                self.history.merge_into_last(now_s, &before, &self.history_step());
-                self.first_lights.accept_change(&before.settings, &self.settings);
-                ctx.request_repaint();
-            }
-        }
+impl Document {
+    /// Sets a balance that was found automatically, as part of the change that it follows.
+    pub(crate) fn apply_balance(&mut self, balance: f64, now_s: f64) {
+        let before = self.history_step();
+        self.settings.shadows.balance = balance;
+        let after = self.history_step();
+        self.history.merge_into_last(now_s, &before, &after);
+        self.first_lights.accept_change(&before.settings, &self.settings);
     }
 }
 

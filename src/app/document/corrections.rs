@@ -4,10 +4,10 @@
 
 use eframe::egui;
 
+use super::Document;
 use super::orientation::has_same_framing;
-use crate::app::persistence::FileStamp;
+use crate::app::persistence::{FileStamp, PersistentState};
 use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::{Corrections, Dataset, VolumeError};
 
@@ -49,41 +49,45 @@ impl CorrectionState {
     }
 }
 
-impl App {
+impl Document {
     /// Returns true while the volume shown lacks the corrections of the settings.
-    pub(crate) fn is_correcting(&self) -> bool {
-        let shown = self.viewport.dataset().map(|dataset| *dataset.volume().corrections());
-        shown.is_some_and(|shown| shown != self.settings.volume)
+    pub(crate) fn is_correcting(&self, shown: Option<&Dataset>) -> bool {
+        shown.is_some_and(|dataset| *dataset.volume().corrections() != self.settings.volume)
     }
 
-    /// Starts correcting the volume as the settings say, and takes over the result.
-    pub(crate) fn update_corrections(&mut self, ctx: &egui::Context) {
-        self.take_corrected(ctx);
-        let Some(dataset) = self.viewport.dataset() else { return };
+    /// Starts correcting the volume as the settings say, and remembers corrections that are made.
+    pub(crate) fn start_correction_if_due(
+        &mut self,
+        dataset: Dataset,
+        memory: &mut PersistentState,
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
         let (volume, wanted) = (dataset.volume(), self.settings.volume);
         if wanted == *volume.corrections() {
-            self.corrections_task.making = None;
+            self.corrections.making = None;
             if self.defaults.volume != wanted {
                 // Restored by an undo.
                 self.defaults.apply_corrections(wanted, volume);
             }
-            if self.corrections_task.known != wanted {
-                self.corrections_task.known = wanted;
+            if self.corrections.known != wanted {
+                self.corrections.known = wanted;
                 if let Some(facts) = &self.volume {
-                    let CorrectionState { stamp, .. } = self.corrections_task;
-                    self.memory.remember_corrections(&facts.source, stamp, volume.opened_id(), wanted);
+                    let CorrectionState { stamp, .. } = self.corrections;
+                    memory.remember_corrections(&facts.source, stamp, volume.opened_id(), wanted);
                 }
             }
-        } else if self.corrections_task.making.as_ref().is_none_or(|making| making.corrections != wanted) {
-            self.correct(dataset, ctx);
+        } else if self.corrections.making.as_ref().is_none_or(|making| making.corrections != wanted) {
+            return self.start_correction(dataset, ctx);
         }
+        Ok(())
     }
 
     /// Starts correcting the volume as the settings say; a correction in progress is dropped.
-    fn correct(&mut self, dataset: Dataset, ctx: &egui::Context) {
+    fn start_correction(&mut self, dataset: Dataset, ctx: &egui::Context) -> Result<(), String> {
         let (by, opened_id) = (self.settings.volume, dataset.volume().opened_id());
         let mut first = self.defaults.clone();
         first.apply_corrections(by, dataset.volume());
+        let shown = dataset.clone();
         let task = move || {
             let dataset = dataset.corrected(&by)?;
             first_look::frame_object(&mut first, dataset.volume());
@@ -91,41 +95,54 @@ impl App {
         };
         match BackgroundTask::start("corrections", ctx, task) {
             Ok(work) => {
-                self.corrections_task.making = Some(CorrectionTask { corrections: by, opened_id, work });
+                self.corrections.making = Some(CorrectionTask { corrections: by, opened_id, work });
+                Ok(())
             }
-            Err(err) => self.restore_corrections(err.to_string()),
+            Err(err) => {
+                self.restore_corrections(&shown);
+                Err(err.to_string())
+            }
         }
     }
 
-    /// Takes over a corrected volume from its thread.
-    fn take_corrected(&mut self, ctx: &egui::Context) {
-        let Some(made) = self.corrections_task.making.as_ref().and_then(|making| making.work.take_result())
-        else {
-            return;
+    /// Takes over a corrected volume from its thread. Returns the dataset that is to be shown instead of `shown`.
+    pub(crate) fn take_corrected(
+        &mut self,
+        shown: Option<&Dataset>,
+        now_s: f64,
+    ) -> Result<Option<Dataset>, String> {
+        let Some(made) = self.corrections.making.as_ref().and_then(|making| making.work.take_result()) else {
+            return Ok(None);
         };
-        let Some(making) = self.corrections_task.making.take() else { return };
-        let shown = self.viewport.dataset().map(|dataset| dataset.volume().opened_id());
-        if making.corrections != self.settings.volume || shown != Some(making.opened_id) {
-            // The settings or the volume have changed meanwhile.
-            return;
+        let Some(making) = self.corrections.making.take() else { return Ok(None) };
+        let Some(shown) = shown.filter(|shown| shown.volume().opened_id() == making.opened_id) else {
+            return Ok(None);
+        };
+        if making.corrections != self.settings.volume {
+            // The settings have changed meanwhile.
+            return Ok(None);
         }
         match made {
-            Ok(Ok(made)) => self.use_corrected(made, ctx),
-            Ok(Err(err)) => self.restore_corrections(err.to_string()),
-            Err(panic) => self.restore_corrections(panic),
+            Ok(Ok(made)) => Ok(Some(self.use_corrected(made, now_s))),
+            Ok(Err(err)) => {
+                self.restore_corrections(shown);
+                Err(err.to_string())
+            }
+            Err(panic) => {
+                self.restore_corrections(shown);
+                Err(panic)
+            }
         }
     }
 
     /// Goes back to the corrections with which the volume is shown.
-    fn restore_corrections(&mut self, why: String) {
-        if let Some(dataset) = self.viewport.dataset() {
-            self.settings.apply_corrections(*dataset.volume().corrections(), dataset.volume());
-        }
-        self.messages.error(text::corrections::CORRECTION_FAILED, why);
+    fn restore_corrections(&mut self, shown: &Dataset) {
+        self.settings.apply_corrections(*shown.volume().corrections(), shown.volume());
     }
 
-    /// Shows a corrected volume, framed again and back on the floor if the previous volume was.
-    fn use_corrected(&mut self, made: CorrectedVolume, ctx: &egui::Context) {
+    /// Edits a corrected volume from now on, framed again and back on the floor if the previous volume was; returns
+    /// its dataset.
+    fn use_corrected(&mut self, made: CorrectedVolume, now_s: f64) -> Dataset {
         let CorrectedVolume { dataset, first } = made;
         let before = self.history_step();
         let was_framed = has_same_framing(&self.settings.camera, &self.defaults.camera);
@@ -144,16 +161,12 @@ impl App {
         let after = self.history_step();
         if after != before {
             // Merged into the step of the correction.
-            self.history.merge_into_last(ctx.input(|input| input.time), &before, &after);
+            self.history.merge_into_last(now_s, &before, &after);
             self.first_lights.accept_change(&before.settings, &after.settings);
         }
-        // Results in progress belong to the volume before.
-        (self.light_search, self.balance) = (None, None);
-        self.contact_sheet.discard();
         if let Some(facts) = &mut self.volume {
             facts.update(&dataset);
         }
-        self.viewport.set_dataset(dataset);
-        ctx.request_repaint();
+        dataset
     }
 }

@@ -1,14 +1,15 @@
 //! Undo and redo of settings.
 
-mod list;
+mod steps;
 
 use eframe::egui;
 use eframe::egui::util::undoer::{self, Undoer};
 
-pub(crate) use self::list::HistoryWindow;
-use crate::app::{App, text};
+pub(crate) use self::steps::HistorySteps;
+use super::Document;
+use crate::app::text;
 use chiaroscuro_scene::Settings;
-use chiaroscuro_volume::KindName;
+use chiaroscuro_volume::{Corrections, KindName, Volume};
 
 /// Time without a change after which a step can be undone, in seconds.
 const SETTLE_S: f32 = 0.4;
@@ -66,6 +67,11 @@ impl History {
     /// Returns the description of the undo or redo that has led to these settings, until they change.
     pub(crate) fn last_step(&self, settings: &Settings) -> Option<&str> {
         self.last_step.as_ref().filter(|(_, led_to)| led_to == settings).map(|(words, _)| words.as_str())
+    }
+
+    /// Records the description of an undo or redo, and the settings to which it has led.
+    pub(crate) fn set_last_step(&mut self, words: String, settings: &Settings) {
+        self.last_step = Some((words, settings.clone()));
     }
 
     /// Records the look, except during a drag: a drag is one step.
@@ -151,30 +157,15 @@ impl History {
     }
 }
 
-impl App {
+impl Document {
     /// Returns the look as the history keeps it.
     pub(crate) fn history_step(&self) -> HistoryStep {
         HistoryStep { settings: self.settings.clone(), treated_as: self.kind_override.kind() }
     }
 
-    /// Takes one step back or forward and shows it in the status bar; the values of the reset buttons follow.
-    pub(super) fn undo_or_redo(&mut self, is_back: bool, ctx: &egui::Context) {
-        let what = self.history.describe_next(&self.history_step(), is_back);
-        self.take_step(is_back, ctx);
-        if let Some(what) = what {
-            let words = text::messages::undone(is_back, &what);
-            if self.layout.picture_only {
-                // Without panels there is no status bar.
-                self.messages.note(words.clone());
-            } else {
-                self.messages.note_step(&words);
-            }
-            self.history.last_step = Some((words, self.settings.clone()));
-        }
-    }
-
-    /// Takes a step as [`Self::undo_or_redo`] does, without a message.
-    fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
+    /// Takes one step back or forward; the values of the reset buttons follow. Returns true if the step has turned the
+    /// object.
+    pub(crate) fn take_step(&mut self, is_back: bool) -> bool {
         let mut step = self.history_step();
         if is_back {
             self.history.undo(&mut step);
@@ -186,11 +177,19 @@ impl App {
         self.kind_override.change(step.treated_as, &mut self.defaults);
         // The balance of the step is part of it.
         self.keep_balanced.accept(&self.settings);
-        // Only a step that has turned the object changes the remembered up axis.
-        if self.settings.camera.up != up {
-            self.ensure_first_look_up(None, ctx);
-            self.remember_up();
-        }
+        self.settings.camera.up != up
+    }
+
+    /// Starts the history of a volume that was just opened: remembered corrections can be undone.
+    pub(crate) fn start_history(&mut self, volume: &Volume) {
+        let by = self.settings.volume;
+        self.history = if by.is_none() || by != *volume.corrections() {
+            History::default()
+        } else {
+            let mut settings = self.settings.clone();
+            settings.apply_corrections(Corrections::default(), volume);
+            History::with_previous(&HistoryStep { settings, treated_as: None })
+        };
     }
 }
 

@@ -2,15 +2,16 @@
 //!
 //! A thread makes the look in a pass over all voxels.
 
+use std::io;
 use std::sync::Arc;
 
 use eframe::egui;
 
-use crate::app::shell::light_placement::LightPlacement;
+use super::Document;
+use super::light_placement::LightPlacement;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
 use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, first_look};
-use chiaroscuro_volume::KindName;
+use chiaroscuro_volume::{Dataset, KindName};
 
 /// Result of a pass over all voxels.
 #[derive(Debug)]
@@ -56,10 +57,15 @@ impl KindOverride {
     }
 }
 
-impl App {
+impl Document {
     /// Makes a first look for a kind of data, or for the volume's own kind if `None`.
-    pub(crate) fn treat_as(&mut self, kind: Option<KindName>, ctx: &egui::Context) {
-        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
+    pub(crate) fn treat_as(
+        &mut self,
+        kind: Option<KindName>,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> io::Result<()> {
+        let (Some(dataset), Some(facts)) = (dataset, &self.volume) else { return Ok(()) };
         let (histogram, up) = (Arc::clone(&facts.histogram), self.settings.camera.up);
         let task = move || {
             KindTaskResult::Look(
@@ -67,12 +73,16 @@ impl App {
                 Box::new(first_look::first_look_as_kind(dataset.volume(), &histogram, kind, up)),
             )
         };
-        self.start_kind_task(task, ctx);
+        self.start_kind_task(task, ctx)
     }
 
     /// Makes the automatic transfer function or table of labels for the current kind of data.
-    pub(crate) fn use_automatic_transfer(&mut self, ctx: &egui::Context) {
-        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), &self.volume) else { return };
+    pub(crate) fn use_automatic_transfer(
+        &mut self,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> io::Result<()> {
+        let (Some(dataset), Some(facts)) = (dataset, &self.volume) else { return Ok(()) };
         let (histogram, kind) = (Arc::clone(&facts.histogram), self.kind_override.kind);
         let task = move || {
             let volume = dataset.volume();
@@ -81,7 +91,7 @@ impl App {
                 first_look::labels_for_kind(volume, kind),
             )
         };
-        self.start_kind_task(task, ctx);
+        self.start_kind_task(task, ctx)
     }
 
     /// Starts a task; the result of one in progress is dropped.
@@ -89,40 +99,45 @@ impl App {
         &mut self,
         task: impl FnOnce() -> KindTaskResult + Send + 'static,
         ctx: &egui::Context,
-    ) {
-        match BackgroundTask::start("first-look", ctx, task) {
-            Ok(work) => self.kind_override.task = Some(work),
-            Err(err) => self.messages.error(text::messages::LOOK_NOT_MADE, err.to_string()),
-        }
+    ) -> io::Result<()> {
+        self.kind_override.task = Some(BackgroundTask::start("first-look", ctx, task)?);
+        Ok(())
     }
 
-    /// Takes over the result of a task from its thread.
-    pub(crate) fn finish_kind_task(&mut self, ctx: &egui::Context) {
+    /// Takes over the result of a task from its thread. Returns true if it is a first look, which now replaces the
+    /// settings.
+    pub(crate) fn finish_kind_task(
+        &mut self,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> Result<bool, String> {
         let Some(made) = self.kind_override.task.as_ref().and_then(BackgroundTask::take_result) else {
-            return;
+            return Ok(false);
         };
         self.kind_override.task = None;
-        match made {
-            Ok(KindTaskResult::Look(kind, look)) => self.use_first_look(kind, *look, ctx),
-            Ok(KindTaskResult::Transfer(transfer, labels)) => {
+        match made? {
+            KindTaskResult::Look(kind, look) if look.camera.up == self.settings.camera.up => {
+                self.use_first_look(kind, *look);
+                return Ok(true);
+            }
+            KindTaskResult::Look(kind, _) => {
+                // The object was turned meanwhile.
+                self.treat_as(kind, dataset, ctx).map_err(|err| err.to_string())?;
+            }
+            KindTaskResult::Transfer(transfer, labels) => {
                 (self.settings.transfer, self.settings.labels) = (transfer, labels);
             }
-            Err(panic) => self.messages.error(text::messages::LOOK_NOT_MADE, panic),
         }
+        Ok(false)
     }
 
     /// Applies a first look for a kind of data.
-    fn use_first_look(&mut self, kind: Option<KindName>, look: Settings, ctx: &egui::Context) {
-        if look.camera.up != self.settings.camera.up {
-            // The object was turned meanwhile.
-            return self.treat_as(kind, ctx);
-        }
+    fn use_first_look(&mut self, kind: Option<KindName>, look: Settings) {
         let look = first_look::replace_look(look, &self.settings);
         self.kind_override.change(kind, &mut self.defaults);
         self.selected_light = self.selected_light.min(look.lights.len().saturating_sub(1));
-        // Starts a light search, as for any first look.
+        // A light search follows, as for any first look.
         self.first_lights = LightPlacement::new(&look);
-        self.light_search = None;
         self.defaults = look.clone();
         self.settings = look;
     }

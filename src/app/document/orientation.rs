@@ -3,13 +3,16 @@
 //! A thread frames the first look in a pass over all voxels.
 
 use std::collections::VecDeque;
+use std::io;
 
 use eframe::egui;
 
+use super::Document;
 use crate::app::common::commands::AppCommand;
+use crate::app::persistence::PersistentState;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
 use chiaroscuro_scene::{Camera, CameraLightRotation, ObjectRotation, SceneAxis, Settings, first_look};
+use chiaroscuro_volume::Dataset;
 
 /// Continuation after the first look has been framed.
 #[derive(Debug)]
@@ -51,12 +54,18 @@ pub(super) fn has_same_framing(a: &Camera, b: &Camera) -> bool {
     apart < 1e-6
 }
 
-impl App {
+impl Document {
     /// Turns the object over or upright, back on the floor and framed as it was. The voxels stay in place: camera and
     /// lights turn.
-    pub(crate) fn turn_object(&mut self, turn: ObjectRotation, ctx: &egui::Context) {
-        if self.orientation_task.is_busy() {
-            return self.orientation_task.waiting.push_back(AppCommand::TurnObject(turn));
+    pub(crate) fn turn_object(
+        &mut self,
+        turn: ObjectRotation,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> io::Result<()> {
+        if self.orientation.is_busy() {
+            self.orientation.waiting.push_back(AppCommand::TurnObject(turn));
+            return Ok(());
         }
         let room = self.settings.camera.rotation_for(turn);
         let mut turned = self.defaults.clone();
@@ -67,13 +76,18 @@ impl App {
             seen.rotate_camera_and_lights(room);
             turned.rotate_object(ObjectRotation::MakeUpright(seen.camera.up));
         }
-        self.frame_first_look(turned, AfterFraming::Turn(turn, room), ctx);
+        self.frame_first_look(turned, AfterFraming::Turn(turn, room), dataset, ctx)
     }
 
     /// Returns true if the first look has the up axis of the settings, wherever these come from. Otherwise it is
     /// turned, and `then` is executed afterwards.
-    pub(crate) fn ensure_first_look_up(&mut self, then: Option<AppCommand>, ctx: &egui::Context) -> bool {
-        self.ensure_first_look_up_axis(self.settings.camera.up, then, ctx)
+    pub(crate) fn ensure_first_look_up(
+        &mut self,
+        then: Option<AppCommand>,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> io::Result<bool> {
+        self.ensure_first_look_up_axis(self.settings.camera.up, then, dataset, ctx)
     }
 
     /// Returns true if the first look has this up axis. Otherwise it is turned, and `then` is executed afterwards.
@@ -81,49 +95,64 @@ impl App {
         &mut self,
         up: SceneAxis,
         then: Option<AppCommand>,
+        dataset: Option<Dataset>,
         ctx: &egui::Context,
-    ) -> bool {
-        if self.defaults.camera.up == up || self.viewport.dataset().is_none() {
-            return true;
+    ) -> io::Result<bool> {
+        if self.defaults.camera.up == up || dataset.is_none() {
+            return Ok(true);
         }
-        if self.orientation_task.is_busy() {
-            self.orientation_task.waiting.extend(then);
+        if self.orientation.is_busy() {
+            self.orientation.waiting.extend(then);
         } else {
             let mut turned = self.defaults.clone();
             turned.rotate_object(ObjectRotation::MakeUpright(up));
-            self.frame_first_look(turned, AfterFraming::Run(then), ctx);
+            self.frame_first_look(turned, AfterFraming::Run(then), dataset, ctx)?;
         }
-        false
+        Ok(false)
     }
 
     /// Starts framing the object in a first look that was turned.
-    fn frame_first_look(&mut self, mut turned: Settings, then: AfterFraming, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset() else { return };
+    fn frame_first_look(
+        &mut self,
+        mut turned: Settings,
+        then: AfterFraming,
+        dataset: Option<Dataset>,
+        ctx: &egui::Context,
+    ) -> io::Result<()> {
+        let Some(dataset) = dataset else { return Ok(()) };
         let task = move || {
             first_look::frame_object(&mut turned, dataset.volume());
             turned
         };
         let (of, up) = (self.defaults.clone(), self.settings.camera.up);
-        match BackgroundTask::start("framing", ctx, task) {
-            Ok(work) => self.orientation_task.framing = Some(FramingTask { work, first_look: of, up, then }),
-            Err(err) => self.messages.error(text::messages::TURN_FAILED, err.to_string()),
-        }
+        let work = BackgroundTask::start("framing", ctx, task)?;
+        self.orientation.framing = Some(FramingTask { work, first_look: of, up, then });
+        Ok(())
     }
 
-    /// Takes over the framed first look from its thread. Returns the commands that have waited for it.
-    pub(crate) fn finish_framing(&mut self) -> Vec<AppCommand> {
-        let Some(framing) = &self.orientation_task.framing else { return Vec::new() };
-        let Some(framed) = framing.work.take_result() else { return Vec::new() };
+    /// Takes over the framed first look from its thread, and remembers the up axis after a turn. Returns the commands
+    /// that have waited for it, and the error if framing has failed.
+    pub(crate) fn finish_framing(
+        &mut self,
+        memory: &mut PersistentState,
+    ) -> (Vec<AppCommand>, Result<(), String>) {
+        let (mut commands, mut result) = (Vec::new(), Ok(()));
+        let Some(framing) = &self.orientation.framing else { return (commands, result) };
+        let Some(framed) = framing.work.take_result() else { return (commands, result) };
         // An undo or the light placement may have intervened.
         let is_of_this = framing.first_look == self.defaults && framing.up == self.settings.camera.up;
-        let Some(FramingTask { then, .. }) = self.orientation_task.framing.take() else { return Vec::new() };
-        let mut commands = Vec::new();
+        let Some(FramingTask { then, .. }) = self.orientation.framing.take() else {
+            return (commands, result);
+        };
         match (framed, then) {
-            (Err(panic), _) => self.messages.error(text::messages::TURN_FAILED, panic),
+            (Err(panic), _) => result = Err(panic),
             (Ok(_), AfterFraming::Turn(turn, _)) if !is_of_this => {
                 commands.push(AppCommand::TurnObject(turn));
             }
-            (Ok(framed), AfterFraming::Turn(_, room)) => self.apply_turn(room, framed),
+            (Ok(framed), AfterFraming::Turn(_, room)) => {
+                self.apply_turn(room, framed);
+                self.remember_up(memory);
+            }
             (Ok(framed), AfterFraming::Run(command)) => {
                 if is_of_this {
                     self.defaults = framed;
@@ -131,8 +160,8 @@ impl App {
                 commands.extend(command);
             }
         }
-        commands.extend(self.orientation_task.waiting.drain(..));
-        commands
+        commands.extend(self.orientation.waiting.drain(..));
+        (commands, result)
     }
 
     /// Applies a turn of the room, together with the first look framed for it.
@@ -144,13 +173,12 @@ impl App {
         if was_framed {
             self.settings.camera.copy_framing(&self.defaults.camera);
         }
-        self.remember_up();
     }
 
     /// Remembers the up axis for the volume's folder. An anatomical orientation says nothing about other files.
-    pub(crate) fn remember_up(&mut self) {
+    pub(crate) fn remember_up(&self, memory: &mut PersistentState) {
         if let Some(volume) = self.volume.as_ref().filter(|volume| !volume.is_anatomical) {
-            self.memory.remember_up(&volume.source, self.settings.camera.up);
+            memory.remember_up(&volume.source, self.settings.camera.up);
         }
     }
 }

@@ -1,0 +1,73 @@
+//! Edits of the look by commands: colours, cuts, view and lights.
+
+use super::Document;
+use crate::app::common::light_keys;
+use chiaroscuro_scene::{COLOR_MAPS, Camera, LightSettings, LightingRig, Settings, StandardView};
+
+impl Document {
+    /// Colours the visible values by a colour map, given by its index.
+    pub(crate) fn use_colors(&mut self, at: usize, reversed: bool) {
+        if let Some(map) = COLOR_MAPS.get(at) {
+            self.settings.transfer.apply_color_map(map, reversed);
+        }
+    }
+
+    /// Turns the clip plane across the line of sight, through the point about which the camera orbits.
+    pub(crate) fn face_plane(&mut self) {
+        let Camera { target, .. } = self.settings.camera;
+        let normal = self.settings.camera.scene_from_view().z_axis;
+        self.settings.cuts.plane.place_facing(normal, target.into());
+    }
+
+    /// Resets the camera to that of the first look.
+    pub(crate) fn reset_view(&mut self) {
+        self.settings.camera = self.defaults.camera.clone();
+    }
+
+    /// Turns the camera to a standard view: of a body, where the volume has an anatomical orientation.
+    pub(crate) fn set_standard_view(&mut self, view: StandardView) {
+        if self.is_anatomical() {
+            self.settings.camera.set_standard_view_of_body(view);
+        } else {
+            self.settings.camera.set_standard_view(view);
+        }
+    }
+
+    /// Replaces the lights by a rig.
+    pub(crate) fn use_rig(&mut self, rig: LightingRig) {
+        self.settings.lights = rig.lights(&self.settings.camera);
+        self.selected_light = 0;
+    }
+
+    /// Replaces the lights by others.
+    pub(crate) fn use_lights(&mut self, lights: Vec<LightSettings>) {
+        self.selected_light = self.selected_light.min(lights.len().saturating_sub(1));
+        self.settings.lights = lights;
+    }
+
+    /// Replaces the look by a suggested one, which leaves saved views, render quality, cuts and corrections of the
+    /// file as they are.
+    pub(crate) fn use_look(&mut self, look: Settings) {
+        let look = look.with_quality_of(&self.settings);
+        let Settings { cuts, kept, volume, .. } = std::mem::take(&mut self.settings);
+        self.settings = Settings { cuts, kept, volume, ..look };
+        self.selected_light = 0;
+    }
+
+    /// Selects another light, `by` places further in the list.
+    pub(crate) fn step_light(&mut self, by: isize) {
+        self.selected_light = light_keys::cycle(self.settings.lights.len(), self.selected_light, by);
+    }
+
+    /// Switches off all lights but the selected one, or all on again.
+    pub(crate) fn solo_light(&mut self) {
+        light_keys::solo(&mut self.settings.lights, self.selected_light);
+    }
+
+    /// Changes the selected light, if there is one.
+    pub(crate) fn change_light(&mut self, change: impl FnOnce(&mut LightSettings)) {
+        if let Some(light) = self.settings.lights.get_mut(self.selected_light) {
+            change(light);
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Automatic changes of the look: lights placed at the end of a first look, and the balance, measured on request or
+//! kept. Their workers run on threads; the document decides which changes are due.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use eframe::egui;
+
+use crate::app::document::auto_balance::{BalanceAction, BalanceFrame};
+use crate::app::document::easing::is_user_active;
+use crate::app::document::light_placement::{LightPlacementAction, LightPlacementFrame};
+use crate::app::worker::background_task::BackgroundTask;
+use crate::app::{App, text};
+use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight};
+
+/// Pause between two candidate positions: long enough for another thread to take the device.
+const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
+
+/// Running light search. Dropping this value cancels the search at its next step and discards the result.
+pub(crate) struct LightSearchTask {
+    work: BackgroundTask<Result<Option<LightSearchResult>, GpuError>>,
+    is_cancelled: Arc<AtomicBool>,
+}
+
+impl Drop for LightSearchTask {
+    fn drop(&mut self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Tasks whose results change the look.
+#[derive(Default)]
+pub(crate) struct LookTasks {
+    /// Measurement of the balance that the user has asked for.
+    pub balance: Option<BackgroundTask<Result<f64, GpuError>>>,
+    /// Search for the lights of the first look.
+    pub light_search: Option<LightSearchTask>,
+}
+
+impl App {
+    /// Finishes the first look of the volume with the lights found, unless the user has edited it.
+    pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
+        if let Some(result) =
+            self.look_tasks.light_search.as_ref().and_then(|seeking| seeking.work.take_result())
+        {
+            self.look_tasks.light_search = None;
+            self.document.first_lights.set_result(result.unwrap_or_else(|panic| {
+                log::error!("the search for a light position failed: {panic}");
+                Ok(None)
+            }));
+        }
+        if !self.document.first_lights.is_due() {
+            self.look_tasks.light_search = None;
+        }
+        let now_s = ctx.input(|input| input.time);
+        let is_complete = self.is_complete();
+        let document = &mut self.document;
+        let moment = LightPlacementFrame {
+            now_s,
+            settings: &document.settings,
+            // The search refers to the picture with the final balance, so a pending change comes first.
+            picture_complete: is_complete && !document.keep_balanced.is_due(&document.settings),
+            user_active: is_user_active(ctx),
+        };
+        match document.first_lights.next_action(moment) {
+            LightPlacementAction::Nothing => {}
+            LightPlacementAction::Search => self.start_light_search(ctx),
+            LightPlacementAction::Set(next) => {
+                document.apply_placed_lights(*next, now_s);
+                ctx.request_repaint();
+            }
+        }
+    }
+
+    /// Starts a light search on a thread, on the render device, whose pipelines are compiled already.
+    fn start_light_search(&mut self, ctx: &egui::Context) {
+        let Some(dataset) = self.viewport.dataset() else { return self.document.first_lights.stop() };
+        let (shaders, settings) = (self.loader.shaders().clone(), self.document.settings.clone());
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&is_unwanted);
+        let task = move || -> Result<Option<LightSearchResult>, GpuError> {
+            let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
+            while search.step()? {
+                if asked.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+                // Lets pictures that were requested meanwhile go first.
+                std::thread::sleep(CANDIDATE_PAUSE);
+            }
+            Ok(search.finish())
+        };
+        match BackgroundTask::start("light-search", ctx, task) {
+            Ok(work) => {
+                self.look_tasks.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted });
+            }
+            Err(err) => {
+                log::warn!("the search for a light position could not start: {err}");
+                self.document.first_lights.stop();
+            }
+        }
+    }
+
+    /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
+    pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
+        let Some(dataset) = self.viewport.dataset().filter(|_| self.look_tasks.balance.is_none()) else {
+            return;
+        };
+        let (context, settings) = (self.viewport.context().clone(), self.document.settings.clone());
+        let task = move || {
+            let mut renderer = Renderer::new(&context.second_device()?)?;
+            chiaroscuro_render::measure_balance(&mut renderer, &dataset, &settings)
+        };
+        match BackgroundTask::start("balance", ctx, task) {
+            Ok(work) => self.look_tasks.balance = Some(work),
+            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        }
+    }
+
+    /// Keeps the picture as bright as without shadows, if the setting is on.
+    pub(crate) fn update_balance(&mut self, ctx: &egui::Context) {
+        let now_s = ctx.input(|input| input.time);
+        let (held, busy, has_its_volume) =
+            (is_user_active(ctx), self.look_tasks.balance.is_some(), self.is_volume_ready());
+        let is_due = self.document.keep_balanced.is_due(&self.document.settings);
+        self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
+        let act = self.document.keep_balanced.next_action(BalanceFrame {
+            now_s,
+            settings: &self.document.settings,
+            is_shown: has_its_volume
+                && self.viewport.displays(&self.picture.compare.looks(&self.document.settings)),
+            user_active: held,
+            busy,
+        });
+        match act {
+            BalanceAction::Nothing => {}
+            BalanceAction::Wait(wait_s) => ctx.request_repaint_after(Duration::from_secs_f64(wait_s)),
+            BalanceAction::Measure => self.viewport.measure_balance(&self.document.settings),
+            BalanceAction::Set(balance) => {
+                self.document.apply_balance(balance, now_s);
+                ctx.request_repaint();
+            }
+        }
+    }
+
+    /// Takes the results of the measurements of balance.
+    pub(super) fn take_balances(&mut self, ctx: &egui::Context) {
+        if let Some(result) = self.look_tasks.balance.as_ref().and_then(BackgroundTask::take_result) {
+            self.look_tasks.balance = None;
+            match result {
+                Ok(Ok(balance)) => {
+                    self.document.settings.shadows.balance = balance;
+                    self.document.settings.sanitise();
+                }
+                Ok(Err(err)) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+                Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
+            }
+        }
+        if let Some(found) = self.viewport.take_balance() {
+            self.document
+                .keep_balanced
+                .set_result(ctx.input(|input| input.time), found.as_ref().ok().copied());
+            if let Err(err) = found {
+                self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Commands on files: dialogs, sessions and exports.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+
+use crate::app::windows::export;
+use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
+use crate::app::{App, text};
+use chiaroscuro_scene::Settings;
+
+impl App {
+    /// Asks for a file in a dialog of the desktop.
+    pub(super) fn ask_file(
+        &mut self,
+        purpose: FileDialogPurpose,
+        frame: &eframe::Frame,
+        ctx: &egui::Context,
+    ) {
+        self.dialogs.files.open_dialog(purpose, frame, ctx);
+    }
+
+    /// Reopens the volume with the look of the previous run.
+    pub(super) fn reopen_last(&mut self, ctx: &egui::Context) {
+        match self.memory.previous_look() {
+            Some(path) => self.open_record(&path, ctx),
+            None => self.messages.note(text::messages::NO_SESSION_TO_REOPEN),
+        }
+    }
+
+    /// Saves the session to its file, or asks for a file.
+    pub(super) fn save_session(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+        match self.session_to_save() {
+            Some(path) => self.save_settings(&path),
+            None => self.ask_file(FileDialogPurpose::SaveSettings, frame, ctx),
+        }
+    }
+
+    /// Shows the export dialog for pictures and turntables.
+    pub(super) fn open_export(&mut self) {
+        let size = self.viewport_size();
+        self.windows.export.open(size, self.layout.exports.as_deref(), self.document.volume_name());
+    }
+
+    pub(crate) fn viewport_size(&self) -> [u32; 2] {
+        // Before there is a picture: the resolution of the smallest common screens.
+        self.picture.canvas.map_or([1280, 720], |canvas| canvas.available_size.map(|n| n.max(1)))
+    }
+
+    /// Handles a file that was chosen in a dialog or typed.
+    pub(crate) fn handle_chosen_file(
+        &mut self,
+        purpose: FileDialogPurpose,
+        path: &Path,
+        ctx: &egui::Context,
+    ) {
+        match purpose {
+            FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.open(path, ctx),
+            FileDialogPurpose::VolumeOfLook => self.open_for_look(path, ctx),
+            FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
+            FileDialogPurpose::SaveSettings => self.save_settings(path),
+            FileDialogPurpose::ExportKept => {
+                if let Some(subject) = self.export_subject()
+                    && let Err(err) = self.windows.export.export_kept_sheet(subject, path, ctx)
+                {
+                    self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+                }
+            }
+            FileDialogPurpose::ExportLight => {
+                let Some(dataset) = self.viewport.dataset() else { return };
+                match self.windows.light_slice.export(path, dataset.volume()) {
+                    Ok(()) => self.messages.note(text::messages::exported(path)),
+                    Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
+                }
+            }
+            FileDialogPurpose::LoadSettings => self.load_settings(path, ctx),
+            FileDialogPurpose::EnvironmentMap => self.read_environment_map(path, ctx),
+            FileDialogPurpose::ImportTransfer => self.import_transfer(path, ctx),
+            FileDialogPurpose::ExportTransfer => {
+                match file_dialogs::export_transfer_file(
+                    path,
+                    &self.document.settings,
+                    &self.document.value_ranges(),
+                ) {
+                    Ok(()) => self.messages.note(text::messages::written(path)),
+                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
+                }
+            }
+            FileDialogPurpose::CompareSettings => self.compare_with_file(path, ctx),
+        }
+    }
+
+    /// Returns the subject of an export; shows a message if there is no picture.
+    pub(crate) fn export_subject(&mut self) -> Option<export::ExportScene> {
+        let Some(dataset) = self.viewport.dataset() else {
+            self.messages.note(text::messages::NO_PICTURE);
+            return None;
+        };
+        // Ignores a correction in progress: the picture shows the volume that is loaded.
+        let settings = Settings { volume: *dataset.volume().corrections(), ..self.document.settings.clone() };
+        Some(export::ExportScene {
+            context: self.viewport.context().clone(),
+            dataset,
+            settings,
+            first_look: self.document.defaults.clone(),
+            source: self.document.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
+            selected_light: self.document.selected_light,
+            outline: self.document.outline(self.viewport.dataset().as_ref()),
+        })
+    }
+
+    pub(crate) fn start_export(&mut self, ctx: &egui::Context) {
+        if let Some(subject) = self.export_subject()
+            && let Err(err) = self.windows.export.start(subject, ctx)
+        {
+            self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+        }
+    }
+
+    pub(super) fn copy_picture(&mut self, ctx: &egui::Context) {
+        if self.windows.export.is_busy() {
+            self.messages.note(text::messages::EXPORT_RUNS);
+        } else if let Some(subject) = self.export_subject()
+            && let Err(err) = self.windows.export.copy_to_clipboard(subject, self.viewport_size(), ctx)
+        {
+            self.messages.error(text::messages::PICTURE_NOT_COPIED, err);
+        }
+    }
+}

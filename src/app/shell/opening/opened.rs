@@ -1,0 +1,170 @@
+//! Replacement of the open volume by one that is ready, with the look that the [plan](super::plan) gives it.
+
+use std::sync::Arc;
+
+use eframe::egui;
+
+use super::plan::{CorrectionsOrigin, LookChange, OpenPlan, OpenRequest, StartingLook};
+use super::similarity::VolumeSimilarity;
+use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::document::auto_balance::AutoBalance;
+use crate::app::document::corrections::CorrectionState;
+use crate::app::document::data_kind::KindOverride;
+use crate::app::document::light_placement::LightPlacement;
+use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
+use crate::app::windows::file_dialogs;
+use crate::app::worker::loader::OpenedVolume;
+use crate::app::{App, text};
+use chiaroscuro_scene::{LookRecord, ObjectRotation, Settings};
+use chiaroscuro_volume::Volume;
+
+/// Session that was read for a volume, or the reason why it is missing.
+type SessionRead = Result<LookRecord, FileReadFailure>;
+
+/// Returns a look for another volume, whose first look gives the position of the object: it may have another up axis.
+fn kept_look(mut look: Settings, first: &Settings) -> Settings {
+    look.rotate_object(ObjectRotation::MakeUpright(first.camera.up));
+    look.camera.clone_from(&first.camera);
+    look.volume = first.volume;
+    look.floor.height = first.floor.height;
+    look
+}
+
+impl App {
+    /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
+    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
+        let session = self.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
+        match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
+            Some(path) => {
+                let read = file_dialogs::load_record;
+                self.read_file(ReadPurpose::Session, &path, ctx, read, |app, read, ctx| {
+                    app.show_opened(opened, Some(read), ctx);
+                });
+            }
+            None => self.show_opened(opened, None, ctx),
+        }
+    }
+
+    /// Replaces the open volume by one that is ready, with the session that was read for it.
+    fn show_opened(&mut self, opened: OpenedVolume, session: Option<SessionRead>, ctx: &egui::Context) {
+        let OpenedVolume { source, reading, dataset, original_dims, renderer, settings, stamp } = opened;
+        let volume = Arc::clone(dataset.volume());
+        self.report_opened(&volume, original_dims);
+        let open = self.document.volume.as_ref();
+        let plan = OpenPlan::new(OpenRequest {
+            requested: self.opening.requests.pending_look.take(),
+            keeps_look: self.opening.requests.keeps_look,
+            similarity: open.map(|open| VolumeSimilarity::between(open, &volume)),
+            has_session: session.is_some(),
+            has_adjustment: self.opening.adjust_first_look.is_some(),
+        });
+        // Session and command line apply to the first volume only.
+        self.opening.requests.session_is_due = false;
+        self.apply_plan(plan, settings, session, &volume);
+        self.memory.add_recent(&source, &volume.contents().choice());
+        self.panels.recent_pictures.clear();
+        self.look_tasks.light_search = None;
+        self.windows.contact_sheet.discard();
+        self.panels.kept_strip.reset();
+        let facts = VolumeFacts::new(source, reading, &dataset);
+        self.viewport.set_scene(renderer, dataset);
+        let document = &mut self.document;
+        document.volume = Some(facts);
+        // Treated as its own kind of data, with its own up axis.
+        document.kind_override = KindOverride::default();
+        document.drop_turns();
+        document.start_history(&volume);
+        document.corrections = CorrectionState::new(stamp, document.settings.volume);
+        let title = text::opening::title(document.volume_name());
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+    }
+
+    /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.
+    fn report_opened(&mut self, volume: &Volume, original_dims: Option<[usize; 3]>) {
+        self.messages.clear();
+        if let Some(before) = original_dims {
+            self.messages.note(text::opening::downsampled(before, volume.dims()));
+        }
+        for remark in volume.remarks() {
+            self.messages.note(remark.clone());
+        }
+        if !volume.corrections().is_none() {
+            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
+        }
+    }
+
+    /// Applies the plan for a volume to the document; `first` is the first look of the volume.
+    fn apply_plan(
+        &mut self,
+        plan: OpenPlan,
+        first: Settings,
+        mut session: Option<SessionRead>,
+        volume: &Volume,
+    ) {
+        let OpenPlan { start, changes, keeps_selection, places_lights } = plan;
+        let before = std::mem::take(&mut self.document.settings);
+        self.document.settings = match start {
+            StartingLook::FirstLook => first.clone(),
+            StartingLook::KeptLook => kept_look(before.clone(), &first),
+        };
+        // Measurements belong to the volume before; a first look is balanced, a kept look is not.
+        let is_balanced = start == StartingLook::FirstLook;
+        self.document.keep_balanced = AutoBalance::new(&self.document.settings, is_balanced);
+        for change in changes {
+            match change {
+                LookChange::Session => {
+                    if let Some(read) = session.take() {
+                        self.apply_session(read, volume);
+                    }
+                }
+                LookChange::Record(record) => {
+                    let of = record.volume.as_ref();
+                    if of.is_some_and(|of| !of.matches_content(volume.opened_id())) {
+                        self.messages.note(text::opening::OTHER_VALUES);
+                    }
+                    self.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
+                }
+                LookChange::Settings(settings) => self.document.replace_settings(*settings),
+                LookChange::Current(corrections) => {
+                    let volume = match corrections {
+                        CorrectionsOrigin::OpenedFile => first.volume,
+                        CorrectionsOrigin::CurrentLook => before.volume,
+                    };
+                    self.document.replace_settings(Settings { volume, ..before.clone() });
+                }
+                LookChange::Adjustment => {
+                    if let Some(adjust) = self.opening.adjust_first_look.take() {
+                        self.document.settings = adjust(std::mem::take(&mut self.document.settings));
+                        self.document.settings.sanitise();
+                    }
+                }
+            }
+        }
+        let document = &mut self.document;
+        // Saved views are useful on other volumes, too.
+        if document.settings.kept.is_empty() {
+            document.settings.kept = before.kept;
+        }
+        let placement =
+            if places_lights { LightPlacement::new(&document.settings) } else { LightPlacement::default() };
+        (document.defaults, document.first_lights) = (first, placement);
+        if !keeps_selection {
+            document.selected_light = 0;
+        }
+    }
+
+    /// Applies the session that was read for a volume, or reports why it was not read.
+    fn apply_session(&mut self, read: SessionRead, volume: &Volume) {
+        let Some(mut session) = self.document.session.take() else { return };
+        session.set_record(read.as_ref().ok());
+        match read {
+            Ok(record) => {
+                if !self.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                    session.protect_invalid();
+                }
+            }
+            Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
+        }
+        self.document.session = Some(session);
+    }
+}

@@ -1,0 +1,37 @@
+//! State of opening: requests for the next volume, and what is still to be opened or read.
+
+use super::dropped_and_neighbours::NeighbourSearch;
+use super::plan::PendingLook;
+use crate::app::shell::file_tasks::FileTasks;
+use chiaroscuro_scene::Settings;
+
+/// Function that changes settings once.
+pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
+
+/// Requests that hold for the next volume, in a successor window as well.
+#[derive(Debug, Default)]
+pub(crate) struct OpenRequests {
+    /// True if the next volume keeps the current look instead of getting its own first look.
+    pub keeps_look: bool,
+    /// Look for the volume that is being opened, applied when the volume arrives.
+    pub pending_look: Option<PendingLook>,
+    /// True until the session's look has been applied over the first look.
+    pub session_is_due: bool,
+    /// True if volumes named by looks from outside are opened without asking the user.
+    pub trusts_paths: bool,
+}
+
+/// State of opening volumes and looks.
+#[derive(Default)]
+pub(crate) struct OpeningState {
+    /// Requests that hold for the next volume.
+    pub requests: OpenRequests,
+    /// Change of the first volume's settings, from the command line.
+    pub adjust_first_look: Option<SettingsAdjustment>,
+    /// True while the default volume waits for the user's answer about reopening the last session.
+    pub default_open_waits: bool,
+    /// Search for the next file in the folder, while it runs.
+    pub next_file_search: Option<NeighbourSearch>,
+    /// Files other than volumes that are being read.
+    pub file_tasks: FileTasks,
+}
