@@ -48,7 +48,7 @@ impl PicturePainter {
         let pipeline = pipeline(device, &module, &layout, target);
         match pollster::block_on(scope.pop()) {
             None => Ok(Self { device: device.clone(), layout, pipeline }),
-            Some(err) => Err(GpuError::Rejected(format!("output/painter.wgsl: {err}"))),
+            Some(err) => Err(GpuError::Refused(format!("output/painter.wgsl: {err}"))),
         }
     }
 

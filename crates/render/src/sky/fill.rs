@@ -243,7 +243,10 @@ impl SkyTextures {
             // Before the rays there are a column and a row of rays that miss the grid.
             let [width, height] = above.max_size().map(|n| n + 1);
             let left = RaySheets::new(context, [width, height, above.directions_per_batch()], format)?;
-            Ok(FloorTextures { transmittance: left, sums: sums("Sky::floor_sums", floor.texels()) })
+            Ok::<_, GpuError>(FloorTextures {
+                transmittance: left,
+                sums: sums("Sky::floor_sums", floor.texels()),
+            })
         };
         let floor = volume.floor.as_ref().map(of_floor).transpose()?;
         let sums = sums("Sky::sums", looked_up);
