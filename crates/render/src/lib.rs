@@ -72,7 +72,7 @@ pub use pipelines::shader_files::SHADERS;
 pub use pipelines::shader_library::ShaderLibrary;
 #[cfg(feature = "testing")]
 pub use pipelines::uniforms;
-pub use plan::RenderOptions;
+pub use plan::{PictureOptions, RenderOptions, TestSwitches, WorkOptions};
 pub use resources::textures::AttenuationData;
 #[cfg(feature = "testing")]
 pub use volume::brick_list::LISTED_PER_ROW;

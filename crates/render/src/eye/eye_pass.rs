@@ -65,12 +65,12 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: window.size[1],
-            dilation: if options.empty_space_skipping {
+            dilation: if options.switches.empty_space_skipping {
                 scatter_reach_bricks(&frame)
             } else {
                 UNLIMITED_REACH
             },
-            min_transmittance: options.min_transmittance,
+            min_transmittance: options.switches.min_transmittance,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
             runs: 1,
@@ -86,11 +86,11 @@ impl EyePass {
             scattered_light: scattered_light_uniform(settings, scene, around.bounces),
             lights: packed,
         };
-        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.work.preview);
         if direct {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
-        let dilation = if options.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
+        let dilation = if options.switches.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
         // Normals of classified voxels come from the next pyramid level.
         let is_classified = settings.sampling.classification == ClassificationOrder::Pre;
         let levels = PyramidLevels::for_stretch(stretch_level > 0.0 || is_classified);
@@ -329,7 +329,7 @@ pub(crate) fn shading_uniform(
         gain: shadows.gain as f32,
         bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
         ray_step: shadows.ray_step(scene) as f32,
-        max_optical_depth: options.max_optical_depth(),
+        max_optical_depth: options.switches.max_optical_depth(),
         anisotropy: settings.scattering.anisotropy as f32,
         pad0: 0.0,
         pad1: 0.0,

@@ -174,7 +174,7 @@ impl Renderer {
         }
         let is_drawn = role.is_some();
         for (at, build) in light_entries.builds.iter().enumerate() {
-            steps.extend(build.steps(at, options.light_parts.max(1)));
+            steps.extend(build.steps(at, options.work.light_parts.max(1)));
         }
         let role = if let Some(role) = role {
             role
@@ -308,8 +308,8 @@ fn material_steps(tables: &TransferTables) -> Vec<RenderStep> {
 fn target_shape(request: &RenderRequest, options: &RenderOptions) -> TargetShape {
     TargetShape {
         size: options.displayed_window(request).size,
-        samples: options.samples,
-        is_deep: options.depth != PixelFormat::Eight,
+        samples: options.picture.samples,
+        is_deep: options.picture.depth != PixelFormat::Eight,
     }
 }
 

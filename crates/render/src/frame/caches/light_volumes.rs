@@ -69,7 +69,7 @@ fn floor_with_shadow_map(
 
 /// Returns the distance from visible cells, in data cells, up to which a light volume is read.
 fn read_reach(options: &RenderOptions, divisor: usize, reach: u8, aheads: &[NearFieldOffset]) -> u8 {
-    if options.fill_all_light_voxels {
+    if options.work.fill_all_light_voxels {
         return MAX_CELL_DISTANCE;
     }
     let farthest = aheads.iter().map(NearFieldOffset::max_distance).max().unwrap_or(0);
@@ -102,7 +102,7 @@ impl LoadedVolume {
             return self.find_or_create_each_light(inputs, recyclable);
         };
         let ProductRequest { context, request, options, .. } = inputs;
-        let reach = lookup_reach_of_picture(&self.volume, request, options.samples);
+        let reach = lookup_reach_of_picture(&self.volume, request, options.picture.samples);
         let divisor = request.settings.shadows.resolution.divisor();
         let needs = CellRequirement { reach, divisor, offset: NearFieldOffset::default() };
         let needed = needed_cells(&self.volume, &self.tables.product, options, needs);
@@ -144,7 +144,7 @@ impl LoadedVolume {
             picture_number: now,
         } = wanted;
         let Self { volume, tables, lights, .. } = self;
-        let reach = lookup_reach_of_picture(volume, request, options.samples);
+        let reach = lookup_reach_of_picture(volume, request, options.picture.samples);
         let shadowed = full_keys.iter().flatten().count();
         // A picture without shadows evicts none, since comparisons return to them.
         let max_cached =

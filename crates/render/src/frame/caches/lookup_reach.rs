@@ -44,7 +44,7 @@ pub(super) fn lookup_reach_of_picture(volume: &GpuVolume, request: &RenderReques
 
 /// Returns the reach that must be filled: 0 for previews, which accept missing cells.
 pub(super) fn required_reach(wanted: ProductRequest<'_>, reach: u8) -> u8 {
-    if wanted.request.preview_resolution.is_some() || wanted.options.preview { 0 } else { reach }
+    if wanted.request.preview_resolution.is_some() || wanted.options.work.preview { 0 } else { reach }
 }
 
 /// Returns the cells of a light volume, with `divisor` data voxels per voxel, that a picture can look up, given the
@@ -55,7 +55,7 @@ pub(super) fn needed_cells(
     options: &RenderOptions,
     CellRequirement { reach, divisor, offset: ahead }: CellRequirement,
 ) -> Arc<CellSet> {
-    if options.fill_all_light_voxels {
+    if options.work.fill_all_light_voxels {
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         return Arc::new(CellSet::full(brick_dims(dims)));
     }

@@ -59,7 +59,7 @@ impl LoadedVolume {
         let cells = |divisor: usize, reach: u8| {
             ambient_cells(&self.volume, &self.tables.product, options, (divisor, reach))
         };
-        let reach = view_sample_reach(&self.volume, request, options.samples);
+        let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         let least_reach = required_reach(wanted, reach);
         let find = |key: &BouncesKey| {
             let has_cells = |known: &ScatteredLightVolume| {

@@ -63,7 +63,7 @@ impl LoadedVolume {
         let cells = |divisor: usize, reach: u8| {
             ambient_cells(&self.volume, &self.tables.product, options, (divisor, reach))
         };
-        let reach = view_sample_reach(&self.volume, request, options.samples);
+        let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         // Cells of the margin see the whole sky, which suffices for previews.
         let least_reach = required_reach(wanted, reach);
         let has_cells = |known: &SkyVolume| cells(known.divisor, least_reach).is_subset(&known.filled_cells);

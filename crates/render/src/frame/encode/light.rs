@@ -24,12 +24,12 @@ impl RenderJob<'_> {
         let loaded = &self.loaded.product;
         let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
         let light = build.target_volume(*point, color, &loaded.lights[build.cache_index].product);
-        let skips = self.options.empty_space_skipping;
+        let skips = self.options.switches.empty_space_skipping;
         let reach = if skips { i32::from(build.reach) } else { UNLIMITED_REACH };
         let mut sheets = LightSheets::new(self.tools, geometry, *chunk, reach)?;
-        sheets.min_transmittance = self.options.min_transmittance;
+        sheets.min_transmittance = self.options.switches.min_transmittance;
         // A volume at full resolution also serves pictures, so it is filled with the full reach.
-        sheets.is_preview = self.options.preview && build.is_coarse;
+        sheets.is_preview = self.options.work.preview && build.is_coarse;
         let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes();
         bytes += sheets.ring.bytes() + build.bytes();
         let scatter = match &self.scattering {
