@@ -34,14 +34,22 @@ pub(crate) struct EyePass {
     variant: EyeVariant,
 }
 
+/// Light that reaches the samples of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EyeLights<'a> {
+    /// Lights with their volumes: shadowed ones first, without those that are in the combined volume.
+    pub lights: &'a [LightInput<'a>],
+    pub combined: Option<&'a CombinedLight>,
+    pub ambient: AmbientVolumes<'a>,
+}
+
 impl EyePass {
-    /// Prepares the pass for some lights (shadowed ones first, without those that are in the combined volume), and
-    /// for sky visibility and scattered light where there are volumes of them.
+    /// Prepares the pass for some lights, and for sky visibility and scattered light where there are volumes of them.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
-        (lights, combined, around): (&[LightInput<'_>], Option<&CombinedLight>, AmbientVolumes<'_>),
+        EyeLights { lights, combined, ambient }: EyeLights<'_>,
         options: &RenderOptions,
     ) -> Self {
         let frame = picture_frame(settings, scene, window);
@@ -82,8 +90,8 @@ impl EyePass {
                 &visible_region.region(scene).intersection(&Aabb::of_grid(scene.dims, 0.0)),
             ),
             shading_cut: uniforms::CutUniform::new(&shading_cut.region(scene)),
-            sky: sky_uniform(settings, scene, around.sky),
-            scattered_light: scattered_light_uniform(settings, scene, around.bounces),
+            sky: sky_uniform(settings, scene, ambient.sky),
+            scattered_light: scattered_light_uniform(settings, scene, ambient.bounces),
             lights: packed,
         };
         let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.work.preview);

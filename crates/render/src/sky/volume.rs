@@ -41,6 +41,17 @@ pub(crate) struct SkyVolume {
     pub last_used: u64,
 }
 
+/// Extent of a sky-visibility volume that is to be filled.
+#[derive(Debug)]
+pub(crate) struct SkyVolumeExtent {
+    /// Cells (of blocks) to be filled.
+    pub filled: Arc<CellSet>,
+    /// Cells around the filled ones, to be cleared.
+    pub margin: CellSet,
+    /// Extent of the floor, if there is one.
+    pub floor: Option<FloorPlane>,
+}
+
 impl SkyVolume {
     /// Creates the texture, for blocks of `divisor`³ voxels; nothing is filled yet.
     ///
@@ -50,8 +61,7 @@ impl SkyVolume {
         context: &GpuContext,
         scene: &SceneSpace,
         divisor: usize,
-        (filled, margin): (Arc<CellSet>, CellSet),
-        floor: Option<FloorPlane>,
+        SkyVolumeExtent { filled, margin, floor }: SkyVolumeExtent,
     ) -> Result<Self, GpuError> {
         let dims = scene.dims.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(

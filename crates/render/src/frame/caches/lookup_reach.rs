@@ -74,7 +74,8 @@ pub(super) fn ambient_cells(
     volume: &GpuVolume,
     tables: &TransferTables,
     options: &RenderOptions,
-    (divisor, reach): (usize, u8),
+    divisor: usize,
+    reach: u8,
 ) -> Arc<CellSet> {
     let reach = reach.saturating_add(bias_reach(SKY_LOOKUP_DISTANCE * divisor as f64));
     needed_cells(

@@ -57,7 +57,7 @@ impl LoadedVolume {
         let Some(full) = &keys.bounces else { return Ok(ScatteredLightEntry::default()) };
         let coarse = request.preview_resolution.map(|_| full.for_preview());
         let cells = |divisor: usize, reach: u8| {
-            ambient_cells(&self.volume, &self.tables.product, options, (divisor, reach))
+            ambient_cells(&self.volume, &self.tables.product, options, divisor, reach)
         };
         let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         let least_reach = required_reach(wanted, reach);

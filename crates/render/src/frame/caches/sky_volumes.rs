@@ -10,7 +10,7 @@ use crate::plan::{FloorPlane, SkyKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
 use crate::sky::fill::SkyFill;
-use crate::sky::volume::{MAX_DIRECTION_TEXELS, SkyVolume, divisor_for_adapter};
+use crate::sky::volume::{MAX_DIRECTION_TEXELS, SkyVolume, SkyVolumeExtent, divisor_for_adapter};
 use crate::volume::VolumeContext;
 
 /// Maximum number of cached volumes: one for the picture, one for its previews, and one for undoing a change.
@@ -61,7 +61,7 @@ impl LoadedVolume {
         let has_floor =
             |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.extent) == floor;
         let cells = |divisor: usize, reach: u8| {
-            ambient_cells(&self.volume, &self.tables.product, options, (divisor, reach))
+            ambient_cells(&self.volume, &self.tables.product, options, divisor, reach)
         };
         let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         // Cells of the margin see the whole sky, which suffices for previews.
@@ -93,7 +93,8 @@ impl LoadedVolume {
             oldest.map(|at| self.skies.swap_remove(at));
         }
         tools.pool.drop_bind_groups();
-        let mut fresh = SkyVolume::new(context, &self.volume.scene, divisor, (filled, margin), floor)?;
+        let mut fresh =
+            SkyVolume::new(context, &self.volume.scene, divisor, SkyVolumeExtent { filled, margin, floor })?;
         fresh.last_used = now;
         let slot = self.skies.len();
         let gpu = VolumeContext::new(tools, &self.volume);

@@ -49,7 +49,7 @@ impl RenderJob<'_> {
                 self.report.step_counts.volume += 1;
                 gradients::fill_gradients(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
-            RenderStep::Materials(side, level, bricks) => {
+            RenderStep::Materials { side, level, bricks } => {
                 self.report.step_counts.materials += 1;
                 let table = side.table(&self.loaded.product.tables.product);
                 let Some(materials) = &table.materials else { return Ok(()) };

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::light_inputs::{light_inputs, light_inputs_of};
 use super::steps::{combine_steps, eye_steps, material_steps};
 use crate::context::gpu_clock::GpuClock;
-use crate::eye::eye_pass::EyePass;
+use crate::eye::eye_pass::{EyeLights, EyePass};
 use crate::eye::light_lookup::AmbientVolumes;
 use crate::frame::caches::placement::VolumePlacement;
 use crate::frame::double_buffer::{DoubleBuffer, TargetRole, display_key};
@@ -155,22 +155,22 @@ impl<'r> FramePlanner<'r> {
         let (value, settings) = (&self.loaded.product, &self.request.settings);
         let volumes = light_inputs(&self.lights, &placement.lights.slots, value);
         let window = self.options.sample_window(&self.request);
-        let around = AmbientVolumes {
+        let ambient = AmbientVolumes {
             sky: placement.sky.slot.map(|slot| &value.skies[slot].product),
             bounces: placement.bounces.slot.map(|slot| &value.bounces[slot].product),
         };
-        let of_lights = |lights: &[LightInput<'_>]| {
-            EyePass::new(&value.volume.scene, settings, window, (lights, None, around), &self.options)
+        let pass = |lights: EyeLights<'_>| {
+            EyePass::new(&value.volume.scene, settings, window, lights, &self.options)
         };
-        let combine = placement.lights.bricks_to_combine.is_some().then(|| of_lights(&volumes));
+        let each = EyeLights { lights: &volumes, combined: None, ambient };
+        let combine = placement.lights.bricks_to_combine.is_some().then(|| pass(each));
         let combined = value.combined.as_ref().filter(|_| self.keys.combined.is_some());
         let eye = match combined {
             Some(combined) => {
                 let unshadowed = light_inputs_of(self.lights.unshadowed(), &[], value);
-                let lights = (&unshadowed[..], Some(&combined.product), around);
-                EyePass::new(&value.volume.scene, settings, window, lights, &self.options)
+                pass(EyeLights { lights: &unshadowed, combined: Some(&combined.product), ambient })
             }
-            None => of_lights(&volumes),
+            None => pass(each),
         };
         self.report.slabs = eye.slab_count();
         self.report.size = window.size;

@@ -36,7 +36,7 @@ pub(super) fn material_steps(tables: &TransferTables) -> Vec<RenderStep> {
         if materials.is_complete() || begun.is_some_and(|begun| Arc::ptr_eq(begun, materials)) {
             continue;
         }
-        steps.extend(materials.steps().map(|(level, bricks)| RenderStep::Materials(side, level, bricks)));
+        steps.extend(materials.steps().map(|(level, bricks)| RenderStep::Materials { side, level, bricks }));
         steps.push(RenderStep::Finish(FrameProduct::Materials(side)));
         begun = Some(materials);
     }
