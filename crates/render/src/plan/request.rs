@@ -61,7 +61,7 @@ pub struct PictureOptions {
 }
 
 /// Options of the work for a picture: shortcuts, waits and the extent of light volumes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorkOptions {
     /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
     /// kernels without their outermost tails.

@@ -121,7 +121,7 @@ impl LightKey {
         let wanted = shadows.algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {
             volume: request.volume_key(),
-            light: LightShapeKey::new(&light, &shadows.area),
+            light: LightShapeKey::new(&light, shadows.area),
             pass: LightPassKey::new(shadows, *engine),
             classification: request.settings.classification(),
             opacity: OpacityKey::new(&request.settings),
@@ -138,7 +138,7 @@ impl LightKey {
 }
 
 impl LightShapeKey {
-    fn new(light: &SceneLight, sampling: &AreaLightSampling) -> Self {
+    fn new(light: &SceneLight, sampling: AreaLightSampling) -> Self {
         let SceneLight {
             kind,
             position,
@@ -150,7 +150,7 @@ impl LightShapeKey {
             density_scale,
             area,
         } = *light;
-        let AreaLightSampling { samples, resolution: _ } = *sampling;
+        let AreaLightSampling { samples, resolution: _ } = sampling;
         let hooded = hooded && kind == LightGeometry::Perspective;
         Self {
             kind,
