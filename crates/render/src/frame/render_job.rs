@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use super::caches::scattered_light_volumes::ScatteredLightEntry;
-use super::caches::sky_volumes::SkyEntry;
+use super::caches::scattered_light_volumes::ScatteredLightPlace;
+use super::caches::sky_volumes::SkyPlace;
 use super::double_buffer::{DoubleBuffer, TargetRole};
 use super::light_fill::LightFill;
 use super::loaded_volume::LoadedVolume;
@@ -45,9 +45,9 @@ pub struct RenderJob<'r> {
     pub(super) light_indices: Vec<Option<usize>>,
     pub(super) light_fills: Vec<LightFill>,
     /// Cached or new volume of sky visibility.
-    pub(super) sky: SkyEntry,
+    pub(super) sky: SkyPlace,
     /// Cached or new volume of scattered light.
-    pub(super) scattered_light: ScatteredLightEntry,
+    pub(super) scattered_light: ScatteredLightPlace,
     /// Shading parameters with the volume of each light, for filling the combined volume.
     pub(super) combine_pass: Option<EyePass>,
     pub(super) eye_pass: EyePass,

@@ -37,8 +37,6 @@ pub(crate) struct SkyVolume {
     pub margin: CellSet,
     /// Stopwatch for the filling of the volume.
     pub fill_time: FillStopwatch,
-    /// Counter value at the last use; the least recently used volume is dropped first.
-    pub last_used: u64,
 }
 
 /// Extent of a sky-visibility volume that is to be filled.
@@ -83,7 +81,6 @@ impl SkyVolume {
             filled_cells: filled,
             margin,
             fill_time: FillStopwatch::default(),
-            last_used: 0,
         })
     }
 

@@ -12,6 +12,10 @@ use crate::volume::transfer_tables::{CellRequirement, TransferTables};
 use crate::volume::{GpuVolume, brick_dims};
 use chiaroscuro_scene::{MAX_BIAS_VOXELS, NearFieldRay, SKY_LOOKUP_DISTANCE};
 
+/// Maximum number of cached volumes of sky visibility, and of scattered light: one for the picture, one for its
+/// previews, and one for undoing a change.
+pub(super) const MAX_AMBIENT_VOLUMES: usize = 3;
+
 /// Returns the maximum reach of samples in previews, in cells, whose pixels may be as wide as the maximum stretch.
 pub(super) fn max_stretch_reach() -> u8 {
     stretch_reach(MAX_STRETCH_LEVEL)

@@ -1,8 +1,8 @@
 //! Placement: volumes of light that a picture looks up are found in the caches, recycled or created.
 
 use super::light_volumes::LightEntries;
-use super::scattered_light_volumes::ScatteredLightEntry;
-use super::sky_volumes::SkyEntry;
+use super::scattered_light_volumes::ScatteredLightPlace;
+use super::sky_volumes::SkyPlace;
 use crate::GpuError;
 use crate::frame::loaded_volume::{LoadedVolume, ProductRequest};
 use crate::plan::{ActiveLights, LightKey};
@@ -12,8 +12,8 @@ use crate::resources::gpu_tools::GpuTools;
 #[derive(Debug, Default)]
 pub(crate) struct VolumePlacement {
     pub lights: LightEntries,
-    pub sky: SkyEntry,
-    pub bounces: ScatteredLightEntry,
+    pub sky: SkyPlace,
+    pub bounces: ScatteredLightPlace,
 }
 
 impl VolumePlacement {
