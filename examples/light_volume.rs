@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, WorkOptions, plan::RenderRequest};
 use chiaroscuro_scene::{
     ControlPoint, LightSettings, LightStorage, OpacityInterpolation, OpacityLength, Settings,
     TransferFunction,
@@ -36,7 +36,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Light volumes are filled while a picture is drawn, here of a few pixels, and here everywhere, not only where it
     // needs them.
     let mut renderer = Renderer::new(&GpuContext::headless()?)?;
-    let (size, options) = ([8, 8], RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() });
+    let (size, options) =
+        ([8, 8], RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() }));
     renderer.draw(&dataset, &settings, size, &options)?;
     let request = RenderRequest { volume: dataset.volume().id(), settings, size, preview_resolution: None };
     let light = renderer.attenuation(&request, 0)?.ok_or("the light casts no shadows")?;

@@ -6,7 +6,9 @@
 
 use std::time::{Duration, Instant};
 
-use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, device_descriptor, plan::RenderRequest};
+use chiaroscuro_render::{
+    GpuContext, RenderOptions, Renderer, TestSwitches, WorkOptions, device_descriptor, plan::RenderRequest,
+};
 use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, first_look};
 use chiaroscuro_volume::{Dataset, Histogram, synthetic::builtin};
 
@@ -81,7 +83,11 @@ impl Soak {
             size: if is_rest { [96, 72] } else { [48, 36] },
             preview_resolution: (!is_rest).then_some(LightVolumeResolution::Quarter),
         };
-        let options = RenderOptions { preview: !is_rest, chunk: self.chunk, ..RenderOptions::default() };
+        let options = RenderOptions {
+            work: WorkOptions { preview: !is_rest, ..WorkOptions::default() },
+            switches: TestSwitches { chunk: self.chunk, ..TestSwitches::default() },
+            ..RenderOptions::default()
+        };
         let mut job = self.renderer.begin(&self.dataset, request, &options).expect("a job");
         while job.step().expect("a step") {}
         self.renderer.context().wait().expect("it is done");

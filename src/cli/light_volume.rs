@@ -8,7 +8,9 @@ use super::CliError;
 use super::output::{finish_output, open_destination};
 use super::scene::SceneArgs;
 use chiaroscuro_files::{check_extension, write_atomically};
-use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, export_slice, plan::RenderRequest};
+use chiaroscuro_render::{
+    AttenuationData, RenderOptions, Renderer, WorkOptions, export_slice, plan::RenderRequest,
+};
 use chiaroscuro_scene::LightStorage;
 use chiaroscuro_volume_io::write::nrrd_of_blocks;
 
@@ -59,7 +61,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let mut settings = look.settings(&mut renderer, &loaded)?;
     // In a combined volume, this light could not be separated.
     settings.shadows.storage = LightStorage::PerLight;
-    let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
     let size = [16, 16];
     renderer.draw(&loaded, &settings, size, &options)?;
     let lights = settings.lights.len();

@@ -13,7 +13,7 @@ use chiaroscuro_files::{
     OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
 use chiaroscuro_media::{check_picture, marks_layer, write_picture};
-use chiaroscuro_render::{RenderOptions, Renderer, dark_fraction, mean_luminance};
+use chiaroscuro_render::{RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance};
 use chiaroscuro_scene::{ImageRecord, LookRecord, VolumeRecord};
 
 /// Arguments of `render`.
@@ -61,7 +61,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if args.report.is_some() {
         // The report measures a whole picture including light volumes, so the renderer starts without caches.
         renderer = Renderer::new(&context)?;
-        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
         let picture = renderer.render(&loaded, &settings, image_spec.size, &options)?;
         let took = renderer.report();
         report = Some(json!({

@@ -1,6 +1,6 @@
 //! Shared helpers of the rendering tests: a device and ways to render.
 
-use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary};
+use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary, WorkOptions};
 use chiaroscuro_scene::Settings;
 pub(crate) use chiaroscuro_volume::Dataset;
 
@@ -26,7 +26,7 @@ pub(crate) fn full_attenuation(
     settings: &Settings,
     light: usize,
 ) -> Vec<f32> {
-    let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
     let request = chiaroscuro_render::plan::RenderRequest {
         volume: loaded.volume().id(),

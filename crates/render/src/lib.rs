@@ -19,7 +19,7 @@
 //! splatting. Independent of the window.
 //!
 //! Begin with [`Renderer`], and follow a picture: `plan/keys/mod.rs` has the inputs of each cached product,
-//! `frame/frame_plan.rs` lists the steps of those that are stale, and `frame/encode/mod.rs` records them with the
+//! `frame/frame_plan/mod.rs` lists the steps of those that are stale, and `frame/encode/mod.rs` records them with the
 //! passes in the other folders. Where is the light volume filled? `light/march.rs` fills sheets with transmittance, and
 //! `light/backproject.rs` splats them into the volume; `frame/light_fill.rs` has the order of their steps, also if
 //! `light/raycast.rs` casts rays instead. The shaders are in the folder `shaders` of the repository.
@@ -72,7 +72,7 @@ pub use pipelines::shader_files::SHADERS;
 pub use pipelines::shader_library::ShaderLibrary;
 #[cfg(feature = "testing")]
 pub use pipelines::uniforms;
-pub use plan::RenderOptions;
+pub use plan::{PictureOptions, RenderOptions, TestSwitches, WorkOptions};
 pub use resources::textures::AttenuationData;
 #[cfg(feature = "testing")]
 pub use volume::brick_list::LISTED_PER_ROW;

@@ -1,5 +1,6 @@
 //! Errors that keep a window from opening.
 
+use crate::app::text;
 use chiaroscuro_render::GpuError;
 
 /// Error of a start without a window.
@@ -8,6 +9,9 @@ pub enum AppError {
     /// Failure to find a usable graphics device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// Window without a graphics device.
+    #[error("{}", text::messages::NO_DEVICE)]
+    NoDevice,
     /// Failure of the window system.
     #[error("the window could not be opened: {}; a running desktop session is needed", window_error_reason(.0))]
     Window(#[from] eframe::Error),

@@ -26,7 +26,7 @@ use crate::app::windows::recovery::RecoveryDialog;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
 use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
-use chiaroscuro_render::{GpuContext, GpuError, WindowPainter};
+use chiaroscuro_render::{GpuContext, WindowPainter};
 use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
 
@@ -103,8 +103,7 @@ impl App {
         memory: PersistentState,
         legacy: HandoverSlot,
     ) -> Result<Self, AppError> {
-        let no_wgpu = || GpuError::Rejected(text::messages::NO_DEVICE.to_owned());
-        let paint = cc.wgpu_render_state.clone().ok_or_else(no_wgpu)?;
+        let paint = cc.wgpu_render_state.clone().ok_or(AppError::NoDevice)?;
         // The window's own device draws only the window: pictures are rendered on a second device.
         let painter = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
         let window_context = GpuContext::new(&paint.adapter, paint.device, paint.queue)?;

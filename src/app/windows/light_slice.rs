@@ -11,7 +11,7 @@ use crate::app::worker::background_task::BackgroundTask;
 use chiaroscuro_files::write_atomically;
 use chiaroscuro_media::ExportError;
 use chiaroscuro_render::{
-    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, export_slice,
+    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, WorkOptions, export_slice,
     plan::{LightKey, RenderRequest},
 };
 use chiaroscuro_scene::{LightStorage, Settings};
@@ -196,7 +196,8 @@ impl LightSliceWindow {
             let mut renderer = Renderer::new(&context.second_device()?)?;
             // With combined storage there would be no volume for this light.
             request.settings.shadows.storage = LightStorage::PerLight;
-            let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+            let options =
+                RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
             renderer.draw(&dataset, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
         };

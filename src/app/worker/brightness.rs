@@ -115,11 +115,9 @@ impl BrightnessTracker {
         self.last_preview = Some(frame_request.clone());
         let kind = preview_class(quality, scene.renderer.report());
         if let Some(exposure) = self.exposures.learn_preview(kind, mean) {
-            redisplay_with_exposure(
-                scene,
-                request,
-                &RenderOptions { exposure: exposure as f32, ..options.clone() },
-            )?;
+            let mut options = options.clone();
+            options.picture.exposure = exposure as f32;
+            redisplay_with_exposure(scene, request, &options)?;
         }
         Ok(())
     }

@@ -17,7 +17,7 @@ use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_render::{
-    GpuContext, GpuError, RenderOptions, RenderStage, measure_balance_fast,
+    GpuContext, GpuError, RenderOptions, RenderStage, WorkOptions, measure_balance_fast,
     plan::{FrameKeys, RenderRequest},
 };
 use chiaroscuro_scene::Settings;
@@ -211,11 +211,11 @@ impl RenderWorker {
 
     /// Returns the renderer's options for a quality level.
     fn options(&self, quality: QualityLevel) -> RenderOptions {
-        RenderOptions {
+        RenderOptions::from(WorkOptions {
             light_parts: self.controller.light_parts(quality),
             preview: quality != QualityLevel::FULL,
-            ..RenderOptions::default()
-        }
+            ..WorkOptions::default()
+        })
     }
 
     /// Renders one look of a task; `None` if the task was dropped meanwhile.
@@ -235,7 +235,7 @@ impl RenderWorker {
         let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
         job.set_band(self.controller.band_rows(*quality, request.size));
         if let Some(exposure) = self.brightness.exposure(frame_request, *quality, job.report()) {
-            options.exposure = exposure;
+            options.picture.exposure = exposure;
             job.set_exposure(exposure);
         }
         loop {

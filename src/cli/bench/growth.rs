@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::report::{CaseTimings, round_to_microsecond};
 use crate::cli::CliError;
-use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary, TestSwitches, WorkOptions};
 use chiaroscuro_scene::{ShadowAlgorithm, first_look};
 use chiaroscuro_volume::{Dataset, synthetic};
 
@@ -104,14 +104,11 @@ fn light_builds(
     settings.shadows.algorithm = algorithm;
     // The picture is irrelevant here, but requests the light volume.
     let size = [64; 2];
-    let mut options = RenderOptions { timed: true, ..RenderOptions::default() };
+    let mut options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
     if savings == Optimizations::None {
-        options = RenderOptions {
-            empty_space_skipping: false,
-            fill_all_light_voxels: true,
-            min_transmittance: 0.0,
-            ..options
-        };
+        options.work.fill_all_light_voxels = true;
+        options.switches =
+            TestSwitches { empty_space_skipping: false, min_transmittance: 0.0, ..TestSwitches::default() };
     }
     let warm_up = usize::from(compiles);
     let mut samples = CaseTimings::default();

@@ -14,7 +14,8 @@ use super::report::{CaseTimings, round_to_microsecond, spread_json};
 use super::{BenchArgs, VolumeBenchmark, case_json};
 use crate::cli::CliError;
 use chiaroscuro_render::{
-    GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, first_look, plan::RenderRequest,
+    GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, WorkOptions, first_look,
+    plan::RenderRequest,
 };
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::{Dataset, Volume};
@@ -101,7 +102,7 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
 
 /// Uploads a volume to the adapter without rendering a picture.
 fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Result<(), CliError> {
-    let options = RenderOptions { timed: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
     let (volume, settings) = (loaded.volume().id(), settings.clone());
     // The smallest size, since the picture is not drawn.
     let request = RenderRequest { volume, settings, size: [1; 2], preview_resolution: None };
@@ -124,7 +125,7 @@ impl VolumeBenchmark<'_> {
     ) -> Result<(), CliError> {
         let shaders = ShaderLibrary::new(context);
         let (mut samples, mut stages) = (CaseTimings::default(), LoadStageTimes::default());
-        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
         for frame in 0..=usize::from(self.args.frames).min(MAX_FRAMES) {
             let mut took = [0.0; STAGES.len()];
             let mut bytes = AdapterMemory::default();

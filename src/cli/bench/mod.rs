@@ -27,7 +27,7 @@ mod sky;
 use super::CliError;
 use super::output::print_line;
 use super::scene::{LookArgs, parse_size};
-use chiaroscuro_render::{GpuContext, RenderOptions, Renderer};
+use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, WorkOptions};
 use chiaroscuro_scene::{
     LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, ShadowAlgorithm,
 };
@@ -202,7 +202,7 @@ struct VolumeBenchmark<'a> {
 impl VolumeBenchmark<'_> {
     /// Draws a frame without reading it back, as the viewer does.
     fn frame(&mut self, settings: &Settings, samples: Option<&mut CaseTimings>) -> Result<(), CliError> {
-        let options = RenderOptions { timed: true, ..RenderOptions::default() };
+        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
         let size = self.args.size;
         let mut draw = || {
             self.renderer.draw(self.loaded, settings, size, &options)?;

@@ -1,6 +1,6 @@
 //! Relations that must hold between pictures of any scene, each numbered P1 to P15.
 
-use chiaroscuro_render::{RenderOptions, RenderedPicture, plan::PixelWindow};
+use chiaroscuro_render::{PictureOptions, RenderOptions, RenderedPicture, TestSwitches, plan::PixelWindow};
 use chiaroscuro_scene::{LookRecord, Settings};
 use chiaroscuro_volume::{Dataset, Samples, ValueRanges};
 use glam::{DAffine3, DMat3, DVec3};
@@ -186,12 +186,12 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
     assert!(gained <= 1.0 / 255.0, "seed {seed}: {gained}");
 
     // P10: empty-space skipping changes nothing.
-    let all = RenderOptions { empty_space_skipping: false, ..RenderOptions::default() };
+    let all = RenderOptions::from(TestSwitches { empty_space_skipping: false, ..TestSwitches::default() });
     assert_eq!(studio.draw_as(&bytes, &settings, SIZE, &all).display, first.display, "seed {seed}");
 
     // P12: a part of a picture equals that part of the whole; a larger picture is the same picture.
     let window = PixelWindow { whole: SIZE, first: [8, 4], size: [16, 12] };
-    let options = RenderOptions { part: Some(window), ..RenderOptions::default() };
+    let options = RenderOptions::from(PictureOptions { part: Some(window), ..PictureOptions::default() });
     let part = studio.draw_as(&bytes, &settings, window.size, &options);
     let row = |y: usize| &first.display[(4 + y) * 128 + 32..][..64];
     let cut = RenderedPicture { display: (0..12).flat_map(row).copied().collect(), ..part.clone() };

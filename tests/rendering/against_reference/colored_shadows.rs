@@ -1,7 +1,7 @@
 //! Coloured shadows against the reference: each colour of light is traced separately, on both sides.
 
 use chiaroscuro_reference::{Reference, ReferenceOptions, merge_color_channels};
-use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, WorkOptions, plan::RenderRequest};
 use chiaroscuro_scene::{
     ClassificationOrder, ControlPoint, FloorSettings, LightGeometry, LightSettings, LightShape, LightStorage,
     LightVolumePrecision, NearFieldRay, RenderEngine, Settings, ShadowAlgorithm,
@@ -79,7 +79,8 @@ fn light_volume(
     settings: &Settings,
     light: usize,
 ) -> Option<AttenuationData> {
-    let everything = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+    let everything =
+        RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
     renderer.draw(loaded, settings, [8, 8], &everything).expect("light volumes are filled");
     let request = RenderRequest {
         volume: loaded.volume().id(),

@@ -1,7 +1,7 @@
 //! Bit-exactness tests: empty-space skipping, repetition, earlier previews, and the margin of light volumes change no
 //! bit.
 
-use chiaroscuro_render::{RenderOptions, Renderer, plan::RenderRequest};
+use chiaroscuro_render::{RenderOptions, Renderer, TestSwitches, WorkOptions, plan::RenderRequest};
 use chiaroscuro_scene::{
     LightGeometry, LightStorage, LightVolumeResolution, ReconstructionKernel, Settings, ShadowAlgorithm,
     SkyMode, SlabMode, SlabQuadrature,
@@ -100,16 +100,17 @@ fn check_skipping(is_selected: impl Fn(usize, u32) -> bool) {
         };
         let usual = picture(&RenderOptions::default());
         let plodding = picture(&RenderOptions {
-            empty_space_skipping: false,
-            fill_all_light_voxels: true,
+            work: WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() },
+            switches: TestSwitches { empty_space_skipping: false, ..TestSwitches::default() },
             ..RenderOptions::default()
         });
         assert_eq!(usual.linear, plodding.linear, "look {at}: skipping empty space changes the picture");
         assert_eq!(usual.display, plodding.display, "look {at}: skipping empty space changes what is shown");
-        let parts = picture(&RenderOptions { light_parts: 3, ..RenderOptions::default() });
+        let parts = picture(&RenderOptions::from(WorkOptions { light_parts: 3, ..WorkOptions::default() }));
         assert_eq!(usual.linear, parts.linear, "look {at}: cutting chunks into parts changes the picture");
         for chunk in CHUNK_LENGTHS.into_iter().filter(|&chunk| is_selected(at, chunk)) {
-            let chunked = picture(&RenderOptions { chunk: Some(chunk), ..RenderOptions::default() });
+            let chunked =
+                picture(&RenderOptions::from(TestSwitches { chunk: Some(chunk), ..TestSwitches::default() }));
             let differences = usual.linear.iter().flatten().zip(chunked.linear.iter().flatten());
             let worst = differences.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             assert!(worst <= F16_STEP, "look {at}: chunks of {chunk} slabs change the picture by {worst}");
@@ -151,7 +152,7 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
         size: SIZE.map(|n| n / 4),
         preview_resolution: Some(LightVolumeResolution::Quarter),
     };
-    let options = RenderOptions { preview: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { preview: true, ..WorkOptions::default() });
     let mut job = renderer.begin(&loaded, request, &options).expect("a job");
     while job.step().expect("a step") {}
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), fresh);
@@ -187,7 +188,7 @@ fn the_clear_margin_is_cleared_once() {
                 size,
                 preview_resolution: Some(LightVolumeResolution::Half),
             };
-            let options = RenderOptions { preview: true, ..RenderOptions::default() };
+            let options = RenderOptions::from(WorkOptions { preview: true, ..WorkOptions::default() });
             let mut job = renderer.begin(&loaded, request, &options).expect("a job");
             while job.step().expect("a step") {}
         }

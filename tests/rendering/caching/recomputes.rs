@@ -1,6 +1,8 @@
 //! Cost of changes, counted by the renderer: every setting recomputes only the products that depend on it.
 
-use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary, StepCounts};
+use chiaroscuro_render::{
+    GpuContext, PictureOptions, RenderOptions, Renderer, ShaderLibrary, StepCounts, WorkOptions,
+};
 use chiaroscuro_scene::{
     ControlPoint, LightGeometry, LightSettings, Settings, ShadowSettings, SkyMode, TransferFunction,
     apply_path,
@@ -215,7 +217,7 @@ fn an_eye_that_sees_more_fills_more_once() {
     let dataset = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
     let mut filled = |settings: &Settings, preview: bool| {
-        let options = RenderOptions { preview, ..RenderOptions::default() };
+        let options = RenderOptions::from(WorkOptions { preview, ..WorkOptions::default() });
         renderer.draw(&dataset, settings, SIZE, &options).expect("a picture");
         let runs = renderer.report().step_counts;
         (runs.sky, runs.bounces)
@@ -269,8 +271,8 @@ fn a_saved_view_costs_nothing() {
 fn how_a_picture_is_shown_costs_one_display_pass() {
     let bench = RecomputeCounter::new();
     let options = [
-        RenderOptions { exposure: 1.5, ..RenderOptions::default() },
-        RenderOptions { transparent: true, ..RenderOptions::default() },
+        RenderOptions::from(PictureOptions { exposure: 1.5, ..PictureOptions::default() }),
+        RenderOptions::from(PictureOptions { transparent: true, ..PictureOptions::default() }),
     ];
     for options in options {
         assert_eq!(

@@ -1,6 +1,6 @@
 //! Coloured shadows in closed form: the Beer–Lambert law for each colour of light.
 
-use chiaroscuro_render::{RenderOptions, plan::RenderRequest};
+use chiaroscuro_render::{RenderOptions, WorkOptions, plan::RenderRequest};
 use chiaroscuro_scene::{RenderEngine, ShadowAlgorithm};
 
 use super::{base, renderer, with_both_engines};
@@ -34,7 +34,8 @@ fn each_colour_is_absorbed_by_itself(engine: RenderEngine) {
             point.color = glass_color();
         }
         let mut renderer = renderer();
-        let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+        let options =
+            RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
         renderer.draw(&loaded, &settings, [8, 8], &options).expect("the light volume is filled");
         let volume = loaded.volume().id();
         let request =

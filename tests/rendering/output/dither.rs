@@ -1,6 +1,6 @@
 //! Dithering of two-colour backgrounds in 8 bits, so that they have no bands.
 
-use chiaroscuro_render::{RenderOptions, Renderer};
+use chiaroscuro_render::{PictureOptions, RenderOptions, Renderer};
 use chiaroscuro_scene::{Background, Settings};
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
     settings.output.background = Background { top: [top; 3], bottom: [bottom; 3] };
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let options = RenderOptions { transparent, ..RenderOptions::default() };
+    let options = RenderOptions::from(PictureOptions { transparent, ..PictureOptions::default() });
     let loaded = Dataset::new(scenes::creature(8, DVec3::ONE));
     let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
     picture.display.chunks_exact(4).map(|texel| texel[0]).collect()

@@ -1,6 +1,6 @@
 //! Painting into render passes of another program: every byte of the picture, whatever the format of its target.
 
-use chiaroscuro_render::{GpuContext, PicturePainter, RenderOptions, Renderer};
+use chiaroscuro_render::{GpuContext, PictureOptions, PicturePainter, RenderOptions, Renderer};
 use chiaroscuro_scene::PixelFormat;
 use wgpu::TextureFormat;
 
@@ -22,7 +22,7 @@ fn painted_and_read(context: &GpuContext, format: TextureFormat, options: &Rende
 fn pictures_reach_textures_of_others_byte_for_byte() {
     let context = context();
     for transparent in [false, true] {
-        let eight = RenderOptions { transparent, ..RenderOptions::default() };
+        let eight = RenderOptions::from(PictureOptions { transparent, ..PictureOptions::default() });
         for format in [TextureFormat::Rgba8Unorm, TextureFormat::Rgba8UnormSrgb] {
             let [painted, read] = painted_and_read(&context, format, &eight);
             assert!(painted == read, "{format:?}, transparent: {transparent}");
@@ -35,7 +35,7 @@ fn pictures_reach_textures_of_others_byte_for_byte() {
             assert!(painted == read, "{format:?}, transparent: {transparent}");
         }
         for depth in [PixelFormat::Sixteen, PixelFormat::Linear] {
-            let deep = RenderOptions { depth, ..eight.clone() };
+            let deep = RenderOptions::from(PictureOptions { depth, ..eight.picture.clone() });
             let [painted, read] = painted_and_read(&context, TextureFormat::Rgba32Float, &deep);
             assert!(painted == read, "{depth:?}, transparent: {transparent}");
         }

@@ -1,7 +1,7 @@
 //! Previews of the window compared with the final picture.
 
 use chiaroscuro_render::{
-    RenderOptions, Renderer, mean_luminance,
+    RenderOptions, Renderer, WorkOptions, mean_luminance,
     plan::{RenderRequest, preview_slab},
 };
 use chiaroscuro_scene::{
@@ -30,8 +30,10 @@ fn brightness(
     size: [u32; 2],
     coarse: Option<LightVolumeResolution>,
 ) -> f64 {
-    let (mut settings, options) =
-        (settings.clone(), RenderOptions { preview: coarse.is_some(), ..RenderOptions::default() });
+    let (mut settings, options) = (
+        settings.clone(),
+        RenderOptions::from(WorkOptions { preview: coarse.is_some(), ..WorkOptions::default() }),
+    );
     if coarse.is_some() {
         settings.sampling.kernel = ReconstructionKernel::Prefiltered;
         let slab = settings.sampling.slab;

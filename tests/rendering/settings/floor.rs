@@ -1,7 +1,7 @@
 //! Floor: against the reference, against closed forms, and below the picture.
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
-use chiaroscuro_render::{RenderOptions, Renderer};
+use chiaroscuro_render::{PictureOptions, RenderOptions, Renderer};
 use chiaroscuro_scene::{
     Background, Camera, DepositMode, FloorSettings, FovReference, LightGeometry, LightShape,
     LightVolumeResolution, ObjectRotation, OpacityLength, Projection, ReconstructionKernel, SceneAxis,
@@ -323,7 +323,7 @@ fn it_lies_behind_the_volume_and_before_the_background() {
     assert!(seen > 300, "{seen} pixels of the bare floor");
     // On transparent pictures shadows are half-transparent black.
     settings.floor.shadow_only = true;
-    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(PictureOptions { transparent: true, ..PictureOptions::default() });
     let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");
     let shadows = (0..bare.linear.len()).filter(|&at| {
         let [r, g, b, alpha] = texel(&picture.display, at);

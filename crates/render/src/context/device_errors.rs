@@ -54,15 +54,15 @@ mod tests {
             thread.unwrap().join().unwrap()
         };
         let said = on_another_thread(|theirs| {
-            theirs.store(GpuError::Rejected("first".to_owned()));
-            theirs.store(GpuError::Rejected("second".to_owned()));
+            theirs.store(GpuError::Refused("first".to_owned()));
+            theirs.store(GpuError::Refused("second".to_owned()));
             let said = theirs.take().map(|err| err.to_string());
             assert!(theirs.take().is_none(), "once");
             said
         });
-        assert_eq!(said, Some(GpuError::Rejected("first".to_owned()).to_string()));
+        assert_eq!(said, Some(GpuError::Refused("first".to_owned()).to_string()));
         on_another_thread(|theirs| {
-            theirs.store(GpuError::Rejected("theirs".to_owned()));
+            theirs.store(GpuError::Refused("theirs".to_owned()));
             None
         });
         assert!(complaints.take().is_none(), "what another does is no matter of this one");

@@ -1,4 +1,6 @@
-//! Errors of the GPU: no adapter, out of memory, limits, lost device.
+//! Errors of the renderer: no adapter, out of memory, limits, lost device, cancelled pictures.
+
+use chiaroscuro_volume::VolumeError;
 
 /// Error of the renderer.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -51,9 +53,18 @@ pub enum GpuError {
     /// A resource was read back before anything was drawn into it.
     #[error("there is no {0} to read back: it was never drawn")]
     NothingDrawn(&'static str),
-    /// Validation error: a bug of this program or of the driver.
+    /// The picture was cancelled before it was complete.
+    #[error("the picture was cancelled")]
+    Cancelled,
+    /// A volume cannot be averaged to one with fewer voxels.
+    #[error("the volume could not be averaged: {0}")]
+    Volume(#[from] VolumeError),
+    /// The graphics device failed at something that the program may ask for.
     #[error("the graphics driver refused: {0}")]
-    Rejected(String),
+    Refused(String),
+    /// The program asked for something invalid, or lacks one of its parts: a bug.
+    #[error("internal error, please report it: {0}")]
+    Internal(String),
     /// The device is lost, after a driver update, sleep or a watchdog reset.
     #[error("the graphics device was lost ({0})")]
     DeviceLost(String),

@@ -69,7 +69,7 @@ impl GpuClock {
             }
         });
         context.wait()?;
-        let view = self.readback.get_mapped_range(..).map_err(|err| GpuError::Rejected(err.to_string()))?;
+        let view = self.readback.get_mapped_range(..).map_err(|err| GpuError::Refused(err.to_string()))?;
         let timestamp = |at: usize| {
             let mut bytes = [0; 8];
             bytes.copy_from_slice(&view[8 * at..8 * at + 8]);

@@ -138,7 +138,8 @@ impl GpuContext {
                 wgpu::Error::OutOfMemory { .. } => {
                     GpuError::OutOfMemory { what: "a resource".to_owned(), mebibytes: 0 }
                 }
-                other => GpuError::Rejected(other.to_string()),
+                wgpu::Error::Validation { .. } => GpuError::Internal(err.to_string()),
+                wgpu::Error::Internal { .. } => GpuError::Refused(err.to_string()),
             };
             log::error!("{err}");
             for_errors.store(err);
@@ -236,7 +237,7 @@ impl GpuContext {
                     return Err(GpuError::DeviceLost(why));
                 }
                 Err(wgpu::PollError::Timeout) => continue,
-                Err(err) => return Err(GpuError::Rejected(err.to_string())),
+                Err(err) => return Err(GpuError::Internal(err.to_string())),
                 Ok(_) => {}
             }
             self.check()?;

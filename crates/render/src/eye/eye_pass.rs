@@ -34,14 +34,22 @@ pub(crate) struct EyePass {
     variant: EyeVariant,
 }
 
+/// Light that reaches the samples of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EyeLights<'a> {
+    /// Lights with their volumes: shadowed ones first, without those that are in the combined volume.
+    pub lights: &'a [LightInput<'a>],
+    pub combined: Option<&'a CombinedLight>,
+    pub ambient: AmbientVolumes<'a>,
+}
+
 impl EyePass {
-    /// Prepares the pass for some lights (shadowed ones first, without those that are in the combined volume), and
-    /// for sky visibility and scattered light where there are volumes of them.
+    /// Prepares the pass for some lights, and for sky visibility and scattered light where there are volumes of them.
     pub(crate) fn new(
         scene: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
-        (lights, combined, around): (&[LightInput<'_>], Option<&CombinedLight>, AmbientVolumes<'_>),
+        EyeLights { lights, combined, ambient }: EyeLights<'_>,
         options: &RenderOptions,
     ) -> Self {
         let frame = picture_frame(settings, scene, window);
@@ -65,12 +73,12 @@ impl EyePass {
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
             end_row: window.size[1],
-            dilation: if options.empty_space_skipping {
+            dilation: if options.switches.empty_space_skipping {
                 scatter_reach_bricks(&frame)
             } else {
                 UNLIMITED_REACH
             },
-            min_transmittance: options.min_transmittance,
+            min_transmittance: options.switches.min_transmittance,
             gradient_pixels: gradient_pixels as i32,
             gradient_slabs: gradient_slabs as i32,
             runs: 1,
@@ -82,15 +90,15 @@ impl EyePass {
                 &visible_region.region(scene).intersection(&Aabb::of_grid(scene.dims, 0.0)),
             ),
             shading_cut: uniforms::CutUniform::new(&shading_cut.region(scene)),
-            sky: sky_uniform(settings, scene, around.sky),
-            scattered_light: scattered_light_uniform(settings, scene, around.bounces),
+            sky: sky_uniform(settings, scene, ambient.sky),
+            scattered_light: scattered_light_uniform(settings, scene, ambient.bounces),
             lights: packed,
         };
-        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.preview);
+        let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.work.preview);
         if direct {
             seen = seen.max(ray_reach(&settings.shadows, scene));
         }
-        let dilation = if options.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
+        let dilation = if options.switches.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
         // Normals of classified voxels come from the next pyramid level.
         let is_classified = settings.sampling.classification == ClassificationOrder::Pre;
         let levels = PyramidLevels::for_stretch(stretch_level > 0.0 || is_classified);
@@ -329,7 +337,7 @@ pub(crate) fn shading_uniform(
         gain: shadows.gain as f32,
         bias: (shadows.bias_voxels * scene.smallest_edge()) as f32,
         ray_step: shadows.ray_step(scene) as f32,
-        max_optical_depth: options.max_optical_depth(),
+        max_optical_depth: options.switches.max_optical_depth(),
         anisotropy: settings.scattering.anisotropy as f32,
         pad0: 0.0,
         pad1: 0.0,

@@ -52,7 +52,7 @@ pub(crate) fn draw_floor(
     let frame = eye.frame();
     let lights = LightCount { all: lit.all().len() as u32, shadowed: lit.shadowed().len() as u32 };
     let reach = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.empty_space_skipping { reach } else { UNLIMITED_REACH };
+    let dilation = if options.switches.empty_space_skipping { reach } else { UNLIMITED_REACH };
     let boundaries = tables.lighting.boundaries(volume, dilation, 0.0);
     let variant = FloorVariant::from_settings(settings, lights).with_boundaries(boundaries);
     let pipeline = shaders.pipeline(&variant)?;

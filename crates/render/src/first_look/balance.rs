@@ -1,7 +1,7 @@
 //! Brightness of a first look: the balance of lights, which compensates for shadows, and the exposure.
 
 use super::image_statistics::{automatic_exposure, mean_luminance};
-use crate::{GpuError, RenderOptions, Renderer};
+use crate::{GpuError, RenderOptions, Renderer, WorkOptions};
 use chiaroscuro_scene::{
     RenderEngine, SceneAxis, Settings, ShadowAlgorithm,
     first_look::{self, FirstLookOptions},
@@ -165,7 +165,7 @@ fn draw_small_picture(
     dataset: &Dataset,
     settings: &Settings,
 ) -> Result<Vec<[f32; 4]>, GpuError> {
-    let options = RenderOptions { preview: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { preview: true, ..WorkOptions::default() });
     let mut settings = settings.clone();
     settings.floor.on = false;
     renderer.draw(dataset, &settings, MEASURED_SIZE, &options)?;

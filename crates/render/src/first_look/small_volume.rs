@@ -21,7 +21,7 @@ pub fn downsampled_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
     if block == [1; 3] {
         return Ok(dataset.clone());
     }
-    let small = volume.to_block_averaged(block).map_err(|err| GpuError::Rejected(err.to_string()))?;
+    let small = volume.to_block_averaged(block)?;
     Ok(Dataset::new(small))
 }
 

@@ -31,7 +31,7 @@ pub fn downsample_to_fit(context: &GpuContext, volume: Volume) -> Result<Volume,
     let block = smallest_fitting_block(volume.dims(), volume.spacing_mm().into(), |dims| {
         try_allocation(context, &volume, dims)
     })?;
-    volume.block_averaged(block).map_err(|err| GpuError::Rejected(err.to_string()))
+    Ok(volume.block_averaged(block)?)
 }
 
 /// Returns the number of voxels along x, y and z to which a volume of `dims` voxels would be downsampled to fit the
@@ -47,7 +47,7 @@ pub fn downsampled_dims(
     dims: [usize; 3],
     voxel_type: VoxelType,
 ) -> Result<[usize; 3], GpuError> {
-    let stand_in = one_voxel_volume(voxel_type).map_err(|err| GpuError::Rejected(err.to_string()))?;
+    let stand_in = one_voxel_volume(voxel_type)?;
     let block = smallest_fitting_block(dims, [1.0; 3], |dims| try_allocation(context, &stand_in, dims))?;
     Ok(block_counts(dims, block))
 }

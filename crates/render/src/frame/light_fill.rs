@@ -99,7 +99,7 @@ impl LightFill {
         let chunk = |geometry: &LightView| {
             let usual = if scatters { SLABS_PER_STEP } else { chunk_slabs(volume, geometry) };
             // Rounded up to whole texels of the ring.
-            options.chunk.unwrap_or(usual).next_multiple_of(SLABS_PER_TEXEL)
+            options.switches.chunk.unwrap_or(usual).next_multiple_of(SLABS_PER_TEXEL)
         };
         let point_views = |(point, geometries): (usize, Vec<LightView>)| {
             let view = move |geometry| LightFillView { point, chunk: chunk(&geometry), geometry };

@@ -6,6 +6,7 @@ use crate::light::combined_light::CombinedLight;
 use crate::light::light_volume::LightVolume;
 use crate::plan::{BouncesKey, CombinedKey, FrameKeys, LightKey, RenderRequest, SkyKey, TablesKey};
 use crate::resources::cache_entry::CacheEntry;
+use crate::resources::product_cache::ProductCache;
 use crate::scatter::voxels::ScatterVoxels;
 use crate::scattered_light::volume::ScatteredLightVolume;
 use crate::sky::volume::SkyVolume;
@@ -40,13 +41,13 @@ pub(crate) struct LoadedVolume {
     /// Pre-classified voxels, if a picture has asked for them.
     materials: Vec<Arc<PreclassifiedVoxels>>,
     /// Attenuation volumes, most recently used first.
-    pub lights: Vec<CacheEntry<LightKey, LightVolume>>,
+    pub lights: ProductCache<LightKey, LightVolume>,
     /// Diffuse light of all shadowed lights in one volume.
     pub combined: Option<CacheEntry<CombinedKey, CombinedLight>>,
     /// Cached volumes of sky visibility.
-    pub skies: Vec<CacheEntry<SkyKey, SkyVolume>>,
+    pub skies: ProductCache<SkyKey, SkyVolume>,
     /// Cached volumes of scattered light.
-    pub bounces: Vec<CacheEntry<BouncesKey, ScatteredLightVolume>>,
+    pub bounces: ProductCache<BouncesKey, ScatteredLightVolume>,
     /// Lists of voxels for the scattering engine, if a picture has asked for them.
     pub scatter_voxels: Option<Arc<ScatterVoxels>>,
 }
@@ -73,10 +74,10 @@ impl LoadedVolume {
             dataset,
             tables,
             materials,
-            lights: Vec::new(),
+            lights: ProductCache::default(),
             combined: None,
-            skies: Vec::new(),
-            bounces: Vec::new(),
+            skies: ProductCache::default(),
+            bounces: ProductCache::default(),
             scatter_voxels: None,
         })
     }

@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use super::caches::scattered_light_volumes::ScatteredLightEntry;
-use super::caches::sky_volumes::SkyEntry;
+use super::caches::scattered_light_volumes::ScatteredLightPlace;
+use super::caches::sky_volumes::SkyPlace;
 use super::double_buffer::{DoubleBuffer, TargetRole};
 use super::light_fill::LightFill;
 use super::loaded_volume::LoadedVolume;
@@ -45,9 +45,9 @@ pub struct RenderJob<'r> {
     pub(super) light_indices: Vec<Option<usize>>,
     pub(super) light_fills: Vec<LightFill>,
     /// Cached or new volume of sky visibility.
-    pub(super) sky: SkyEntry,
+    pub(super) sky: SkyPlace,
     /// Cached or new volume of scattered light.
-    pub(super) scattered_light: ScatteredLightEntry,
+    pub(super) scattered_light: ScatteredLightPlace,
     /// Shading parameters with the volume of each light, for filling the combined volume.
     pub(super) combine_pass: Option<EyePass>,
     pub(super) eye_pass: EyePass,
@@ -88,7 +88,7 @@ impl RenderJob<'_> {
 
     /// Sets the exposure of previews, which multiplies the displayed light; the linear picture is unchanged.
     pub fn set_exposure(&mut self, exposure: f32) {
-        self.options.exposure = exposure;
+        self.options.picture.exposure = exposure;
         self.keys.display = self.keys.display.clone().with_exposure(exposure);
     }
 
@@ -115,7 +115,7 @@ impl RenderJob<'_> {
         let start = Instant::now();
         let GpuTools { context, pool, .. } = self.tools;
         let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let clock = self.gpu_clock.filter(|_| self.options.timed);
+        let clock = self.gpu_clock.filter(|_| self.options.work.timed);
         if let Some(clock) = clock {
             clock.start(&mut encoder);
         }
@@ -127,7 +127,7 @@ impl RenderJob<'_> {
         context.queue.submit([encoder.finish()]);
         self.steps.pop_front();
         self.finish_products();
-        if self.options.timed {
+        if self.options.work.timed {
             context.wait()?;
         }
         let took = start.elapsed().as_secs_f64() * 1000.0;

@@ -149,7 +149,7 @@ impl Renderer {
         let mut unfinished = 0;
         while job.step()? {
             if interrupt.should_stop() {
-                return Err(GpuError::Rejected("the picture was cancelled".to_owned()));
+                return Err(GpuError::Cancelled);
             }
             unfinished += 1;
             if unfinished % most == 0 {

@@ -107,7 +107,11 @@ pub(crate) enum RenderStep {
     /// Computes gradients in bricks of one pyramid level.
     Gradients(u32, Range<usize>),
     /// Classifies voxels by a table, in bricks of one pyramid level.
-    Materials(TransferSelector, u32, Range<usize>),
+    Materials {
+        side: TransferSelector,
+        level: u32,
+        bricks: Range<usize>,
+    },
     March(LightStep),
     Backproject(LightStep),
     Raycast(RaycastStep),
@@ -143,7 +147,7 @@ impl RenderStep {
     pub(super) fn stage(&self) -> Option<RenderStage> {
         Some(match self {
             Self::Upload(_) | Self::Presence(_) => RenderStage::Upload,
-            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials(..) => RenderStage::Pyramid,
+            Self::Pyramid(..) | Self::Gradients(..) | Self::Materials { .. } => RenderStage::Pyramid,
             Self::March(..) => RenderStage::LightMarch,
             Self::Backproject(..) | Self::Average { .. } | Self::MergeColors(_) | Self::Combine(_) => {
                 RenderStage::LightBackproject

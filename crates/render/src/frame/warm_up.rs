@@ -28,7 +28,7 @@ impl ShaderLibrary {
     /// Compiles the usual variants of every shader, until `stop` is set. To be called on a separate thread.
     ///
     /// # Errors
-    /// Returns an error if the driver rejects a shader.
+    /// Returns an error if a shader is invalid.
     pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
         self.compile_unless_stopped(&PrefilterVariant { has_missing: false }, stop)?;
         for shader in ["volume/downsample.wgsl", "volume/gradients.wgsl"] {

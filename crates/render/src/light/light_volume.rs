@@ -41,8 +41,6 @@ pub(crate) struct LightVolume {
     cleared_cells: Option<CellSet>,
     /// Stopwatch for the filling of the volume.
     pub fill_time: FillStopwatch,
-    /// Counter value at the last use; the least recently used volume is dropped first.
-    pub last_used: u64,
 }
 
 /// Extent of a light volume that is to be filled.
@@ -97,7 +95,6 @@ impl LightVolume {
             reach,
             lookup_offsets: aheads,
             fill_time: FillStopwatch::default(),
-            last_used: 0,
         };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
         if let Some(at) = recyclable.iter().position(fits) {
@@ -131,7 +128,6 @@ impl LightVolume {
             margin: CellSet::default(),
             cleared_cells: None,
             fill_time: FillStopwatch::default(),
-            last_used: 0,
         })
     }
 

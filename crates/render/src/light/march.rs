@@ -14,7 +14,7 @@ use crate::resources::sheet_ring::SheetRing;
 use crate::volume::brick_list::one_workgroup_per_brick;
 use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
 use crate::volume::{PyramidLevels, VolumeContext};
-use crate::{GpuError, RenderOptions};
+use crate::{GpuError, TestSwitches};
 use chiaroscuro_scene::{DepositMode, SceneLight, Settings};
 use chiaroscuro_volume::math::ClipRegion;
 
@@ -67,7 +67,7 @@ impl LightSheets {
             None => Self::make_ring(tools, needed)?,
         };
         let layers = ring.texture.depth_or_array_layers();
-        let min_transmittance = RenderOptions::default().min_transmittance;
+        let min_transmittance = TestSwitches::default().min_transmittance;
         Ok(Self { layers, chunk, min_transmittance, is_preview: false, ring, reach })
     }
 

@@ -79,7 +79,7 @@ pub(crate) fn raycast(
     }
     let VolumeContext { shaders, volume, .. } = gpu;
     let seen = i32::from(ray_reach(&settings.shadows, &volume.scene));
-    let dilation = if options.empty_space_skipping { seen } else { UNLIMITED_REACH };
+    let dilation = if options.switches.empty_space_skipping { seen } else { UNLIMITED_REACH };
     let met = tables.lighting_of_color(color);
     let component = met.extinction_channel;
     let rays = RaycastVariant::from_settings(settings).with_boundaries(met.boundaries(volume, dilation, 0.0));
@@ -92,7 +92,7 @@ pub(crate) fn raycast(
         bricks: bricks.len() as u32,
         voxel_step: target.divisor as f32,
         ray_step: settings.shadows.ray_step(&volume.scene) as f32,
-        max_optical_depth: options.max_optical_depth(),
+        max_optical_depth: options.switches.max_optical_depth(),
         pad0: 0,
         shading_cut: uniforms::CutUniform::new(&settings.cuts.shadowing_part().region(&volume.scene)),
     };

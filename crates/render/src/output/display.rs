@@ -47,21 +47,22 @@ pub(crate) fn record_display(
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let TargetShape { size, samples, is_deep: deep } = target.shape;
-    let variant = DisplayVariant { samples, is_linear: options.depth == PixelFormat::Linear, is_deep: deep };
+    let variant =
+        DisplayVariant { samples, is_linear: options.picture.depth == PixelFormat::Linear, is_deep: deep };
     let pipeline = shaders.pipeline(&variant)?;
     let ([first_column, first_row], rows) =
-        options.part.map_or(([0; 2], size[1]), |part| (part.first, part.whole[1]));
+        options.picture.part.map_or(([0; 2], size[1]), |part| (part.first, part.whole[1]));
     let Background { top, bottom } = output.background;
     // A uniform background stays uniform, and pictures with more than 8 bits or a transparent background need no
     // dither.
-    let is_dithered = top != bottom && !deep && !options.transparent;
+    let is_dithered = top != bottom && !deep && !options.picture.transparent;
     let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let uniform = uniforms::DisplayUniform {
         top: opaque(top),
         bottom: opaque(bottom),
-        transparent: u32::from(options.transparent),
+        transparent: u32::from(options.picture.transparent),
         clip: u32::from(output.tone_map == ToneMap::Clip),
-        exposure: options.exposure * output.exposure as f32,
+        exposure: options.picture.exposure * output.exposure as f32,
         first_row: first_row as f32,
         rows: rows as f32,
         first_column: first_column as f32,

@@ -78,7 +78,7 @@ impl PainterPipeline {
         let pipelines = modes.map(|mode| Self::new(device, &module, target, mode));
         match pollster::block_on(scope.pop()) {
             None => Ok(pipelines),
-            Some(err) => Err(GpuError::Rejected(format!("{SHADER}: {err}"))),
+            Some(err) => Err(GpuError::Refused(format!("{SHADER}: {err}"))),
         }
     }
 

@@ -43,26 +43,26 @@ pub fn shader_conditions() -> impl Iterator<Item = &'static str> {
 /// # Errors
 /// Returns an error if a condition has an unknown name, or if the lines are not balanced.
 pub(super) fn preprocess(source: &str, value: &dyn Fn(&str) -> f64) -> Result<String, GpuError> {
-    let refused = |line: &str| GpuError::Rejected(format!("a shader has an invalid line {line:?}"));
+    let invalid = |line: &str| GpuError::Internal(format!("a shader has an invalid line {line:?}"));
     // Results of the enclosing conditions, outermost first.
     let mut enclosing = Vec::new();
     let mut lines = String::with_capacity(source.len());
     for line in source.lines() {
         if let Some(condition) = line.strip_prefix("#if ") {
-            enclosing.push(evaluate(condition, value).ok_or_else(|| refused(line))?);
+            enclosing.push(evaluate(condition, value).ok_or_else(|| invalid(line))?);
         } else if line == "#else" {
-            let last = enclosing.last_mut().ok_or_else(|| refused(line))?;
+            let last = enclosing.last_mut().ok_or_else(|| invalid(line))?;
             *last = !*last;
         } else if line == "#endif" {
-            enclosing.pop().ok_or_else(|| refused(line))?;
+            enclosing.pop().ok_or_else(|| invalid(line))?;
         } else if line.starts_with('#') {
-            return Err(refused(line));
+            return Err(invalid(line));
         } else if enclosing.iter().all(|holds| *holds) {
             lines.push_str(line);
             lines.push('\n');
         }
     }
-    if enclosing.is_empty() { Ok(lines) } else { Err(refused("#if without #endif")) }
+    if enclosing.is_empty() { Ok(lines) } else { Err(invalid("#if without #endif")) }
 }
 
 /// Evaluates a condition; `None` if it cannot be parsed.

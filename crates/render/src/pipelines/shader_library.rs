@@ -110,7 +110,7 @@ impl ShaderLibrary {
     /// Returns the pipeline of a variant, compiled on first use.
     ///
     /// # Errors
-    /// Returns an error if the driver rejects the shader.
+    /// Returns an error if the shader is invalid.
     pub(crate) fn pipeline(&self, variant: &impl PipelineVariant) -> Result<ShaderPipeline, GpuError> {
         self.pipeline_into(variant, self.context.storage_format)
     }
@@ -149,7 +149,7 @@ impl ShaderLibrary {
     ) -> Result<Arc<[BindingGroup]>, GpuError> {
         let declared = layouts().find(|(known, _)| *known == shader);
         let (_, groups) =
-            declared.ok_or_else(|| GpuError::Rejected(format!("there is no layout for {shader}")))?;
+            declared.ok_or_else(|| GpuError::Internal(format!("there is no layout for {shader}")))?;
         let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
         let group = |slots: &&'static [BindingSlot]| {
             let fresh = || BindingGroup::new(&self.context, slots, target);
@@ -204,7 +204,7 @@ impl ShaderLibrary {
             cache: self.cache.as_ref().map(|known| &known.cache),
         });
         match pollster::block_on(scope.pop()) {
-            Some(err) => Err(GpuError::Rejected(format!("{shader}: {err}"))),
+            Some(err) => Err(GpuError::Internal(format!("{shader}: {err}"))),
             None => Ok(ShaderPipeline { raw, groups }),
         }
     }
@@ -238,7 +238,7 @@ fn resolve_imports(name: &str, seen: &mut Vec<String>, joined: &mut String) -> R
     let (_, text) = SHADERS
         .iter()
         .find(|(known, _)| *known == name)
-        .ok_or_else(|| GpuError::Rejected(format!("there is no shader file {name}")))?;
+        .ok_or_else(|| GpuError::Internal(format!("there is no shader file {name}")))?;
     for line in text.lines() {
         if let Some(import) = line.strip_prefix("#import \"").and_then(|rest| rest.strip_suffix('"')) {
             resolve_imports(import, seen, joined)?;

@@ -32,4 +32,4 @@ pub use keys::{
     FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
 pub use probe::{LightArrival, Probe, probe};
-pub use request::{RenderOptions, RenderRequest, VolumeKey};
+pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

@@ -34,28 +34,24 @@ impl RenderRequest {
     }
 }
 
-/// Options of rendering that are not part of the look.
-#[derive(Debug, Clone, PartialEq)]
+/// Options of rendering that are not part of the look, by who sets them.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RenderOptions {
+    /// Picture to make: set by whoever shows or saves it.
+    pub picture: PictureOptions,
+    /// Work to make it: set by the window for previews, and by commands for reports and light volumes.
+    pub work: WorkOptions,
+    /// Switches for tests and measurements.
+    pub switches: TestSwitches,
+}
+
+/// Options of the picture that is made, beside its look and size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureOptions {
     /// Omit the background and write straight (not premultiplied) alpha.
     pub transparent: bool,
     /// Exposure, a factor of all displayed light that leaves linear light unchanged; previews need it.
     pub exposure: f32,
-    /// Skip empty space. Only tests that pictures stay the same, and measurements, switch it off.
-    pub empty_space_skipping: bool,
-    /// Fill light volumes everywhere, not only where the picture looks them up.
-    pub fill_all_light_voxels: bool,
-    /// Minimum transmittance, below which a ray to the eye or from a light ends.
-    pub min_transmittance: f32,
-    /// Number of slabs per chunk of the light march, in place of the choice by memory and time.
-    pub chunk: Option<u32>,
-    /// Number of parts into which each chunk of the light pass is divided, for short submissions.
-    pub light_parts: u32,
-    /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
-    /// kernels without their outermost tails.
-    pub preview: bool,
-    /// Wait after every step, so that the durations of stages in a report are exact.
-    pub timed: bool,
     /// Part of the picture to draw, if not all of it.
     pub part: Option<PixelWindow>,
     /// Number of samples per pixel along an edge.
@@ -64,23 +60,65 @@ pub struct RenderOptions {
     pub depth: PixelFormat,
 }
 
-impl Default for RenderOptions {
+/// Options of the work for a picture: shortcuts, waits and the extent of light volumes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WorkOptions {
+    /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
+    /// kernels without their outermost tails.
+    pub preview: bool,
+    /// Number of parts into which each chunk of the light pass is divided, for short submissions.
+    pub light_parts: u32,
+    /// Wait after every step, so that the durations of stages in a report are exact.
+    pub timed: bool,
+    /// Fill light volumes everywhere, not only where the picture looks them up.
+    pub fill_all_light_voxels: bool,
+}
+
+/// Switches that only tests and measurements set, to compare a picture with one made without a saving.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestSwitches {
+    /// Skip empty space, which changes no pixel.
+    pub empty_space_skipping: bool,
+    /// Minimum transmittance, below which a ray to the eye or from a light ends.
+    pub min_transmittance: f32,
+    /// Number of slabs per chunk of the light march, in place of the choice by memory and time.
+    pub chunk: Option<u32>,
+}
+
+impl Default for PictureOptions {
     fn default() -> Self {
-        Self {
-            transparent: false,
-            exposure: 1.0,
-            empty_space_skipping: true,
-            fill_all_light_voxels: false,
-            // 1/16 of an 8-bit step.
-            min_transmittance: 1.0 / 4096.0,
-            chunk: None,
-            light_parts: 1,
-            preview: false,
-            timed: false,
-            part: None,
-            samples: 1,
-            depth: PixelFormat::Eight,
-        }
+        Self { transparent: false, exposure: 1.0, part: None, samples: 1, depth: PixelFormat::Eight }
+    }
+}
+
+impl Default for WorkOptions {
+    fn default() -> Self {
+        Self { preview: false, light_parts: 1, timed: false, fill_all_light_voxels: false }
+    }
+}
+
+impl Default for TestSwitches {
+    fn default() -> Self {
+        // 1/16 of an 8-bit step.
+        Self { empty_space_skipping: true, min_transmittance: 1.0 / 4096.0, chunk: None }
+    }
+}
+
+impl From<PictureOptions> for RenderOptions {
+    fn from(picture: PictureOptions) -> Self {
+        Self { picture, ..Self::default() }
+    }
+}
+
+impl From<WorkOptions> for RenderOptions {
+    fn from(work: WorkOptions) -> Self {
+        Self { work, ..Self::default() }
+    }
+}
+
+impl From<TestSwitches> for RenderOptions {
+    fn from(switches: TestSwitches) -> Self {
+        Self { switches, ..Self::default() }
     }
 }
 
@@ -88,19 +126,21 @@ impl RenderOptions {
     /// Creates the options for an exported image.
     pub fn for_image(image_spec: &ImageSpec) -> Self {
         let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *image_spec;
-        Self { transparent, samples, depth, ..Self::default() }
+        PictureOptions { transparent, samples, depth, ..PictureOptions::default() }.into()
     }
 
     /// Returns the part of a picture that is displayed.
     pub fn displayed_window(&self, request: &RenderRequest) -> PixelWindow {
-        self.part.unwrap_or_else(|| request.size.into())
+        self.picture.part.unwrap_or_else(|| request.size.into())
     }
 
     /// Returns the samples that are drawn for the displayed part.
     pub fn sample_window(&self, request: &RenderRequest) -> PixelWindow {
-        self.displayed_window(request).supersampled(self.samples)
+        self.displayed_window(request).supersampled(self.picture.samples)
     }
+}
 
+impl TestSwitches {
     /// Returns the optical depth that corresponds to [`Self::min_transmittance`].
     pub fn max_optical_depth(&self) -> f32 {
         // A minimum transmittance of 0 is never reached by 32-bit optical depths.

@@ -42,7 +42,7 @@ impl Renderer {
     /// the rays would take too much memory.
     pub fn sky_divisor(&self) -> Option<usize> {
         let skies = &self.loaded.as_ref()?.product.skies;
-        skies.iter().max_by_key(|sky| sky.product.last_used).map(|sky| sky.product.divisor)
+        skies.last_used().map(|sky| sky.divisor)
     }
 
     /// Returns the statistics of a request's scattered-light volume at full resolution, if there is one.
@@ -75,7 +75,7 @@ impl Renderer {
 
     /// Returns the number of complete light volumes in the cache.
     pub fn cached_light_volumes(&self) -> usize {
-        let lights = self.loaded.iter().flat_map(|loaded| &loaded.product.lights);
+        let lights = self.loaded.iter().flat_map(|loaded| loaded.product.lights.iter());
         lights.filter(|light| light.is_complete()).count()
     }
 

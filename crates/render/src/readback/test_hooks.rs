@@ -11,7 +11,7 @@ use crate::resources::textures::read_floats;
 use crate::scatter::light::LightScatterer;
 use crate::scatter::voxels::ScatterState;
 use crate::volume::VolumeContext;
-use crate::{GpuError, RenderOptions, Renderer};
+use crate::{GpuError, RenderOptions, Renderer, WorkOptions};
 use chiaroscuro_scene::{ImageSpec, Settings};
 use chiaroscuro_volume::Dataset;
 
@@ -85,7 +85,8 @@ impl Renderer {
 
     /// Draws a small picture with light volumes filled everywhere, and returns its request.
     fn drawn_request(&mut self, dataset: &Dataset, settings: &Settings) -> Result<RenderRequest, GpuError> {
-        let options = RenderOptions { fill_all_light_voxels: true, ..RenderOptions::default() };
+        let options =
+            RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
         let settings = &*settings.resolved_for(dataset.volume());
         let size = [8, 8];
         self.draw(dataset, settings, size, &options)?;

@@ -107,7 +107,8 @@ impl PictureBands<'_> {
         }
         for part in parts {
             let drawn = part.widened(self.margin);
-            let options = RenderOptions { part: Some(drawn), ..RenderOptions::for_image(&self.spec) };
+            let mut options = RenderOptions::for_image(&self.spec);
+            options.picture.part = Some(drawn);
             self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
             // Tested only until something is visible.
             self.is_empty = self.is_empty && self.renderer.is_picture_empty()?;

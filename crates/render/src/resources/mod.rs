@@ -4,6 +4,7 @@ pub(super) mod cache_entry;
 pub(super) mod fill_time;
 pub(super) mod gpu_tools;
 pub(super) mod pass;
+pub(super) mod product_cache;
 pub(super) mod resource_pool;
 pub(super) mod sheet_ring;
 pub(super) mod textures;

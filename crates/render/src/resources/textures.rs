@@ -60,7 +60,7 @@ pub(crate) fn read_texture(context: &GpuContext, texture: &wgpu::Texture) -> Res
             }
         });
         context.wait()?;
-        let view = buffer.get_mapped_range(..).map_err(|err| GpuError::Rejected(err.to_string()))?;
+        let view = buffer.get_mapped_range(..).map_err(|err| GpuError::Refused(err.to_string()))?;
         for line in view.chunks_exact(padded as usize) {
             bytes.extend_from_slice(&line[..row as usize]);
         }
@@ -87,7 +87,7 @@ pub(crate) fn read_word(context: &GpuContext, source: &wgpu::Buffer) -> Result<u
         }
     });
     context.wait()?;
-    let view = buffer.get_mapped_range(..).map_err(|err| GpuError::Rejected(err.to_string()))?;
+    let view = buffer.get_mapped_range(..).map_err(|err| GpuError::Refused(err.to_string()))?;
     Ok(u32::from_le_bytes([view[0], view[1], view[2], view[3]]))
 }
 

@@ -242,7 +242,7 @@ impl EyeScatter {
 /// Returns the bricks with voxels that can reach a visible sample, or a neighbour of one from which its gradient is
 /// taken.
 pub(crate) fn bricks_to_splat(frame: &SheetFrame, occupied: &BrickSet, options: &RenderOptions) -> BrickSet {
-    if !options.empty_space_skipping {
+    if !options.switches.empty_space_skipping {
         return BrickSet::full(occupied.dims);
     }
     let widest = frame.widest_stretch();

@@ -90,7 +90,7 @@ impl LightScatterer {
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         let dims = tables.lighting.occupied_bricks.dims;
         let read_distances = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
-        let attenuating_distances = if options.empty_space_skipping {
+        let attenuating_distances = if options.switches.empty_space_skipping {
             tables.lighting.occupied_bricks.distances()
         } else {
             vec![0; read_distances.len()]

@@ -23,8 +23,6 @@ pub(crate) struct ScatteredLightVolume {
     pub filled_cells: Arc<CellSet>,
     /// Stopwatch for the filling of the volume.
     pub fill_time: FillStopwatch,
-    /// Counter value at the last use; the least recently used volume is dropped first.
-    pub last_used: u64,
 }
 
 impl ScatteredLightVolume {
@@ -48,14 +46,7 @@ impl ScatteredLightVolume {
                 | wgpu::TextureUsages::COPY_SRC,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self {
-            dims,
-            divisor,
-            view,
-            filled_cells: filled,
-            fill_time: FillStopwatch::default(),
-            last_used: 0,
-        })
+        Ok(Self { dims, divisor, view, filled_cells: filled, fill_time: FillStopwatch::default() })
     }
 
     /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.

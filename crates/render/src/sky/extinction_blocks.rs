@@ -48,7 +48,7 @@ pub(crate) fn attenuating_cells(
     divisor: usize,
 ) -> CellSet {
     let bricks = brick_dims(dims);
-    if !options.empty_space_skipping {
+    if !options.switches.empty_space_skipping {
         return CellSet::full(bricks);
     }
     // The sample points of a block are at most as many cells from its centre as half its edge has voxels.

@@ -243,7 +243,7 @@ impl SkyTextures {
             let [width, height] = above.max_size().map(|n| n + 1);
             let transmittance =
                 RaySheets::new(context, [width, height, above.directions_per_batch()], format)?;
-            Ok(FloorTextures { transmittance, sums: sums("Sky::floor_sums", floor.texels()) })
+            Ok::<_, GpuError>(FloorTextures { transmittance, sums: sums("Sky::floor_sums", floor.texels()) })
         };
         let floor = volume.floor.as_ref().map(of_floor).transpose()?;
         let sums = sums("Sky::sums", looked_up);

@@ -37,8 +37,17 @@ pub(crate) struct SkyVolume {
     pub margin: CellSet,
     /// Stopwatch for the filling of the volume.
     pub fill_time: FillStopwatch,
-    /// Counter value at the last use; the least recently used volume is dropped first.
-    pub last_used: u64,
+}
+
+/// Extent of a sky-visibility volume that is to be filled.
+#[derive(Debug)]
+pub(crate) struct SkyVolumeExtent {
+    /// Cells (of blocks) to be filled.
+    pub filled: Arc<CellSet>,
+    /// Cells around the filled ones, to be cleared.
+    pub margin: CellSet,
+    /// Extent of the floor, if there is one.
+    pub floor: Option<FloorPlane>,
 }
 
 impl SkyVolume {
@@ -50,8 +59,7 @@ impl SkyVolume {
         context: &GpuContext,
         scene: &SceneSpace,
         divisor: usize,
-        (filled, margin): (Arc<CellSet>, CellSet),
-        floor: Option<FloorPlane>,
+        SkyVolumeExtent { filled, margin, floor }: SkyVolumeExtent,
     ) -> Result<Self, GpuError> {
         let dims = scene.dims.map(|n| n.div_ceil(divisor));
         let texture = context.texture(&texture_3d(
@@ -73,7 +81,6 @@ impl SkyVolume {
             filled_cells: filled,
             margin,
             fill_time: FillStopwatch::default(),
-            last_used: 0,
         })
     }
 

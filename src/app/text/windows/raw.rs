@@ -203,7 +203,7 @@ pub(crate) fn confidence(first: Option<LayoutEvidence>) -> &'static str {
         Some(LayoutEvidence { rows_agree: false, slices_agree: false, .. }) => {
             "None stands out: these are guesses from the length alone"
         }
-        Some(_) => "Several are equally likely: compare the slices; click one to use it",
+        Some(_) => "Several are equally likely: compare the slices, click one",
     }
 }
 

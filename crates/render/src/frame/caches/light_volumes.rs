@@ -7,10 +7,9 @@ use crate::frame::light_fill::LightFill;
 use crate::frame::loaded_volume::{LoadedVolume, ProductRequest};
 use crate::light::combined_light::CombinedLight;
 use crate::light::light_volume::{LightVolume, LightVolumeExtent};
-use crate::plan::{
-    CellSet, FloorPlane, FrameKeys, LightKey, MAX_CELL_DISTANCE, NearFieldOffset, lookup_reach,
-};
+use crate::plan::{CellSet, FloorPlane, LightKey, MAX_CELL_DISTANCE, NearFieldOffset, lookup_reach};
 use crate::resources::cache_entry::CacheEntry;
+use crate::resources::product_cache::ProductCache;
 use crate::volume::GpuVolume;
 use crate::volume::transfer_tables::{CellRequirement, TransferTables};
 use crate::{GpuError, RenderOptions};
@@ -69,7 +68,7 @@ fn floor_with_shadow_map(
 
 /// Returns the distance from visible cells, in data cells, up to which a light volume is read.
 fn read_reach(options: &RenderOptions, divisor: usize, reach: u8, aheads: &[NearFieldOffset]) -> u8 {
-    if options.fill_all_light_voxels {
+    if options.work.fill_all_light_voxels {
         return MAX_CELL_DISTANCE;
     }
     let farthest = aheads.iter().map(NearFieldOffset::max_distance).max().unwrap_or(0);
@@ -85,7 +84,7 @@ impl LoadedVolume {
     /// Removes the volumes left incomplete by an interrupted picture, so that their textures can be reused.
     pub(crate) fn take_incomplete(&mut self) -> Vec<LightVolume> {
         self.combined = self.combined.take().filter(CacheEntry::is_complete);
-        self.lights.extract_if(.., |light| !light.is_complete()).map(|light| light.product).collect()
+        self.lights.take_incomplete()
     }
 
     /// Finds or creates the light volumes of a picture: one for each light, or a combined one. Reusable volumes are
@@ -102,7 +101,7 @@ impl LoadedVolume {
             return self.find_or_create_each_light(inputs, recyclable);
         };
         let ProductRequest { context, request, options, .. } = inputs;
-        let reach = lookup_reach_of_picture(&self.volume, request, options.samples);
+        let reach = lookup_reach_of_picture(&self.volume, request, options.picture.samples);
         let divisor = request.settings.shadows.resolution.divisor();
         let needs = CellRequirement { reach, divisor, offset: NearFieldOffset::default() };
         let needed = needed_cells(&self.volume, &self.tables.product, options, needs);
@@ -127,7 +126,7 @@ impl LoadedVolume {
 
     /// Drops the light volumes of a picture after they have been combined.
     pub(crate) fn drop_combined_lights(&mut self, keys: &[Option<LightKey>]) {
-        self.lights.retain(|light| !keys.iter().flatten().any(|key| key == light.key()));
+        self.lights.remove(|known| keys.iter().flatten().any(|key| key == known));
     }
 
     /// Finds or creates the volume of each light of a picture, and evicts the least recently used others.
@@ -136,15 +135,10 @@ impl LoadedVolume {
         wanted: ProductRequest<'_>,
         recyclable: &mut Vec<LightVolume>,
     ) -> Result<LightEntries, GpuError> {
-        let ProductRequest {
-            context,
-            request,
-            options,
-            keys: FrameKeys { lights: full_keys, .. },
-            picture_number: now,
-        } = wanted;
+        let ProductRequest { context, request, keys, picture_number: now, options: _ } = wanted;
+        let full_keys = &keys.lights;
         let Self { volume, tables, lights, .. } = self;
-        let reach = lookup_reach_of_picture(volume, request, options.samples);
+        let needs = LightNeeds::new(wanted, volume, &tables.product);
         let shadowed = full_keys.iter().flatten().count();
         // A picture without shadows evicts none, since comparisons return to them.
         let max_cached =
@@ -154,73 +148,28 @@ impl LoadedVolume {
         let is_needed = |key: &LightKey| {
             full_keys.iter().flatten().any(|full| full == key || at_coarse(full).as_ref() == Some(key))
         };
-        let needed = |key: &LightKey, reach: u8, ahead: NearFieldOffset| {
-            needed_cells(
-                volume,
-                &tables.product,
-                options,
-                CellRequirement { reach, divisor: key.resolution().divisor(), offset: ahead },
-            )
-        };
-        let settings = &request.settings;
-        let ahead_of = |index: usize, key: &LightKey| {
-            let light = settings.lights[index].resolve(&settings.camera);
-            lookup_offset(volume, settings, &light, key.resolution().divisor())
-        };
-        // Cells of the margin are fully lit, which suffices for previews.
-        let least_reach = required_reach(wanted, reach);
-        let usable = |known: &CacheEntry<LightKey, LightVolume>, index: usize, key: &LightKey| {
-            let least = needed(key, least_reach, ahead_of(index, key));
-            let floor = floor_with_shadow_map(volume, &tables.product, settings, key.samples());
-            let has_floor = floor.is_none() || known.product.floor.as_ref().map(|map| map.extent) == floor;
-            known.key() == key && has_floor && covers(&least, &known.product.filled_cells)
-        };
         let mut keys = vec![None; full_keys.len()];
         let mut builds: Vec<LightFill> = Vec::new();
-        for (index, (slot, full)) in keys.iter_mut().zip(full_keys).enumerate() {
+        for (index, (claimed, full)) in keys.iter_mut().zip(full_keys).enumerate() {
             let Some(full) = full else { continue };
             let coarse = at_coarse(full);
-            let found = [Some(full), coarse.as_ref()]
-                .into_iter()
-                .flatten()
-                .find(|key| lights.iter().any(|known| usable(known, index, key)))
-                .cloned();
-            let key = found.clone().or(coarse).unwrap_or_else(|| full.clone());
-            if found.is_none() {
-                // Compared settings may differ in their look-up offsets, so one volume covers both.
-                let mut aheads = vec![ahead_of(index, &key)];
-                for known in lights.iter().filter(|known| *known.key() == key) {
-                    aheads.extend(known.product.lookup_offsets.first().filter(|known| **known != aheads[0]));
-                }
-                recyclable
-                    .extend(lights.extract_if(.., |known| *known.key() == key).map(|light| light.product));
+            let is_usable = |key: &LightKey, known: &LightVolume| needs.are_met(index, key, known);
+            let slot = if let Some(slot) = lights.find([Some(full), coarse.as_ref()], is_usable) {
+                slot
+            } else {
+                let key = coarse.unwrap_or_else(|| full.clone());
+                let aheads = needs.lookup_offsets(index, &key, lights);
+                recyclable.extend(lights.remove(|known| *known == key));
                 // Recycles a volume that would be evicted anyway.
-                if lights.len() >= max_cached {
-                    let free = (0..lights.len()).filter(|&at| !is_needed(lights[at].key()));
-                    let oldest = free.min_by_key(|&at| lights[at].product.last_used);
-                    recyclable.extend(oldest.map(|at| lights.swap_remove(at).product));
-                }
-                let all = |reach: u8| {
-                    let sets = aheads.iter().map(|&ahead| needed(&key, reach, ahead));
-                    sets.reduce(|a, b| Arc::new(a.union(&b))).unwrap_or_default()
-                };
-                let filled = all(reach);
-                let margin = all(reach.max(max_stretch_reach())).difference(&filled);
-                let reach = read_reach(options, key.resolution().divisor(), reach, &aheads);
-                let floor = floor_with_shadow_map(volume, &tables.product, settings, key.samples());
-                let filling = LightVolumeExtent { filled, margin, reach, aheads, floor };
-                let fresh = LightVolume::new(context, volume, &key, filling, recyclable)?;
+                recyclable.extend(lights.evict_oldest(max_cached, is_needed));
+                let extent = needs.extent(&key, aheads);
+                let fresh = LightVolume::new(context, volume, &key, extent, recyclable)?;
                 builds.push(LightFill::new(wanted, volume, index, (&key, &fresh))?);
-                lights.push(CacheEntry::incomplete(key.clone(), fresh));
-            }
-            for known in lights.iter_mut().filter(|known| *known.key() == key) {
-                known.product.last_used = now;
-            }
-            *slot = Some(key);
+                lights.insert(key, fresh, now)
+            };
+            *claimed = Some(lights.claim(slot, now));
         }
-        lights.sort_by_key(|light| std::cmp::Reverse(light.product.last_used));
-        let kept = lights.len().min(max_cached);
-        recyclable.extend(lights.drain(kept..).map(|light| light.product));
+        recyclable.extend(lights.keep_latest(max_cached));
         let slot_of =
             |key: &Option<LightKey>| lights.iter().position(|light| Some(light.key()) == key.as_ref());
         let slots: Vec<_> = keys.iter().map(slot_of).collect();
@@ -228,5 +177,76 @@ impl LoadedVolume {
             build.cache_index = slots[build.light_index].unwrap_or(0);
         }
         Ok(LightEntries { keys, slots, builds, bricks_to_combine: None })
+    }
+}
+
+/// Cells of light volumes that a picture looks up.
+struct LightNeeds<'a> {
+    wanted: ProductRequest<'a>,
+    volume: &'a GpuVolume,
+    tables: &'a TransferTables,
+    /// Distance of light look-ups from visible cells, in cells.
+    reach: u8,
+}
+
+impl<'a> LightNeeds<'a> {
+    fn new(wanted: ProductRequest<'a>, volume: &'a GpuVolume, tables: &'a TransferTables) -> Self {
+        let reach = lookup_reach_of_picture(volume, wanted.request, wanted.options.picture.samples);
+        Self { wanted, volume, tables, reach }
+    }
+
+    /// Returns the cells of a volume within a reach of samples, for look-ups with an offset.
+    fn cells(&self, key: &LightKey, reach: u8, offset: NearFieldOffset) -> Arc<CellSet> {
+        let needs = CellRequirement { reach, divisor: key.resolution().divisor(), offset };
+        needed_cells(self.volume, self.tables, self.wanted.options, needs)
+    }
+
+    /// Returns the offset of look-ups from samples, for light `index` of the settings.
+    fn lookup_offset(&self, index: usize, key: &LightKey) -> NearFieldOffset {
+        let settings = &self.wanted.request.settings;
+        let light = settings.lights[index].resolve(&settings.camera);
+        lookup_offset(self.volume, settings, &light, key.resolution().divisor())
+    }
+
+    /// Returns the offsets of look-ups that a new volume covers. Compared settings may differ in them, so one volume
+    /// covers both.
+    fn lookup_offsets(
+        &self,
+        index: usize,
+        key: &LightKey,
+        lights: &ProductCache<LightKey, LightVolume>,
+    ) -> Vec<NearFieldOffset> {
+        let own = self.lookup_offset(index, key);
+        let mut aheads = vec![own];
+        for known in lights.products_of(key) {
+            aheads.extend(known.lookup_offsets.first().filter(|known| **known != own));
+        }
+        aheads
+    }
+
+    fn floor(&self, key: &LightKey) -> Option<FloorPlane> {
+        floor_with_shadow_map(self.volume, self.tables, &self.wanted.request.settings, key.samples())
+    }
+
+    /// Returns true if a cached volume holds all that the picture looks up of light `index`.
+    fn are_met(&self, index: usize, key: &LightKey, known: &LightVolume) -> bool {
+        // Cells of the margin are fully lit, which suffices for previews.
+        let least_reach = required_reach(self.wanted, self.reach);
+        let least = self.cells(key, least_reach, self.lookup_offset(index, key));
+        let floor = self.floor(key);
+        let has_floor = floor.is_none() || known.floor.as_ref().map(|map| map.extent) == floor;
+        has_floor && covers(&least, &known.filled_cells)
+    }
+
+    /// Returns the extent of a new volume with these offsets of look-ups.
+    fn extent(&self, key: &LightKey, aheads: Vec<NearFieldOffset>) -> LightVolumeExtent {
+        let all = |reach: u8| {
+            let sets = aheads.iter().map(|&ahead| self.cells(key, reach, ahead));
+            sets.reduce(|a, b| Arc::new(a.union(&b))).unwrap_or_default()
+        };
+        let filled = all(self.reach);
+        let margin = all(self.reach.max(max_stretch_reach())).difference(&filled);
+        let reach = read_reach(self.wanted.options, key.resolution().divisor(), self.reach, &aheads);
+        LightVolumeExtent { filled, margin, reach, floor: self.floor(key), aheads }
     }
 }

@@ -12,6 +12,10 @@ use crate::volume::transfer_tables::{CellRequirement, TransferTables};
 use crate::volume::{GpuVolume, brick_dims};
 use chiaroscuro_scene::{MAX_BIAS_VOXELS, NearFieldRay, SKY_LOOKUP_DISTANCE};
 
+/// Maximum number of cached volumes of sky visibility, and of scattered light: one for the picture, one for its
+/// previews, and one for undoing a change.
+pub(super) const MAX_AMBIENT_VOLUMES: usize = 3;
+
 /// Returns the maximum reach of samples in previews, in cells, whose pixels may be as wide as the maximum stretch.
 pub(super) fn max_stretch_reach() -> u8 {
     stretch_reach(MAX_STRETCH_LEVEL)
@@ -44,7 +48,7 @@ pub(super) fn lookup_reach_of_picture(volume: &GpuVolume, request: &RenderReques
 
 /// Returns the reach that must be filled: 0 for previews, which accept missing cells.
 pub(super) fn required_reach(wanted: ProductRequest<'_>, reach: u8) -> u8 {
-    if wanted.request.preview_resolution.is_some() || wanted.options.preview { 0 } else { reach }
+    if wanted.request.preview_resolution.is_some() || wanted.options.work.preview { 0 } else { reach }
 }
 
 /// Returns the cells of a light volume, with `divisor` data voxels per voxel, that a picture can look up, given the
@@ -55,7 +59,7 @@ pub(super) fn needed_cells(
     options: &RenderOptions,
     CellRequirement { reach, divisor, offset: ahead }: CellRequirement,
 ) -> Arc<CellSet> {
-    if options.fill_all_light_voxels {
+    if options.work.fill_all_light_voxels {
         let dims = volume.volume.dims().map(|n| n.div_ceil(divisor));
         return Arc::new(CellSet::full(brick_dims(dims)));
     }
@@ -74,7 +78,8 @@ pub(super) fn ambient_cells(
     volume: &GpuVolume,
     tables: &TransferTables,
     options: &RenderOptions,
-    (divisor, reach): (usize, u8),
+    divisor: usize,
+    reach: u8,
 ) -> Arc<CellSet> {
     let reach = reach.saturating_add(bias_reach(SKY_LOOKUP_DISTANCE * divisor as f64));
     needed_cells(

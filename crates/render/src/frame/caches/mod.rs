@@ -2,5 +2,6 @@
 
 pub(crate) mod light_volumes;
 mod lookup_reach;
+pub(super) mod placement;
 pub(super) mod scattered_light_volumes;
 pub(super) mod sky_volumes;

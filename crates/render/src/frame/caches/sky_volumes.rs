@@ -2,32 +2,23 @@
 
 use std::sync::Arc;
 
-use super::lookup_reach::{ambient_cells, max_stretch_reach, required_reach, view_sample_reach};
+use super::lookup_reach::{
+    MAX_AMBIENT_VOLUMES, ambient_cells, max_stretch_reach, required_reach, view_sample_reach,
+};
 use crate::GpuError;
 use crate::frame::loaded_volume::{LoadedVolume, ProductRequest};
 use crate::frame::step::{FrameProduct, RenderStep};
 use crate::plan::{FloorPlane, SkyKey};
-use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
+use crate::resources::product_cache::ProductPlace;
 use crate::sky::fill::SkyFill;
-use crate::sky::volume::{MAX_DIRECTION_TEXELS, SkyVolume, divisor_for_adapter};
+use crate::sky::volume::{MAX_DIRECTION_TEXELS, SkyVolume, SkyVolumeExtent, divisor_for_adapter};
 use crate::volume::VolumeContext;
 
-/// Maximum number of cached volumes: one for the picture, one for its previews, and one for undoing a change.
-const MAX_CACHED: usize = 3;
-
 /// Sky-visibility volume of a picture, and the work to fill it.
-#[derive(Debug, Default)]
-pub(crate) struct SkyEntry {
-    /// Key of the volume; `None` without one.
-    pub key: Option<SkyKey>,
-    /// Index of the volume among the cached ones.
-    pub slot: Option<usize>,
-    /// Work to fill the volume; `None` if it is already complete.
-    pub build: Option<SkyFill>,
-}
+pub(crate) type SkyPlace = ProductPlace<SkyKey, SkyFill>;
 
-impl SkyEntry {
+impl SkyPlace {
     /// Returns the steps that fill the volume.
     pub(crate) fn steps(&self) -> Vec<RenderStep> {
         let Some(build) = &self.build else { return Vec::new() };
@@ -47,35 +38,27 @@ impl LoadedVolume {
         &mut self,
         tools: &GpuTools,
         wanted: ProductRequest<'_>,
-    ) -> Result<SkyEntry, GpuError> {
+    ) -> Result<SkyPlace, GpuError> {
         let ProductRequest { context, request, options, keys, picture_number: now } = wanted;
-        let known = self.skies.len();
-        self.skies.retain(CacheEntry::is_complete);
-        if self.skies.len() < known {
+        if !self.skies.take_incomplete().is_empty() {
             tools.pool.drop_bind_groups();
         }
-        let Some(full) = &keys.sky else { return Ok(SkyEntry::default()) };
+        let Some(full) = &keys.sky else { return Ok(SkyPlace::default()) };
         let coarse = request.preview_resolution.map(|_| full.for_preview());
         // The floor's sky visibility is computed together with that of the volume.
         let floor = FloorPlane::from_settings(&request.settings);
         let has_floor =
             |known: &SkyVolume| floor.is_none() || known.floor.as_ref().map(|map| map.extent) == floor;
         let cells = |divisor: usize, reach: u8| {
-            ambient_cells(&self.volume, &self.tables.product, options, (divisor, reach))
+            ambient_cells(&self.volume, &self.tables.product, options, divisor, reach)
         };
-        let reach = view_sample_reach(&self.volume, request, options.samples);
+        let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         // Cells of the margin see the whole sky, which suffices for previews.
         let least_reach = required_reach(wanted, reach);
         let has_cells = |known: &SkyVolume| cells(known.divisor, least_reach).is_subset(&known.filled_cells);
-        let find = |key: &SkyKey| {
-            let is_usable = |known: &SkyVolume| has_floor(known) && has_cells(known);
-            self.skies.iter().position(|known| known.is_valid_for(key) && is_usable(&known.product))
-        };
-        let found = find(full).or_else(|| coarse.as_ref().and_then(find));
-        if let Some(slot) = found {
-            self.skies[slot].product.last_used = now;
-            let key = self.skies[slot].key().clone();
-            return Ok(SkyEntry { key: Some(key), slot: Some(slot), build: None });
+        let is_usable = |_: &SkyKey, known: &SkyVolume| has_floor(known) && has_cells(known);
+        if let Some(slot) = self.skies.find([Some(full), coarse.as_ref()], is_usable) {
+            return Ok(SkyPlace::with_complete(self.skies.claim(slot, now), slot));
         }
         let key = coarse.unwrap_or_else(|| full.clone());
         let divisor =
@@ -83,23 +66,18 @@ impl LoadedVolume {
         let mut filled = cells(divisor, reach);
         let mut margin = cells(divisor, reach.max(max_stretch_reach())).difference(&filled);
         // Compared settings may show different cells, so one volume covers both.
-        for known in self.skies.iter().filter(|known| known.is_valid_for(&key)) {
-            filled = Arc::new(filled.union(&known.product.filled_cells));
-            margin = margin.union(&known.product.margin).difference(&filled);
+        for known in self.skies.products_of(&key) {
+            filled = Arc::new(filled.union(&known.filled_cells));
+            margin = margin.union(&known.margin).difference(&filled);
         }
-        self.skies.retain(|known| !known.is_valid_for(&key));
-        if self.skies.len() >= MAX_CACHED {
-            let oldest = (0..self.skies.len()).min_by_key(|&at| self.skies[at].product.last_used);
-            oldest.map(|at| self.skies.swap_remove(at));
-        }
+        self.skies.make_room(&key, MAX_AMBIENT_VOLUMES);
         tools.pool.drop_bind_groups();
-        let mut fresh = SkyVolume::new(context, &self.volume.scene, divisor, (filled, margin), floor)?;
-        fresh.last_used = now;
-        let slot = self.skies.len();
+        let extent = SkyVolumeExtent { filled, margin, floor };
+        let fresh = SkyVolume::new(context, &self.volume.scene, divisor, extent)?;
         let gpu = VolumeContext::new(tools, &self.volume);
         let build = SkyFill::new(gpu, (&self.tables.product, options), &key, &fresh)?;
-        self.skies.push(CacheEntry::incomplete(key.clone(), fresh));
-        Ok(SkyEntry { key: Some(key), slot: Some(slot), build: Some(build) })
+        let slot = self.skies.insert(key.clone(), fresh, now);
+        Ok(SkyPlace::with_build(key, slot, build))
     }
 
     /// Returns the size of all sky-visibility volumes, in bytes.

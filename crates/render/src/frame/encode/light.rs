@@ -17,19 +17,19 @@ impl RenderJob<'_> {
     fn begin_view(
         &mut self,
         build: &LightFill,
-        (view, color): (usize, Option<usize>),
+        &LightStep { view, color, .. }: &LightStep,
     ) -> Result<MarchState, GpuError> {
         let settings = &self.request.settings;
         let LightFillView { point, geometry, chunk } = &build.views[view];
         let loaded = &self.loaded.product;
         let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
         let light = build.target_volume(*point, color, &loaded.lights[build.cache_index].product);
-        let skips = self.options.empty_space_skipping;
+        let skips = self.options.switches.empty_space_skipping;
         let reach = if skips { i32::from(build.reach) } else { UNLIMITED_REACH };
         let mut sheets = LightSheets::new(self.tools, geometry, *chunk, reach)?;
-        sheets.min_transmittance = self.options.min_transmittance;
+        sheets.min_transmittance = self.options.switches.min_transmittance;
         // A volume at full resolution also serves pictures, so it is filled with the full reach.
-        sheets.is_preview = self.options.preview && build.is_coarse;
+        sheets.is_preview = self.options.work.preview && build.is_coarse;
         let mut bytes = self.targets.bytes() + loaded.bytes() + self.tools.pool.bytes();
         bytes += sheets.ring.bytes() + build.bytes();
         let scatter = match &self.scattering {
@@ -85,14 +85,10 @@ impl RenderJob<'_> {
     }
 
     /// Takes the view that is being marched, prepared at its first step.
-    fn take_view(
-        &mut self,
-        build: &mut LightFill,
-        view: (usize, Option<usize>),
-    ) -> Result<MarchState, GpuError> {
+    fn take_view(&mut self, build: &mut LightFill, step: &LightStep) -> Result<MarchState, GpuError> {
         match build.march_state.take() {
             Some(current) => Ok(current),
-            None => self.begin_view(build, view),
+            None => self.begin_view(build, step),
         }
     }
 
@@ -100,9 +96,10 @@ impl RenderJob<'_> {
     pub(super) fn march_view(
         &mut self,
         build: &mut LightFill,
-        &LightStep { color, view, begin, part, .. }: &LightStep,
+        step: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        let &LightStep { color, view, begin, part, .. } = step;
         let is_first = color.unwrap_or(0) == 0 && view == 0 && begin == 0 && part.is_first();
         if is_first {
             let loaded = &self.loaded.product;
@@ -110,7 +107,7 @@ impl RenderJob<'_> {
             loaded.lights[build.cache_index].product.clear_margin(gpu, &build.margin, encoder)?;
             self.begin_light(build);
         }
-        let current = self.take_view(build, (view, color))?;
+        let current = self.take_view(build, step)?;
         let MarchState { sheets, schedule, scatter } = build.march_state.insert(current);
         let LightFillView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
@@ -130,10 +127,11 @@ impl RenderJob<'_> {
     pub(super) fn backproject_view(
         &mut self,
         build: &mut LightFill,
-        &LightStep { color, view, begin, part, .. }: &LightStep,
+        step: &LightStep,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let current = self.take_view(build, (view, color))?;
+        let &LightStep { color, view, begin, part, .. } = step;
+        let current = self.take_view(build, step)?;
         let shadows = &self.request.settings.shadows;
         let LightFillView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);

@@ -49,7 +49,7 @@ impl RenderJob<'_> {
                 self.report.step_counts.volume += 1;
                 gradients::fill_gradients(context, &self.tools.shaders, volume, *level, bricks, encoder)
             }
-            RenderStep::Materials(side, level, bricks) => {
+            RenderStep::Materials { side, level, bricks } => {
                 self.report.step_counts.materials += 1;
                 let table = side.table(&self.loaded.product.tables.product);
                 let Some(materials) = &table.materials else { return Ok(()) };
@@ -108,9 +108,7 @@ impl RenderJob<'_> {
                 }
                 FrameProduct::Light(build) => {
                     let build = &mut self.light_fills[*build];
-                    let light = &mut self.loaded.product.lights[build.cache_index];
-                    light.product.fill_time.finish();
-                    light.mark_complete();
+                    self.loaded.product.lights.complete(build.cache_index).fill_time.finish();
                     let has_scratch = build.average.take().is_some() | build.colors.take().is_some();
                     if has_scratch {
                         self.tools.pool.drop_bind_groups();
@@ -127,18 +125,14 @@ impl RenderJob<'_> {
                 }
                 FrameProduct::Sky => {
                     if let Some(slot) = self.sky.slot {
-                        let sky = &mut self.loaded.product.skies[slot];
-                        sky.product.fill_time.finish();
-                        sky.mark_complete();
+                        self.loaded.product.skies.complete(slot).fill_time.finish();
                     }
                     self.sky.build = None;
                     self.tools.pool.drop_bind_groups();
                 }
                 FrameProduct::ScatteredLight => {
                     if let Some(slot) = self.scattered_light.slot {
-                        let bounces = &mut self.loaded.product.bounces[slot];
-                        bounces.product.fill_time.finish();
-                        bounces.mark_complete();
+                        self.loaded.product.bounces.complete(slot).fill_time.finish();
                     }
                     self.scattered_light.build = None;
                     self.tools.pool.drop_bind_groups();

@@ -39,7 +39,7 @@ impl CombinedKey {
             unit: settings.opacity_unit,
             sides: (settings.shading.sides == LitSides::One).then(|| EyeTableKey::new(settings)),
             seen: settings.cuts.visible_part(),
-            min_transmittance: options.min_transmittance,
+            min_transmittance: options.switches.min_transmittance,
         })
     }
 }

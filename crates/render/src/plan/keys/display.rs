@@ -21,11 +21,11 @@ impl DisplayKey {
     pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
         Self {
             output: request.settings.output.clone(),
-            transparent: options.transparent,
-            exposure: options.exposure,
+            transparent: options.picture.transparent,
+            exposure: options.picture.exposure,
             shown: options.displayed_window(request),
-            samples: options.samples,
-            depth: options.depth,
+            samples: options.picture.samples,
+            depth: options.picture.depth,
         }
     }
 

@@ -6,7 +6,9 @@ use super::light_lookup::{LightAppearance, LightLookupKey};
 use super::lit_lights::{ActiveLights, AttenuationMethod};
 use super::sky::{SkyAppearance, SkyKey};
 use super::table::{EyeTableKey, OpacityKey, TransmissionKey};
-use crate::plan::{CombinedKey, PixelWindow, RenderOptions, RenderRequest, VolumeKey};
+use crate::plan::{
+    CombinedKey, PictureOptions, PixelWindow, RenderOptions, RenderRequest, VolumeKey, WorkOptions,
+};
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
     PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
@@ -161,13 +163,11 @@ impl EyeKey {
 
 /// Returns the options that affect the computation of light, with those of display and scheduling reset.
 fn without_display_options(options: &RenderOptions) -> RenderOptions {
+    let RenderOptions { picture, work, switches } = options.clone();
     RenderOptions {
-        transparent: false,
-        exposure: 1.0,
-        timed: false,
-        light_parts: 1,
-        depth: PixelFormat::Eight,
-        ..options.clone()
+        picture: PictureOptions { transparent: false, exposure: 1.0, depth: PixelFormat::Eight, ..picture },
+        work: WorkOptions { timed: false, light_parts: 1, ..work },
+        switches,
     }
 }
 

@@ -12,6 +12,18 @@ use chiaroscuro_scene::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightKey {
     volume: VolumeKey,
+    light: LightShapeKey,
+    pass: LightPassKey,
+    classification: ClassificationOrder,
+    opacity: OpacityKey,
+    transmission: Option<TransmissionKey>,
+    resolution: LightVolumeResolution,
+    shading_cut: ClippedPart,
+}
+
+/// Position and extent of a light, without its colour.
+#[derive(Debug, Clone, PartialEq)]
+struct LightShapeKey {
     kind: LightGeometry,
     /// Position, or for a parallel light the direction, so that moving it outwards changes nothing.
     position_or_direction: [f64; 3],
@@ -20,11 +32,13 @@ pub struct LightKey {
     density_scale: f64,
     /// Area of the light, and the number of points on it; `None` for a point light.
     area: Option<(LightArea, u32)>,
+}
+
+/// Parameters of the light pass that fills an attenuation volume.
+#[derive(Debug, Clone, PartialEq)]
+struct LightPassKey {
     algorithm: ShadowAlgorithm,
-    classification: ClassificationOrder,
     engine: RenderEngine,
-    opacity: OpacityKey,
-    transmission: Option<TransmissionKey>,
     first_touch: bool,
     deposit: DepositMode,
     kernel: ReconstructionKernel,
@@ -32,9 +46,7 @@ pub struct LightKey {
     reverse_kernel: ReverseKernel,
     slab: f64,
     quadrature: SlabQuadrature,
-    resolution: LightVolumeResolution,
     precision: LightVolumePrecision,
-    shading_cut: ClippedPart,
 }
 
 /// Maximum number of points on an area light in previews.
@@ -44,13 +56,14 @@ impl LightKey {
     /// Returns the key of this light's volume for a preview, at a resolution that is no finer.
     #[must_use]
     pub fn for_preview(&self, resolution: LightVolumeResolution) -> Self {
-        let area = self.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
-        Self { resolution: resolution.max(self.resolution), area, ..self.clone() }
+        let area = self.light.area.map(|(area, samples)| (area, samples.min(PREVIEW_SAMPLES)));
+        let light = LightShapeKey { area, ..self.light.clone() };
+        Self { resolution: resolution.max(self.resolution), light, ..self.clone() }
     }
 
     /// Returns the number of point lights that represent the light.
     pub fn samples(&self) -> u32 {
-        self.area.map_or(1, |(_, samples)| samples)
+        self.light.area.map_or(1, |(_, samples)| samples)
     }
 
     /// Returns true if there is a transmittance for each colour channel.
@@ -65,7 +78,7 @@ impl LightKey {
 
     /// Returns the storage format of transmittances.
     pub fn precision(&self) -> LightVolumePrecision {
-        self.precision
+        self.pass.precision
     }
 
     /// Creates the key of light `index` of a request; `None` if it needs no attenuation volume.
@@ -105,6 +118,27 @@ impl LightKey {
             volume: _,
         } = &request.settings;
         let light = lights.get(index)?.resolve(camera);
+        let wanted = shadows.algorithm.has_volume() && light.needs_volume();
+        wanted.then(|| Self {
+            volume: request.volume_key(),
+            light: LightShapeKey::new(&light, shadows.area),
+            pass: LightPassKey::new(shadows, *engine),
+            classification: request.settings.classification(),
+            opacity: OpacityKey::new(&request.settings),
+            transmission: TransmissionKey::new(&request.settings),
+            // A combined volume has one resolution for all lights.
+            resolution: if request.settings.combines_lights() {
+                shadows.resolution
+            } else {
+                light.volume_resolution(shadows, request.volume.dims)
+            },
+            shading_cut: cuts.shadowing_part(),
+        })
+    }
+}
+
+impl LightShapeKey {
+    fn new(light: &SceneLight, sampling: AreaLightSampling) -> Self {
         let SceneLight {
             kind,
             position,
@@ -115,8 +149,24 @@ impl LightKey {
             hood: Spotlight { on: hooded, half_angle_deg, rim_deg },
             density_scale,
             area,
-        } = &light;
-        let hooded = *hooded && *kind == LightGeometry::Perspective;
+        } = *light;
+        let AreaLightSampling { samples, resolution: _ } = sampling;
+        let hooded = hooded && kind == LightGeometry::Perspective;
+        Self {
+            kind,
+            position_or_direction: match kind {
+                LightGeometry::Parallel => light.direction().into(),
+                LightGeometry::Perspective => position,
+            },
+            hood_deg: hooded.then_some([half_angle_deg, rim_deg]),
+            density_scale,
+            area: area.map(|area| (area, samples)),
+        }
+    }
+}
+
+impl LightPassKey {
+    fn new(shadows: &ShadowSettings, engine: RenderEngine) -> Self {
         let ShadowSettings {
             algorithm,
             // Part of the resolution of soft light.
@@ -139,46 +189,22 @@ impl LightKey {
             reverse_kernel,
             // Applied where light is looked up.
             near_field: _,
-            area: AreaLightSampling { samples, resolution: _ },
-        } = shadows;
-        let wanted = algorithm.has_volume() && light.needs_volume();
-        wanted.then(|| Self {
-            volume: request.volume_key(),
-            kind: *kind,
-            position_or_direction: match kind {
-                LightGeometry::Parallel => light.direction().into(),
-                LightGeometry::Perspective => *position,
-            },
-            hood_deg: hooded.then_some([*half_angle_deg, *rim_deg]),
-            density_scale: *density_scale,
-            area: area.map(|area| (area, *samples)),
-            algorithm: *algorithm,
-            classification: request.settings.classification(),
+            // Part of the light's shape.
+            area: _,
+        } = *shadows;
+        let splats = algorithm == ShadowAlgorithm::Splat;
+        let has_reverse_kernel = splats && engine == RenderEngine::Gather && !first_touch;
+        Self {
+            algorithm,
             // Rays need no sheets.
-            engine: if *algorithm == ShadowAlgorithm::Splat { *engine } else { RenderEngine::Gather },
-            opacity: OpacityKey::new(&request.settings),
-            transmission: TransmissionKey::new(&request.settings),
-            first_touch: *first_touch,
-            deposit: *deposit,
-            kernel: *kernel,
-            reverse_kernel: if *algorithm == ShadowAlgorithm::Splat
-                && *engine == RenderEngine::Gather
-                && !*first_touch
-            {
-                *reverse_kernel
-            } else {
-                ReverseKernel::Forward
-            },
-            slab: *slab,
-            quadrature: *quadrature,
-            // A combined volume has one resolution for all lights.
-            resolution: if request.settings.combines_lights() {
-                shadows.resolution
-            } else {
-                light.volume_resolution(shadows, request.volume.dims)
-            },
-            precision: *precision,
-            shading_cut: cuts.shadowing_part(),
-        })
+            engine: if splats { engine } else { RenderEngine::Gather },
+            first_touch,
+            deposit,
+            kernel,
+            reverse_kernel: if has_reverse_kernel { reverse_kernel } else { ReverseKernel::Forward },
+            slab,
+            quadrature,
+            precision,
+        }
     }
 }

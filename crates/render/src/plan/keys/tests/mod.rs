@@ -5,6 +5,7 @@ mod lights;
 use serde_json::Value;
 
 use super::*;
+use crate::plan::{PictureOptions, WorkOptions};
 use chiaroscuro_scene::{
     ControlPoint, LabelLook, LightGeometry, LightSettings, ScatteringSettings, Settings, SkyMode,
     SkySettings, TransferFunction, apply_path, settings_to_json,
@@ -287,11 +288,11 @@ fn requests_that_are_the_same_have_the_same_keys() {
 
 #[test]
 fn options_that_only_display_reads_change_the_display_alone() {
-    let options = RenderOptions { exposure: 1.5, ..RenderOptions::default() };
+    let options = RenderOptions::from(PictureOptions { exposure: 1.5, ..PictureOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Display);
-    let options = RenderOptions { transparent: true, ..RenderOptions::default() };
+    let options = RenderOptions::from(PictureOptions { transparent: true, ..PictureOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Display);
-    let options = RenderOptions { timed: true, light_parts: 3, ..RenderOptions::default() };
+    let options = RenderOptions::from(WorkOptions { timed: true, light_parts: 3, ..WorkOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Nothing);
 }
 

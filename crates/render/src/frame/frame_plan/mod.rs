@@ -1,0 +1,160 @@
+//! Frame planning: compares the keys of a picture with the cached products and lists the missing steps.
+
+mod light_inputs;
+mod planner;
+mod steps;
+
+use std::borrow::Cow;
+use std::time::Instant;
+
+pub(super) use self::light_inputs::light_inputs;
+use self::planner::FramePlanner;
+use self::steps::upload_steps;
+use super::loaded_volume::LoadedVolume;
+use super::render_job::RenderJob;
+use super::report::RenderReport;
+use super::step::RenderStep;
+use crate::output::render_target::TargetShape;
+use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
+use crate::resources::cache_entry::CacheEntry;
+use crate::volume::presence::PresenceTexture;
+use crate::{GpuError, RenderOptions, Renderer};
+use chiaroscuro_scene::PixelFormat;
+use chiaroscuro_volume::Dataset;
+
+impl Renderer {
+    /// Returns true if a picture needs no more than a display pass.
+    pub fn is_drawn(&self, request: &RenderRequest, options: &RenderOptions) -> bool {
+        let keys = FrameKeys::new(request, options);
+        let role = self.targets.find(&keys, target_shape(request, options));
+        // Destructured without `..`, so that the compiler asks about each new product. The key of the eye covers
+        // everything that its picture depends on.
+        let FrameKeys {
+            volume: _,
+            tables: _,
+            lights: _,
+            combined: _,
+            sky: _,
+            bounces: _,
+            eye: _,
+            floor,
+            display: _,
+        } = &keys;
+        role.is_some_and(|role| self.targets.get(role).floor.is_valid_for(floor))
+    }
+
+    /// Starts a picture: finds stale products and lists the steps.
+    ///
+    /// # Errors
+    /// Returns an error if memory is exhausted; the displayed picture is kept.
+    pub fn begin(
+        &mut self,
+        dataset: &Dataset,
+        request: RenderRequest,
+        options: &RenderOptions,
+    ) -> Result<RenderJob<'_>, GpuError> {
+        let request = with_resolved_labels(request, dataset);
+        let keys = FrameKeys::new(&request, options);
+        let mut planner = self.plan_frame(dataset, request, options, keys)?;
+        let placement = planner.place_volumes()?;
+        planner.into_job(placement)
+    }
+
+    /// Loads the volume of a picture, and starts its report and its plan.
+    fn plan_frame(
+        &mut self,
+        dataset: &Dataset,
+        request: RenderRequest,
+        options: &RenderOptions,
+        keys: FrameKeys,
+    ) -> Result<FramePlanner<'_>, GpuError> {
+        self.picture_count += 1;
+        self.report = RenderReport { peak_gpu_bytes: self.report.peak_gpu_bytes, ..RenderReport::default() };
+        self.fill_counts.resize(self.fill_counts.len().max(request.settings.lights.len()), 0);
+        let mut steps = Vec::new();
+        let loaded = match self.loaded.take() {
+            Some(known) if known.is_valid_for(&keys.volume) && known.product.has_voxel_type_of(dataset) => {
+                known
+            }
+            other => self.load_volume(other, dataset, &request, &keys, &mut steps)?,
+        };
+        let shape = target_shape(&request, options);
+        Ok(FramePlanner {
+            tools: &self.tools,
+            gpu_clock: self.gpu_clock.as_ref(),
+            loaded: self.loaded.insert(loaded),
+            fill_counts: &mut self.fill_counts,
+            report: &mut self.report,
+            picture_number: self.picture_count,
+            options: options.clone(),
+            lights: ActiveLights::from_settings(&request.settings),
+            drawn_in: self.targets.find(&keys, shape),
+            targets: &mut self.targets,
+            request,
+            keys,
+            shape,
+            steps,
+        })
+    }
+
+    /// Allocates the volume of a picture in place of another one, of which it keeps the parts that are the same, and
+    /// appends the steps that fill it.
+    fn load_volume(
+        &mut self,
+        other: Option<CacheEntry<VolumeKey, LoadedVolume>>,
+        dataset: &Dataset,
+        request: &RenderRequest,
+        keys: &FrameKeys,
+        steps: &mut Vec<RenderStep>,
+    ) -> Result<CacheEntry<VolumeKey, LoadedVolume>, GpuError> {
+        if other.as_ref().is_some_and(|known| known.is_valid_for(&keys.volume)) {
+            // Equal numbers of another voxel type differ in the last bits.
+            self.targets.invalidate();
+        }
+        self.tools.pool.clear();
+        let start = Instant::now();
+        // Reuses parts of a volume whose picture was interrupted, or that shows another range of values.
+        let known = other.filter(|known| {
+            known.key().content_id == keys.volume.content_id && known.product.has_voxel_type_of(dataset)
+        });
+        let (known, presence) = known.map_or((None, None), |known| {
+            let presence = if known.is_complete() { known.product.volume.presence } else { None };
+            (Some(known.product.dataset), presence)
+        });
+        let known = known.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
+        let dataset = known.unwrap_or_else(|| dataset.with_density_mapping(keys.volume.density_mapping));
+        let has_presence = presence.is_some();
+        let (context, settings) = (&self.tools.context, &request.settings);
+        let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, presence)?;
+        if !has_presence {
+            let slices = fresh.volume.presence.iter().flat_map(PresenceTexture::steps);
+            steps.extend(slices.map(RenderStep::Presence));
+        }
+        steps.extend(upload_steps(&fresh.volume));
+        self.report.step_counts.tables = 2;
+        self.report.tables_ms = start.elapsed().as_secs_f64() * 1000.0;
+        Ok(CacheEntry::incomplete(keys.volume, fresh))
+    }
+}
+
+/// Returns the request with label settings converted to transfer functions, so that passes and keys need not know of
+/// labels.
+fn with_resolved_labels(mut request: RenderRequest, dataset: &Dataset) -> RenderRequest {
+    let resolved = match request.settings.resolved_for(dataset.volume()) {
+        Cow::Owned(drawn) => Some(drawn),
+        Cow::Borrowed(_) => None,
+    };
+    if let Some(drawn) = resolved {
+        request.settings = drawn;
+    }
+    request
+}
+
+/// Returns the shape of the target for a request.
+fn target_shape(request: &RenderRequest, options: &RenderOptions) -> TargetShape {
+    TargetShape {
+        size: options.displayed_window(request).size,
+        samples: options.picture.samples,
+        is_deep: options.picture.depth != PixelFormat::Eight,
+    }
+}
