@@ -1,8 +1,8 @@
 //! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
 //! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
-//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside
-//! the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
+//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads
+//! beside the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
 //! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
 //! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
 //! included. Panels see settings and read-only facts.
@@ -279,7 +279,6 @@ impl eframe::App for App {
             self.loader.warm_up_rest();
         }
         let state = status_file::WindowStatus {
-            longest_ui_ms: self.status_file.longest_ui_ms,
             response: self.viewport.response_times(),
             loading: self.loader.progress().is_some() || self.opening.file_tasks.path().is_some(),
             idle,

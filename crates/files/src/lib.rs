@@ -5,8 +5,8 @@
 //! numbers in files of other programs are not trusted: they are read up to a limit, and sanitised before they are
 //! shown.
 //!
-//! Begin with [`write_atomically`] in `atomic_write.rs`. What is left of a file when the program is killed while it is
-//! written? `temporary_file.rs` answers that. `untrusted/` has the limits of reading, `program_mark/` recognises the
+//! Begin with [`write_atomically`] in `atomic_write.rs`. Temporary files, and their removal after the program was
+//! killed while writing, are in `temporary_file.rs`. `untrusted/` has the limits of reading, `program_mark/` recognises the
 //! program's own files, and [`fault`] has the failures that tests provoke.
 
 mod atomic_write;

@@ -4,8 +4,8 @@
 //! the renderer and the window.
 //!
 //! Begin with [`write_picture`] in `picture_file.rs`; [`Animation`] is its counterpart for sequences of pictures.
-//! Where is the look stored in a file? `png_file.rs` and `exr_file.rs` embed it as text,
-//! `animation/embedded_record.rs` in GIF and MP4. `marks/` draws scale bar, orientation letters and legend over the
+//! The record of a look is embedded by `png_file.rs` and `exr_file.rs` as text, and read from GIF and MP4 by
+//! `animation/embedded_record.rs`. `marks/` draws scale bar, orientation letters and legend over the
 //! rows of a picture.
 
 mod animation;

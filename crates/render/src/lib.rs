@@ -20,9 +20,9 @@
 //!
 //! Begin with [`Renderer`], and follow a picture: `plan/keys/mod.rs` has the inputs of each cached product,
 //! `frame/frame_plan/mod.rs` lists the steps of those that are stale, and `frame/encode/mod.rs` records them with the
-//! passes in the other folders. Where is the light volume filled? `light/march.rs` fills sheets with transmittance, and
-//! `light/backproject.rs` splats them into the volume; `frame/light_fill.rs` has the order of their steps, also if
-//! `light/raycast.rs` casts rays instead. The shaders are in the folder `shaders` of the repository.
+//! passes in the other folders. The light volume is filled by `light/march.rs`, which fills sheets with transmittance,
+//! and `light/backproject.rs`, which splats them into the volume; `frame/light_fill.rs` has the order of their steps,
+//! also if `light/raycast.rs` casts rays instead. The shaders are in the folder `shaders` of the repository.
 //!
 //! Spaces: *index* (voxel centres at integers) → *world* (millimetres) → *scene* (the volume's longest edge spans
 //! [−1, 1]) → sheets (pixels and depth along an axis of projection).

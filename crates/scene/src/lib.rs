@@ -4,7 +4,7 @@
 //! Undo, sessions, presets, screenshots and the command line all use this one value; what must be recomputed after a
 //! change follows from comparing the keys that two of them have (`plan` of chiaroscuro-render).
 //!
-//! Begin with [`Settings`] in `settings/mod.rs`. Where do the settings of a newly opened volume come from? From
+//! Begin with [`Settings`] in `settings/mod.rs`. The settings of a newly opened volume come from
 //! `first_look/mod.rs`, without rendering; chiaroscuro-render then tries small pictures to choose light, floor and
 //! brightness. `settings_io/` reads and writes settings, and `transfer_exchange/` has the transfer functions of other
 //! programs. CONTRIBUTING.md lists what a new setting touches.

@@ -7,8 +7,8 @@
 //! slices.
 //!
 //! Begin with [`load`], which detects the format by the table of readers in `formats/mod.rs`, and then with one
-//! reader: `formats/mrc/mod.rs` is short. Where do bytes become voxels? In `reading/samples.rs`; `reading/reader.rs`
-//! is the interface of the readers. `unsupported/` has the formats that are recognised only to advise how to convert
+//! reader: `formats/mrc/mod.rs` is short. Bytes become voxels in `reading/samples.rs`; `reading/reader.rs` is the
+//! interface of the readers. `unsupported/` has the formats that are recognised only to advise how to convert
 //! them.
 
 mod formats;

@@ -18,7 +18,7 @@ pub struct DatasetField {
 #[derive(Debug, Clone)]
 pub struct Dataset {
     /// Fields of the file, never empty; the first one is shown.
-    fields: Vec<DatasetField>,
+    fields: Arc<[DatasetField]>,
 }
 
 impl DatasetField {
@@ -68,7 +68,7 @@ impl DatasetField {
 impl Dataset {
     /// Computes bounds and histogram of a volume: about a second for 512³ voxels.
     pub fn new(volume: impl Into<Arc<Volume>>) -> Self {
-        Self { fields: vec![DatasetField::new(volume)] }
+        Self { fields: Arc::new([DatasetField::new(volume)]) }
     }
 
     /// Returns the dataset with the shown voxels mapped to densities in another way, and with bounds and histogram of
@@ -76,9 +76,8 @@ impl Dataset {
     #[must_use]
     pub fn with_density_mapping(&self, shown: impl Into<DensityMapping>) -> Self {
         // The quantity belongs to a field: a range of one means nothing for another.
-        let mut dataset = self.clone();
-        dataset.fields[0] = self.field().with_density_mapping(shown.into());
-        dataset
+        let field = self.field().with_density_mapping(shown.into());
+        Self { fields: std::iter::once(field).chain(self.fields[1..].iter().cloned()).collect() }
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.

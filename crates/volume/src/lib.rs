@@ -6,7 +6,7 @@
 //! [−1, 1]).
 //!
 //! Begin with [`Volume`] in `volume/mod.rs`, and with [`Dataset`], which adds what is derived from a volume's
-//! densities: bounds of bricks and cells, and a histogram. Where do values become densities? In
+//! densities: bounds of bricks and cells, and a histogram. Values become densities in
 //! `volume/density_mapping.rs`. `load_context/` has what readers of files share with built-in volumes: choices, memory
 //! limits, progress, and errors with advice.
 

@@ -1,16 +1,9 @@
-//! Easing of automatic changes: detection of input that delays them, and interpolation.
+//! Easing of automatic changes: their progress over time, and interpolation.
 //!
 //! Times are in seconds of any monotonic clock.
 
-use eframe::egui;
-
 /// Duration of a change in seconds: long enough to be seen as motion, not as a jump.
 pub(super) const EASE_S: f64 = 0.3;
-
-/// Returns true while the user holds a pointer button or a key, or edits text.
-pub(crate) fn is_user_active(ctx: &egui::Context) -> bool {
-    ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
-}
 
 /// Returns the eased progress, from 0 to 1, of a change that began at `since_s`.
 pub(super) fn eased_progress(since_s: f64, now_s: f64) -> f64 {

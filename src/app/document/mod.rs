@@ -1,8 +1,8 @@
 //! Document of the window: the look that is edited, facts about the volume that it shows, and what belongs to both
 //! while the volume is open (undo history, corrections, session, saved views, automatic changes).
 //!
-//! It knows neither panels nor devices: the dataset, which the viewport holds, is an argument of its methods, and
-//! errors are returned for the window to report. Lengths and angles are those of [`Settings`].
+//! It knows no panels: the dataset, which the viewport holds, is an argument of its methods, and errors that the user
+//! should see are returned for the window to report; optional work logs its own. Lengths and angles are those of [`Settings`].
 
 pub(super) mod auto_balance;
 pub(super) mod corrections;

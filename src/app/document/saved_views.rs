@@ -13,7 +13,7 @@ use chiaroscuro_volume::Dataset;
 /// Returns the first numbered name that no saved item has.
 fn free_name(settings: &Settings, name: impl Fn(usize) -> String) -> String {
     let is_taken = |wanted: &str| settings.kept.iter().any(|kept| kept.name == wanted);
-    // Of n + 1 names, at least one is not among n saved items.
+    // A free name is always found: there is one more candidate than saved items.
     (1..=settings.kept.len() + 1).map(name).find(|name| !is_taken(name)).unwrap_or_default()
 }
 

@@ -8,7 +8,6 @@ use std::time::Duration;
 use eframe::egui;
 
 use crate::app::document::auto_balance::{BalanceAction, BalanceFrame};
-use crate::app::document::easing::is_user_active;
 use crate::app::document::light_placement::{LightPlacementAction, LightPlacementFrame};
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
@@ -16,6 +15,11 @@ use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, Sea
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
 const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
+
+/// Returns true while the user holds a pointer button or a key, or edits text; automatic changes wait meanwhile.
+fn is_user_active(ctx: &egui::Context) -> bool {
+    ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
+}
 
 /// Running light search. Dropping this value cancels the search at its next step and discards the result.
 pub(crate) struct LightSearchTask {

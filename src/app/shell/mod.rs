@@ -1,4 +1,5 @@
-//! Shell of the window: picture, menu, status bar, history, session, messages and automatic balance.
+//! Shell of the window: opening of files, commands, menu, picture area, status bar, messages, and the tasks that change
+//! the document.
 
 pub(super) mod automatic_changes;
 mod document_tasks;

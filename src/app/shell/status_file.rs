@@ -35,8 +35,6 @@ pub(crate) struct WindowStatus<'a> {
     pub handles: &'a [Pos2],
     /// Number of times light volumes were filled.
     pub light_rebuilds: u64,
-    /// Longest time that one frame has occupied the window's thread, in ms.
-    pub longest_ui_ms: f64,
     /// Statistics of the response times, in ms.
     pub response: ResponseTimes,
     /// Errors since the last volume was opened.
@@ -50,7 +48,8 @@ pub(crate) struct WindowStatus<'a> {
 }
 
 impl WindowStatus<'_> {
-    fn json(&self) -> Value {
+    /// Content of the file; `longest_ui_ms` is the longest time that one frame has occupied the thread, in ms.
+    fn json(&self, longest_ui_ms: f64) -> Value {
         let pixels = |points: f32| (points * self.pixels_per_point).round() as i64;
         let viewport = self.canvas.map(|canvas| {
             let at = canvas.rect.min;
@@ -76,7 +75,7 @@ impl WindowStatus<'_> {
             "viewport": viewport,
             "light_handles": handles,
             "light_rebuilds": self.light_rebuilds,
-            "longest_ui_ms": self.longest_ui_ms.round(),
+            "longest_ui_ms": longest_ui_ms.round(),
             "response_ms": {
                 "count": self.response.count,
                 "mean": self.response.mean_ms.round(),
@@ -113,7 +112,7 @@ impl StatusFile {
     /// Rewrites the file if anything has changed.
     pub(crate) fn update(&mut self, state: &WindowStatus<'_>) {
         let Some(path) = &self.path else { return };
-        let text = state.json().to_string();
+        let text = state.json(self.longest_ui_ms).to_string();
         if text != self.written {
             // Atomic write: readers never see half of it.
             if let Err(err) = chiaroscuro_files::write_atomically(path, text.as_bytes()) {

@@ -37,9 +37,9 @@ impl RenderRequest {
 /// Options of rendering that are not part of the look, by who sets them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RenderOptions {
-    /// Picture to make: set by whoever shows or saves it.
+    /// Kind of picture, set by the window, an export or a command.
     pub picture: PictureOptions,
-    /// Work to make it: set by the window for previews, and by commands for reports and light volumes.
+    /// Amount and extent of the work for it, set for previews and first looks, reports, and exports of light volumes.
     pub work: WorkOptions,
     /// Switches for tests and measurements.
     pub switches: TestSwitches,
@@ -77,7 +77,7 @@ pub struct WorkOptions {
 /// Switches that only tests and measurements set, to compare a picture with one made without a saving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestSwitches {
-    /// Skip empty space, which changes no pixel.
+    /// Skip empty space, which changes no displayed byte; light volumes may differ in their last bits.
     pub empty_space_skipping: bool,
     /// Minimum transmittance, below which a ray to the eye or from a light ends.
     pub min_transmittance: f32,

@@ -5,7 +5,8 @@ use std::ops::{Index, IndexMut};
 
 use super::cache_entry::CacheEntry;
 
-/// Products of one kind, each with its key and the number of the picture that used it last.
+/// Products of one kind, each with its key and the number of the picture that used it last. Incomplete ones are found
+/// as well; removing or sorting changes the indices of others.
 #[derive(Debug)]
 pub(crate) struct ProductCache<K, T> {
     slots: Vec<CacheSlot<K, T>>,
@@ -127,7 +128,7 @@ impl<K: PartialEq + Clone, T> ProductCache<K, T> {
         self.evict_oldest(most, |_| false);
     }
 
-    /// Sorts the products, most recently used first, and removes those after the first `most`. Indices change.
+    /// Sorts the products, most recently used first, and removes those after the first `most`.
     pub(crate) fn keep_latest(&mut self, most: usize) -> Vec<T> {
         self.slots.sort_by_key(|slot| std::cmp::Reverse(slot.last_used));
         self.slots.drain(self.slots.len().min(most)..).map(|slot| slot.entry.product).collect()

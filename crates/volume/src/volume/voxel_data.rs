@@ -22,7 +22,7 @@ pub struct VoxelData {
     pub(super) opacity_unit_mm: Option<f64>,
     /// Quantity that densities represent.
     pub(super) density_mapping: DensityMapping,
-    /// Everything that is derived from the fields above.
+    /// Facts that follow from samples, padding value, metadata and the dimensions of the grid.
     pub(super) statistics: VoxelStatistics,
 }
 

@@ -8,8 +8,8 @@ use super::label_set::LabelSet;
 use super::missing::MissingVoxels;
 use crate::{Samples, ValueRanges};
 
-/// Everything that follows from samples, padding value and metadata: ranges and missing voxels at once, kind and labels
-/// when they are first asked for.
+/// Facts that follow from samples, padding value, metadata and the dimensions of the grid: ranges and missing voxels at
+/// once, kind and labels when they are first asked for.
 ///
 /// They are one struct so that none can remain from other values: a new padding value replaces them all, and new
 /// metadata the kind, the only one that depends on them.

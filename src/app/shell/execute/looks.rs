@@ -50,7 +50,7 @@ impl App {
         self.show_section(ctx, text::sections::COMPARE, self.picture.compare.on);
     }
 
-    /// Compares two saved looks, or the picture (`None`) with one.
+    /// Compares two saved views or looks, or the picture (`None`) with one.
     pub(super) fn compare_saved(&mut self, left: Option<usize>, right: usize, ctx: &egui::Context) {
         compare_kept_items(&mut self.picture.compare, &self.document.settings, left, right);
         reveal::show_section(ctx, text::sections::COMPARE, true);

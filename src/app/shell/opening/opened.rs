@@ -58,7 +58,7 @@ impl App {
             has_session: session.is_some(),
             has_adjustment: self.opening.adjust_first_look.is_some(),
         });
-        // Session and command line apply to the first volume only.
+        // Session and adjustment apply to the first volume only.
         self.opening.requests.session_is_due = false;
         self.apply_plan(plan, settings, session, &volume);
         self.memory.add_recent(&source, &volume.contents().choice());

@@ -5,7 +5,7 @@ use super::similarity::VolumeSimilarity;
 use chiaroscuro_scene::{LookRecord, Settings};
 
 /// Look that waits for the volume that is being opened.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub(crate) enum PendingLook {
     /// Look of a file, applied to the first look of the volume.
     Record(Box<LookRecord>),
@@ -28,7 +28,7 @@ pub(super) struct OpenRequest {
     pub similarity: Option<VolumeSimilarity>,
     /// True if a session was read for this volume, or could not be read.
     pub has_session: bool,
-    /// True if the command line adjusts the first look.
+    /// True if the command line or a safe start adjusts the first look.
     pub has_adjustment: bool,
 }
 
@@ -42,7 +42,7 @@ pub(super) enum StartingLook {
 }
 
 /// Corrections of the file's metadata that a look is shown with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum CorrectionsOrigin {
     /// Corrections with which the file was opened.
     OpenedFile,
@@ -51,7 +51,7 @@ pub(super) enum CorrectionsOrigin {
 }
 
 /// Change of the look that a volume starts from.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub(super) enum LookChange {
     /// Applies the session.
     Session,
@@ -61,12 +61,12 @@ pub(super) enum LookChange {
     Settings(Box<Settings>),
     /// Goes back to the current look, view included.
     Current(CorrectionsOrigin),
-    /// Adjusts the look as the command line says.
+    /// Adjusts the look as the command line or a safe start says.
     Adjustment,
 }
 
 /// Decision about the look of an opened volume.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub(super) struct OpenPlan {
     /// Look from which the volume starts.
     pub start: StartingLook,

@@ -8,7 +8,7 @@ use chiaroscuro_scene::Settings;
 /// Function that changes settings once.
 pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
 
-/// Requests that hold for the next volume, in a successor window as well.
+/// Requests for the next volumes, which a successor window takes over.
 #[derive(Debug, Default)]
 pub(crate) struct OpenRequests {
     /// True if the next volume keeps the current look instead of getting its own first look.
@@ -24,9 +24,9 @@ pub(crate) struct OpenRequests {
 /// State of opening volumes and looks.
 #[derive(Default)]
 pub(crate) struct OpeningState {
-    /// Requests that hold for the next volume.
+    /// Requests for the next volumes.
     pub requests: OpenRequests,
-    /// Change of the first volume's settings, from the command line.
+    /// Change of the first volume's settings, from the command line or by a safe start.
     pub adjust_first_look: Option<SettingsAdjustment>,
     /// True while the default volume waits for the user's answer about reopening the last session.
     pub default_open_waits: bool,
