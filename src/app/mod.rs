@@ -2,8 +2,8 @@
 //!
 //! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
 //! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads
-//! beside the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes,
-//! and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
+//! beside the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light
+//! volumes, and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
 //! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
 //! included. Panels see settings and read-only facts.
 

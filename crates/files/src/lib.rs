@@ -6,8 +6,8 @@
 //! shown.
 //!
 //! Begin with [`write_atomically`] in `atomic_write.rs`. Temporary files, and their removal after the program was
-//! killed while writing, are in `temporary_file.rs`. `untrusted/` has the limits of reading, `program_mark/` recognises the
-//! program's own files, and [`fault`] has the failures that tests provoke.
+//! killed while writing, are in `temporary_file.rs`. `untrusted/` has the limits of reading, `program_mark/` recognises
+//! the program's own files, and [`fault`] has the failures that tests provoke.
 
 mod atomic_write;
 mod destination;

@@ -2,7 +2,8 @@
 //! while the volume is open (undo history, corrections, session, saved views, automatic changes).
 //!
 //! It knows no panels: the dataset, which the viewport holds, is an argument of its methods, and errors that the user
-//! should see are returned for the window to report; optional work logs its own. Lengths and angles are those of [`Settings`].
+//! should see are returned for the window to report; optional work logs its own. Lengths and angles are those of
+//! [`Settings`].
 
 pub(super) mod auto_balance;
 pub(super) mod corrections;
