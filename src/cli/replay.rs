@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::output::{check_overwrites, print_line, warn_line};
+use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
 use super::scene::{LoadArgs, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
@@ -119,7 +119,11 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         check_picture(output, &image_spec)?;
     }
     let mut renderer = Renderer::new(&context)?;
-    let mut again = renderer.bands(&loaded, &settings, &image_spec).all()?;
+    let mut bands = renderer.bands(&loaded, &settings, &image_spec);
+    let mut again = bands.all()?;
+    if bands.is_empty() {
+        warn_empty_picture();
+    }
     marks_layer(&image_spec, &settings, loaded.volume()).composite_over(&image_spec, 0, &mut again);
     let again = again.after_round_trip(&image_spec);
     if let Some(output) = &args.output {

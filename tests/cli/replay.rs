@@ -143,6 +143,17 @@ fn pictures_may_be_larger_than_textures() {
 }
 
 #[test]
+fn replay_warns_of_a_picture_that_shows_nothing() {
+    let folder = ProgramFolder::new();
+    let warned = |name: &str, options: &str| {
+        folder.run_successfully(&format!("render builtin:sphere:16 --size 64x48 -o {name} {options}"));
+        folder.run(&format!("replay {name}")).stderr.contains("nothing of the volume is visible")
+    };
+    assert!(warned("away.png", "--set camera.target=[90,0,0] --set floor.on=false"));
+    assert!(!warned("sphere.png", ""));
+}
+
+#[test]
 fn volumes_outside_the_pictures_folder_are_opened_only_when_the_user_says_so() {
     let folder = ProgramFolder::new();
     folder.write("x_8x8x8_uint8.raw", small_ball());

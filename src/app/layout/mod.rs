@@ -30,6 +30,9 @@ pub(crate) struct WindowLayout {
     pub kept: bool,
     /// Titles of the tools that are docked beside the picture while they are open.
     pub docked: BTreeSet<String>,
+    /// True if the export window has been docked by default; false in layouts stored before it was.
+    #[serde(default)]
+    has_docked_export: bool,
     /// True if the window "Slices" is open.
     pub slices: bool,
     /// True if the window with slices of light volumes is open.
@@ -53,6 +56,7 @@ impl Default for WindowLayout {
             kept: false,
             // As a floating window it would cover the picture that is exported.
             docked: [text::export::TITLE.to_owned()].into(),
+            has_docked_export: true,
             slices: false,
             light_slice: false,
             slice_convention: ViewingConvention::default(),
@@ -66,7 +70,18 @@ impl Default for WindowLayout {
 impl WindowLayout {
     /// Restores the layout of the last run; the default layout if none is stored or the stored one is damaged.
     pub(crate) fn restore(storage: Option<&dyn eframe::Storage>) -> Self {
-        storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default()
+        let stored: Option<Self> = storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY));
+        stored.map(Self::with_docked_export).unwrap_or_default()
+    }
+
+    /// Docks the export window in a layout that was stored before it was docked by default; later layouts keep the
+    /// user's choice.
+    fn with_docked_export(mut self) -> Self {
+        if !self.has_docked_export {
+            self.docked.insert(text::export::TITLE.to_owned());
+            self.has_docked_export = true;
+        }
+        self
     }
 
     /// Applies the chosen colour theme and the docked tools to the window.
@@ -102,6 +117,17 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn export_is_docked_once_in_earlier_layouts() {
+        let earlier: WindowLayout = serde_json::from_str(r#"{"docked": ["Slices"]}"#).unwrap();
+        let mut layout = earlier.with_docked_export();
+        assert!(layout.docked.contains(text::export::TITLE) && layout.docked.contains("Slices"));
+        layout.docked.clear();
+        let text = serde_json::to_string(&layout).unwrap();
+        let again: WindowLayout = serde_json::from_str(&text).unwrap();
+        assert!(again.with_docked_export().docked.is_empty(), "the user has let it float");
+    }
 
     #[test]
     fn stored_layout_is_restored() {

@@ -131,7 +131,7 @@ impl PictureBands<'_> {
     ///
     /// # Errors
     /// Same as [`Self::next_rows`].
-    pub fn all(mut self) -> Result<PixelRows, GpuError> {
+    pub fn all(&mut self) -> Result<PixelRows, GpuError> {
         let mut whole = match self.spec.depth {
             PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
             PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
