@@ -58,6 +58,7 @@ pub use self::settings::shadows::{
     MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, MAX_MIN_BLOCKS, NearFieldRay, ReverseKernel, ShadowAlgorithm,
     ShadowSettings,
 };
+pub use self::settings::volume_layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
 pub use self::settings_io::preset_json::{apply_json, apply_path, load_json, set_value, settings_to_json};
@@ -78,8 +79,7 @@ pub use light_direction::LightDirection;
 pub use lighting_rig::{LightingRig, key_and_fill};
 pub use object_rotation::{CameraLightRotation, ObjectRotation};
 pub use settings::{
-    Background, LightingTransfer, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA,
-    Settings, ToneMap,
+    Background, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA, Settings, ToneMap,
 };
 pub use transfer::{
     ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,

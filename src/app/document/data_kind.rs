@@ -125,7 +125,8 @@ impl Document {
                 self.treat_as(kind, dataset, ctx).map_err(|err| err.to_string())?;
             }
             KindTaskResult::Transfer(transfer, labels) => {
-                (self.settings.transfer, self.settings.labels) = (transfer, labels);
+                let layer = self.settings.layer_mut();
+                (layer.transfer, layer.labels) = (transfer, labels);
             }
         }
         Ok(false)

@@ -10,7 +10,7 @@ use super::Document;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::background_task::BackgroundTask;
 use chiaroscuro_scene::{
-    Clipping, DensityRange, LabelTable, Settings, TransferFunction, first_look::ObjectOutline,
+    Clipping, DensityRange, LabelTable, Settings, TransferFunction, VolumeLayer, first_look::ObjectOutline,
 };
 use chiaroscuro_volume::Dataset;
 
@@ -27,10 +27,11 @@ struct OutlineInputs {
 impl OutlineInputs {
     fn matches(&self, settings: &Settings, content_id: u64) -> bool {
         let Self { content_id: of, transfer, labels, range, cuts } = self;
+        let layer = settings.layer();
         *of == content_id
-            && *transfer == settings.transfer
-            && *labels == settings.labels
-            && *range == settings.range
+            && *transfer == layer.transfer
+            && *labels == layer.labels
+            && *range == layer.range
             && *cuts == settings.cuts
     }
 }
@@ -114,7 +115,8 @@ impl Document {
             return;
         };
         let settings = self.settings.clone();
-        let Settings { transfer, labels, range, cuts, .. } = settings.clone();
+        let VolumeLayer { transfer, labels, range, .. } = settings.layer().clone();
+        let cuts = settings.cuts.clone();
         let content_id = dataset.volume().content_id();
         match BackgroundTask::start("outline", ctx, move || {
             ObjectOutline::from_settings(&settings, dataset.volume())

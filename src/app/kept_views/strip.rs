@@ -161,7 +161,7 @@ impl KeptStrip {
         }
         // A look has a swatch of its colours; a view has none.
         if let Some(look) = kept.as_look() {
-            let dots = look.transfer.points.iter().rev().take(3).map(|point| point.color);
+            let dots = look.layer().transfer.points.iter().rev().take(3).map(|point| point.color);
             for (number, color) in (0..).zip(dots) {
                 let middle = picture.left_bottom() + vec2(9.0 + 10.0 * number as f32, -9.0);
                 painter.circle(middle, 4.0, theme::color(color), Stroke::new(1.0, theme::OUTLINE));

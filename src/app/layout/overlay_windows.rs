@@ -57,9 +57,10 @@ impl App {
             .as_ref()
             .filter(|_| self.windows.slices.open)
             .map(|volume| self.document.settings.resolved_for(volume));
-        let transfer =
-            settings_as_drawn.as_ref().map_or(&self.document.settings.transfer, |drawn| &drawn.transfer);
-        let look = SliceLook { transfer, labels: &self.document.settings.labels };
+        let transfer = settings_as_drawn
+            .as_ref()
+            .map_or(&self.document.settings.layer().transfer, |drawn| &drawn.layer().transfer);
+        let look = SliceLook { transfer, labels: &self.document.settings.layer().labels };
         self.windows.slices.ui(ctx, volume.as_ref(), self.document.volume.as_ref(), look);
         let scene = light_slice::LightSliceContext {
             settings: &self.document.settings,

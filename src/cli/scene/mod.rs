@@ -272,7 +272,7 @@ impl LookArgs {
         named.add(|part| self.is_set(part));
         let says_how_high =
             self.is_set(FLOOR_HEIGHT) || overlays.iter().any(|one| one.contains_setting(FLOOR_HEIGHT));
-        let shows = |look: &Settings| (look.transfer.clone(), look.range, look.camera.up);
+        let shows = |look: &Settings| (look.layer().transfer.clone(), look.layer().range, look.camera.up);
         if !says_how_high && shows(&settings) != shows(&before) {
             first_look::lay_floor(&mut settings, volume);
         }

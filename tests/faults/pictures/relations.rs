@@ -118,7 +118,9 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
     }
 
     // P3: fully transparent material does not appear.
-    let clear = with(&|settings| settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0));
+    let clear = with(&|settings| {
+        settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0)
+    });
     assert_eq!(largest_color(&studio.draw(&bytes, &clear).linear), 0.0, "seed {seed}");
 
     // P4: light is linear in the lights.
@@ -179,7 +181,7 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
     }
 
     // P5: higher extinction for light makes nothing brighter.
-    let darker = with(&|settings| settings.lighting.scale *= 1.5);
+    let darker = with(&|settings| settings.layer_mut().lighting.scale *= 1.5);
     let darker = studio.draw(&bytes, &darker);
     let gained = darker.linear.iter().zip(&first.linear).flat_map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c]));
     let gained = gained.fold(0.0, f32::max);

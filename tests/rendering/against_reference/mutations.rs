@@ -23,7 +23,7 @@ pub(super) fn look() -> Settings {
     let mut settings = scenes::look();
     settings.camera = Camera { distance: 2.2, fov_y_deg: 80.0, ..settings.camera };
     settings.lights = vec![scenes::light(LightGeometry::Perspective, [1.4, -1.1, 1.8])];
-    settings.transfer = scenes::linear_extinction(0.6);
+    settings.layer_mut().transfer = scenes::linear_extinction(0.6);
     settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma: 0.6 };
     settings.shadows.kernel = ReconstructionKernel::Gaussian { sigma: 0.6 };
     settings.shading.specular = 0.8;
@@ -180,7 +180,8 @@ fn ignored_faces_are_detected() {
 fn sided_look() -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [0.9, 0.7, 0.5], opacity);
     let mut settings = look();
-    settings.transfer.points = vec![point(0.0, 0.0), point(40.0, 0.0), point(90.0, 0.5), point(160.0, 0.05)];
+    settings.layer_mut().transfer.points =
+        vec![point(0.0, 0.0), point(40.0, 0.0), point(90.0, 0.5), point(160.0, 0.05)];
     settings.lights = vec![scenes::light(LightGeometry::Parallel, [1.4, -1.1, 1.8])];
     settings.lights[0].density_scale = 0.6;
     settings

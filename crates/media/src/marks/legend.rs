@@ -24,7 +24,7 @@ pub(super) fn draw(
     size: [f64; 2],
     letters: f64,
 ) {
-    if settings.labels.is_empty() {
+    if settings.layer().labels.is_empty() {
         draw_value_legend(layer, settings, volume, size, letters);
     } else {
         draw_label_legend(layer, settings, volume, size, letters);
@@ -40,7 +40,7 @@ fn visible_range(settings: &Settings, volume: &Volume) -> Option<[f64; 2]> {
     let range = settings.shown_range(&volume.ranges());
     const STEPS: usize = 1024;
     let value = |at: usize| range.low + range.span() * at as f64 / STEPS as f64;
-    let is_seen = |at: &usize| settings.transfer.opacity_at(value(*at)) > MIN_OPACITY;
+    let is_seen = |at: &usize| settings.layer().transfer.opacity_at(value(*at)) > MIN_OPACITY;
     let first = (0..=STEPS).find(is_seen)?;
     let last = (0..=STEPS).rfind(is_seen)?;
     (last > first).then(|| [value(first), value(last)])
@@ -81,7 +81,7 @@ fn draw_value_legend(
     layer.fill([left - edge, top - edge], [wide + 2.0 * edge, tall + 2.0 * edge], OUTLINE_INK, 255);
     for row in 0..tall as usize {
         let value = high - (high - low) * (row as f64 + 0.5) / tall;
-        let (linear, _) = settings.transfer.sample(value);
+        let (linear, _) = settings.layer().transfer.sample(value);
         layer.fill([left, top + row as f64], [wide, 1.0], srgb_bytes(linear.map(srgb_from_linear)), 255);
     }
     for (value, text) in numbers.iter().zip(&texts) {
@@ -100,6 +100,7 @@ fn draw_label_legend(
 ) {
     let in_file = &volume.metadata().labels;
     let rows: Vec<(String, [u8; 3])> = settings
+        .layer()
         .labels
         .iter()
         .filter(|(_, look)| look.effective_opacity() > MIN_OPACITY)

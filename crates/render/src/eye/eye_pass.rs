@@ -324,7 +324,7 @@ pub(crate) fn shading_uniform(
     options: &RenderOptions,
 ) -> uniforms::ShadingUniform {
     let (shading, shadows) = (&settings.shading, &settings.shadows);
-    let unit = settings.opacity_unit.scene_units(scene).max(1e-9);
+    let unit = settings.layer().opacity_unit.scene_units(scene).max(1e-9);
     uniforms::ShadingUniform {
         emission: shading.emission as f32,
         ambient: settings.flat_ambient() as f32,

@@ -5,6 +5,8 @@
 use serde_json::Value;
 
 use super::json_limits::{self, BoundedTree};
+use super::layer_fields::{full_path, move_into_layer, names_at_top, short_path};
+use super::merge::merge_record;
 use super::preset_error::PresetError;
 use super::renames::{current_path, rename_old_names};
 use super::saved_entries::remove_unreadable_entries;
@@ -33,14 +35,15 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
     }
     let BoundedTree { tree: mut overlay, cuts: mut warnings } = json_limits::cut_tree(overlay)?;
     rename_old_names("", &mut overlay);
+    move_into_layer(&mut overlay);
     fill_in_defaults(&mut overlay);
     warnings.extend(remove_unreadable_entries(&mut overlay));
     keep_explicit_balance(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::WrongType)?;
     if replaces_labels(&overlay) || is_about_values(&overlay) {
-        merged["labels"] = Value::Object(serde_json::Map::new());
+        merged["layers"][0]["labels"] = Value::Object(serde_json::Map::new());
     }
-    merge(&mut merged, &overlay);
+    merge_record(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::WrongType)?;
     if result.schema > SCHEMA {
         warnings.push(format!("written by a newer version (schema {}, known {SCHEMA})", result.schema));
@@ -73,8 +76,8 @@ pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<Strin
     Ok((result, [cuts, warnings].concat()))
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is parsed as JSON, or else taken
-/// as a string.
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). Settings of the first layer have a short
+/// path, too: `range` for `layers.0.range`. The text is parsed as JSON, or else taken as a string.
 ///
 /// # Errors
 /// Returns an error if the path does not exist or the value has the wrong type.
@@ -94,11 +97,12 @@ pub fn set_value(
     let mut tree = serde_json::to_value(settings).map_err(PresetError::WrongType)?;
     // The schema says how to read a file, and is not a setting of the image.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
-    let current = current_path(path);
-    let number = current.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
-    if let Some(number) = number.filter(|&number| settings.labels.get(number).is_none()) {
+    let current = full_path(&current_path(path));
+    let short = short_path(&current);
+    let number = short.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
+    if let Some(number) = number.filter(|&number| settings.layer().labels.get(number).is_none()) {
         let look = serde_json::to_value(LabelLook::default_for(number)).map_err(PresetError::WrongType)?;
-        tree["labels"][number.to_string()] = look;
+        tree["layers"][0]["labels"][number.to_string()] = look;
     }
     if let Some((parent, key)) = current.rsplit_once('.')
         && is_other_variant(&tree, &json_pointer(parent), key)
@@ -110,6 +114,7 @@ pub fn set_value(
     let mut walked: Vec<&str> = Vec::new();
     for key in current.split('.') {
         let known = match &*node {
+            Value::Object(fields) if walked.is_empty() => names_at_top(fields).join(", "),
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
             _ => "no further settings".to_owned(),
@@ -119,10 +124,10 @@ pub fn set_value(
             Value::Array(items) => key.parse::<usize>().ok().and_then(|index| items.get_mut(index)),
             _ => None,
         };
-        node = next.ok_or_else(|| PresetError::UnknownPath {
-            path: path.to_owned(),
-            at: walked.join("."),
-            known,
+        node = next.ok_or_else(|| {
+            let at = walked.join(".");
+            let at = if current == path { at } else { short_path(&at).to_owned() };
+            PresetError::UnknownPath { path: path.to_owned(), at, known }
         })?;
         walked.push(key);
     }
@@ -131,8 +136,8 @@ pub fn set_value(
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::WrongType)?;
     // As in a preset: a balance that is set explicitly is kept.
     result.shadows.keep_balanced &= current != "shadows.balance";
-    if current.split('.').next() == Some("transfer") {
-        result.labels = LabelTable::default();
+    if short.split('.').next() == Some("transfer") {
+        result.layer_mut().labels = LabelTable::default();
     }
     let requested = setting_value(&result, &current);
     result.sanitise();
@@ -173,26 +178,6 @@ fn setting_value(settings: &Settings, path: &str) -> Option<Value> {
     tree.pointer(&json_pointer(path)).cloned()
 }
 
-fn merge(base: &mut Value, overlay: &Value) {
-    match (base, overlay) {
-        // An enum variant with data is an object with one key: another key replaces it.
-        (Value::Object(base), Value::Object(overlay)) if !is_variant_swap(base, overlay) => {
-            for (key, value) in overlay {
-                merge(base.entry(key.clone()).or_insert(Value::Null), value);
-            }
-        }
-        (base, overlay) => *base = overlay.clone(),
-    }
-}
-
-/// Returns true for `{"voxels": 1}` over `{"mm": 2}`: two variants of one enum, which must not be merged. Numbers are
-/// not variants, but keys of labels.
-fn is_variant_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::Map<String, Value>) -> bool {
-    let is_variant = |key: Option<&String>| key.is_some_and(|key| key.parse::<i64>().is_err());
-    let (before, after) = (base.keys().next(), overlay.keys().next());
-    base.len() == 1 && overlay.len() == 1 && before != after && is_variant(before) && is_variant(after)
-}
-
 /// Collects the paths of fields that were given but not understood. Names that begin with an underscore are remarks,
 /// which presets may contain.
 fn collect_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec<String>) {
@@ -202,7 +187,7 @@ fn collect_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut 
             for (key, value) in given.iter().filter(|(key, _)| !key.starts_with('_')) {
                 match understood.get(key) {
                     Some(known) => collect_unknown(value, known, &below(key), unknown),
-                    None => unknown.push(sanitised(&below(key), MAX_NAME_CHARS)),
+                    None => unknown.push(sanitised(short_path(&below(key)), MAX_NAME_CHARS)),
                 }
             }
         }
@@ -227,7 +212,7 @@ mod tests {
     fn round_trip() {
         let mut settings = Settings::default();
         settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma: 0.55 };
-        settings.opacity_unit = OpacityLength::Mm(0.3);
+        settings.layer_mut().opacity_unit = OpacityLength::Mm(0.3);
         let (back, warnings) = load_json(&Settings::default(), &settings_to_json(&settings)).unwrap();
         assert_eq!(back, settings);
         assert!(warnings.is_empty(), "{warnings:?}");
@@ -260,7 +245,7 @@ mod tests {
     #[test]
     fn enum_values_replace_each_other() {
         let (settings, _) = load_json(&Settings::default(), r#"{"opacity_unit": {"extent": 0.01}}"#).unwrap();
-        assert_eq!(settings.opacity_unit, OpacityLength::Extent(0.01));
+        assert_eq!(settings.layer().opacity_unit, OpacityLength::Extent(0.01));
         let gaussian = r#"{"sampling": {"kernel": {"gaussian": {"sigma": 0.5}}}}"#;
         let (settings, _) = load_json(&settings, gaussian).unwrap();
         assert_eq!(settings.sampling.kernel, ReconstructionKernel::Gaussian { sigma: 0.5 });
@@ -280,16 +265,16 @@ mod tests {
     fn paths_reach_variants_with_numbers() {
         let set = |path: &str, text: &str| apply_path(&Settings::default(), path, text);
         let typed = DensityRange::Typed(ValueRange::new(-100.0, 300.0));
-        assert_eq!(set("range.typed", "[-100, 300]").unwrap().range, typed);
-        assert_eq!(set("range", r#"{"typed": [-100, 300]}"#).unwrap().range, typed);
-        assert_eq!(set("range", "full").unwrap().range, DensityRange::Full);
-        assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, OpacityLength::Mm(2.0));
+        assert_eq!(set("range.typed", "[-100, 300]").unwrap().layer().range, typed);
+        assert_eq!(set("range", r#"{"typed": [-100, 300]}"#).unwrap().layer().range, typed);
+        assert_eq!(set("range", "full").unwrap().layer().range, DensityRange::Full);
+        assert_eq!(set("opacity_unit.mm", "2").unwrap().layer().opacity_unit, OpacityLength::Mm(2.0));
         let told = set_value(&Settings::default(), "range.typed", "[300, -100]").unwrap();
-        assert_eq!((told.0.range, told.1.is_some()), (typed, true));
+        assert_eq!((told.0.layer().range, told.1.is_some()), (typed, true));
         // From one variant with a number to another.
         let in_mm = set("opacity_unit.mm", "2").unwrap();
         assert_eq!(
-            apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().opacity_unit,
+            apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().layer().opacity_unit,
             OpacityLength::Voxels(3.0)
         );
         // An object with one entry, or a string, need not be an enum.

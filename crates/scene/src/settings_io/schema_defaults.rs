@@ -2,6 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
+use super::layer_fields::first_layer;
+
 /// Settings added by a schema, with the value that was in effect before: (schema, group, setting, value).
 fn added_settings() -> [(u64, &'static str, &'static str, Value); 5] {
     [
@@ -14,7 +16,7 @@ fn added_settings() -> [(u64, &'static str, &'static str, Value); 5] {
 }
 
 /// Adds to a record with a schema number the values that were in effect for settings it does not have. A preset
-/// without a schema number is left unchanged.
+/// without a schema number is left unchanged. Settings of a layer are already in the layer.
 pub(super) fn fill_in_defaults(record: &mut Value) {
     let Some(schema) = record.get("schema").and_then(Value::as_u64) else { return };
     let Value::Object(groups) = record else { return };
@@ -31,7 +33,8 @@ pub(super) fn fill_in_defaults(record: &mut Value) {
     if let Some(camera) = groups.get_mut("camera") {
         fill_in_camera(camera);
     }
-    fill_in_range(groups);
+    let layers = groups.get_mut("layers").and_then(Value::as_array_mut);
+    layers.into_iter().flatten().filter_map(Value::as_object_mut).for_each(fill_in_range);
     for (_, group, setting, value) in added_settings().into_iter().filter(|(since, ..)| schema < *since) {
         let group = groups.entry(group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
@@ -64,24 +67,25 @@ fn fill_in_scatter_gradients(groups: &mut Map<String, Value>) {
     }
 }
 
-/// Sets the density range to all values of the file for a look that has a transfer function, but no range: all looks
-/// did so before it was a setting. A record with neither is left unchanged.
-fn fill_in_range(groups: &mut Map<String, Value>) {
-    if groups.contains_key("transfer") {
-        groups.entry("range").or_insert_with(|| Value::from("full"));
+/// Sets the density range to all values of the file for a layer that has a transfer function, but no range: all looks
+/// did so before it was a setting. A layer with neither is left unchanged.
+fn fill_in_range(layer: &mut Map<String, Value>) {
+    if layer.contains_key("transfer") {
+        layer.entry("range").or_insert_with(|| Value::from("full"));
     }
 }
 
 /// Returns true if a record replaces the label table instead of merging with it: a session contains every label of
 /// its look.
 pub(super) fn replaces_labels(record: &Value) -> bool {
-    record.get("labels").is_some() && record.get("schema").is_some()
+    first_layer(record).is_some_and(|layer| layer.get("labels").is_some()) && record.get("schema").is_some()
 }
 
 /// Returns true if a record is about values, not labels: it has a transfer function. So had all records before label
 /// tables existed.
 pub(super) fn is_about_values(record: &Value) -> bool {
-    record.get("labels").is_none() && record.pointer("/transfer/points").is_some()
+    first_layer(record)
+        .is_some_and(|layer| layer.get("labels").is_none() && layer.pointer("/transfer/points").is_some())
 }
 
 /// Adds the defaults of earlier versions to a camera. One with a distance refers its field of view to the height: the
@@ -184,7 +188,7 @@ mod tests {
 
     #[test]
     fn saved_looks_show_all_values_as_they_did() {
-        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.range;
+        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.layer().range;
         assert_eq!(range(r#"{"schema": 2, "transfer": {"points": []}}"#), DensityRange::Full);
         assert_eq!(range(r#"{"schema": 1, "transfer": {}}"#), DensityRange::Full);
         // Records without values, with an explicit range, or without a schema.
@@ -201,8 +205,8 @@ mod tests {
     fn what_was_saved_of_values_does_not_show_labels() {
         let table: LabelTable =
             [1, 2, 3].map(|number| (number, LabelLook::default_for(number))).into_iter().collect();
-        let first = Settings { labels: table.clone(), ..Settings::default() };
-        let labels = |text: &str| load_json(&first, text).expect("settings").0.labels;
+        let first = Settings::default().with_labels(table.clone());
+        let labels = |text: &str| load_json(&first, text).expect("settings").0.layer().labels.clone();
         for of_values in [
             r#"{"schema": 2, "transfer": {"points": []}}"#,
             r#"{"transfer": {"points": []}}"#,
@@ -221,8 +225,8 @@ mod tests {
         assert_eq!(kept, first);
         // Setting the curve explicitly discards labels.
         let curve = apply_path(&first, "transfer.interpolation", "extinction").expect("settings");
-        assert!(curve.labels.is_empty());
-        assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").labels.is_empty());
+        assert!(curve.layer().labels.is_empty());
+        assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").layer().labels.is_empty());
     }
 
     #[test]

@@ -122,7 +122,7 @@ fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, Exchange
         slicer::from_vp_json(&tree)
     } else if tree.get("channels").is_some() {
         agave::from_agave(&tree, range)
-    } else if tree.get("transfer").is_some() {
+    } else if native::transfer_path(&tree).is_some() {
         native::from_preset(&mut tree, range)
     } else {
         paraview::from_paraview(&tree)

@@ -50,7 +50,7 @@ impl App {
             AppCommand::UseColors(at, reversed) => self.document.use_colors(at, reversed),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
-            AppCommand::InvertTransfer => self.document.settings.transfer.mirror(),
+            AppCommand::InvertTransfer => self.document.settings.layer_mut().transfer.mirror(),
             AppCommand::ToggleCrop => self.toggle_crop(ctx),
             AppCommand::TogglePlane => self.toggle_plane(ctx),
             AppCommand::FacePlane => self.document.face_plane(),

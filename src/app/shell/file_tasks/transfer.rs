@@ -17,8 +17,8 @@ impl App {
         let read = move |path: &Path| file_dialogs::import_transfer_file(path, range);
         self.read_file(ReadPurpose::Transfer, path, ctx, read, |app, read, _ctx| match read {
             Ok(function) => {
-                app.document.settings.transfer = function;
-                app.document.settings.labels = LabelTable::default();
+                let layer = app.document.settings.layer_mut();
+                (layer.transfer, layer.labels) = (function, LabelTable::default());
             }
             Err(why) => app.report_read_failure(text::messages::TRANSFER_NOT_IMPORTED, why),
         });

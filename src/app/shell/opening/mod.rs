@@ -149,9 +149,9 @@ impl App {
         let Some(volume) = &self.document.volume else { return };
         let mut settings = self.document.settings.clone();
         // The opacity unit keeps its thickness, whatever the number of voxels.
-        if let OpacityLength::Voxels(_) = settings.opacity_unit {
-            let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
-            settings.opacity_unit = OpacityLength::Mm(unit);
+        if let OpacityLength::Voxels(_) = settings.layer().opacity_unit {
+            let unit = settings.layer().opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
+            settings.layer_mut().opacity_unit = OpacityLength::Mm(unit);
         }
         // The memory estimate is checked again.
         let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());

@@ -96,7 +96,7 @@ impl PictureInputs<'_> {
     fn handle_mouse(&mut self, ui: &egui::Ui, response: &Response) {
         let is_one_view = self.is_one_view();
         let Self { document, viewport, tools, .. } = self;
-        let is_by_value = document.settings.labels.is_empty();
+        let is_by_value = document.settings.layer().labels.is_empty();
         mouse_navigation::navigate(
             ui,
             response,

@@ -307,7 +307,9 @@ mod tests {
         let usual = Settings::default();
         // Presets of light leave the curve as it is.
         let differs = |look: &Settings| {
-            look.transfer != usual.transfer || look.sky != usual.sky || look.scattering != usual.scattering
+            look.layer().transfer != usual.layer().transfer
+                || look.sky != usual.sky
+                || look.scattering != usual.scattering
         };
         assert!(presets.iter().all(|look| differs(&look.settings)));
     }

@@ -254,7 +254,7 @@ pub(crate) fn export_transfer_file(
     ranges: &ValueRanges,
 ) -> Result<(), String> {
     let range = transfer_exchange_range(settings, ranges);
-    let bytes = export_transfer(path, &settings.transfer, range).map_err(|err| err.to_string())?;
+    let bytes = export_transfer(path, &settings.layer().transfer, range).map_err(|err| err.to_string())?;
     chiaroscuro_files::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
@@ -294,13 +294,13 @@ mod tests {
             interpolation: OpacityInterpolation::Opacity,
             ..TransferFunction::default()
         };
-        let settings = Settings { transfer, ..Settings::default() };
+        let settings = Settings::default().with_transfer(transfer);
         for ending in ["itf", "vp", "json"] {
             let path = folder.path().join(format!("a.{ending}"));
             export_transfer_file(&path, &settings, &ranges).unwrap();
             let back = import_transfer_file(&path, transfer_exchange_range(&settings, &ranges)).unwrap();
             for value in [-20.0, 0.0, 60.0, 100.0, 140.0] {
-                let (found, meant) = (back.opacity_at(value), settings.transfer.opacity_at(value));
+                let (found, meant) = (back.opacity_at(value), settings.layer().transfer.opacity_at(value));
                 assert!((found - meant).abs() < 1e-3, "{ending} at {value}: {found} and not {meant}");
             }
         }

@@ -12,7 +12,7 @@ use crate::plan::{
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
     PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
-    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature,
+    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature, VolumeLayer,
 };
 
 /// Inputs of the linear picture of the eye pass.
@@ -111,13 +111,7 @@ impl EyeKey {
             schema: _,
             camera,
             lights: _,
-            // Part of the volume's key.
-            range: _,
-            // Parts of the keys of the volume and of the tables.
-            labels: _,
-            transfer: _,
-            lighting: _,
-            opacity_unit,
+            layers,
             shading,
             shadows,
             sky: _,
@@ -130,6 +124,15 @@ impl EyeKey {
             // Part of the identity of the corrected volume.
             volume: _,
         } = settings;
+        let VolumeLayer {
+            // Part of the volume's key.
+            range: _,
+            // Parts of the keys of the volume and of the tables.
+            labels: _,
+            transfer: _,
+            lighting: _,
+            opacity_unit,
+        } = layers.first();
         let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };
         let lights = own.iter().map(|lit| EyeLightKey {

@@ -73,7 +73,7 @@ fn label_look(volume: &Volume, number: i64) -> LabelLook {
 pub(crate) fn count_lost_labels(settings: &Settings, volume: &Volume) -> usize {
     let drawn = settings.resolved_for(volume);
     let volume = volume.with_density_mapping(settings.shown_content(&volume.ranges()));
-    let function = &drawn.transfer;
+    let function = &drawn.layer().transfer;
     let table = function.bake(volume.table_range(), 1.0, 1.0);
     // Accumulated over the whole label, because a veil is not lost.
     let thickness = |number: i64| {

@@ -108,8 +108,8 @@ fn whether_a_record_is_understood_is_known() {
 fn the_longest_transfer_function_is_read_again() {
     let mut settings = Settings::default();
     let point = |at| ControlPoint::new(f64::from(at) / 7.0 - 1e3, [1.0 / 3.0; 3], f64::from(at) / 4321.0);
-    settings.transfer.points = (0..4096).map(point).collect();
-    settings.lighting.curve.points = settings.transfer.points[..2048].to_vec();
+    settings.layer_mut().transfer.points = (0..4096).map(point).collect();
+    settings.layer_mut().lighting.curve.points = settings.layer().transfer.points[..2048].to_vec();
     let read = LookRecord::parse(&LookRecord::to_json(&settings, None, None)).unwrap();
     assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap(), (settings, vec![]));
 }
