@@ -119,7 +119,7 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
 
     // P3: fully transparent material does not appear.
     let clear = with(&|settings| {
-        settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0)
+        settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
     });
     assert_eq!(largest_color(&studio.draw(&bytes, &clear).linear), 0.0, "seed {seed}");
 

@@ -141,9 +141,10 @@ fn choose_view_and_lights(settings: &mut Settings, volume: &Volume) {
 
 /// Frames a veil as if it were opaque; otherwise it is too transparent to count as visible.
 fn frame_veil(settings: Settings, volume: &Volume) -> Settings {
-    let mut opaque = settings.clone().with_transfer(transfer::opaque_transfer(&settings.layer().transfer));
+    let veil = settings.layer().transfer.clone();
+    let mut opaque = settings.with_transfer(transfer::opaque_transfer(&veil));
     choose_view_and_lights(&mut opaque, volume);
-    opaque.with_transfer(settings.layer().transfer.clone())
+    opaque.with_transfer(veil)
 }
 
 /// Returns the opacity unit of a first look.

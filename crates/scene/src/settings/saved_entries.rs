@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Camera, MAX_NAME_CHARS, Settings};
+use crate::{Camera, MAX_NAME_CHARS, SCHEMA, Settings};
 use chiaroscuro_files::sanitised_line;
 use chiaroscuro_volume::Corrections;
 
@@ -54,7 +54,8 @@ pub struct SavedLook(Arc<Settings>);
 impl SavedLook {
     /// Saves a copy of a look.
     pub fn new(look: &Settings) -> Self {
-        let mut look = Settings { kept: Vec::new(), volume: Corrections::default(), ..look.clone() };
+        let look = look.clone();
+        let mut look = Settings { schema: SCHEMA, kept: Vec::new(), volume: Corrections::default(), ..look };
         look.sanitise();
         Self(Arc::new(look))
     }

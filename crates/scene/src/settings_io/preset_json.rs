@@ -76,8 +76,10 @@ pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<Strin
     Ok((result, [cuts, warnings].concat()))
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). Settings of the first layer have a short
-/// path, too: `range` for `layers.0.range`. The text is parsed as JSON, or else taken as a string.
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is parsed as JSON, or else taken
+/// as a string.
+///
+/// Settings of the first layer have a short path, too: `range` for `layers.0.range`.
 ///
 /// # Errors
 /// Returns an error if the path does not exist or the value has the wrong type.
