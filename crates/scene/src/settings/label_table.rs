@@ -231,9 +231,8 @@ impl Settings {
         }
         let Some(labels) = volume.labels() else { return Cow::Borrowed(self) };
         let mut drawn = self.clone();
-        let layer = drawn.layer_mut();
-        layer.transfer = layer.labels.step_function(labels);
-        layer.lighting.linked = true;
+        drawn.layer_mut().transfer = self.layer().labels.step_function(labels);
+        drawn.layer_mut().lighting.linked = true;
         drawn.sampling.classification = self.classification();
         Cow::Owned(drawn)
     }
@@ -367,16 +366,12 @@ mod tests {
         assert_eq!((&back.layer().labels, warnings.len()), (&settings.layer().labels, 0));
         let part = r#"{"labels": {"17": {"opacity": 0.2}, "4": {"visible": false}}}"#;
         let (laid_over, warnings) = load_json(&settings, part).unwrap();
-        assert!(warnings.is_empty(), "{warnings:?}");
-        let changed = laid_over.layer().labels.get(17).unwrap();
+        let labels = &laid_over.layer().labels;
+        assert!(warnings.is_empty() && labels.len() == 3, "{warnings:?}");
+        let changed = labels.get(17).unwrap();
         assert_eq!((changed.opacity, changed.name.as_str(), changed.visible), (0.2, "Left lung", false));
-        assert_eq!(
-            laid_over.layer().labels.get(4),
-            Some(&LabelLook { visible: false, ..LabelLook::default_for(4) })
-        );
-        assert_eq!(laid_over.layer().labels.len(), 3);
-        let set =
-            |path: &str, value: &str| apply_path(&settings, path, value).unwrap().layer().labels.clone();
+        assert_eq!(labels.get(4), Some(&LabelLook { visible: false, ..LabelLook::default_for(4) }));
+        let set = |path: &str, to: &str| apply_path(&settings, path, to).unwrap().layer().labels.clone();
         assert!(set("labels.17.visible", "true").get(17).unwrap().visible);
         assert_eq!(set("labels.5.opacity", "0.25").get(5).unwrap().opacity, 0.25, "made where there is none");
         assert!(set("labels", "{}").is_empty());
