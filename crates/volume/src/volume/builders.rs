@@ -29,10 +29,10 @@ impl Volume {
     /// # Errors
     /// Fails if no voxel has another value.
     pub fn with_padding(self, padding_value: f64) -> Result<Self, VolumeError> {
+        let padding_value = self.voxels.as_stored(padding_value);
         let voxels = self.voxels.with_padding(self.grid.dims(), padding_value)?;
         // The padding value affects what is shown, like the values themselves.
-        let padding_bits = voxels.padding_value().unwrap_or(padding_value).to_bits();
-        Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_bits, ..self })
+        Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_value.to_bits(), ..self })
     }
 
     /// Sets whether world space is right-anterior-superior, as the file states of a body.

@@ -43,12 +43,16 @@ impl VoxelData {
         })
     }
 
-    /// Sets the padding value: see [`Volume::with_padding`](super::Volume::with_padding).
+    /// Rounds a value to the nearest float where the samples are 32-bit floats.
+    pub(super) fn as_stored(&self, value: f64) -> f64 {
+        match &*self.samples {
+            Samples::F32(_) => f64::from(value as f32),
+            _ => value,
+        }
+    }
+
+    /// Sets the padding value, which is [as stored](Self::as_stored).
     pub(super) fn with_padding(self, dims: [usize; 3], padding_value: f64) -> Result<Self, VolumeError> {
-        let padding_value = match &*self.samples {
-            Samples::F32(_) => f64::from(padding_value as f32),
-            _ => padding_value,
-        };
         let statistics = VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value))?;
         Ok(Self {
             padding_value: Some(padding_value),
