@@ -134,6 +134,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
             ));
         }
     };
+    options.choice.record_format(reader.name);
     let loaded = (reader.load)(VolumeSource { path, input, start, options, control });
     witness.check_unchanged(attempt, loaded)
 }

@@ -156,6 +156,14 @@ impl VolumeChoice {
         shown
     }
 
+    /// Records the name of the format that a file turns out to have; a later one, by a more specific reader, replaces
+    /// it.
+    pub fn record_format(&self, format: &'static str) {
+        if let Some(watch) = &self.recorder {
+            watch.record_format(format);
+        }
+    }
+
     /// Returns true if nothing is selected and the whole volume is read.
     pub fn is_empty(&self) -> bool {
         self.selects_nothing() && self.portion.is_none()
