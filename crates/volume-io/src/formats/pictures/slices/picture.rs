@@ -63,6 +63,20 @@ impl SliceFormat {
         Ok(Self::detect(&start))
     }
 
+    /// Name of the format, of one picture or of a folder of them.
+    pub(super) fn name(self, is_folder: bool) -> &'static str {
+        match (self, is_folder) {
+            (Self::Png, false) => "PNG",
+            (Self::Jpeg, false) => "JPEG",
+            (Self::Bmp, false) => "BMP",
+            (Self::Tiff, false) => "TIFF",
+            (Self::Png, true) => "folder of PNG pictures",
+            (Self::Jpeg, true) => "folder of JPEG pictures",
+            (Self::Bmp, true) => "folder of BMP pictures",
+            (Self::Tiff, true) => "folder of TIFF pictures",
+        }
+    }
+
     fn format(self) -> Option<ImageFormat> {
         match self {
             Self::Png => Some(ImageFormat::Png),

@@ -5,7 +5,6 @@
 //! `ImageJ`, LSM. World axes are those of the grid: TIFF has no anatomical orientation.
 
 mod file;
-mod gaps;
 mod messages;
 mod metadata;
 mod single;

@@ -4,7 +4,7 @@ use super::file::TiffFile;
 use super::file::page::{TiffPage, tag};
 use super::metadata::ome;
 use super::stack::{check_page_bytes, page_encoding};
-use super::undescribed::usable_pages;
+use super::undescribed::UsablePages;
 use crate::LoadOptions;
 use crate::reading::input::InputFile;
 use crate::reading::number::VoxelEncoding;
@@ -27,7 +27,7 @@ impl SingleSlice {
     /// As the reader of whole volumes.
     pub(crate) fn open(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
         let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
-        let pages = usable_pages(&tiff, &mut Vec::new());
+        let UsablePages { pages, .. } = UsablePages::new(&tiff);
         let Some(&number) = pages.first() else {
             return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
         };

@@ -11,10 +11,11 @@ use roxmltree::{Document, Node};
 
 use super::super::file::TiffFile;
 use super::super::file::page::SampleMeaning;
-use super::super::gaps::SliceRun;
 use super::super::messages::HELP;
-use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
+use super::super::stack::{TiffSlice, TiffStack};
 use super::length_unit::millimetres;
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
+use crate::formats::pictures::gaps::{ANNOUNCED_PAGES, SliceRun};
 use crate::reading::companion_path;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_files::{sanitised, xml};
@@ -235,13 +236,14 @@ fn stack_from_root(
         channels: channels_there,
         channel_names: children(pixels, "Channel").map(channel_name).collect(),
         frames,
+        frame_names: Vec::new(),
     };
     let chosen = steps.choose(attempt, choice)?;
     let channel = chosen.channel / inside;
     let wanted: Vec<[usize; 3]> =
         chosen.slices(slices, frames).into_iter().map(|[frame, slice]| [slice, channel, frame]).collect();
     let found = pages.find(attempt, &wanted)?;
-    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices) else {
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices, ANNOUNCED_PAGES) else {
         return Err(pages.missing_page_error(attempt, channel, chosen.frame));
     };
     let mut placement = placement_from_physical_size(pixels);

@@ -1,18 +1,29 @@
-//! Incomplete recordings: pages are missing because it was stopped, or because one of its files is missing.
+//! Incomplete recordings: pages or files are missing because it was stopped, or because one of its files is missing.
 
-use super::stack::TiffSlice;
+/// Wording of the remarks on missing slices: the pictures that slices are made of, and the claim that there are more.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GapWords {
+    /// Plural name of the pictures, such as pages.
+    pub(crate) pictures: &'static str,
+    /// Continuation of "4 slices" that tells why so many are expected.
+    pub(crate) claim: &'static str,
+}
+
+/// Wording for pages that the metadata of a file announce.
+pub(crate) const ANNOUNCED_PAGES: GapWords = GapWords { pictures: "pages", claim: "are announced" };
 
 /// Slices of a recording that are shown, with a remark on the missing ones.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct SliceRun {
-    /// Slices from the first that has a page to the last; gaps in between are empty.
-    pub(super) slices: Vec<Option<TiffSlice>>,
-    pub(super) remark: Option<String>,
+pub(crate) struct SliceRun<T> {
+    /// Slices from the first that has a picture to the last; gaps in between are empty.
+    pub(crate) slices: Vec<Option<T>>,
+    pub(crate) remark: Option<String>,
 }
 
-impl SliceRun {
-    /// Creates a run from slices some of which lack a page; `None` where none has one.
-    pub(super) fn new(slices: &[Option<TiffSlice>]) -> Option<Self> {
+impl<T: Clone> SliceRun<T> {
+    /// Creates a run from slices some of which lack a picture; `None` where none has one.
+    pub(crate) fn new(slices: &[Option<T>], words: GapWords) -> Option<Self> {
+        let GapWords { pictures, claim } = words;
         let first = slices.iter().position(Option::is_some)?;
         let last = slices.iter().rposition(Option::is_some)?;
         let kept = slices[first..=last].to_vec();
@@ -20,16 +31,19 @@ impl SliceRun {
         let mut parts = Vec::new();
         if there < said {
             parts.push(if first == 0 {
-                format!("{said} slices are announced, and there are pages for the first {there}: those are shown")
+                format!("{said} slices {claim}, and there are {pictures} for the first {there}: those are shown")
             } else {
                 format!(
-                    "{said} slices are announced, and there are pages for {first} to {last} of them: those are shown"
+                    "{said} slices {claim}, and there are {pictures} for {first} to {last} of them: those are shown"
                 )
             });
         }
         let empty: Vec<usize> = (first..=last).filter(|&at| slices[at].is_none()).collect();
         if !empty.is_empty() {
-            parts.push(format!("no pages exist for slices {}: they are left empty", list_numbers(&empty)));
+            parts.push(format!(
+                "no {pictures} exist for slices {}: they are left empty",
+                list_numbers(&empty)
+            ));
         }
         let remark = (!parts.is_empty()).then(|| parts.join("; "));
         Some(Self { slices: kept, remark })
@@ -53,13 +67,10 @@ mod tests {
 
     #[test]
     fn ends_are_left_out_and_gaps_between_stay() {
-        let slices = |pages: &[i32]| -> Vec<Option<TiffSlice>> {
-            pages
-                .iter()
-                .map(|&page| usize::try_from(page).ok().map(|page| TiffSlice { file: 0, page }))
-                .collect()
+        let slices = |pages: &[i32]| -> Vec<Option<usize>> {
+            pages.iter().map(|&page| usize::try_from(page).ok()).collect()
         };
-        let recorded = |pages: &[i32]| SliceRun::new(&slices(pages));
+        let recorded = |pages: &[i32]| SliceRun::new(&slices(pages), ANNOUNCED_PAGES);
         assert_eq!(recorded(&[-1, -1]), None);
         assert_eq!(recorded(&[0, 1]), Some(SliceRun { slices: slices(&[0, 1]), remark: None }));
         let stopped = recorded(&[0, 1, -1, -1]).unwrap();

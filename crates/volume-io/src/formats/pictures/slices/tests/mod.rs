@@ -1,5 +1,7 @@
 //! Tests that load folders of pictures through the public interface.
 
+mod recordings;
+
 use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
@@ -165,28 +167,6 @@ fn broken_and_huge_pictures_are_refused() {
     assert_refused(load_path(&path), LoadErrorKind::BadInput, &["a.jpg", "its end marker is missing"]);
     let large = folder(&[("a.png", grey(300, &vec![0; 300 * 300]))]);
     assert_refused(load_path(&large.path().join("a.png")), LoadErrorKind::Limit, &["allowed"]);
-}
-
-#[test]
-fn slices_come_before_channels_in_names() {
-    let mut pictures = Vec::new();
-    for z in 0..8 {
-        for channel in 0..2 {
-            let name = format!("Series001_z{z:02}_ch{channel:02}.png");
-            pictures.push((name, grey(2, &[z + 100 * channel, z])));
-        }
-    }
-    let named: Vec<(&str, DynamicImage)> =
-        pictures.iter().map(|(name, picture)| (name.as_str(), picture.clone())).collect();
-    let stacks = folder(&named);
-    let listed = ["2 series", "0 \"series001_z#_ch00.png\" (2 x 1 x 8)", "1 \"series001_z#_ch01.png\""];
-    assert_refused(load_path(stacks.path()), LoadErrorKind::BadInput, &listed);
-    for channel in 0..2 {
-        let choice = VolumeChoice { series: Some(channel.to_string()), ..VolumeChoice::default() };
-        let volume = load_with(stacks.path(), choice).unwrap();
-        let expected: Vec<u8> = (0..8).flat_map(|z| [z + 100 * channel, z]).collect();
-        assert_eq!((volume.dims(), volume.samples()), ([2, 1, 8], &Samples::U8(expected)));
-    }
 }
 
 #[test]
