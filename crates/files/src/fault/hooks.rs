@@ -1,48 +1,11 @@
-//! Fault injection: the hidden option `--fault` makes memory, disk, device or a thread fail, so that tests see how
-//! the ordinary program reacts.
-//!
-//! Code that can fail queries this module. Without the option, each query reads one atomic flag.
+//! Fault hooks of builds for tests: the faults chosen for this process, and the queries about them.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{PoisonError, RwLock};
 use std::time::Duration;
 
-/// Thread that can be made to panic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FaultThread {
-    /// Thread that opens volumes.
-    Loader,
-    /// Thread that renders the window's pictures.
-    Worker,
-    /// Main thread of the window.
-    Window,
-    /// Thread that exports pictures.
-    Export,
-}
-
-/// Fault to be injected, as given by `--fault`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InjectedFault {
-    /// Loss of the window's and the renderer's devices in the window's N-th frame.
-    DeviceLost(u64),
-    /// Loss of the renderer's device alone in the window's N-th frame.
-    RendererDeviceLost(u64),
-    /// Allocation failure of the adapter for the K-th texture or buffer.
-    OutOfMemory(u64),
-    /// Panic of a thread at its next task.
-    Panic(FaultThread),
-    /// Failure to compile any shader.
-    Shader,
-    /// Additional delay of every wait for the adapter.
-    Slow(Duration),
-    /// Additional delay of every frame of the window.
-    SlowFrames(Duration),
-    /// Failure of every write to a file.
-    FullDisk,
-    /// Failure to read the N-th block of a volume.
-    ReadError(u64),
-}
+use super::{FaultThread, InjectedFault};
 
 impl FromStr for InjectedFault {
     type Err = String;
@@ -102,7 +65,6 @@ impl FaultCounter {
     }
 
     /// Returns the events counted since faults were first chosen.
-    #[cfg(any(test, feature = "testing"))]
     pub fn so_far(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
