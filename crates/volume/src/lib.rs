@@ -45,6 +45,5 @@ pub use values::samples::{Samples, VoxelType};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
-    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, VolumeProvenance, VoxelData, VoxelGrid,
-    block_counts,
+    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

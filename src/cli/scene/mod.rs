@@ -14,7 +14,9 @@ use std::sync::OnceLock;
 use clap::Args;
 
 pub(super) use self::corrections::{apply_command_line_corrections, apply_corrections};
-pub(super) use self::decompression_warning::{open_for_overview, open_with_size_warning};
+pub(super) use self::decompression_warning::{
+    control_with_size_warning, open_for_overview, open_with_size_warning,
+};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};
@@ -29,7 +31,8 @@ use chiaroscuro_scene::{
     first_look::{self, FirstLookOptions},
     set_value,
 };
-use chiaroscuro_volume::{Dataset, KindName, ValueRanges, Volume};
+use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume};
+use chiaroscuro_volume_io::open;
 
 /// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
@@ -150,8 +153,8 @@ impl SceneArgs {
 
 impl LookArgs {
     /// Reads a volume, without regard to an adapter.
-    pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
-        Ok(open_with_size_warning(source, &self.load.load_options()?)?)
+    pub(super) fn read_volume(&self, source: &Path, control: &LoadControl) -> Result<Volume, CliError> {
+        Ok(open(source, &self.load.load_options()?, control)?)
     }
 
     /// Returns the corrected dataset of a volume, downsampled if the adapter cannot hold it.

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use super::error::LoadError;
 use super::memory_estimate::VolumeSize;
@@ -19,6 +20,8 @@ pub struct LoadControl {
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
     pub total_bytes: AtomicU64,
+    /// Time of the analysis after reading, in nanoseconds.
+    analysis_ns: AtomicU64,
     size_check: SizeCheck,
 }
 
@@ -84,6 +87,17 @@ impl LoadControl {
         self.done_bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 
+    /// Records how long the voxels' ranges and hash took, once they were read.
+    pub fn set_analysis_time(&self, took: Duration) {
+        self.analysis_ns.store(u64::try_from(took.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
+    }
+
+    /// Returns the time taken for the voxels' ranges and hash: the part of loading that was neither reading nor
+    /// decoding. Zero for volumes that come from no file.
+    pub fn analysis_time(&self) -> Duration {
+        Duration::from_nanos(self.analysis_ns.load(Ordering::Relaxed))
+    }
+
     /// Counts a piece of work about to begin, and returns an error if it must not be done.
     ///
     /// # Errors
@@ -99,6 +113,7 @@ impl LoadControl {
 
     /// Number of pieces of work that were begun, such as blocks read or slices counted. No piece takes longer than
     /// one slice.
+    #[cfg(any(test, feature = "testing"))]
     pub fn pieces_begun(&self) -> u64 {
         self.signal.begun.load(Ordering::Relaxed)
     }

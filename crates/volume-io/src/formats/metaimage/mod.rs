@@ -94,5 +94,5 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     let name = header.get("Name").filter(|name| !name.is_empty());
     let name = sanitised(&name.map_or_else(|| name_without_extension(path, ENDINGS), str::to_owned), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
 }

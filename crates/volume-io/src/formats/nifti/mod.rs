@@ -134,7 +134,7 @@ fn read(
         label_tables::add_label_table(attempt, ENDINGS, voxels.stored_numbers(), &mut hints);
     }
     let name = sanitised(&name_without_extension(attempt.path, ENDINGS), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
 }
 
 /// Returns the slope and intercept to apply to the values shown. Colours are not scaled (`nifti1.h`, "data scaling").

@@ -100,7 +100,8 @@ fn load_array(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let ChosenNumpyArray { stored, extent, at, placement } = choose_volume(&source, attempt, &header, &grid)?;
     let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
     let name = stem(source.path);
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+        .into_volume(attempt, source.control)
 }
 
 /// Loads an array of an archive.
@@ -153,7 +154,8 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let voxels = read_entry(&mut source, attempt, &entry, &wanted)?;
     let ChosenNumpyArray { extent, placement, .. } = wanted;
     let name = sanitised(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+        .into_volume(attempt, source.control)
 }
 
 /// Key by which an array is chosen: its name.

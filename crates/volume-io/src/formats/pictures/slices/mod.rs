@@ -240,7 +240,8 @@ fn read_stack(
     let mut placement = GridPlacement::unknown();
     placement.remarks = remarks;
     placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+        .into_volume(attempt, control)
 }
 
 /// Checks that two slices have equal size and type, and that each file holds only one.

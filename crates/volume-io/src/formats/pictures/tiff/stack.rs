@@ -222,7 +222,7 @@ impl TiffStack {
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
     }
 }
 
