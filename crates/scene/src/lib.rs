@@ -60,7 +60,9 @@ pub use self::settings::shadows::{
 };
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
-pub use self::settings_io::preset_json::{apply_json, apply_path, load_json, set_value, settings_to_json};
+pub use self::settings_io::preset_json::{apply_json, set_value};
+#[cfg(any(test, feature = "testing"))]
+pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json};
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
 pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
 pub use self::settings_io::volume_location::VolumeLocation;

@@ -137,6 +137,7 @@ impl ShaderLibrary {
     }
 
     /// Returns the number of pipelines made so far.
+    #[cfg(feature = "testing")]
     pub fn pipeline_count(&self) -> usize {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
     }

@@ -102,6 +102,7 @@ impl Renderer {
 
     /// Returns the number of buffers, bind groups and rings made so far, which stays constant while the same things
     /// are drawn again.
+    #[cfg(feature = "testing")]
     pub fn created_resources(&self) -> u64 {
         self.tools.pool.created_count()
     }

@@ -16,6 +16,7 @@ use chiaroscuro_files::sanitised;
 const MAX_REPORTED_UNKNOWN: usize = 8;
 
 /// Serialises settings as pretty-printed JSON.
+#[cfg(any(test, feature = "testing"))]
 pub fn settings_to_json(settings: &Settings) -> String {
     serde_json::to_string_pretty(settings).unwrap_or_default()
 }
@@ -67,25 +68,27 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
 ///
 /// # Errors
 /// As [`apply_json`], and if the text is not JSON.
+#[cfg(any(test, feature = "testing"))]
 pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<String>), PresetError> {
     let BoundedTree { tree, cuts } = json_limits::parse_bounded(text)?;
     let (result, warnings) = apply_json(settings, &tree)?;
     Ok((result, [cuts, warnings].concat()))
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is parsed as JSON, or else taken
-/// as a string.
+/// Sets one value as [`set_value`] does, without its warning.
 ///
 /// # Errors
-/// Returns an error if the path does not exist or the value has the wrong type.
+/// As [`set_value`].
+#[cfg(any(test, feature = "testing"))]
 pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
     set_value(settings, path, text).map(|(result, _)| result)
 }
 
-/// Sets one value as [`apply_path`] does, and returns a warning if the value was clamped to its range.
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`), and returns a warning if the value was clamped
+/// to its range. The text is parsed as JSON, or else taken as a string.
 ///
 /// # Errors
-/// As [`apply_path`].
+/// Returns an error if the path does not exist or the value has the wrong type.
 pub fn set_value(
     settings: &Settings,
     path: &str,

@@ -179,7 +179,8 @@ impl LookRecord {
 
     /// Returns true if all of the record is understood: nothing was cut, no setting is unknown or of a wrong type,
     /// and the version is not newer. Other content is lost when the record is saved again.
-    pub fn is_fully_understood(&self) -> bool {
+    #[cfg(test)]
+    fn is_fully_understood(&self) -> bool {
         let applied = self.apply(&Settings::default(), &ValueRanges::UNIT);
         applied.is_ok_and(|(_, warnings)| warnings.is_empty())
     }
