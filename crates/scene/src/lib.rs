@@ -60,7 +60,7 @@ pub use self::settings::shadows::{
 };
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
-pub use self::settings_io::preset_json::{apply_json, set_value};
+pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value};
 #[cfg(any(test, feature = "testing"))]
 pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json};
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
@@ -85,7 +85,7 @@ pub use settings::{
 };
 pub use transfer::{
     ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,
-    SMOOTH_SEGMENT_PIECES, TransferFunction, linear_from_srgb, srgb_from_linear,
+    SMOOTH_SEGMENT_PIECES, TransferFunction, TransferSample, linear_from_srgb, srgb_from_linear,
 };
 pub use transfer_exchange::{
     EXPORT_EXTENSIONS, ExchangeError, IMPORT_EXTENSIONS, export_transfer, import_transfer,

@@ -30,7 +30,8 @@ pub use open::open;
 pub use reading::read_files::ReadFiles;
 
 use chiaroscuro_volume::{
-    FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice, memory_budget_bytes,
+    ContentsRecorder, FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice,
+    memory_budget_bytes,
 };
 use formats::{FileFormat, READERS, detect_format, folder};
 use reading::input::{FileChangeGuard, InputFile};
@@ -86,7 +87,8 @@ impl LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let portion = options.choice.portion.unwrap_or_default();
     let read = |are_labels: bool| {
-        let (choice, watch) = VolumeChoice { are_labels, ..options.choice.clone() }.with_recorder();
+        let watch = ContentsRecorder::default();
+        let choice = VolumeChoice { are_labels, ..options.choice.clone() }.with_recorder(&watch);
         let options = LoadOptions { choice, ..options.clone() };
         let volume = control.run(|| load_watched(path, &options, control));
         // Cancellation takes precedence over the result.

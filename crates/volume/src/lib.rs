@@ -41,7 +41,7 @@ pub use value_metadata::{
 };
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
-pub use values::samples::{Samples, VoxelType};
+pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,

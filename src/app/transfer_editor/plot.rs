@@ -119,7 +119,7 @@ pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, settings: &S
     let function = if linked { &settings.transfer } else { &settings.lighting.curve };
     let scale = settings.lighting.scale;
     // The scale multiplies the extinction, not the opacity.
-    let scaled = |value: f64| 1.0 - (-function.sample(value).1 * scale).exp();
+    let scaled = |value: f64| 1.0 - (-function.sample(value).depth * scale).exp();
     let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y_of(scaled(value)))).collect();
     let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, axes.ink.light);
     if linked {

@@ -204,7 +204,7 @@ impl LookArgs {
             let (path, value) = assignment.split_once('=')?;
             let path = Some(path.trim()).filter(|path| ["camera", "camera.up"].contains(path))?;
             // Errors are reported when the setting is applied.
-            let (settings, _) = set_value(&Settings::default(), path, value.trim()).ok()?;
+            let settings = set_value(&Settings::default(), path, value.trim()).ok()?.settings;
             Some(settings.camera.up)
         };
         let of_overlays = overlays.iter().filter_map(|overlay| overlay.up(ranges));

@@ -1,7 +1,7 @@
 //! Relations that must hold between pictures of any scene, each numbered P1 to P15.
 
 use chiaroscuro_render::{PictureOptions, RenderOptions, RenderedPicture, TestSwitches, plan::PixelWindow};
-use chiaroscuro_scene::{LookRecord, Settings};
+use chiaroscuro_scene::{AppliedSettings, LookRecord, Settings};
 use chiaroscuro_volume::{Dataset, Samples, ValueRanges};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -155,7 +155,8 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
 
     // P14: a look that was saved is loaded unchanged.
     let record = LookRecord::parse(&LookRecord::to_json(&settings, None, None)).expect("a record");
-    let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
+    let AppliedSettings { settings: read, warnings } =
+        record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
     assert_eq!((&read, warnings), (&settings, vec![]), "seed {seed}");
 
     // P7: the same world with its voxels in another order in memory.

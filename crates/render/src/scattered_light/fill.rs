@@ -58,9 +58,10 @@ impl ScatteredLightFill {
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: VolumeContext<'_>,
-        (tables, options): (&TransferTables, &RenderOptions),
+        tables: &TransferTables,
+        options: &RenderOptions,
         key: &BouncesKey,
-        (has_sky, lights): (bool, usize),
+        settings: &Settings,
         volume: &ScatteredLightVolume,
     ) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
@@ -76,6 +77,7 @@ impl ScatteredLightFill {
         let followed = key.bounces().saturating_sub(1) as usize * frames_per_bounce + last;
         let size = sheet_size(frames.iter().flatten(), format, followed);
         let textures = ScatteringTextures::new(gpu.context, volume, size, one_color.is_some())?;
+        let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
         let met = extinction_blocks::attenuating_cells(tables, options, volume.dims, volume.divisor);
         // Pictures also look up the last bounce beside the blocks that scatter light.
@@ -92,7 +94,7 @@ impl ScatteredLightFill {
             rays_per_block: rays,
             bounces: key.bounces(),
             max_light_points: key.points(),
-            has_sky,
+            has_sky: settings.sky.is_on(),
             one_color,
             textures,
         })
@@ -100,8 +102,9 @@ impl ScatteredLightFill {
 
     /// Returns the steps of the filling, in order.
     pub(crate) fn steps(&self) -> Vec<ScatteringStep> {
-        let slices = (self.dims[2], self.slices_per_step());
-        scattering_steps(self.bounces, self.has_sky, slices, |followed| self.batches(followed).count())
+        let [slices, at_once] = [self.dims[2], self.slices_per_step()];
+        let batches = |followed| self.batches(followed).count();
+        scattering_steps(self.bounces, self.has_sky, slices, at_once, batches)
     }
 
     /// Returns the number of slices of blocks that cast rays to lights in one step, so that it takes no longer than a
@@ -134,7 +137,7 @@ impl ScatteredLightFill {
         match step {
             ScatteringStep::Blocks => self.fill_blocks(gpu, look, volume, encoder),
             ScatteringStep::Batch(followed, batch) => {
-                self.fill_batch(gpu, look.settings, volume, (followed, batch), encoder)
+                self.fill_batch(gpu, look.settings, volume, followed, batch, encoder)
             }
             ScatteringStep::SingleScattering { slice } => {
                 self.fill_single_scattering(gpu, look, volume, slice, encoder)
@@ -238,7 +241,8 @@ impl ScatteredLightFill {
         gpu: VolumeContext<'_>,
         settings: &Settings,
         volume: &ScatteredLightVolume,
-        (followed, batch): (SweepSource, usize),
+        followed: SweepSource,
+        batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let ScatteringTextures { medium, sheets, scattering, sums, .. } = &self.textures;

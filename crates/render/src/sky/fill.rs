@@ -64,7 +64,8 @@ impl SkyFill {
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: VolumeContext<'_>,
-        (tables, options): (&TransferTables, &RenderOptions),
+        tables: &TransferTables,
+        options: &RenderOptions,
         key: &SkyKey,
         volume: &SkyVolume,
     ) -> Result<Self, GpuError> {

@@ -123,7 +123,7 @@ pub(crate) fn divisor_for_adapter(
     most_texels: u64,
 ) -> usize {
     let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-    divisor_for(grid, resolution, (most_texels, most_sums))
+    divisor_for(grid, resolution, most_texels, most_sums)
 }
 
 /// Returns the number of voxels along the edge of a block.
@@ -133,7 +133,8 @@ pub(crate) fn divisor_for_adapter(
 fn divisor_for(
     grid: [usize; 3],
     resolution: LightVolumeResolution,
-    (most_texels, most_sums): (u64, u64),
+    most_texels: u64,
+    most_sums: u64,
 ) -> usize {
     let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn large_volumes_are_followed_in_larger_blocks() {
-        let of = |n: usize, resolution| divisor_for([n; 3], resolution, (MAX_DIRECTION_TEXELS, u64::MAX));
+        let of = |n: usize, resolution| divisor_for([n; 3], resolution, MAX_DIRECTION_TEXELS, u64::MAX);
         assert_eq!(of(256, LightVolumeResolution::Full), 1);
         assert_eq!(of(257, LightVolumeResolution::Full), 2);
         assert_eq!(of(512, LightVolumeResolution::Half), 2);
@@ -162,12 +163,12 @@ mod tests {
         assert_eq!(of(2048, LightVolumeResolution::Quarter), 8);
         // In a single row of voxels the rays drift as far as they advance, so only 256 blocks are possible.
         assert_eq!(
-            divisor_for([4096, 1, 1], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, u64::MAX)),
+            divisor_for([4096, 1, 1], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, u64::MAX),
             16
         );
         // The smallest limit on bindings of all adapters is 128 MiB.
         let least = (128 << 20) / SUM_BYTES;
-        assert_eq!(divisor_for([256; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 2);
-        assert_eq!(divisor_for([203; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 1);
+        assert_eq!(divisor_for([256; 3], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, least), 2);
+        assert_eq!(divisor_for([203; 3], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, least), 1);
     }
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::brick_list::two_workgroups_per_brick;
-use super::pyramid::{self, level_buffers, level_view};
+use super::pyramid::{self, LevelBuffers, level_buffers, level_view};
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
@@ -128,7 +128,7 @@ impl PreclassifiedVoxels {
             _ => level_view(&self.texture, level - 1),
         };
         let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
-        let (uniform, list) = level_buffers(context, level, bricks);
+        let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
         let target = level_view(&self.texture, level);
         let mut entries = vec![
             bind_view("source", &source),

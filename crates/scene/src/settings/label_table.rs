@@ -244,7 +244,7 @@ mod tests {
     use half::f16;
 
     use super::*;
-    use crate::{BakedTransfer, OpacityLength, apply_path, load_json, settings_to_json};
+    use crate::{AppliedSettings, BakedTransfer, OpacityLength, apply_path, load_json, settings_to_json};
     use chiaroscuro_volume::{MAX_CLASSES, Samples};
 
     /// Creates a volume with the given labels in a row.
@@ -362,10 +362,10 @@ mod tests {
         let settings = with([(17, look), (-3, LabelLook::default_for(-3))].into_iter().collect());
         let text = settings_to_json(&settings);
         assert!(text.contains(r#""17": {"#) && text.contains(r#""-3": {"#), "{text}");
-        let (back, warnings) = load_json(&Settings::default(), &text).unwrap();
+        let AppliedSettings { settings: back, warnings } = load_json(&Settings::default(), &text).unwrap();
         assert_eq!((back.labels, warnings.len()), (settings.labels.clone(), 0));
         let part = r#"{"labels": {"17": {"opacity": 0.2}, "4": {"visible": false}}}"#;
-        let (laid_over, warnings) = load_json(&settings, part).unwrap();
+        let AppliedSettings { settings: laid_over, warnings } = load_json(&settings, part).unwrap();
         assert!(warnings.is_empty(), "{warnings:?}");
         let changed = laid_over.labels.get(17).unwrap();
         assert_eq!((changed.opacity, changed.name.as_str(), changed.visible), (0.2, "Left lung", false));

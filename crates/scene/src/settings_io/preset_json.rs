@@ -21,14 +21,22 @@ pub fn settings_to_json(settings: &Settings) -> String {
     serde_json::to_string_pretty(settings).unwrap_or_default()
 }
 
+/// Settings to which something was applied, with warnings about what was not understood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedSettings {
+    /// Settings after the change, sanitised.
+    pub settings: Settings,
+    /// Warnings for the user: about what was cut, unknown, or beyond its range.
+    pub warnings: Vec<String>,
+}
+
 /// Applies a JSON object to settings: objects are merged field by field, everything else is replaced.
 ///
-/// Returns the result, sanitised, and warnings: content beyond a look's limits, which was cut, unknown fields, and a
-/// newer version.
+/// Warnings are about content beyond a look's limits, which was cut, about unknown fields, and a newer version.
 ///
 /// # Errors
 /// Returns an error if the value is not an object, a field has the wrong type, or the limits of a look are exceeded.
-pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec<String>), PresetError> {
+pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<AppliedSettings, PresetError> {
     if !overlay.is_object() {
         return Err(PresetError::NotAnObject);
     }
@@ -61,7 +69,7 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
         (left_out > 0)
             .then(|| format!("{left_out} saved views or looks were left out: together they are too long")),
     );
-    Ok((result, warnings))
+    Ok(AppliedSettings { settings: result, warnings })
 }
 
 /// Parses a preset or session and applies it to settings; see [`apply_json`].
@@ -69,10 +77,10 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
 /// # Errors
 /// As [`apply_json`], and if the text is not JSON.
 #[cfg(any(test, feature = "testing"))]
-pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<String>), PresetError> {
+pub fn load_json(settings: &Settings, text: &str) -> Result<AppliedSettings, PresetError> {
     let BoundedTree { tree, cuts } = json_limits::parse_bounded(text)?;
-    let (result, warnings) = apply_json(settings, &tree)?;
-    Ok((result, [cuts, warnings].concat()))
+    let applied = apply_json(settings, &tree)?;
+    Ok(AppliedSettings { warnings: [cuts, applied.warnings].concat(), ..applied })
 }
 
 /// Sets one value as [`set_value`] does, without its warning.
@@ -81,19 +89,15 @@ pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<Strin
 /// As [`set_value`].
 #[cfg(any(test, feature = "testing"))]
 pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
-    set_value(settings, path, text).map(|(result, _)| result)
+    set_value(settings, path, text).map(|applied| applied.settings)
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`), and returns a warning if the value was clamped
-/// to its range. The text is parsed as JSON, or else taken as a string.
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`), with a warning if the value was clamped to its
+/// range. The text is parsed as JSON, or else taken as a string.
 ///
 /// # Errors
 /// Returns an error if the path does not exist or the value has the wrong type.
-pub fn set_value(
-    settings: &Settings,
-    path: &str,
-    text: &str,
-) -> Result<(Settings, Option<String>), PresetError> {
+pub fn set_value(settings: &Settings, path: &str, text: &str) -> Result<AppliedSettings, PresetError> {
     let mut tree = serde_json::to_value(settings).map_err(PresetError::WrongType)?;
     // The schema says how to read a file, and is not a setting of the image.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
@@ -146,7 +150,7 @@ pub fn set_value(
         let [asked, used] = [asked, used].map(|value| sanitised(&value, MAX_NAME_CHARS));
         format!("`{path}` is out of range: {asked} was requested, {used} is used")
     });
-    Ok((result, warning))
+    Ok(AppliedSettings { settings: result, warnings: warning.into_iter().collect() })
 }
 
 /// Returns true if the setting at a path is an enum, and the key is another of its variants. Detected by
@@ -231,14 +235,15 @@ mod tests {
         let mut settings = Settings::default();
         settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma: 0.55 };
         settings.opacity_unit = OpacityLength::Mm(0.3);
-        let (back, warnings) = load_json(&Settings::default(), &settings_to_json(&settings)).unwrap();
+        let AppliedSettings { settings: back, warnings } =
+            load_json(&Settings::default(), &settings_to_json(&settings)).unwrap();
         assert_eq!(back, settings);
         assert!(warnings.is_empty(), "{warnings:?}");
     }
 
     #[test]
     fn a_preset_changes_only_what_it_names() {
-        let (settings, warnings) =
+        let AppliedSettings { settings, warnings } =
             load_json(&Settings::default(), r#"{"shadows": {"strength": 0.5, "glow": 1}, "_note": "x"}"#)
                 .unwrap();
         assert_eq!(settings.shadows.strength, 0.5);
@@ -250,7 +255,7 @@ mod tests {
     fn a_balance_that_is_named_stays() {
         let mut kept = Settings::default();
         kept.shadows.keep_balanced = true;
-        let keeps = |text: &str| load_json(&kept, text).unwrap().0.shadows.keep_balanced;
+        let keeps = |text: &str| load_json(&kept, text).unwrap().settings.shadows.keep_balanced;
         assert!(keeps(r#"{"shadows": {"gain": 2.0}}"#));
         assert!(!keeps(r#"{"shadows": {"balance": 1.0}}"#), "even the one that it has");
         assert!(keeps(r#"{"shadows": {"balance": 1.5, "keep_balanced": true}}"#));
@@ -262,10 +267,11 @@ mod tests {
 
     #[test]
     fn enum_values_replace_each_other() {
-        let (settings, _) = load_json(&Settings::default(), r#"{"opacity_unit": {"extent": 0.01}}"#).unwrap();
+        let settings =
+            load_json(&Settings::default(), r#"{"opacity_unit": {"extent": 0.01}}"#).unwrap().settings;
         assert_eq!(settings.opacity_unit, OpacityLength::Extent(0.01));
         let gaussian = r#"{"sampling": {"kernel": {"gaussian": {"sigma": 0.5}}}}"#;
-        let (settings, _) = load_json(&settings, gaussian).unwrap();
+        let settings = load_json(&settings, gaussian).unwrap().settings;
         assert_eq!(settings.sampling.kernel, ReconstructionKernel::Gaussian { sigma: 0.5 });
     }
 
@@ -288,7 +294,7 @@ mod tests {
         assert_eq!(set("range", "full").unwrap().range, DensityRange::Full);
         assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, OpacityLength::Mm(2.0));
         let told = set_value(&Settings::default(), "range.typed", "[300, -100]").unwrap();
-        assert_eq!((told.0.range, told.1.is_some()), (typed, true));
+        assert_eq!((told.settings.range, told.warnings.len()), (typed, 1));
         // From one variant with a number to another.
         let in_mm = set("opacity_unit.mm", "2").unwrap();
         assert_eq!(
@@ -315,7 +321,8 @@ mod tests {
 
     #[test]
     fn what_is_brought_into_range_is_told_and_the_schema_is_no_setting() {
-        let told = |path: &str, text: &str| set_value(&Settings::default(), path, text).unwrap().1;
+        let told =
+            |path: &str, text: &str| set_value(&Settings::default(), path, text).unwrap().warnings.pop();
         assert_eq!(
             told("shadows.strength", "-1e308").unwrap(),
             "`shadows.strength` is out of range: -1e+308 was requested, 0.0 is used"
@@ -329,7 +336,7 @@ mod tests {
 
     #[test]
     fn what_is_unknown_is_named_wherever_it_stands_and_not_without_end() {
-        let warnings = |text: &str| load_json(&Settings::default(), text).unwrap().1;
+        let warnings = |text: &str| load_json(&Settings::default(), text).unwrap().warnings;
         assert_eq!(
             warnings(r#"{"lights": [{"films": 1, "_note": 2}]}"#),
             ["unknown setting `lights.0.films` was ignored"]
@@ -348,19 +355,19 @@ mod tests {
     fn more_than_a_look_has_is_cut_before_anything_is_made_of_it() {
         let light = r#"{"name": "a"}"#;
         let text = format!(r#"{{"lights": [{}{light}]}}"#, format!("{light},").repeat(60_000));
-        let (settings, warnings) = load_json(&Settings::default(), &text).unwrap();
+        let AppliedSettings { settings, warnings } = load_json(&Settings::default(), &text).unwrap();
         assert_eq!((settings.lights.len(), warnings.len()), (MAX_LIGHTS, 1));
         assert_eq!(warnings[0], "60001 entries of `lights` were cut to 8");
         // This holds for an already parsed tree, too.
         let tree = serde_json::from_str(&text).unwrap();
-        assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), (settings, warnings));
+        assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), AppliedSettings { settings, warnings });
     }
 
     #[test]
     fn names_from_before_are_understood() {
         let saved =
             r#"{"ground": {"on": true}, "lights": [{"lock": "world"}], "shadows": {"storage": "collapsed"}}"#;
-        let (settings, warnings) = load_json(&Settings::default(), saved).unwrap();
+        let AppliedSettings { settings, warnings } = load_json(&Settings::default(), saved).unwrap();
         assert!(settings.floor.on && warnings.is_empty(), "{warnings:?}");
         assert_eq!(settings.shadows.storage, LightStorage::Combined);
         let set = |path: &str, value: &str| apply_path(&Settings::default(), path, value).unwrap();

@@ -7,7 +7,7 @@
 
 use serde_json::Value;
 
-use crate::{PresetError, Settings, apply_json};
+use crate::{AppliedSettings, PresetError, Settings, apply_json};
 use chiaroscuro_volume::{DataKind, ValueRanges};
 
 /// Preset of the built-in library.
@@ -103,7 +103,7 @@ impl Preset {
     /// As [`apply_json`]; a test proves that it does not happen.
     pub fn apply(&self, settings: &Settings, ranges: &ValueRanges) -> Result<Settings, PresetError> {
         let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
-        apply_relative(settings, &overlay, ranges).map(|(settings, _)| settings)
+        apply_relative(settings, &overlay, ranges).map(|applied| applied.settings)
     }
 
     /// Returns true if applying the preset to the settings would change nothing.
@@ -121,8 +121,8 @@ pub fn apply_relative(
     settings: &Settings,
     overlay: &Value,
     ranges: &ValueRanges,
-) -> Result<(Settings, Vec<String>), PresetError> {
-    let (mut applied, mut warnings) = apply_json(settings, overlay)?;
+) -> Result<AppliedSettings, PresetError> {
+    let AppliedSettings { settings: mut applied, mut warnings } = apply_json(settings, overlay)?;
     // A look applies to any volume; corrections apply only to their file.
     let applied_corrections = std::mem::replace(&mut applied.volume, settings.volume);
     if applied_corrections != settings.volume
@@ -146,7 +146,7 @@ pub fn apply_relative(
             }
         }
     }
-    Ok((applied, warnings))
+    Ok(AppliedSettings { settings: applied, warnings })
 }
 
 #[cfg(test)]
@@ -171,7 +171,8 @@ mod tests {
         for preset in PRESETS {
             let overlay: Value = serde_json::from_str(preset.text).unwrap();
             let ranges = ValueRanges::without_outliers(ValueRange::new(-1000.0, 3000.0));
-            let (settings, warnings) = apply_relative(&Settings::default(), &overlay, &ranges).unwrap();
+            let AppliedSettings { settings, warnings } =
+                apply_relative(&Settings::default(), &overlay, &ranges).unwrap();
             assert!(warnings.is_empty(), "{}: {warnings:?}", preset.name);
             assert_eq!(preset.apply(&Settings::default(), &ranges).unwrap(), settings);
             let points = &settings.transfer.points;
@@ -251,12 +252,12 @@ mod tests {
             assert_eq!(preset.apply(&over, &ranges).unwrap().volume, over.volume);
         }
         let own = serde_json::json!({"shadows": {"gain": 2.0}, "volume": {"flip": {"x": true}}});
-        let (applied, warnings) = apply_relative(&over, &own, &ranges).unwrap();
+        let AppliedSettings { settings: applied, warnings } = apply_relative(&over, &own, &ranges).unwrap();
         assert_eq!((applied.volume, applied.shadows.gain), (over.volume, 2.0));
         assert!(warnings.len() == 1 && warnings[0].contains("`volume`"), "{warnings:?}");
         // A complete look without corrections does not affect them.
         let whole = serde_json::to_value(Settings::default()).unwrap();
-        let (applied, warnings) = apply_relative(&over, &whole, &ranges).unwrap();
+        let AppliedSettings { settings: applied, warnings } = apply_relative(&over, &whole, &ranges).unwrap();
         assert_eq!((applied.volume, warnings), (over.volume, Vec::<String>::new()));
     }
 

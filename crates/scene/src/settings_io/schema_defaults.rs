@@ -2,14 +2,25 @@
 
 use serde_json::{Map, Value, json};
 
-/// Settings added by a schema, with the value that was in effect before: (schema, group, setting, value).
-fn added_settings() -> [(u64, &'static str, &'static str, Value); 5] {
+/// Setting that a schema has added.
+struct AddedSetting {
+    /// Schema that has added it.
+    since: u64,
+    group: &'static str,
+    setting: &'static str,
+    /// Value that was in effect before.
+    value: Value,
+}
+
+/// Returns the settings that schemas have added.
+fn added_settings() -> [AddedSetting; 5] {
+    let added = |group, setting, value| AddedSetting { since: 2, group, setting, value };
     [
-        (2, "sampling", "slabs", json!("even")),
-        (2, "shading", "sides", json!("two")),
-        (2, "shadows", "reverse_kernel", json!("forward")),
-        (2, "shadows", "near_field", json!("off")),
-        (2, "shadows", "keep_balanced", json!(false)),
+        added("sampling", "slabs", json!("even")),
+        added("shading", "sides", json!("two")),
+        added("shadows", "reverse_kernel", json!("forward")),
+        added("shadows", "near_field", json!("off")),
+        added("shadows", "keep_balanced", json!(false)),
     ]
 }
 
@@ -32,7 +43,8 @@ pub(super) fn fill_in_defaults(record: &mut Value) {
         fill_in_camera(camera);
     }
     fill_in_range(groups);
-    for (_, group, setting, value) in added_settings().into_iter().filter(|(since, ..)| schema < *since) {
+    let missing = added_settings().into_iter().filter(|added| schema < added.since);
+    for AddedSetting { group, setting, value, .. } in missing {
         let group = groups.entry(group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
             group.entry(setting).or_insert(value);
@@ -120,15 +132,15 @@ mod tests {
 
     #[test]
     fn what_was_saved_looks_as_it_did() {
-        let load = |text: &str| load_json(&Settings::default(), text).expect("settings").0;
+        let load = |text: &str| load_json(&Settings::default(), text).expect("settings").settings;
         let old = load(r#"{"schema": 1, "shadows": {"gain": 2.0}}"#);
         assert_eq!(old.shading.sides, LitSides::Two);
         assert_eq!(old.shadows.reverse_kernel, ReverseKernel::Forward);
         assert_eq!(old.shadows.near_field, NearFieldRay::Off);
         let mut kept = Settings::default();
         kept.shadows.keep_balanced = true;
-        assert!(!load_json(&kept, r#"{"schema": 1}"#).expect("settings").0.shadows.keep_balanced);
-        assert!(load_json(&kept, r#"{"schema": 2}"#).expect("settings").0.shadows.keep_balanced);
+        assert!(!load_json(&kept, r#"{"schema": 1}"#).expect("settings").settings.shadows.keep_balanced);
+        assert!(load_json(&kept, r#"{"schema": 2}"#).expect("settings").settings.shadows.keep_balanced);
         assert_eq!((old.shadows.gain, old.schema), (2.0, SCHEMA));
         let scattered = load(r#"{"schema": 1, "sampling": {"engine": "scatter", "gradients": "volume"}}"#);
         assert_eq!(scattered.sampling.gradients, GradientSource::Sheets);
@@ -142,7 +154,7 @@ mod tests {
     fn saved_pictures_are_as_bright_as_they_were() {
         let mut now = Settings::default();
         now.output.exposure = 1.7;
-        let exposure = |text: &str| load_json(&now, text).expect("settings").0.output.exposure;
+        let exposure = |text: &str| load_json(&now, text).expect("settings").settings.output.exposure;
         let mut saved = serde_json::to_value(Settings::default()).expect("settings");
         saved["output"].as_object_mut().expect("an object").remove("exposure");
         assert_eq!(exposure(&saved.to_string()), 1.0);
@@ -158,7 +170,7 @@ mod tests {
         let mut now = Settings::default();
         now.camera.fit = FovReference::Frame;
         assert!(now.save_view_for_digit(1, "front"));
-        let load = |text: &str| load_json(&now, text).expect("settings").0;
+        let load = |text: &str| load_json(&now, text).expect("settings").settings;
         let before = load(
             r#"{"schema": 2, "camera": {"distance": 4.0}, "views": {"2":
                 {"projection": "perspective", "azimuth_deg": 0.0, "elevation_deg": 0.0, "roll_deg": 0.0,
@@ -184,7 +196,7 @@ mod tests {
 
     #[test]
     fn saved_looks_show_all_values_as_they_did() {
-        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.range;
+        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").settings.range;
         assert_eq!(range(r#"{"schema": 2, "transfer": {"points": []}}"#), DensityRange::Full);
         assert_eq!(range(r#"{"schema": 1, "transfer": {}}"#), DensityRange::Full);
         // Records without values, with an explicit range, or without a schema.
@@ -202,7 +214,7 @@ mod tests {
         let table: LabelTable =
             [1, 2, 3].map(|number| (number, LabelLook::default_for(number))).into_iter().collect();
         let first = Settings { labels: table.clone(), ..Settings::default() };
-        let labels = |text: &str| load_json(&first, text).expect("settings").0.labels;
+        let labels = |text: &str| load_json(&first, text).expect("settings").settings.labels;
         for of_values in [
             r#"{"schema": 2, "transfer": {"points": []}}"#,
             r#"{"transfer": {"points": []}}"#,
@@ -217,7 +229,7 @@ mod tests {
         // A session replaces the label table; a preset merges its entries.
         assert_eq!(labels(r#"{"schema": 2, "labels": {"9": {}}, "transfer": {"points": []}}"#).len(), 1);
         assert_eq!(labels(r#"{"labels": {"9": {}}}"#).len(), 4);
-        let kept = load_json(&Settings::default(), &settings_to_json(&first)).expect("settings").0;
+        let kept = load_json(&Settings::default(), &settings_to_json(&first)).expect("settings").settings;
         assert_eq!(kept, first);
         // Setting the curve explicitly discards labels.
         let curve = apply_path(&first, "transfer.interpolation", "extinction").expect("settings");

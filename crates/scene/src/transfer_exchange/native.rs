@@ -10,8 +10,8 @@ use chiaroscuro_volume::{ValueRange, ValueRanges};
 pub(crate) fn from_preset(tree: &mut Value, range: ValueRange) -> Result<TransferFunction, ExchangeError> {
     let overlay = json!({ "transfer": tree["transfer"].take(), "_values": tree["_values"].take() });
     let applied = apply_relative(&Settings::default(), &overlay, &ValueRanges::without_outliers(range));
-    let (settings, _) = applied.map_err(|err| format_error(&err.to_string()))?;
-    Ok(settings.transfer)
+    let applied = applied.map_err(|err| format_error(&err.to_string()))?;
+    Ok(applied.settings.transfer)
 }
 
 /// Writes a preset that holds only the transfer function.

@@ -52,7 +52,7 @@ fn what_is_written_is_read_back() {
             }
             let apart = (before.opacity_at(value) - after.opacity_at(value)).abs();
             assert!(apart < opacity_apart, "{name} at {value}: {apart}");
-            for (a, b) in before.sample(value).0.iter().zip(after.sample(value).0) {
+            for (a, b) in before.sample(value).color.iter().zip(after.sample(value).color) {
                 assert!((a - b).abs() < color_apart, "{name} at {value}: {a} and {b}");
             }
         }
@@ -66,9 +66,9 @@ fn imagej_gets_the_colors() {
     assert_eq!(table.len(), 768);
     let after = read("a.lut", &table).unwrap();
     for point in &after.points {
-        let wanted = before.sample(point.value).0;
+        let wanted = before.sample(point.value).color;
         assert!(
-            after.sample(point.value).0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.01),
+            after.sample(point.value).color.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.01),
             "{point:?}"
         );
     }

@@ -13,7 +13,9 @@ use chiaroscuro_media::{
     Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
     marks_layer, write_picture,
 };
-use chiaroscuro_render::{GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_render::{
+    BandProgress, GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary,
+};
 use chiaroscuro_scene::{
     Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
@@ -178,8 +180,8 @@ pub(crate) fn export_still(
     let mut bands = worker.renderer.bands(dataset, settings, image_spec);
     let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
-        let (done, total) = bands.progress();
-        progress.update(done as u32, total as u32)?;
+        let BandProgress { drawn, total } = bands.progress();
+        progress.update(drawn as u32, total as u32)?;
         let mut rows = bands.next_rows()?;
         if let Some(rows) = &mut rows {
             layer.composite_over(image_spec, first, rows);
@@ -241,7 +243,7 @@ pub(crate) fn export_kept_sheet(
     if let Err(ended) = write() {
         return ended.into_result();
     }
-    let (size, shown) = sheet.finish();
+    let (size, shown) = (sheet.size(), sheet.finish());
     // The record contains the current look with all kept items.
     let record = worker.picture_record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
     export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;

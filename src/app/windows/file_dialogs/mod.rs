@@ -273,7 +273,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.json");
         std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
-        let settings = load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0;
+        let settings =
+            load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings;
         assert_eq!(settings.shadows.gain, 2.0);
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("not UTF-8 text"));

@@ -66,10 +66,9 @@ impl LoadedVolume {
         self.bounces.make_room(&key, MAX_AMBIENT_VOLUMES);
         tools.pool.drop_bind_groups();
         let fresh = ScatteredLightVolume::new(context, self.volume.volume.dims(), divisor, filled)?;
-        let settings = &request.settings;
-        let light = (settings.sky.is_on(), settings.lights.iter().filter(|light| light.on).count());
         let gpu = VolumeContext::new(tools, &self.volume);
-        let build = ScatteredLightFill::new(gpu, (&self.tables.product, options), &key, light, &fresh)?;
+        let (tables, settings) = (&self.tables.product, &request.settings);
+        let build = ScatteredLightFill::new(gpu, tables, options, &key, settings, &fresh)?;
         let slot = self.bounces.insert(key.clone(), fresh, now);
         Ok(ScatteredLightPlace::with_build(key, slot, build))
     }

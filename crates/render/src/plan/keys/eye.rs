@@ -104,7 +104,8 @@ impl EyeKey {
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
-        (sky_volume, bounces): (Option<&SkyKey>, Option<&BouncesKey>),
+        sky_volume: Option<&SkyKey>,
+        bounces: Option<&BouncesKey>,
     ) -> Self {
         let RenderRequest { volume: _, settings, size: _, preview_resolution: _ } = request;
         let Settings {

@@ -67,7 +67,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.for_light_color(color)));
     let is_one_sided = settings.shading.sides == LitSides::One;
     // True if opacity falls towards high densities; never for solid labels, in which it rises.
-    let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).0) < 0.0;
+    let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).value) < 0.0;
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shadowing_part().region(scene);

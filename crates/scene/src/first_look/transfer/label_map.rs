@@ -88,7 +88,7 @@ pub(crate) fn count_lost_labels(settings: &Settings, volume: &Volume) -> usize {
             volume.shown_labels().map_or(*number as f64, |labels| labels.class_range().value_at(density));
         let [red, green, blue, depth] = table.sample(density);
         let opacity = 1.0 - (-depth * thickness(*number)).exp();
-        let [found, own] = [[red, green, blue], function.sample(place).0].map(oklab_from_linear);
+        let [found, own] = [[red, green, blue], function.sample(place).color].map(oklab_from_linear);
         let apart = found.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         opacity < MIN_VISIBLE_OPACITY || apart > SAME_COLOR_DISTANCE
     };

@@ -45,7 +45,7 @@ fn signed_fields_show_both_sides_and_not_zero() {
     for value in [2.5, -2.5, 3.0, -3.0] {
         assert!(function.opacity_at(value) > 0.5, "{value}");
         // Red above zero, blue below.
-        let [red, _, blue] = function.sample(value).0;
+        let [red, _, blue] = function.sample(value).color;
         assert_eq!(red > blue, value > 0.0, "{value}");
     }
     for value in [0.5, 1.0, 2.0, 2.9] {
@@ -148,9 +148,13 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     for (index, &number) in numbers.iter().enumerate() {
         assert_eq!(function.opacity_at(number), function.opacity_at(numbers[0]));
         assert!(function.opacity_at(number) > 0.8);
-        assert!(numbers[..index].iter().all(|&other| function.sample(other).0 != function.sample(number).0));
+        assert!(
+            numbers[..index]
+                .iter()
+                .all(|&other| function.sample(other).color != function.sample(number).color)
+        );
     }
-    let [red, ..] = function.sample(38.0).0;
+    let [red, ..] = function.sample(38.0).color;
     assert!((red - crate::linear_from_srgb(f64::from(0.1f32))).abs() < 1e-9, "the file's own colour");
     let settings = Settings { transfer: function, ..Settings::default() };
     assert_eq!(count_lost_labels(&settings, &labels), 0);

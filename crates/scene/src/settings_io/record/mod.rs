@@ -16,7 +16,7 @@ use super::path_encoding::{decode_path, encode_path};
 use super::renames::rename_old_names;
 use super::schema_defaults::fill_in_defaults;
 use super::unknown_content;
-use crate::{ImageSpec, PresetError, SCHEMA, Settings, VolumeLocation, apply_relative};
+use crate::{AppliedSettings, ImageSpec, PresetError, SCHEMA, Settings, VolumeLocation, apply_relative};
 use chiaroscuro_files::{MAX_LOOK_BYTES, with_provenance_mark};
 use chiaroscuro_volume::{Corrections, ValueRanges, VolumeChoice};
 
@@ -182,7 +182,7 @@ impl LookRecord {
     #[cfg(test)]
     fn is_fully_understood(&self) -> bool {
         let applied = self.apply(&Settings::default(), &ValueRanges::UNIT);
-        applied.is_ok_and(|(_, warnings)| warnings.is_empty())
+        applied.is_ok_and(|applied| applied.warnings.is_empty())
     }
 
     /// Returns true if content beyond a look's limits was cut, which is lost when the record is saved again.
@@ -197,7 +197,7 @@ impl LookRecord {
 
     /// Returns the unknown settings and the remarks of other programs; null if there are none.
     pub fn unknown_content(&self) -> Value {
-        let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|(settings, _)| settings);
+        let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|applied| applied.settings);
         let Ok(tree) = understood.map(|settings| serde_json::to_value(settings).unwrap_or_default()) else {
             return Value::Null;
         };
@@ -239,13 +239,9 @@ impl LookRecord {
     ///
     /// # Errors
     /// As [`apply_relative`].
-    pub fn apply(
-        &self,
-        over: &Settings,
-        ranges: &ValueRanges,
-    ) -> Result<(Settings, Vec<String>), PresetError> {
-        let (settings, warnings) = apply_relative(over, &self.overlay, ranges)?;
-        Ok((settings, [self.cuts.clone(), warnings].concat()))
+    pub fn apply(&self, over: &Settings, ranges: &ValueRanges) -> Result<AppliedSettings, PresetError> {
+        let applied = apply_relative(over, &self.overlay, ranges)?;
+        Ok(AppliedSettings { warnings: [self.cuts.clone(), applied.warnings].concat(), ..applied })
     }
 }
 
