@@ -23,7 +23,7 @@ mod values;
 mod volume;
 
 pub use bricks::BrickBounds;
-pub use cancellation::{CancelToken, PIECE_VALUES};
+pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::{Dataset, DatasetField};
 pub use histogram::{HISTOGRAM_BINS, Histogram};

@@ -1,8 +1,6 @@
 //! Automatic changes of the look: lights placed at the end of a first look, and the balance, measured on request or
 //! kept. Their workers run on threads; the document decides which changes are due.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use eframe::egui;
@@ -12,6 +10,7 @@ use crate::app::document::light_placement::{LightPlacementAction, LightPlacement
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::{App, text};
 use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight};
+use chiaroscuro_volume::CancelOnDrop;
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
 const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
@@ -24,13 +23,7 @@ fn is_user_active(ctx: &egui::Context) -> bool {
 /// Running light search. Dropping this value cancels the search at its next step and discards the result.
 pub(crate) struct LightSearchTask {
     work: BackgroundTask<Result<Option<LightSearchResult>, GpuError>>,
-    is_cancelled: Arc<AtomicBool>,
-}
-
-impl Drop for LightSearchTask {
-    fn drop(&mut self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
-    }
+    _cancel: CancelOnDrop,
 }
 
 /// Tasks whose results change the look.
@@ -81,12 +74,12 @@ impl App {
     fn start_light_search(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return self.document.first_lights.stop() };
         let (shaders, settings) = (self.loader.shaders().clone(), self.document.settings.clone());
-        let is_unwanted = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&is_unwanted);
+        let cancel_on_drop = CancelOnDrop::default();
+        let cancel = cancel_on_drop.token().clone();
         let task = move || -> Result<Option<LightSearchResult>, GpuError> {
             let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
             while search.step()? {
-                if asked.load(Ordering::Relaxed) {
+                if cancel.is_cancelled() {
                     return Ok(None);
                 }
                 // Lets pictures that were requested meanwhile go first.
@@ -96,7 +89,7 @@ impl App {
         };
         match BackgroundTask::start("light-search", ctx, task) {
             Ok(work) => {
-                self.look_tasks.light_search = Some(LightSearchTask { work, is_cancelled: is_unwanted });
+                self.look_tasks.light_search = Some(LightSearchTask { work, _cancel: cancel_on_drop });
             }
             Err(err) => {
                 log::warn!("the search for a light position could not start: {err}");

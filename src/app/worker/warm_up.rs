@@ -1,16 +1,15 @@
 //! Warm-up: compiling shader pipelines in the background, before they are needed.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
 use chiaroscuro_render::{GpuError, ShaderLibrary};
+use chiaroscuro_volume::CancelToken;
 
 /// Threads that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a
 /// thread executes in it.
 #[derive(Debug, Default)]
 pub(super) struct PipelineWarmUp {
-    stop: Arc<AtomicBool>,
+    cancel: CancelToken,
     threads: Vec<JoinHandle<()>>,
 }
 
@@ -24,12 +23,12 @@ impl PipelineWarmUp {
     pub(super) fn start(
         &mut self,
         shaders: &ShaderLibrary,
-        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
+        what: fn(&ShaderLibrary, &CancelToken) -> Result<(), GpuError>,
     ) -> std::io::Result<()> {
-        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
+        let (shaders, cancel) = (shaders.clone(), self.cancel.clone());
         let thread = std::thread::Builder::new().name("warm-up".to_owned());
         self.threads.push(thread.spawn(move || {
-            if let Err(err) = what(&shaders, &stop) {
+            if let Err(err) = what(&shaders, &cancel) {
                 log::error!("pipelines could not be created ahead of time: {err}");
             }
             if let Err(err) = shaders.save_cache() {
@@ -42,7 +41,7 @@ impl PipelineWarmUp {
 
 impl Drop for PipelineWarmUp {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.cancel.cancel();
         for thread in self.threads.drain(..) {
             // A panic was logged by its thread.
             drop(thread.join());

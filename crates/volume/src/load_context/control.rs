@@ -1,12 +1,11 @@
 //! Progress and cancellation of a load, shared between threads.
 
 use std::fmt;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::error::LoadError;
 use super::memory_estimate::VolumeSize;
-use crate::cancellation::{CancelSignal, CancelToken};
+use crate::cancellation::CancelToken;
 
 /// Progress counter and cancel token of a load, shared by the loading thread and the waiting one.
 ///
@@ -14,7 +13,7 @@ use crate::cancellation::{CancelSignal, CancelToken};
 /// the voxels. Counts are bytes of voxels after decompression.
 #[derive(Debug, Default)]
 pub struct LoadControl {
-    signal: Arc<CancelSignal>,
+    token: CancelToken,
     /// Bytes of voxels read until now.
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
@@ -41,6 +40,11 @@ impl LoadControl {
         Self::default()
     }
 
+    /// Creates a control of work that is cancelled by the token.
+    pub fn with_token(token: CancelToken) -> Self {
+        Self { token, ..Self::default() }
+    }
+
     /// Creates a control that asks `accepts` once the size of a volume is known, before its voxels take any memory.
     /// Loading fails with [`LoadError::Cancelled`] if it returns false. It is not asked if the user has already
     /// chosen a portion.
@@ -52,14 +56,19 @@ impl LoadControl {
         self.size_check.0.as_ref().is_none_or(|accepts| accepts(size))
     }
 
+    /// Returns the token by which the load is cancelled.
+    pub fn token(&self) -> &CancelToken {
+        &self.token
+    }
+
     /// Requests the load to stop; it then fails with [`LoadError::Cancelled`].
     pub fn cancel(&self) {
-        self.signal.is_cancelled.store(true, Ordering::Relaxed);
+        self.token.cancel();
     }
 
     /// Returns true if cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
-        self.signal.is_cancelled.load(Ordering::Relaxed)
+        self.token.is_cancelled()
     }
 
     /// Returns the completed share, 0 … 1, once the total size is known.
@@ -89,23 +98,23 @@ impl LoadControl {
     /// # Errors
     /// [`LoadError::Cancelled`] if cancellation was requested.
     pub fn check(&self) -> Result<(), LoadError> {
-        if self.signal.should_stop() { Err(LoadError::Cancelled) } else { Ok(()) }
+        if self.token.should_stop() { Err(LoadError::Cancelled) } else { Ok(()) }
     }
 
     /// Runs work that stops early when this control is cancelled; its result must be discarded in that case.
     pub fn run<T>(&self, work: impl FnOnce() -> T) -> T {
-        CancelToken::new(&self.signal).run(work)
+        self.token.run(work)
     }
 
     /// Number of pieces of work that were begun, such as blocks read or slices counted. No piece takes longer than
     /// one slice.
     pub fn pieces_begun(&self) -> u64 {
-        self.signal.begun.load(Ordering::Relaxed)
+        self.token.pieces_begun()
     }
 
     /// Cancels the load automatically after the given number of pieces.
     #[cfg(any(test, feature = "testing"))]
     pub fn cancel_after(&self, pieces: u64) {
-        self.signal.cancel_after_pieces.store(pieces.max(1), Ordering::Relaxed);
+        self.token.cancel_after(pieces);
     }
 }

@@ -3,8 +3,6 @@
 
 mod candidates;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
@@ -17,6 +15,7 @@ use crate::app::common::theme;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
 use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::CancelOnDrop;
 
 pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
 
@@ -86,23 +85,17 @@ struct SheetTask {
     sheet: ContactSheetKind,
     /// Look and selected light that the candidates are derived from.
     base: (Settings, usize),
-    is_cancelled: Arc<AtomicBool>,
+    cancel: CancelOnDrop,
 }
 
 impl SheetTask {
     /// Requests the task to end at its next picture; its further results are discarded.
     fn cancel(&self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
+        self.cancel.token().cancel();
     }
 
     fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
-    }
-}
-
-impl Drop for SheetTask {
-    fn drop(&mut self) {
-        self.cancel();
+        self.cancel.token().is_cancelled()
     }
 }
 
@@ -174,8 +167,8 @@ impl ContactSheetWindow {
             return Ok(());
         }
         self.is_due = false;
-        let is_unwanted = Arc::new(AtomicBool::new(false));
-        let cancel_flag = Arc::clone(&is_unwanted);
+        let cancel_on_drop = CancelOnDrop::default();
+        let cancel = cancel_on_drop.token().clone();
         let (sender, tried) = mpsc::channel();
         let wake = ctx.clone();
         let task = move || {
@@ -184,7 +177,7 @@ impl ContactSheetWindow {
                 drop(sender.send((count, of)));
                 wake.request_repaint();
             };
-            sheet.render_candidates(&subject, &cancel_flag, &hand_on)
+            sheet.render_candidates(&subject, &cancel, &hand_on)
         };
         let work =
             BackgroundTask::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
@@ -195,7 +188,7 @@ impl ContactSheetWindow {
             count: 0,
             sheet,
             base: of,
-            is_cancelled: is_unwanted,
+            cancel: cancel_on_drop,
         });
         Ok(())
     }
@@ -206,7 +199,7 @@ impl ContactSheetWindow {
         // Queried before the channel is drained: nothing is sent after the end of the task.
         let result = trying.work.take_result();
         for (count, (look, picture)) in trying.results.try_iter() {
-            if trying.is_cancelled.load(Ordering::Relaxed) {
+            if trying.is_cancelled() {
                 continue;
             }
             if std::mem::take(&mut trying.shows_previous) {
@@ -299,11 +292,11 @@ fn upload_candidate(ctx: &egui::Context, look: LookCandidate, picture: ColorImag
 mod tests {
     use super::*;
     use chiaroscuro_render::GpuContext;
-    use chiaroscuro_volume::{Dataset, synthetic::builtin};
+    use chiaroscuro_volume::{CancelToken, Dataset, synthetic::builtin};
 
-    /// Cancel flag of the running thread, if there is one.
-    fn cancel_flag(sheet: &ContactSheetWindow) -> Option<Arc<AtomicBool>> {
-        sheet.task.as_ref().map(|trying| Arc::clone(&trying.is_cancelled))
+    /// Cancel token of the running thread, if there is one.
+    fn cancel_token(sheet: &ContactSheetWindow) -> Option<CancelToken> {
+        sheet.task.as_ref().map(|trying| trying.cancel.token().clone())
     }
 
     #[test]
@@ -339,28 +332,28 @@ mod tests {
         let ask = |sheet: &mut ContactSheetWindow, subject: Option<&ExportScene>| {
             sheet.open(ContactSheetKind::Lights);
             sheet.start(subject.cloned(), &ctx).expect("a thread");
-            cancel_flag(sheet)
+            cancel_token(sheet)
         };
         assert!(ask(&mut sheet, None).is_none() && !sheet.needs_start(), "nothing to try on");
         let first = ask(&mut sheet, Some(&subject)).expect("a thread");
         for _ in 0..5 {
             let again = ask(&mut sheet, Some(&subject)).expect("a thread");
-            assert!(Arc::ptr_eq(&first, &again) && !sheet.needs_start(), "it is on its way");
+            assert!(!again.is_cancelled() && !sheet.needs_start(), "it is on its way");
         }
-        assert!(!first.load(Ordering::Relaxed));
+        assert!(!first.is_cancelled());
         // For another subject the first task ends before the second starts.
         let other = ExportScene { selected_light: 1, ..subject };
         let still = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.needs_start());
+        assert!(still.is_cancelled() && first.is_cancelled() && sheet.needs_start());
         while sheet.task.is_some() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
         assert!(sheet.prints.is_empty(), "of what nobody wants");
         let second = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(!second.load(Ordering::Relaxed) && !sheet.needs_start());
+        assert!(!second.is_cancelled() && !sheet.needs_start());
         sheet.discard();
-        assert!(second.load(Ordering::Relaxed) && !sheet.open);
+        assert!(second.is_cancelled() && !sheet.open);
         while sheet.task.is_some() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));

@@ -138,7 +138,7 @@ impl ExportWindow {
 
     /// Progress of an export in progress, if its window is closed.
     pub(crate) fn background_progress(&self) -> Option<ExportProgress> {
-        let SharedExportProgress { done, total, cancelled: _ } = &*self.progress;
+        let SharedExportProgress { done, total, cancel: _ } = &*self.progress;
         (self.is_busy() && !self.open).then(|| ExportProgress {
             done: done.load(Ordering::Relaxed),
             total: total.load(Ordering::Relaxed),
@@ -160,7 +160,7 @@ impl ExportWindow {
 
     /// Cancels the export in progress.
     pub(crate) fn cancel(&self) {
-        self.progress.cancelled.store(true, Ordering::Relaxed);
+        self.progress.cancel.cancel();
     }
 
     /// Cancels the export because the window closes, and waits for its end, so that no temporary file remains.

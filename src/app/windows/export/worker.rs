@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use eframe::egui;
 
@@ -18,7 +18,7 @@ use chiaroscuro_scene::{
     Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
 };
-use chiaroscuro_volume::{Dataset, Volume};
+use chiaroscuro_volume::{CancelToken, Dataset, Volume};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
@@ -61,8 +61,8 @@ pub(crate) struct SharedExportProgress {
     pub done: AtomicU32,
     /// Number of pictures or parts in total; 0 while unknown.
     pub total: AtomicU32,
-    /// True once the user has cancelled.
-    pub cancelled: AtomicBool,
+    /// Token that the user cancels.
+    pub cancel: CancelToken,
 }
 
 /// Reason for which an export ended early.
@@ -98,7 +98,7 @@ impl SharedExportProgress {
     fn update(&self, done: u32, total: u32) -> Result<(), ExportEnd> {
         self.done.store(done, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
-        if self.cancelled.load(Ordering::Relaxed) { Err(ExportEnd::Cancelled) } else { Ok(()) }
+        if self.cancel.is_cancelled() { Err(ExportEnd::Cancelled) } else { Ok(()) }
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
@@ -10,6 +9,7 @@ use eframe::egui;
 use crate::app::text;
 use crate::app::text::raw::RawLengthText;
 use crate::app::worker::background_task::BackgroundTask;
+use chiaroscuro_volume::CancelOnDrop;
 use chiaroscuro_volume_io::raw::{LayoutProposal, RawBytes, RawNameHints, propose_layouts};
 
 /// Bytes of the file, shared by tasks that read in turn; the first one opens it.
@@ -29,16 +29,6 @@ impl SharedBytes {
             None => RawBytes::open(&self.path)?,
         };
         task(guard.insert(bytes))
-    }
-}
-
-/// Cancel flag that is set when this is dropped.
-#[derive(Debug, Default)]
-pub(super) struct CancelOnDrop(pub(super) Arc<AtomicBool>);
-
-impl Drop for CancelOnDrop {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
     }
 }
 
@@ -64,11 +54,11 @@ impl RawAnalysis {
         let bytes = SharedBytes { path: path.to_owned(), bytes: Arc::default() };
         let stopper = CancelOnDrop::default();
         let task = {
-            let (bytes, stop) = (bytes.clone(), Arc::clone(&stopper.0));
+            let (bytes, cancel) = (bytes.clone(), stopper.token().clone());
             move || {
                 bytes.with_bytes(|bytes| {
                     let length = RawLengthText { bytes: bytes.length(), is_exact: bytes.is_exact() };
-                    Ok(RawAnalysisResult { length, proposals: propose_layouts(bytes, file_hints, &stop)? })
+                    Ok(RawAnalysisResult { length, proposals: propose_layouts(bytes, file_hints, &cancel)? })
                 })
             }
         };

@@ -2,16 +2,16 @@
 //! change.
 
 use std::io;
-use std::sync::Arc;
 
 use eframe::egui::{
     self, Color32, ColorImage, Rect, Role, Sense, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
     vec2,
 };
 
-use super::analysis::{CancelOnDrop, RawAnalysis};
+use super::analysis::RawAnalysis;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
+use chiaroscuro_volume::CancelOnDrop;
 use chiaroscuro_volume_io::{
     RawLayout,
     raw::{MiddleSlices, PreviewSlice, read_middle_slices},
@@ -137,8 +137,8 @@ impl RawPreview {
         }
         let stopper = CancelOnDrop::default();
         let task = {
-            let (bytes, layout, stop) = (looking.bytes().clone(), *layout, Arc::clone(&stopper.0));
-            move || bytes.with_bytes(|bytes| read_middle_slices(bytes, &layout, &stop))
+            let (bytes, layout, cancel) = (looking.bytes().clone(), *layout, stopper.token().clone());
+            move || bytes.with_bytes(|bytes| read_middle_slices(bytes, &layout, &cancel))
         };
         match BackgroundTask::start("raw-slices", ctx, task) {
             Ok(work) => self.task = Some(RawSliceTask { layout: *layout, work, _stopper: stopper }),
