@@ -52,7 +52,7 @@ use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
 use self::viewport::{Viewport, paint_callback};
 use self::windows::file_dialogs;
-use self::worker::background_task;
+use self::worker::jobs::Jobs;
 use self::worker::loader::Loader;
 use chiaroscuro_scene::Settings;
 
@@ -81,6 +81,8 @@ pub struct App {
     /// Cancelling of drags by Escape.
     drag_cancel: DragCancel,
     loader: Loader,
+    /// Running background tasks of this window, and of those that it has replaced.
+    jobs: Jobs,
     /// State that outlives a run.
     memory: PersistentState,
     /// Graphics device that draws the window.
@@ -88,18 +90,14 @@ pub struct App {
     status_file: StatusFile,
 }
 
-/// Longest wait of a closing window for tasks that still use the graphics driver.
-const TASK_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
+/// Longest wait of a closing window for jobs that still use the graphics driver.
+const JOB_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
-        // The results of these tasks are no longer needed.
-        self.look_tasks.light_search = None;
-        self.windows.contact_sheet.discard();
-        self.panels.kept_strip.reset();
-        // If another window replaces this one, that window waits for the tasks when it closes.
+        // If another window replaces this one, that window waits for the jobs when it closes.
         if !self.device.is_lost {
-            background_task::wait_for_all_tasks(TASK_SHUTDOWN_TIMEOUT);
+            self.jobs.cancel_and_wait(JOB_SHUTDOWN_TIMEOUT);
         }
     }
 }
@@ -276,7 +274,7 @@ impl eframe::App for App {
         self.status_file.longest_ui_ms = self.status_file.longest_ui_ms.max(ui_ms);
         let idle = self.is_idle();
         if idle {
-            self.loader.warm_up_rest();
+            self.loader.warm_up_rest(&ctx);
         }
         let state = status_file::WindowStatus {
             response: self.viewport.response_times(),

@@ -120,7 +120,7 @@ impl App {
                     selected_light: &mut self.document.selected_light,
                     compare: &mut self.picture.compare,
                     facts,
-                    is_balancing: self.look_tasks.balance.is_some(),
+                    is_balancing: self.look_tasks.balance.is_running(),
                     commands,
                 },
             );
@@ -145,8 +145,8 @@ impl App {
         [
             (self.document.is_correcting(self.viewport.dataset().as_ref()), text::status::CORRECTING),
             (self.document.is_making_look(), text::status::PREPARING_LOOK),
-            (self.look_tasks.light_search.is_some(), text::status::PLACING_LIGHTS),
-            (self.look_tasks.balance.is_some(), text::status::BALANCING),
+            (self.look_tasks.light_search.is_running(), text::status::PLACING_LIGHTS),
+            (self.look_tasks.balance.is_running(), text::status::BALANCING),
         ]
         .into_iter()
         .find_map(|(is_made, words)| is_made.then_some(words))

@@ -7,10 +7,9 @@ use eframe::egui;
 
 use crate::app::document::auto_balance::{BalanceAction, BalanceFrame};
 use crate::app::document::light_placement::{LightPlacementAction, LightPlacementFrame};
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use crate::app::{App, text};
 use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight};
-use chiaroscuro_volume::CancelOnDrop;
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
 const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
@@ -20,35 +19,26 @@ fn is_user_active(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) || ctx.text_edit_focused()
 }
 
-/// Running light search. Dropping this value cancels the search at its next step and discards the result.
-pub(crate) struct LightSearchTask {
-    work: BackgroundTask<Result<Option<LightSearchResult>, GpuError>>,
-    _cancel: CancelOnDrop,
-}
-
 /// Tasks whose results change the look.
 #[derive(Default)]
 pub(crate) struct LookTasks {
     /// Measurement of the balance that the user has asked for.
-    pub balance: Option<BackgroundTask<Result<f64, GpuError>>>,
+    pub balance: JobSlot<Result<f64, GpuError>>,
     /// Search for the lights of the first look.
-    pub light_search: Option<LightSearchTask>,
+    pub light_search: JobSlot<Result<Option<LightSearchResult>, GpuError>>,
 }
 
 impl App {
     /// Finishes the first look of the volume with the lights found, unless the user has edited it.
     pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
-        if let Some(result) =
-            self.look_tasks.light_search.as_ref().and_then(|seeking| seeking.work.take_result())
-        {
-            self.look_tasks.light_search = None;
+        if let Some(result) = self.look_tasks.light_search.take_result() {
             self.document.first_lights.set_result(result.unwrap_or_else(|panic| {
                 log::error!("the search for a light position failed: {panic}");
                 Ok(None)
             }));
         }
         if !self.document.first_lights.is_due() {
-            self.look_tasks.light_search = None;
+            self.look_tasks.light_search.discard();
         }
         let now_s = ctx.input(|input| input.time);
         let is_complete = self.is_complete();
@@ -74,12 +64,10 @@ impl App {
     fn start_light_search(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return self.document.first_lights.stop() };
         let (shaders, settings) = (self.loader.shaders().clone(), self.document.settings.clone());
-        let cancel_on_drop = CancelOnDrop::default();
-        let cancel = cancel_on_drop.token().clone();
-        let task = move || -> Result<Option<LightSearchResult>, GpuError> {
+        let task = move |job: &JobControl| -> Result<Option<LightSearchResult>, GpuError> {
             let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
             while search.step()? {
-                if cancel.is_cancelled() {
+                if job.token().is_cancelled() {
                     return Ok(None);
                 }
                 // Lets pictures that were requested meanwhile go first.
@@ -87,30 +75,24 @@ impl App {
             }
             Ok(search.finish())
         };
-        match BackgroundTask::start("light-search", ctx, task) {
-            Ok(work) => {
-                self.look_tasks.light_search = Some(LightSearchTask { work, _cancel: cancel_on_drop });
-            }
-            Err(err) => {
-                log::warn!("the search for a light position could not start: {err}");
-                self.document.first_lights.stop();
-            }
+        if let Err(err) = self.look_tasks.light_search.start(JobKind::LightSearch, ctx, (), task) {
+            log::warn!("the search for a light position could not start: {err}");
+            self.document.first_lights.stop();
         }
     }
 
     /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
     pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
-        let Some(dataset) = self.viewport.dataset().filter(|_| self.look_tasks.balance.is_none()) else {
+        let Some(dataset) = self.viewport.dataset().filter(|_| !self.look_tasks.balance.is_running()) else {
             return;
         };
         let (context, settings) = (self.viewport.context().clone(), self.document.settings.clone());
-        let task = move || {
+        let task = move |_: &JobControl| {
             let mut renderer = Renderer::new(&context.second_device()?)?;
             chiaroscuro_render::measure_balance(&mut renderer, &dataset, &settings)
         };
-        match BackgroundTask::start("balance", ctx, task) {
-            Ok(work) => self.look_tasks.balance = Some(work),
-            Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
+        if let Err(err) = self.look_tasks.balance.start(JobKind::Balance, ctx, (), task) {
+            self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string());
         }
     }
 
@@ -118,7 +100,7 @@ impl App {
     pub(crate) fn update_balance(&mut self, ctx: &egui::Context) {
         let now_s = ctx.input(|input| input.time);
         let (held, busy, has_its_volume) =
-            (is_user_active(ctx), self.look_tasks.balance.is_some(), self.is_volume_ready());
+            (is_user_active(ctx), self.look_tasks.balance.is_running(), self.is_volume_ready());
         let is_due = self.document.keep_balanced.is_due(&self.document.settings);
         self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
         let act = self.document.keep_balanced.next_action(BalanceFrame {
@@ -142,15 +124,13 @@ impl App {
 
     /// Takes the results of the measurements of balance.
     pub(super) fn take_balances(&mut self, ctx: &egui::Context) {
-        if let Some(result) = self.look_tasks.balance.as_ref().and_then(BackgroundTask::take_result) {
-            self.look_tasks.balance = None;
-            match result {
-                Ok(Ok(balance)) => {
+        if let Some(result) = self.look_tasks.balance.take_result() {
+            match result.and_then(|balance| balance.map_err(|err| err.to_string())) {
+                Ok(balance) => {
                     self.document.settings.shadows.balance = balance;
                     self.document.settings.sanitise();
                 }
-                Ok(Err(err)) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err.to_string()),
-                Err(panic) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, panic),
+                Err(err) => self.messages.error(text::messages::BALANCE_NOT_MEASURED, err),
             }
         }
         if let Some(found) = self.viewport.take_balance() {

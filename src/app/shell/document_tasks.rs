@@ -3,6 +3,7 @@
 
 use eframe::egui;
 
+use super::automatic_changes::LookTasks;
 use crate::app::common::commands::AppCommand;
 use crate::app::{App, text};
 
@@ -44,7 +45,7 @@ impl App {
     pub(super) fn finish_kind_task(&mut self, ctx: &egui::Context) {
         let is_new = self.document.finish_kind_task(self.viewport.dataset(), ctx);
         if self.messages.report(text::messages::LOOK_NOT_MADE, is_new) {
-            self.look_tasks.light_search = None;
+            self.look_tasks.light_search.discard();
         }
     }
 
@@ -54,7 +55,7 @@ impl App {
         let corrected = self.document.take_corrected(self.viewport.dataset().as_ref(), now_s);
         if let Some(dataset) = self.messages.report(text::corrections::CORRECTION_FAILED, corrected) {
             // Results in progress belong to the volume before.
-            (self.look_tasks.light_search, self.look_tasks.balance) = (None, None);
+            self.look_tasks = LookTasks::default();
             self.windows.contact_sheet.discard();
             self.viewport.set_dataset(dataset);
             ctx.request_repaint();

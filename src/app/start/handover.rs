@@ -14,6 +14,7 @@ use crate::app::shell::opening::OpenRequests;
 use crate::app::viewport::compare::Compare;
 use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
+use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
 use chiaroscuro_scene::QualityPreset;
@@ -37,6 +38,8 @@ pub(crate) struct WindowHandover {
     probe_on: bool,
     /// Running export, which goes on: it has a device of its own.
     export: ExportWindow,
+    /// Running jobs, for which the last window waits.
+    jobs: Jobs,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
     /// True if the user has chosen the software adapter (CPU).
@@ -75,6 +78,7 @@ impl App {
             compare: self.picture.compare.clone(),
             probe_on: self.picture.light_probe.is_active,
             export: std::mem::take(&mut self.windows.export),
+            jobs: self.jobs.clone(),
             load: self.loader.options().clone(),
             storage: self.device.storage.clone(),
             on_cpu: self.device.wants_cpu,
@@ -90,6 +94,7 @@ impl App {
         legacy: HandoverSlot,
         asks: bool,
     ) -> Result<Self, AppError> {
+        carried.jobs.hand_to(&cc.egui_ctx);
         let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
         app.document = carried.document.restarted();
         app.opening.requests = carried.requests;

@@ -23,6 +23,7 @@ use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
 use crate::app::viewport::Viewport;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::windows::recovery::RecoveryDialog;
+use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
 use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
@@ -120,7 +121,8 @@ impl App {
             picture: PictureTools::default(),
             windows: ToolWindows::default(),
             dialogs: AppDialogs::default(),
-            loader: Loader::new(context, load, storage.as_deref())?,
+            loader: Loader::new(context, load, storage.as_deref(), &cc.egui_ctx)?,
+            jobs: Jobs::from_context(&cc.egui_ctx),
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),
             memory,
             layout,

@@ -7,7 +7,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
 use crate::app::common::dock::ToolWindow;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_files::write_atomically;
 use chiaroscuro_media::ExportError;
 use chiaroscuro_render::{
@@ -44,7 +44,7 @@ pub(crate) struct LightSliceWindow {
     axis: usize,
     /// Index of the slice along each axis; the middle until the user moves it.
     slice_indices: [Option<usize>; 3],
-    work: Option<BackgroundTask<Result<Option<FilledLightVolume>, GpuError>>>,
+    work: JobSlot<Result<Option<FilledLightVolume>, GpuError>>,
     filled: Option<(LightKey, Arc<AttenuationData>)>,
     /// Key of the light volume under the current settings.
     wanted_key: Option<LightKey>,
@@ -93,7 +93,7 @@ impl LightSliceWindow {
                 for (index, light) in casting {
                     ui.selectable_value(&mut self.light, index, &light.name);
                 }
-                if self.work.is_some() {
+                if self.work.is_running() {
                     ui.spinner();
                 }
             });
@@ -104,7 +104,7 @@ impl LightSliceWindow {
             });
             let Some((key, attenuation)) = self.filled.clone() else {
                 // While a volume is being filled, the window does not claim that there is none.
-                let is_filling = self.work.is_some() || !scene.is_idle;
+                let is_filling = self.work.is_running() || !scene.is_idle;
                 ui.weak(if is_filling {
                     text::light_volume::FILLING
                 } else {
@@ -154,17 +154,11 @@ impl LightSliceWindow {
 
     /// Takes the result of the worker, and starts it again if another light volume is to be shown.
     fn collect(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<(), String> {
-        if let Some(result) = self.work.as_ref().and_then(BackgroundTask::take_result) {
-            self.work = None;
-            match result {
-                Ok(Ok(Some((key, attenuation)))) => {
-                    self.filled = Some((key, Arc::new(attenuation)));
-                    self.failed_key = None;
-                }
-                Ok(Ok(None)) => self.filled = None,
-                Ok(Err(err)) => return Err(err.to_string()),
-                Err(panic) => return Err(panic),
-            }
+        if let Some(result) = self.work.take_result() {
+            self.filled = result?.map_err(|err| err.to_string())?.map(|(key, attenuation)| {
+                self.failed_key = None;
+                (key, Arc::new(attenuation))
+            });
         }
         self.wanted_key = None;
         let Some(dataset) = &scene.dataset else { return Ok(()) };
@@ -186,13 +180,13 @@ impl LightSliceWindow {
             return Ok(());
         };
         let known = self.filled.as_ref().is_some_and(|(filled, _)| *filled == key);
-        if known || self.work.is_some() || !scene.is_idle || self.failed_key.as_ref() == Some(&key) {
+        if known || self.work.is_running() || !scene.is_idle || self.failed_key.as_ref() == Some(&key) {
             return Ok(());
         }
         self.failed_key = Some(key.clone());
         let (context, dataset) = (scene.context.clone(), dataset.clone());
         let light = self.light;
-        let task = move || {
+        let task = move |_: &JobControl| {
             let mut renderer = Renderer::new(&context.second_device()?)?;
             // With combined storage there would be no volume for this light.
             request.settings.shadows.storage = LightStorage::PerLight;
@@ -201,8 +195,7 @@ impl LightSliceWindow {
             renderer.draw(&dataset, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
         };
-        self.work = Some(BackgroundTask::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
-        Ok(())
+        self.work.start(JobKind::LightSlice, ctx, (), task).map_err(|err| err.to_string())
     }
 
     fn picture(

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 
 use crate::app::common::overlay_windows;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobHandle, JobKind};
 use crate::app::{App, text};
 
 /// Purpose for which a file is read; at most one file per purpose at a time.
@@ -49,7 +49,7 @@ type ContentHandler<T> = Box<dyn FnOnce(&mut App, Result<T, FileReadFailure>, &e
 
 /// File that is being read on a thread, with its continuation.
 struct FileTask<T> {
-    work: BackgroundTask<Result<T, String>>,
+    work: JobHandle<Result<T, String>>,
     handler: ContentHandler<T>,
 }
 
@@ -113,12 +113,12 @@ impl FileTasks {
     ) -> Result<(), (io::Error, ContentHandler<T>)> {
         self.drop_purpose(reason);
         let file = path.to_owned();
-        let task = move || {
+        let task = move |_: &JobControl| {
             #[cfg(feature = "testing")]
             drop(test_lock::wait());
             read(&file)
         };
-        match BackgroundTask::start("file", ctx, task) {
+        match JobHandle::start(JobKind::ReadFile, ctx, task) {
             Ok(work) => {
                 let task = Box::new(FileTask { work, handler: then });
                 self.running.push(RunningFileTask { reason, path: path.to_owned(), task });

@@ -1,13 +1,12 @@
 //! Dropped files and folders, and the next and previous file of a folder.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use eframe::egui;
 
 use super::plan::PendingLook;
 use crate::app::windows::file_dialogs;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind};
 use crate::app::worker::loader::ReadChoices;
 use crate::app::{App, text};
 use chiaroscuro_volume::LoadControl;
@@ -15,20 +14,6 @@ use chiaroscuro_volume_io::neighbour_volume;
 
 /// File extensions of possible slices of one volume; DICOM files often have none.
 const SLICE_EXTENSIONS: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
-
-/// Running search for the next or previous file.
-#[derive(Debug)]
-pub(crate) struct NeighbourSearch {
-    control: Arc<LoadControl>,
-    work: BackgroundTask<Option<PathBuf>>,
-    is_forward: bool,
-}
-
-impl Drop for NeighbourSearch {
-    fn drop(&mut self) {
-        self.control.cancel();
-    }
-}
 
 impl App {
     /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
@@ -64,23 +49,19 @@ impl App {
         let Some(from) = from.filter(|from| from.exists()) else {
             return self.messages.note(text::opening::NO_FOLDER);
         };
-        let control = Arc::new(LoadControl::new());
-        let watched = Arc::clone(&control);
-        // Pictures with an embedded look are no volumes.
-        let task =
-            move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
-        match BackgroundTask::start("next-file", ctx, task) {
-            Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
-            Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
+        let task = move |job: &JobControl| {
+            let control = LoadControl::with_token(job.token().clone());
+            // Pictures with an embedded look are no volumes.
+            neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &control)
+        };
+        if let Err(err) = self.opening.next_file_search.start(JobKind::NextFile, ctx, is_forward, task) {
+            self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err));
         }
     }
 
     /// Opens the file that the search has found.
     pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
-        let Some(neighbour) = &self.opening.next_file_search else { return };
-        let Some(found) = neighbour.work.take_result() else { return };
-        let is_forward = neighbour.is_forward;
-        self.opening.next_file_search = None;
+        let Some((is_forward, found)) = self.opening.next_file_search.take_ended() else { return };
         match found {
             Ok(Some(path)) => {
                 if self.start_loading(&path, ReadChoices::default(), ctx) {

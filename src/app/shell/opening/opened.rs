@@ -63,7 +63,7 @@ impl App {
         self.apply_plan(plan, settings, session, &volume);
         self.memory.add_recent(&source, &volume.contents().choice());
         self.panels.recent_pictures.clear();
-        self.look_tasks.light_search = None;
+        self.look_tasks.light_search.discard();
         self.windows.contact_sheet.discard();
         self.panels.kept_strip.reset();
         let facts = VolumeFacts::new(source, reading, &dataset);

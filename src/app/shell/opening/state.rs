@@ -1,8 +1,10 @@
 //! State of opening: requests for the next volume, and what is still to be opened or read.
 
-use super::dropped_and_neighbours::NeighbourSearch;
+use std::path::PathBuf;
+
 use super::plan::PendingLook;
 use crate::app::shell::file_tasks::FileTasks;
+use crate::app::worker::jobs::JobSlot;
 use chiaroscuro_scene::Settings;
 
 /// Function that changes settings once.
@@ -30,8 +32,8 @@ pub(crate) struct OpeningState {
     pub adjust_first_look: Option<SettingsAdjustment>,
     /// True while the default volume waits for the user's answer about reopening the last session.
     pub default_open_waits: bool,
-    /// Search for the next file in the folder, while it runs.
-    pub next_file_search: Option<NeighbourSearch>,
+    /// Search for the next file in the folder (true) or the one before (false).
+    pub next_file_search: JobSlot<Option<PathBuf>, bool>,
     /// Files other than volumes that are being read.
     pub file_tasks: FileTasks,
 }

@@ -13,9 +13,8 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_scene::Settings;
-use chiaroscuro_volume::CancelOnDrop;
 
 pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
 
@@ -74,9 +73,8 @@ struct ContactPrint {
     suits_data: bool,
 }
 
-/// Contact sheet in progress on a background thread.
+/// Contact sheet in progress on a background thread, as far as its pictures have arrived.
 struct SheetTask {
-    work: BackgroundTask<Result<(), String>>,
     /// Finished candidates, each with the total number of candidates.
     results: mpsc::Receiver<(usize, RenderedCandidate)>,
     /// True while the pictures of the previous sheet are still shown.
@@ -85,18 +83,6 @@ struct SheetTask {
     sheet: ContactSheetKind,
     /// Look and selected light that the candidates are derived from.
     base: (Settings, usize),
-    cancel: CancelOnDrop,
-}
-
-impl SheetTask {
-    /// Requests the task to end at its next picture; its further results are discarded.
-    fn cancel(&self) {
-        self.cancel.token().cancel();
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.cancel.token().is_cancelled()
-    }
 }
 
 /// State of the contact sheet window.
@@ -109,7 +95,7 @@ pub(crate) struct ContactSheetWindow {
     /// True if pictures are to be made as soon as possible.
     is_due: bool,
     /// Sheet in progress; one at a time, because each opens a device of its own.
-    task: Option<SheetTask>,
+    task: JobSlot<Result<(), String>, SheetTask>,
     prints: Vec<ContactPrint>,
     /// Name of the candidate that was chosen last.
     chosen: Option<String>,
@@ -135,19 +121,12 @@ impl ContactSheetWindow {
     pub(crate) fn discard(&mut self) {
         self.prints.clear();
         (self.open, self.is_due) = (false, false);
-        self.cancel();
+        self.task.cancel();
     }
 
     /// Returns true if pictures are to be made.
     pub(crate) fn needs_start(&self) -> bool {
         self.is_due
-    }
-
-    /// Cancels the sheet in progress, if any.
-    fn cancel(&self) {
-        if let Some(trying) = &self.task {
-            trying.cancel();
-        }
     }
 
     /// Starts to render the pictures, or continues if the same ones are in progress. Another sheet in progress ends
@@ -158,59 +137,45 @@ impl ContactSheetWindow {
             return Ok(());
         };
         let (sheet, of) = (self.sheet, (subject.settings.clone(), subject.selected_light));
-        if let Some(trying) = &self.task {
-            if trying.sheet == sheet && trying.base == of && !trying.is_cancelled() {
+        if let Some(trying) = self.task.inputs() {
+            if trying.sheet == sheet && trying.base == of && !self.task.is_cancelled() {
                 self.is_due = false;
             } else {
-                trying.cancel();
+                self.task.cancel();
             }
             return Ok(());
         }
         self.is_due = false;
-        let cancel_on_drop = CancelOnDrop::default();
-        let cancel = cancel_on_drop.token().clone();
         let (sender, tried) = mpsc::channel();
         let wake = ctx.clone();
-        let task = move || {
+        let task = move |job: &JobControl| {
             let hand_on = |count: usize, of: RenderedCandidate| {
                 // The receiver may be gone; the result is then dropped.
                 drop(sender.send((count, of)));
                 wake.request_repaint();
             };
-            sheet.render_candidates(&subject, &cancel, &hand_on)
+            sheet.render_candidates(&subject, job.token(), &hand_on)
         };
-        let work =
-            BackgroundTask::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
-        self.task = Some(SheetTask {
-            work,
-            results: tried,
-            shows_previous: true,
-            count: 0,
-            sheet,
-            base: of,
-            cancel: cancel_on_drop,
-        });
-        Ok(())
+        let trying = SheetTask { results: tried, shows_previous: true, count: 0, sheet, base: of };
+        let started = self.task.start(JobKind::ContactSheet, ctx, trying, task);
+        started.map_err(text::contact_sheet::no_thread)
     }
 
     /// Collects the finished pictures, unless the sheet was cancelled.
     fn collect(&mut self, ctx: &egui::Context) -> Result<(), String> {
-        let Some(trying) = &mut self.task else { return Ok(()) };
-        // Queried before the channel is drained: nothing is sent after the end of the task.
-        let result = trying.work.take_result();
+        let is_cancelled = self.task.is_cancelled();
+        // Taken before the channel is drained: nothing is sent after the end of the task.
+        let mut ended = self.task.take_ended();
+        let trying = ended.as_mut().map(|(trying, _)| trying).or(self.task.inputs_mut());
+        let Some(trying) = trying.filter(|_| !is_cancelled) else { return Ok(()) };
         for (count, (look, picture)) in trying.results.try_iter() {
-            if trying.is_cancelled() {
-                continue;
-            }
             if std::mem::take(&mut trying.shows_previous) {
                 self.prints.clear();
             }
             trying.count = count;
             self.prints.push(upload_candidate(ctx, look, picture));
         }
-        let Some(result) = result else { return Ok(()) };
-        let is_unwanted = self.task.take().is_none_or(|trying| trying.is_cancelled());
-        if is_unwanted { Ok(()) } else { result.and_then(|result| result) }
+        ended.map_or(Ok(()), |(_, result)| result.and_then(|result| result))
     }
 
     /// Shows the window, and adds the command of the chosen look. An error says why there are no pictures.
@@ -221,11 +186,11 @@ impl ContactSheetWindow {
         let tool = ToolWindow { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
-                if self.task.is_some() || self.is_due {
+                if self.task.is_running() || self.is_due {
                     ui.spinner();
                     let (done, count) = self
                         .task
-                        .as_ref()
+                        .inputs()
                         .filter(|trying| !trying.shows_previous)
                         .map_or((0, 0), |trying| (self.prints.len(), trying.count));
                     ui.label(text::contact_sheet::progress(done, count));
@@ -239,7 +204,7 @@ impl ContactSheetWindow {
             let most = (ctx.content_rect().height() - CHROME_HEIGHT).max(MIN_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
-                let count = self.task.as_ref().map_or(0, |trying| trying.count).max(self.prints.len());
+                let count = self.task.inputs().map_or(0, |trying| trying.count).max(self.prints.len());
                 let TileLayout { columns, width } = TileLayout::fit(ui.available_width(), count);
                 let size = vec2(width, width * PICTURE_SIZE[1] as f32 / PICTURE_SIZE[0] as f32);
                 egui::Grid::new("contact sheet").spacing([TILE_GAP, TILE_GAP]).show(ui, |ui| {
@@ -275,7 +240,7 @@ impl ContactSheetWindow {
         });
         if self.open && !open {
             self.is_due = false;
-            self.cancel();
+            self.task.cancel();
         }
         self.open = open;
         outcome
@@ -296,7 +261,7 @@ mod tests {
 
     /// Cancel token of the running thread, if there is one.
     fn cancel_token(sheet: &ContactSheetWindow) -> Option<CancelToken> {
-        sheet.task.as_ref().map(|trying| trying.cancel.token().clone())
+        sheet.task.token().cloned()
     }
 
     #[test]
@@ -345,7 +310,7 @@ mod tests {
         let other = ExportScene { selected_light: 1, ..subject };
         let still = ask(&mut sheet, Some(&other)).expect("a thread");
         assert!(still.is_cancelled() && first.is_cancelled() && sheet.needs_start());
-        while sheet.task.is_some() {
+        while sheet.task.is_running() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
@@ -354,7 +319,7 @@ mod tests {
         assert!(!second.is_cancelled() && !sheet.needs_start());
         sheet.discard();
         assert!(second.is_cancelled() && !sheet.open);
-        while sheet.task.is_some() {
+        while sheet.task.is_running() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }

@@ -1,7 +1,6 @@
 //! Export window: kind of export, size, samples, format, marks and file.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 use eframe::egui::{self, Ui};
 
@@ -9,6 +8,7 @@ use super::{ExportKind, ExportRequest, ExportWindow, destination};
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::shortcuts;
 use crate::app::text::{self, ControlText};
+use crate::app::worker::jobs::JobProgress;
 use chiaroscuro_media::{AnimationFormat, PictureFormat, frame_names};
 use chiaroscuro_scene::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
@@ -274,8 +274,7 @@ impl ExportWindow {
         if ui.button(text::common::CANCEL).clicked() {
             self.cancel();
         }
-        let (done, total) =
-            (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
+        let JobProgress { done, total } = self.work.progress().unwrap_or_default();
         if total > 1 {
             let bar = egui::ProgressBar::new(done as f32 / total as f32).desired_width(120.0);
             let count = if self.kind == ExportKind::Still {
