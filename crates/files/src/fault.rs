@@ -42,6 +42,8 @@ pub enum InjectedFault {
     FullDisk,
     /// Failure to read the N-th block of a volume.
     ReadError(u64),
+    /// Delay of reading looks and other small files for as long as this is chosen, for tests that see the window wait.
+    HeldFiles,
 }
 
 impl FromStr for InjectedFault {
@@ -82,42 +84,56 @@ impl FromStr for InjectedFault {
     }
 }
 
-/// Injected faults of this process, and a flag that is set if there are any.
-static FAULTS: RwLock<Vec<InjectedFault>> = RwLock::new(Vec::new());
-static HAS_FAULTS: AtomicBool = AtomicBool::new(false);
+/// Event that is counted, so that a fault can name the N-th one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FaultEvent {
+    /// Request for a texture or buffer of the adapter.
+    Allocation,
+    /// Block read from the file of a volume.
+    BlockRead,
+    /// Frame of any window of this process.
+    WindowFrame,
+}
 
-/// Counter of events that a fault refers to.
-#[derive(Debug, Default)]
-pub struct FaultCounter(AtomicU64);
+/// Chosen faults, and the events counted until now.
+#[derive(Debug)]
+struct FaultState {
+    faults: RwLock<Vec<InjectedFault>>,
+    /// True if there are any faults, which is read more often than they are.
+    has_faults: AtomicBool,
+    /// Number of each [`FaultEvent`].
+    counts: [AtomicU64; 3],
+}
 
-impl FaultCounter {
-    /// Creates a counter at zero.
-    pub const fn new() -> Self {
-        Self(AtomicU64::new(0))
-    }
+/// Faults of this process. They stay static: `--fault` is meant for the process, and whatever can fail asks here, from
+/// the disk to the window, without being handed anything that only tests need.
+static FAULTS: FaultState = FaultState {
+    faults: RwLock::new(Vec::new()),
+    has_faults: AtomicBool::new(false),
+    counts: [const { AtomicU64::new(0) }; 3],
+};
 
-    /// Counts one event and returns the total, this one included.
-    pub fn next(&self) -> u64 {
-        self.0.fetch_add(1, Ordering::Relaxed) + 1
-    }
+/// Counts one event and returns the total, this one included.
+pub fn count(event: FaultEvent) -> u64 {
+    FAULTS.counts[event as usize].fetch_add(1, Ordering::Relaxed) + 1
+}
 
-    /// Returns the events counted since faults were first chosen.
-    #[cfg(any(test, feature = "testing"))]
-    pub fn so_far(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
-    }
+/// Returns the number of these events since faults were first chosen.
+#[cfg(any(test, feature = "testing"))]
+pub fn count_so_far(event: FaultEvent) -> u64 {
+    FAULTS.counts[event as usize].load(Ordering::Relaxed)
 }
 
 /// Sets the faults to be injected into this process.
 pub fn set_faults(faults: Vec<InjectedFault>) {
-    HAS_FAULTS.store(!faults.is_empty(), Ordering::Relaxed);
-    *FAULTS.write().unwrap_or_else(PoisonError::into_inner) = faults;
+    FAULTS.has_faults.store(!faults.is_empty(), Ordering::Relaxed);
+    *FAULTS.faults.write().unwrap_or_else(PoisonError::into_inner) = faults;
 }
 
 /// Returns true if one of the chosen faults satisfies a condition.
 fn any(is_it: impl FnMut(&InjectedFault) -> bool) -> bool {
-    HAS_FAULTS.load(Ordering::Relaxed)
-        && FAULTS.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
+    FAULTS.has_faults.load(Ordering::Relaxed)
+        && FAULTS.faults.read().unwrap_or_else(PoisonError::into_inner).iter().any(is_it)
 }
 
 /// Returns true if a fault was chosen.
@@ -126,8 +142,8 @@ pub fn is_on(fault: InjectedFault) -> bool {
 }
 
 /// Counts one event and returns true if a fault is due at it. Nothing is counted unless faults were chosen.
-pub fn is_due(count: &FaultCounter, fault: impl Fn(u64) -> InjectedFault) -> bool {
-    HAS_FAULTS.load(Ordering::Relaxed) && is_on(fault(count.next()))
+pub fn is_due(event: FaultEvent, fault: impl Fn(u64) -> InjectedFault) -> bool {
+    FAULTS.has_faults.load(Ordering::Relaxed) && is_on(fault(count(event)))
 }
 
 /// Panics if that was chosen for this thread.
@@ -148,6 +164,16 @@ fn sum(of: impl Fn(&InjectedFault) -> Option<Duration>) -> Duration {
 /// Returns the additional delay of waits for the adapter.
 pub fn adapter_delay() -> Duration {
     sum(|chosen| if let InjectedFault::Slow(longer) = chosen { Some(*longer) } else { None })
+}
+
+/// Interval at which a reader that is held up looks whether it may go on.
+const HELD_POLL: Duration = Duration::from_millis(1);
+
+/// Waits for as long as the reading of small files is held up.
+pub fn wait_while_files_are_held() {
+    while is_on(InjectedFault::HeldFiles) {
+        std::thread::sleep(HELD_POLL);
+    }
 }
 
 /// Returns the additional delay of the window's frames.
@@ -186,9 +212,10 @@ mod tests {
 
     #[test]
     fn nothing_fails_unless_it_is_asked_for() {
-        let count = FaultCounter::new();
-        assert!(!is_due(&count, InjectedFault::OutOfMemory) && !is_on(InjectedFault::FullDisk));
-        assert_eq!(count.0.load(Ordering::Relaxed), 0, "nor is anything counted");
+        let before = count_so_far(FaultEvent::Allocation);
+        let is_any_due = is_due(FaultEvent::Allocation, InjectedFault::OutOfMemory);
+        assert!(!is_any_due && !is_on(InjectedFault::FullDisk));
+        assert_eq!(count_so_far(FaultEvent::Allocation), before, "nor is anything counted");
         panic_if_injected(FaultThread::Loader);
         assert_eq!((adapter_delay(), frame_delay()), (Duration::ZERO, Duration::ZERO));
     }

@@ -27,7 +27,6 @@ use std::sync::Arc;
 pub use formats::{RawFormat, RawGuess, RawLayout, raw, supported_extensions};
 pub use neighbour::neighbour_volume;
 pub use open::open;
-pub use reading::read_files::ReadFiles;
 
 use chiaroscuro_volume::{
     FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice, memory_budget_bytes,
@@ -112,7 +111,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
         return folder::load(path, options, control);
     }
     let mut input = InputFile::open(attempt)?;
-    let witness = FileChangeGuard::new(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input, control)?;
     let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
     // Voxels of a described raw file may begin like this by chance.
     if start.is_packed_twice() && options.raw.dims.is_none() {

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub const PIECE_VALUES: usize = 1 << 16;
 
 thread_local! {
-    /// Token of the work on this thread, for [`CancelToken::current`].
+    /// Token of the work on this thread, for [`CancelToken::current`], which has the reason.
     static CURRENT_TOKEN: RefCell<CancelToken> = const { RefCell::new(CancelToken::never()) };
 }
 

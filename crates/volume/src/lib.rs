@@ -27,8 +27,6 @@ pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::{Dataset, DatasetField};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
-#[cfg(any(test, feature = "testing"))]
-pub use load_context::with_forced_averaging;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
     FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, Portion, ReadContext,

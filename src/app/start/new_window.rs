@@ -26,13 +26,10 @@ use crate::app::windows::recovery::RecoveryDialog;
 use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
-use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
+use chiaroscuro_files::fault::{self, FaultEvent, FaultThread, InjectedFault, panic_if_injected};
 use chiaroscuro_render::{GpuContext, WindowPainter};
 use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
-
-/// Counter of the frames of all windows, for fault injection.
-static FRAMES: FaultCounter = FaultCounter::new();
 
 impl App {
     /// Starts the program in a window, and begins to open the first volume.
@@ -137,7 +134,7 @@ impl App {
     pub(crate) fn inject_faults(&self) {
         panic_if_injected(FaultThread::Window);
         std::thread::sleep(fault::frame_delay());
-        let frame = FRAMES.next();
+        let frame = fault::count(FaultEvent::WindowFrame);
         if fault::is_on(InjectedFault::DeviceLost(frame)) {
             self.device.context.destroy_device();
         }

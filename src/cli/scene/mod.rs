@@ -14,7 +14,9 @@ use std::sync::OnceLock;
 use clap::Args;
 
 pub(super) use self::corrections::{apply_command_line_corrections, apply_corrections};
-pub(super) use self::decompression_warning::{open_for_overview, open_with_size_warning};
+pub(super) use self::decompression_warning::{
+    open_for_overview, open_with_size_warning, size_warning_control,
+};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};

@@ -1,7 +1,10 @@
 //! Progress and cancellation of a load, shared between threads.
 
+use std::collections::BTreeSet;
 use std::fmt;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use super::error::LoadError;
 use super::memory_estimate::VolumeSize;
@@ -19,6 +22,10 @@ pub struct LoadControl {
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
     pub total_bytes: AtomicU64,
     size_check: SizeCheck,
+    /// Files that were read: a header names others, and a slice brings its series.
+    read_files: Mutex<BTreeSet<PathBuf>>,
+    /// True if blocks are averaged while they are read although all voxels fit into memory; only tests set it.
+    is_memory_scarce: bool,
 }
 
 /// Callback that decides, by the size of a volume, whether its voxels are read.
@@ -82,6 +89,30 @@ impl LoadControl {
         (total > 0).then(|| [self.done_bytes.load(Ordering::Relaxed).min(total), total])
     }
 
+    /// Records a file from which voxels or metadata are read.
+    pub fn record_read(&self, path: &Path) {
+        let mut files = self.read_files.lock().unwrap_or_else(PoisonError::into_inner);
+        // Series are recorded once for each slice.
+        if !files.contains(path) {
+            files.insert(path.to_owned());
+        }
+    }
+
+    /// Returns the paths that were read until now, as they were opened.
+    pub fn read_files(&self) -> Vec<PathBuf> {
+        self.read_files.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    pub(super) fn is_memory_scarce(&self) -> bool {
+        self.is_memory_scarce
+    }
+
+    /// Creates a control under which blocks are averaged while they are read, as if memory were scarce.
+    #[cfg(any(test, feature = "testing"))]
+    pub fn with_scarce_memory() -> Self {
+        Self { is_memory_scarce: true, ..Self::default() }
+    }
+
     /// Starts the count of voxels' bytes: none read until now, of `total_bytes` in the whole volume.
     pub fn start(&self, total_bytes: u64) {
         self.done_bytes.store(0, Ordering::Relaxed);
@@ -116,5 +147,20 @@ impl LoadControl {
     #[cfg(any(test, feature = "testing"))]
     pub fn cancel_after(&self, pieces: u64) {
         self.token.cancel_after(pieces);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_recorded_once_for_each_load() {
+        let [control, other] = [(); 2].map(|()| LoadControl::new());
+        for name in ["b", "a", "b"] {
+            control.record_read(Path::new(name));
+        }
+        assert_eq!(control.read_files(), [PathBuf::from("a"), PathBuf::from("b")]);
+        assert!(other.read_files().is_empty());
     }
 }

@@ -14,6 +14,7 @@ use eframe::egui;
 use crate::app::common::overlay_windows;
 use crate::app::worker::jobs::{JobControl, JobHandle, JobKind};
 use crate::app::{App, text};
+use chiaroscuro_files::fault;
 
 /// Purpose for which a file is read; at most one file per purpose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,8 +115,7 @@ impl FileTasks {
         self.drop_purpose(reason);
         let file = path.to_owned();
         let task = move |_: &JobControl| {
-            #[cfg(feature = "testing")]
-            drop(test_lock::wait());
+            fault::wait_while_files_are_held();
             read(&file)
         };
         match JobHandle::start(JobKind::ReadFile, ctx, task) {
@@ -191,24 +191,19 @@ impl App {
     }
 }
 
-/// Lock that blocks the reading of files, for tests that inspect the window meanwhile.
-#[cfg(feature = "testing")]
-mod test_lock {
-    use std::sync::{Mutex, MutexGuard, PoisonError};
-
-    static HELD: Mutex<()> = Mutex::new(());
-
-    /// Waits until no test holds the lock.
-    pub(super) fn wait() -> MutexGuard<'static, ()> {
-        HELD.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
 #[cfg(feature = "testing")]
 impl App {
-    /// Blocks the reading of files while the returned guard lives.
+    /// Blocks the reading of files while the returned guard lives, for tests that inspect the window meanwhile.
     pub fn block_file_tasks() -> impl Sized {
-        test_lock::wait()
+        /// Guard that lets the files be read when dropped.
+        struct HeldFilesGuard;
+        impl Drop for HeldFilesGuard {
+            fn drop(&mut self) {
+                fault::set_faults(Vec::new());
+            }
+        }
+        fault::set_faults(vec![fault::InjectedFault::HeldFiles]);
+        HeldFilesGuard
     }
 
     /// Path of the file that is being read.

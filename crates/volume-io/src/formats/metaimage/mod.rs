@@ -64,7 +64,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let meant = ValueMapping { padding: hints.padding, map: &values };
     let voxels =
         stored.read_values(&mut pieces, None, extent, &meant, control).map_err(ReadFault::into_decoder_fault);
-    let voxels = voxels.and_then(|voxels| pieces.finish(control).map(|()| voxels));
+    let voxels = voxels.and_then(|voxels| pieces.finish().map(|()| voxels));
     let voxels = voxels.map_err(|fault| match (pieces.failure(), fault) {
         (Some(error), _) => error,
         (None, ReadFault::Corrupt(error)) if storage.is_text => attempt.bad_input_error(

@@ -13,7 +13,6 @@ use super::layout::{PixelLayout, PixelNumber};
 use super::size_check::{COPY_ADVICE, check_file_size, supported_codec, truncated_error};
 use crate::Endian;
 use crate::reading::input::InputFile;
-use crate::reading::read_files::record_read;
 use chiaroscuro_volume::{LoadContext, LoadControl, LoadError, human_bytes};
 
 /// Maximum number of fragments: 16 for each of the maximum number of frames.
@@ -210,7 +209,7 @@ impl PixelStore {
         voxels: &mut [T],
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        record_read(attempt.path);
+        control.record_read(attempt.path);
         let size = self.layout.bytes_per_frame();
         let missing_frame_error =
             || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);

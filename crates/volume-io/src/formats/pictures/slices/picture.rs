@@ -97,7 +97,7 @@ pub(super) fn read_picture(
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     control.check()?;
     if let Some(format) = kind.format() {
-        return read_image(attempt, format, options, is_decoded);
+        return read_image(attempt, format, options, is_decoded, control);
     }
     let picture = tiff::SingleSlice::open(attempt, control)?;
     let (size, pages) = (picture.size(), picture.pages);
@@ -163,6 +163,7 @@ fn read_image(
     format: ImageFormat,
     options: &LoadOptions,
     is_decoded: bool,
+    control: &LoadControl,
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     let mut input = InputFile::open(attempt)?;
     let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
@@ -183,7 +184,7 @@ fn read_image(
     if input.len > budget {
         return Err(too_large(input.len));
     }
-    let witness = FileChangeGuard::new(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input, control)?;
     let fault = |error: ImageError| match error {
         ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit_error(
             "size",

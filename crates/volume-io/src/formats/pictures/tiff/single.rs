@@ -8,7 +8,6 @@ use super::undescribed::usable_pages;
 use crate::LoadOptions;
 use crate::reading::input::InputFile;
 use crate::reading::number::VoxelEncoding;
-use crate::reading::read_files::record_read;
 use chiaroscuro_volume::{LoadContext, LoadControl, LoadError};
 
 /// Single page of a file, with the file.
@@ -69,7 +68,7 @@ impl SingleSlice {
         attempt: LoadContext<'_>,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
-        record_read(attempt.path);
+        control.record_read(attempt.path);
         let packed = self.tiff.fetch(attempt, self.number, None, control)?;
         packed.unpack(attempt, self.number, control)
     }

@@ -135,7 +135,7 @@ impl TiffStackFiles<'_> {
             Some((open, tiff, witness)) if open == number => (tiff, witness),
             _ => {
                 let input = InputFile::open(attempt)?;
-                let witness = FileChangeGuard::new(attempt, &input)?;
+                let witness = FileChangeGuard::new(attempt, &input, self.control)?;
                 (TiffFile::open(attempt, input, self.control)?, witness)
             }
         };

@@ -19,7 +19,8 @@ use crate::reading::companion_path;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_files::{sanitised, xml};
 use chiaroscuro_volume::{
-    FileDimension, LoadContext, LoadError, Modality, ValueMetadata, VolumeChoice, VolumeOffer, quoted,
+    FileDimension, LoadContext, LoadControl, LoadError, Modality, ValueMetadata, VolumeChoice, VolumeOffer,
+    quoted,
 };
 use pages::OmePages;
 
@@ -103,6 +104,7 @@ pub(crate) fn stack(
     tiff: &TiffFile,
     description: &str,
     choice: &VolumeChoice,
+    control: &LoadControl,
 ) -> Result<TiffStack, LoadError> {
     let document = parsed(attempt, description)?;
     let root = document.root_element();
@@ -110,7 +112,7 @@ pub(crate) fn stack(
     if let Some(name) = child(root, "BinaryOnly").and_then(|node| node.attribute("MetadataFile")) {
         let path = companion_path::resolve(attempt, "MetadataFile", name)?;
         let companion = LoadContext { operation: "read the OME-XML of the volume", path: &path };
-        let xml = companion_text(companion)?;
+        let xml = companion_text(companion, control)?;
         let document = parsed(companion, &xml)?;
         return stack_from_root(attempt, tiff, document.root_element(), choice);
     }
@@ -153,10 +155,10 @@ fn is_generic_name(name: &str) -> bool {
 }
 
 /// Reads the text of a companion XML file.
-pub(crate) fn companion_text(attempt: LoadContext<'_>) -> Result<String, LoadError> {
+pub(crate) fn companion_text(attempt: LoadContext<'_>, control: &LoadControl) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::reading::input::InputFile::open(attempt)?;
-    crate::reading::read_files::record_read(attempt.path);
+    control.record_read(attempt.path);
     let mut text = Vec::new();
     input.reader.take(MAX_XML_BYTES).read_to_end(&mut text).map_err(|error| attempt.io_error(error))?;
     Ok(String::from_utf8_lossy(&text).into_owned())
