@@ -38,19 +38,16 @@ use eframe::egui;
 use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
 use self::common::{light_keys, reveal, shortcuts};
-use self::document::Document;
 use self::layout::WindowLayout;
 use self::layout::outer_panels::OuterPanels;
-use self::persistence::PersistentState;
-use self::shell::automatic_changes::LookTasks;
-use self::shell::messages::MessageLog;
+use self::shell::look_editor::LookEditor;
 use self::shell::opening::OpeningState;
 use self::shell::picture_area::PictureTools;
 use self::shell::status_file;
 use self::shell::status_file::StatusFile;
 use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
-use self::viewport::{Viewport, paint_callback};
+use self::viewport::paint_callback;
 use self::windows::file_dialogs;
 use self::worker::background_task;
 use self::worker::loader::Loader;
@@ -61,14 +58,10 @@ const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
-    /// Look that is edited, and the volume that it shows.
-    document: Document,
+    /// Look that is edited, with its volume, its picture and the messages about it.
+    editor: LookEditor,
     /// Requests for the next volume, and files that are being read.
     opening: OpeningState,
-    /// Tasks whose results change the look.
-    look_tasks: LookTasks,
-    /// Picture on screen, and the connection to the render thread.
-    viewport: Viewport,
     /// Handles, overlays and other tools over the picture.
     picture: PictureTools,
     windows: ToolWindows,
@@ -77,12 +70,9 @@ pub struct App {
     panels: OuterPanels,
     /// Panels and tool windows that are shown, as stored between runs.
     layout: WindowLayout,
-    messages: MessageLog,
     /// Cancelling of drags by Escape.
     drag_cancel: DragCancel,
     loader: Loader,
-    /// State that outlives a run.
-    memory: PersistentState,
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
@@ -94,7 +84,7 @@ const TASK_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 impl Drop for App {
     fn drop(&mut self) {
         // The results of these tasks are no longer needed.
-        self.look_tasks.light_search = None;
+        self.editor.look_tasks.light_search = None;
         self.windows.contact_sheet.discard();
         self.panels.kept_strip.reset();
         // If another window replaces this one, that window waits for the tasks when it closes.
@@ -107,8 +97,8 @@ impl Drop for App {
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
-            .field("settings", &self.document.settings)
-            .field("volume", &self.document.volume)
+            .field("settings", &self.editor.document.settings)
+            .field("volume", &self.editor.document.volume)
             .finish_non_exhaustive()
     }
 }
@@ -116,36 +106,24 @@ impl std::fmt::Debug for App {
 impl App {
     /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
-        &self.document.settings
+        &self.editor.document.settings
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
     /// first look is finished, and the balance, if it is kept, has been measured for these settings.
     pub fn is_idle(&self) -> bool {
-        self.is_complete()
-            && !self.is_making_look()
-            && !self.document.first_lights.is_due()
-            && self.document.knows_outline(self.viewport.dataset().as_ref())
-            && !self.document.keep_balanced.is_due(&self.document.settings)
+        !self.is_opening() && self.editor.is_complete() && !self.editor.is_changing()
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
     /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
-        self.document.is_making_look()
+        self.editor.document.is_making_look()
     }
 
-    /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
-    /// read or corrected.
-    fn is_complete(&self) -> bool {
-        self.is_volume_ready() && self.viewport.is_idle(&self.picture.compare.looks(&self.document.settings))
-    }
-
-    /// Returns true if no volume is being opened, read or corrected.
-    fn is_volume_ready(&self) -> bool {
-        self.loader.progress().is_none()
-            && self.opening.file_tasks.path().is_none()
-            && !self.document.is_correcting(self.viewport.dataset().as_ref())
+    /// Returns true while a volume is being opened, or another file is being read.
+    fn is_opening(&self) -> bool {
+        self.loader.progress().is_some() || self.opening.file_tasks.path().is_some()
     }
 
     /// Rectangle of the picture in points, and its size in physical pixels.
@@ -160,32 +138,37 @@ impl App {
 
     /// Number of light volume refills since this volume was opened.
     pub fn light_rebuilds(&self) -> u64 {
-        self.viewport.light_fill_count()
+        self.editor.viewport.light_fill_count()
     }
 
     /// Number of previews of this volume that were followed by a full-quality picture.
     pub fn full_quality_pictures(&self) -> u64 {
-        self.viewport.refinement_count()
+        self.editor.viewport.refinement_count()
     }
 
     /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
-        self.document.volume.as_ref().map(|volume| volume.name.as_str())
+        self.editor.document.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
     /// Error messages since the volume was opened.
     pub fn errors(&self) -> &[String] {
-        self.messages.errors()
+        self.editor.messages.errors()
     }
 
     /// Latest note in the status bar since the volume was opened, even if it has disappeared.
     pub fn latest_note(&self) -> Option<&str> {
-        self.messages.latest_note()
+        self.editor.messages.latest_note()
     }
 
     /// Returns true while a note lies over the picture; notes disappear after some seconds.
     pub fn shows_note(&self) -> bool {
-        self.messages.shows_note()
+        self.editor.messages.shows_note()
+    }
+
+    /// Records a notice from before there was a window to show it.
+    fn add_notice(&mut self, notice: String) {
+        self.editor.memory.add_notice(notice);
     }
 
     /// Exports the picture as the export window does, replacing an existing file.
@@ -205,13 +188,13 @@ impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.inject_faults();
         // Checked before anything is drawn, because drawing on a lost device would panic.
-        let is_lost = self.device.context.is_lost() || self.viewport.context().is_known_lost();
+        let is_lost = self.device.context.is_lost() || self.editor.viewport.context().is_known_lost();
         if self.device.is_lost || is_lost {
             return self.close_for_successor(ctx);
         }
         self.collect_results(ctx);
         // Runs even while the window is hidden and nothing is drawn.
-        self.autosave_look();
+        self.editor.autosave_look();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
@@ -225,50 +208,53 @@ impl eframe::App for App {
             &self.device.painter,
             ui.visuals().panel_fill,
         ));
-        self.drag_cancel.begin(&ctx, &self.document.settings);
+        self.drag_cancel.begin(&ctx, &self.editor.document.settings);
         let mut commands = Vec::new();
         let dropped = file_dialogs::dropped_files(&ctx);
         if !dropped.is_empty() {
             commands.push(AppCommand::OpenDropped(dropped));
         }
-        let facts = self.viewport.renderer_status(&self.picture.compare.looks(&self.document.settings));
+        let facts = self.editor.viewport.renderer_status(&self.editor.shown_looks());
         self.windows.palette.ui(
             &ctx,
-            self.document.settings.camera.up,
-            self.document.volume.as_ref(),
+            self.editor.document.settings.camera.up,
+            self.editor.document.volume.as_ref(),
             &mut commands,
         );
         self.windows.volume_chooser.ui(
             &ctx,
-            self.document.volume.as_ref(),
+            self.editor.document.volume.as_ref(),
             self.loader.options(),
             &mut commands,
         );
         self.show_outer_panels(ui, &facts, &mut commands);
         self.show_picture(ui, &facts, &mut commands);
         shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.document.settings, self.document.selected_light);
+        light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
         self.show_windows(frame, &ctx, &mut commands);
-        self.drag_cancel.end(&mut self.document.settings);
+        self.drag_cancel.end(&mut self.editor.document.settings);
         self.ask_for_volume(frame, &ctx);
-        self.document.history.observe(&ctx, &self.document.history_step());
-        commands.extend(self.finish_framing());
-        commands.extend(self.update_outline(&ctx));
-        let before = self.document.settings.camera.clone();
+        self.editor.document.history.observe(&ctx, &self.editor.document.history_step());
+        commands.extend(self.editor.finish_framing());
+        commands.extend(self.editor.update_outline(self.is_opening(), &ctx));
+        let before = self.editor.document.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
         }
         self.picture.camera_animation.begin(
             &before,
-            &self.document.settings.camera,
+            &self.editor.document.settings.camera,
             ctx.input(|input| input.time),
         );
         self.cancel_files_by_key(&ctx);
-        self.leave_picture_only(&ctx);
-        self.update_corrections(&ctx);
-        self.finish_first_look(&ctx);
-        self.update_balance(&ctx);
-        self.autosave_look();
+        self.layout.leave_picture_only(&ctx);
+        if self.editor.update_corrections(&ctx) {
+            self.windows.contact_sheet.discard();
+        }
+        let is_opening = self.is_opening();
+        self.editor.finish_first_look(is_opening, self.loader.shaders(), &ctx);
+        self.editor.update_balance(is_opening, &ctx);
+        self.editor.autosave_look();
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
         if ui_ms > SLOW_FRAME_MS {
             log::debug!("the window's thread was busy for {ui_ms:.0} ms");
@@ -279,13 +265,13 @@ impl eframe::App for App {
             self.loader.warm_up_rest();
         }
         let state = status_file::WindowStatus {
-            response: self.viewport.response_times(),
-            loading: self.loader.progress().is_some() || self.opening.file_tasks.path().is_some(),
+            response: self.editor.viewport.response_times(),
+            loading: self.is_opening(),
             idle,
-            canvas: self.picture.canvas.filter(|_| self.document.volume.is_some()),
+            canvas: self.picture.canvas.filter(|_| self.editor.document.volume.is_some()),
             handles: self.picture.handles.positions(),
             light_rebuilds: self.light_rebuilds(),
-            errors: self.messages.errors(),
+            errors: self.editor.messages.errors(),
             path_window: self.dialogs.files.typed_path_title(),
             places: if self.status_file.is_on() { reveal::reported_areas(&ctx) } else { BTreeMap::new() },
             pixels_per_point: ctx.pixels_per_point(),
@@ -302,7 +288,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
-        self.autosave_look();
+        self.editor.autosave_look();
         if self.device.is_lost {
             self.hand_over();
         } else {

@@ -10,8 +10,9 @@ use std::path::PathBuf;
 use eframe::egui::{self, Key, Modifiers, ThemePreference};
 use serde::{Deserialize, Serialize};
 
-use super::App;
 use super::common::dock;
+use super::common::reveal::{self, SettingPlace};
+use super::shell::messages::MessageLog;
 use crate::app::text;
 use crate::app::windows::slices::plane::ViewingConvention;
 
@@ -81,20 +82,34 @@ impl WindowLayout {
     }
 }
 
-impl App {
+impl WindowLayout {
+    /// Opens a section and the side panel when its feature is switched on, unless only the picture is shown.
+    pub(crate) fn show_section(&mut self, ctx: &egui::Context, section: &'static str, is_on: bool) {
+        self.side |= is_on && !self.picture_only;
+        reveal::show_section(ctx, section, is_on);
+    }
+
+    /// Reveals a setting in its section, and shows the panel of the section.
+    pub(crate) fn reveal(&mut self, place: SettingPlace, ctx: &egui::Context) {
+        let is_of_editor = [text::transfer::TITLE, text::labels::TITLE].contains(&place.section);
+        *(if is_of_editor { &mut self.transfer } else { &mut self.side }) = true;
+        self.picture_only = false;
+        reveal::reveal(ctx, place);
+    }
+
     /// Switches between the picture alone and the panels, and notes which key brings the panels back.
-    pub(crate) fn toggle_picture_only(&mut self) {
-        self.layout.picture_only ^= true;
-        if self.layout.picture_only {
-            self.messages.note(text::messages::PICTURE_ONLY);
+    pub(crate) fn toggle_picture_only(&mut self, messages: &mut MessageLog) {
+        self.picture_only ^= true;
+        if self.picture_only {
+            messages.note(text::messages::PICTURE_ONLY);
         }
     }
 
     /// Leaves the picture-only mode if Escape was pressed and no drag or widget has consumed the key.
     pub(crate) fn leave_picture_only(&mut self, ctx: &egui::Context) {
-        let is_free = self.layout.picture_only && ctx.dragged_id().is_none();
+        let is_free = self.picture_only && ctx.dragged_id().is_none();
         if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
-            self.layout.picture_only = false;
+            self.picture_only = false;
         }
     }
 }

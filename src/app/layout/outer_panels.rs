@@ -39,37 +39,37 @@ impl App {
         commands: &mut Vec<AppCommand>,
     ) {
         self.layout.theme = ui.ctx().options(|options| options.theme_preference);
-        self.windows.help.ui(ui.ctx(), facts, self.document.settings.camera.up);
+        self.windows.help.ui(ui.ctx(), facts, self.editor.document.settings.camera.up);
         if self.layout.picture_only {
             dock::hide(ui.ctx());
             return;
         }
         let menu_title = self.menu_title();
-        let step = self.document.history_step();
-        let history = &self.document.history;
+        let step = self.editor.document.history_step();
+        let history = &self.editor.document.history;
         let name_of_step = |is_back: bool| history.describe_next(&step, is_back);
         let shown = menu::WindowParts {
             side: self.layout.side,
             transfer: self.layout.transfer,
             strip: self.layout.kept,
             handles: !self.picture.handles.is_hidden,
-            comparison: self.picture.compare.on,
+            comparison: self.editor.viewport.compare.on,
             overlay: self.picture.overlay.visible,
             probe: self.picture.light_probe.is_active,
         };
         menu::show(
             ui,
             &mut menu::MenuInputs {
-                settings: &mut self.document.settings,
+                settings: &mut self.editor.document.settings,
                 title: menu_title,
                 describe_step: &name_of_step,
                 parts: shown,
-                alternatives: self.document.volume.as_ref().map(|volume| &volume.held),
-                recent: self.memory.recent(),
+                alternatives: self.editor.document.volume.as_ref().map(|volume| &volume.held),
+                recent: self.editor.memory.recent(),
                 recent_pictures: &mut self.panels.recent_pictures,
                 keeps_look: self.opening.requests.keeps_look,
-                earlier_runs: self.memory.earlier_runs(),
-                frame_ms: &mut self.viewport.frame_ms,
+                earlier_runs: self.editor.memory.earlier_runs(),
+                frame_ms: &mut self.editor.viewport.frame_ms,
                 commands,
             },
         );
@@ -78,17 +78,17 @@ impl App {
             reading: self.opening.file_tasks.path(),
             exporting: self.windows.export.background_progress(),
         };
-        let undone_step = self.document.history.last_step(&self.document.settings);
+        let undone_step = self.editor.document.history.last_step(&self.editor.document.settings);
         let status = status::StatusBar {
             facts,
             busy: file_progress,
-            background_task: self.background_task_name(),
+            background_task: self.editor.background_task_name(),
             last_step: undone_step,
         };
-        status::show(ui, status, &mut self.messages, commands);
-        if let Some(volume) = &self.document.volume {
+        status::show(ui, status, &mut self.editor.messages, commands);
+        if let Some(volume) = &self.editor.document.volume {
             // The label table has a default height of its own.
-            let (name, height) = if volume.is_shown_by_label(&self.document.settings) {
+            let (name, height) = if volume.is_shown_by_label(&self.editor.document.settings) {
                 ("labels", theme::LABEL_TABLE_HEIGHT)
             } else {
                 ("transfer", theme::EDITOR_HEIGHT)
@@ -99,7 +99,7 @@ impl App {
             panel.show_collapsible(ui, &mut self.layout.transfer, |ui| {
                 self.panels.editor.ui(
                     ui,
-                    &mut self.document.settings,
+                    &mut self.editor.document.settings,
                     volume,
                     self.picture.light_probe.value(),
                     commands,
@@ -108,19 +108,19 @@ impl App {
         }
         let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
         let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
-        let treated_as = self.document.kind_override.kind();
+        let treated_as = self.editor.document.kind_override.kind();
         panel.show_collapsible(ui, &mut self.layout.side, |ui| {
             panels::show(
                 ui,
                 &mut panels::PanelContext {
-                    settings: &mut self.document.settings,
-                    first_look: &self.document.defaults,
-                    volume: self.document.volume.as_ref(),
+                    settings: &mut self.editor.document.settings,
+                    first_look: &self.editor.document.defaults,
+                    volume: self.editor.document.volume.as_ref(),
                     treated_as,
-                    selected_light: &mut self.document.selected_light,
-                    compare: &mut self.picture.compare,
+                    selected_light: &mut self.editor.document.selected_light,
+                    compare: &mut self.editor.viewport.compare,
                     facts,
-                    is_balancing: self.look_tasks.balance.is_some(),
+                    is_balancing: self.editor.look_tasks.balance.is_some(),
                     commands,
                 },
             );
@@ -135,20 +135,34 @@ impl App {
 
     /// Title in the menu bar: name, dimensions and spacing of the open volume.
     fn menu_title(&self) -> Option<menu::VolumeTitle> {
-        let volume = self.document.volume.as_ref()?;
+        let volume = self.editor.document.volume.as_ref()?;
         let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
         Some(menu::VolumeTitle { name: volume.name.clone(), facts })
     }
 
-    /// Task beside the pictures that the user waits for, in words; the first that is running.
-    fn background_task_name(&self) -> Option<&'static str> {
-        [
-            (self.document.is_correcting(self.viewport.dataset().as_ref()), text::status::CORRECTING),
-            (self.document.is_making_look(), text::status::PREPARING_LOOK),
-            (self.look_tasks.light_search.is_some(), text::status::PLACING_LIGHTS),
-            (self.look_tasks.balance.is_some(), text::status::BALANCING),
-        ]
-        .into_iter()
-        .find_map(|(is_made, words)| is_made.then_some(words))
+    /// Shows the strip of kept items, if it is visible and a volume is open.
+    fn show_kept_strip(&mut self, ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
+        self.render_missing_thumbnails(ui.ctx());
+        if self.layout.kept && self.editor.document.volume.is_some() {
+            self.panels.kept_strip.show(ui, &mut self.editor.document.settings, commands);
+        }
+    }
+
+    /// Renders missing thumbnails of kept items while nothing else is being computed.
+    fn render_missing_thumbnails(&mut self, ctx: &egui::Context) {
+        self.panels.kept_strip.collect_thumbnails(ctx);
+        if !self.layout.kept {
+            return;
+        }
+        let id = self.editor.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        let settings = &self.editor.document.settings;
+        let Some(wanted) = self.panels.kept_strip.missing_thumbnails(settings, id) else { return };
+        if !self.is_opening()
+            && self.editor.is_complete()
+            && !self.windows.export.is_busy()
+            && let Some(subject) = self.editor.export_subject()
+        {
+            self.panels.kept_strip.render_thumbnails(wanted, subject, ctx);
+        }
     }
 }

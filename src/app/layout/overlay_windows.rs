@@ -19,25 +19,25 @@ impl App {
         commands: &mut Vec<AppCommand>,
     ) {
         if let Some(answer) = self.dialogs.recovery.ui(ctx) {
-            self.memory.acknowledge_crashes();
+            self.editor.memory.acknowledge_crashes();
             if let recovery::RecoveryAnswer::Restore(look) = answer {
                 self.open_record(&look, ctx);
             }
             self.open_deferred(ctx);
         }
-        self.show_history(ctx, commands);
+        self.windows.history.show(ctx, &self.editor.document, commands);
         self.dialogs.quit.ui(ctx, self.windows.export.is_busy());
-        if let Some(answer) = self.dialogs.device_loss.ui(ctx, self.viewport.context().is_software()) {
+        if let Some(answer) = self.dialogs.device_loss.ui(ctx, self.editor.viewport.context().is_software()) {
             self.answer_loss(answer, ctx);
         }
         if self.windows.contact_sheet.needs_start() {
-            let subject = self.export_subject();
+            let subject = self.editor.export_subject();
             if let Err(err) = self.windows.contact_sheet.start(subject, ctx) {
-                self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+                self.editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
             }
         }
         if let Err(err) = self.windows.contact_sheet.ui(ctx, commands) {
-            self.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+            self.editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
         }
         if let Some(raw_description) = self.dialogs.raw.ui(ctx) {
             self.open_raw(&raw_description, ctx);
@@ -52,27 +52,28 @@ impl App {
         if let Some((purpose, path)) = self.dialogs.files.typed_path_ui(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
         }
-        let volume = self.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
+        let volume = self.editor.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
         let settings_as_drawn = volume
             .as_ref()
             .filter(|_| self.windows.slices.open)
-            .map(|volume| self.document.settings.resolved_for(volume));
-        let transfer =
-            settings_as_drawn.as_ref().map_or(&self.document.settings.transfer, |drawn| &drawn.transfer);
-        let look = SliceLook { transfer, labels: &self.document.settings.labels };
-        self.windows.slices.ui(ctx, volume.as_ref(), self.document.volume.as_ref(), look);
+            .map(|volume| self.editor.document.settings.resolved_for(volume));
+        let transfer = settings_as_drawn
+            .as_ref()
+            .map_or(&self.editor.document.settings.transfer, |drawn| &drawn.transfer);
+        let look = SliceLook { transfer, labels: &self.editor.document.settings.labels };
+        self.windows.slices.ui(ctx, volume.as_ref(), self.editor.document.volume.as_ref(), look);
         let scene = light_slice::LightSliceContext {
-            settings: &self.document.settings,
-            dataset: self.viewport.dataset(),
-            context: self.viewport.context(),
-            is_idle: self.is_complete(),
+            settings: &self.editor.document.settings,
+            dataset: self.editor.viewport.dataset(),
+            context: self.editor.viewport.context(),
+            is_idle: !self.is_opening() && self.editor.is_complete(),
         };
         match self.windows.light_slice.ui(ctx, &scene) {
             Ok(false) => {}
             Ok(true) => self.dialogs.files.open_dialog(FileDialogPurpose::ExportLight, frame, ctx),
-            Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
+            Err(err) => self.editor.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
-        let is_anatomical = self.document.is_anatomical();
+        let is_anatomical = self.editor.document.is_anatomical();
         match self.windows.export.ui(ctx, self.viewport_size(), is_anatomical) {
             None => {}
             Some(export::ExportRequest::ChooseFile) => {
@@ -80,7 +81,7 @@ impl App {
             }
             Some(export::ExportRequest::Export) => self.start_export(ctx),
             Some(export::ExportRequest::FileManagerFailed(why)) => {
-                self.messages.error(text::export::NO_FOLDER, why);
+                self.editor.messages.error(text::export::NO_FOLDER, why);
             }
         }
     }

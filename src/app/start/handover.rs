@@ -52,7 +52,7 @@ impl App {
         if !self.device.is_lost {
             log::warn!("{}", text::messages::DEVICE_LOST);
             self.device.is_lost = true;
-            if let Some(words) = self.memory.emergency_save() {
+            if let Some(words) = self.editor.memory.emergency_save() {
                 words.write();
             }
         }
@@ -65,14 +65,14 @@ impl App {
         let opening =
             self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
         let carried = WindowHandover {
-            document: std::mem::take(&mut self.document),
-            dataset: self.viewport.dataset(),
+            document: std::mem::take(&mut self.editor.document),
+            dataset: self.editor.viewport.dataset(),
             requests: std::mem::take(&mut self.opening.requests),
             opening,
-            memory: std::mem::take(&mut self.memory),
-            messages: std::mem::take(&mut self.messages),
+            memory: std::mem::take(&mut self.editor.memory),
+            messages: std::mem::take(&mut self.editor.messages),
             layout: self.layout.clone(),
-            compare: self.picture.compare.clone(),
+            compare: self.editor.viewport.compare.clone(),
             probe_on: self.picture.light_probe.is_active,
             export: std::mem::take(&mut self.windows.export),
             load: self.loader.options().clone(),
@@ -91,22 +91,23 @@ impl App {
         asks: bool,
     ) -> Result<Self, AppError> {
         let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
-        app.document = carried.document.restarted();
+        app.editor.document = carried.document.restarted();
         app.opening.requests = carried.requests;
         app.device.handed_over_dataset = carried.dataset;
         carried.layout.apply(&cc.egui_ctx);
-        (app.messages, app.layout) = (carried.messages, carried.layout);
-        (app.picture.compare, app.picture.light_probe.is_active) = (carried.compare, carried.probe_on);
+        (app.editor.messages, app.layout) = (carried.messages, carried.layout);
+        (app.editor.viewport.compare, app.picture.light_probe.is_active) =
+            (carried.compare, carried.probe_on);
         app.windows.export = carried.export;
         if asks {
             app.dialogs.device_loss.open();
         } else {
-            app.messages.note(text::messages::DEVICE_REPLACED);
+            app.editor.messages.note(text::messages::DEVICE_REPLACED);
             app.restore_volume(&cc.egui_ctx);
         }
         if let Some((source, reading)) = carried.opening {
             app.start_loading(&source, reading, &cc.egui_ctx);
-        } else if app.document.volume.is_none() {
+        } else if app.editor.document.volume.is_none() {
             app.open_first(None, None, &cc.egui_ctx);
         }
         Ok(app)
@@ -117,7 +118,7 @@ impl App {
         if let Some(dataset) = self.device.handed_over_dataset.take()
             && let Err(err) = self.loader.upload(dataset, ctx)
         {
-            self.messages.error(text::messages::NOT_RENDERED, err);
+            self.editor.messages.error(text::messages::NOT_RENDERED, err);
         }
     }
 
@@ -126,7 +127,7 @@ impl App {
         match answer {
             DeviceLossAnswer::TryAgain => self.restore_volume(ctx),
             DeviceLossAnswer::LowerQuality => {
-                QualityPreset::Fast.apply(&mut self.document.settings);
+                QualityPreset::Fast.apply(&mut self.editor.document.settings);
                 self.restore_volume(ctx);
             }
             DeviceLossAnswer::UseCpu => {

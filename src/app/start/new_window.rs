@@ -9,13 +9,11 @@ use super::window_device::WindowDevice;
 use crate::app::common::drag_cancel::DragCancel;
 use crate::app::common::input_pacing::InputPacing;
 use crate::app::common::theme;
-use crate::app::document::Document;
 use crate::app::document::session::SessionFile;
 use crate::app::layout::WindowLayout;
 use crate::app::layout::outer_panels::OuterPanels;
 use crate::app::persistence::PersistentState;
-use crate::app::shell::automatic_changes::LookTasks;
-use crate::app::shell::messages::MessageLog;
+use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::picture_area::PictureTools;
 use crate::app::shell::status_file::StatusFile;
@@ -54,15 +52,15 @@ impl App {
             return Self::start_safely(cc, storage, memory, legacy);
         }
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
-        app.dialogs.recovery = RecoveryDialog::from_runs(app.memory.earlier_runs(), &cc.egui_ctx);
-        app.picture.first_run_hints = FirstUseHints { visible: app.memory.is_first_use() };
+        app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
+        app.picture.first_run_hints = FirstUseHints { visible: app.editor.memory.is_first_use() };
         (app.windows.slices.open, app.windows.light_slice.open) = (app.layout.slices, app.layout.light_slice);
         app.windows.slices.convention = app.layout.slice_convention;
         app.opening.requests.session_is_due = session.is_some();
-        app.document.session = session.map(SessionFile::from_command_line);
+        app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
         app.opening.requests.trusts_paths = trust_paths;
-        let is_named = source.is_some() || volume.is_some() || app.document.session.is_some();
+        let is_named = source.is_some() || volume.is_some() || app.editor.document.session.is_some();
         if is_named || !app.dialogs.recovery.is_open() {
             app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
         } else {
@@ -82,7 +80,7 @@ impl App {
         memory.add_notice(text::persistence::SAFE_START.to_owned());
         let mut app = Self::build(cc, LoadOptions::default(), None, memory, legacy)?;
         app.device.storage = storage;
-        app.dialogs.recovery = RecoveryDialog::from_runs(app.memory.earlier_runs(), &cc.egui_ctx);
+        app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
         app.opening.adjust_first_look = Some(Box::new(|mut settings| {
             QualityPreset::Fast.apply(&mut settings);
             settings
@@ -112,19 +110,16 @@ impl App {
         cc.egui_ctx.add_plugin(InputPacing::default());
         let layout = WindowLayout::restore(cc.storage);
         layout.apply(&cc.egui_ctx);
+        let viewport = Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?;
         Ok(Self {
-            document: Document::default(),
             opening: OpeningState::default(),
-            look_tasks: LookTasks::default(),
-            viewport: Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?,
             picture: PictureTools::default(),
             windows: ToolWindows::default(),
             dialogs: AppDialogs::default(),
             loader: Loader::new(context, load, storage.as_deref())?,
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),
-            memory,
+            editor: LookEditor::new(viewport, memory),
             layout,
-            messages: MessageLog::default(),
             drag_cancel: DragCancel::default(),
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
@@ -142,7 +137,7 @@ impl App {
         if fault::is_on(InjectedFault::DeviceLost(frame))
             || fault::is_on(InjectedFault::RendererDeviceLost(frame))
         {
-            self.viewport.context().destroy_device();
+            self.editor.viewport.context().destroy_device();
         }
     }
 }

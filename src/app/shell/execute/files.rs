@@ -1,13 +1,11 @@
 //! Commands on files: dialogs, sessions and exports.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eframe::egui;
 
-use crate::app::windows::export;
 use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
 use crate::app::{App, text};
-use chiaroscuro_scene::Settings;
 
 impl App {
     /// Asks for a file in a dialog of the desktop.
@@ -22,16 +20,16 @@ impl App {
 
     /// Reopens the volume with the look of the previous run.
     pub(super) fn reopen_last(&mut self, ctx: &egui::Context) {
-        match self.memory.previous_look() {
+        match self.editor.memory.previous_look() {
             Some(path) => self.open_record(&path, ctx),
-            None => self.messages.note(text::messages::NO_SESSION_TO_REOPEN),
+            None => self.editor.messages.note(text::messages::NO_SESSION_TO_REOPEN),
         }
     }
 
     /// Saves the session to its file, or asks for a file.
     pub(super) fn save_session(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
-        match self.session_to_save() {
-            Some(path) => self.save_settings(&path),
+        match self.editor.session_to_save() {
+            Some(path) => self.editor.save_settings(&path),
             None => self.ask_file(FileDialogPurpose::SaveSettings, frame, ctx),
         }
     }
@@ -39,7 +37,7 @@ impl App {
     /// Shows the export dialog for pictures and turntables.
     pub(super) fn open_export(&mut self) {
         let size = self.viewport_size();
-        self.windows.export.open(size, self.layout.exports.as_deref(), self.document.volume_name());
+        self.windows.export.open(size, self.layout.exports.as_deref(), self.editor.document.volume_name());
     }
 
     pub(crate) fn viewport_size(&self) -> [u32; 2] {
@@ -58,19 +56,19 @@ impl App {
             FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.open(path, ctx),
             FileDialogPurpose::VolumeOfLook => self.open_for_look(path, ctx),
             FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
-            FileDialogPurpose::SaveSettings => self.save_settings(path),
+            FileDialogPurpose::SaveSettings => self.editor.save_settings(path),
             FileDialogPurpose::ExportKept => {
-                if let Some(subject) = self.export_subject()
+                if let Some(subject) = self.editor.export_subject()
                     && let Err(err) = self.windows.export.export_kept_sheet(subject, path, ctx)
                 {
-                    self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+                    self.editor.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
                 }
             }
             FileDialogPurpose::ExportLight => {
-                let Some(dataset) = self.viewport.dataset() else { return };
+                let Some(dataset) = self.editor.viewport.dataset() else { return };
                 match self.windows.light_slice.export(path, dataset.volume()) {
-                    Ok(()) => self.messages.note(text::messages::exported(path)),
-                    Err(err) => self.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
+                    Ok(()) => self.editor.messages.note(text::messages::exported(path)),
+                    Err(err) => self.editor.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
             }
             FileDialogPurpose::LoadSettings => self.load_settings(path, ctx),
@@ -79,51 +77,32 @@ impl App {
             FileDialogPurpose::ExportTransfer => {
                 match file_dialogs::export_transfer_file(
                     path,
-                    &self.document.settings,
-                    &self.document.value_ranges(),
+                    &self.editor.document.settings,
+                    &self.editor.document.value_ranges(),
                 ) {
-                    Ok(()) => self.messages.note(text::messages::written(path)),
-                    Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
+                    Ok(()) => self.editor.messages.note(text::messages::written(path)),
+                    Err(err) => self.editor.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
             }
             FileDialogPurpose::CompareSettings => self.compare_with_file(path, ctx),
         }
     }
 
-    /// Returns the subject of an export; shows a message if there is no picture.
-    pub(crate) fn export_subject(&mut self) -> Option<export::ExportScene> {
-        let Some(dataset) = self.viewport.dataset() else {
-            self.messages.note(text::messages::NO_PICTURE);
-            return None;
-        };
-        // Ignores a correction in progress: the picture shows the volume that is loaded.
-        let settings = Settings { volume: *dataset.volume().corrections(), ..self.document.settings.clone() };
-        Some(export::ExportScene {
-            context: self.viewport.context().clone(),
-            dataset,
-            settings,
-            first_look: self.document.defaults.clone(),
-            source: self.document.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
-            selected_light: self.document.selected_light,
-            outline: self.document.outline(self.viewport.dataset().as_ref()),
-        })
-    }
-
     pub(crate) fn start_export(&mut self, ctx: &egui::Context) {
-        if let Some(subject) = self.export_subject()
+        if let Some(subject) = self.editor.export_subject()
             && let Err(err) = self.windows.export.start(subject, ctx)
         {
-            self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+            self.editor.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
         }
     }
 
     pub(super) fn copy_picture(&mut self, ctx: &egui::Context) {
         if self.windows.export.is_busy() {
-            self.messages.note(text::messages::EXPORT_RUNS);
-        } else if let Some(subject) = self.export_subject()
+            self.editor.messages.note(text::messages::EXPORT_RUNS);
+        } else if let Some(subject) = self.editor.export_subject()
             && let Err(err) = self.windows.export.copy_to_clipboard(subject, self.viewport_size(), ctx)
         {
-            self.messages.error(text::messages::PICTURE_NOT_COPIED, err);
+            self.editor.messages.error(text::messages::PICTURE_NOT_COPIED, err);
         }
     }
 }

@@ -1,16 +1,15 @@
 //! Execution of commands, and collection of the results of worker threads.
 
 mod files;
-mod looks;
 mod results;
 
 use eframe::egui::{self, gui_zoom};
 
-use crate::app::App;
 use crate::app::common::commands::AppCommand;
-use crate::app::common::light_keys;
+use crate::app::common::{light_keys, reveal};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
+use crate::app::{App, text};
 
 impl App {
     /// Executes a command of the user.
@@ -37,37 +36,52 @@ impl App {
             AppCommand::CopyPicture => self.copy_picture(ctx),
             AppCommand::ToggleKeepLook => self.opening.requests.keeps_look ^= true,
             AppCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            AppCommand::Undo => self.undo_or_redo(true, ctx),
-            AppCommand::Redo => self.undo_or_redo(false, ctx),
+            AppCommand::Undo => self.editor.undo_or_redo(true, !self.layout.picture_only, ctx),
+            AppCommand::Redo => self.editor.undo_or_redo(false, !self.layout.picture_only, ctx),
             AppCommand::ToggleHistory => self.windows.history.open ^= true,
-            AppCommand::GoSteps(steps) => self.go_steps(steps, ctx),
-            AppCommand::ToggleMessages => self.messages.list_open ^= true,
-            AppCommand::ResetView => self.reset_view(ctx),
-            AppCommand::AddLight => self.add_light(),
-            AppCommand::AutomaticTransfer => self.use_automatic_transfer(ctx),
-            AppCommand::TreatAs(kind) => self.treat_as(kind, ctx),
-            AppCommand::UsePreset(preset) => self.use_preset(&preset),
-            AppCommand::UseColors(at, reversed) => self.document.use_colors(at, reversed),
+            AppCommand::GoSteps(steps) => self.editor.go_steps(steps, !self.layout.picture_only, ctx),
+            AppCommand::ToggleMessages => self.editor.messages.list_open ^= true,
+            AppCommand::ResetView => self.editor.reset_view(ctx),
+            AppCommand::AddLight => self.editor.add_light(),
+            AppCommand::AutomaticTransfer => self.editor.use_automatic_transfer(ctx),
+            AppCommand::TreatAs(kind) => self.editor.treat_as(kind, ctx),
+            AppCommand::UsePreset(preset) => self.editor.use_preset(&preset),
+            AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
-            AppCommand::InvertTransfer => self.document.settings.transfer.mirror(),
-            AppCommand::ToggleCrop => self.toggle_crop(ctx),
-            AppCommand::TogglePlane => self.toggle_plane(ctx),
-            AppCommand::FacePlane => self.document.face_plane(),
-            AppCommand::ToggleFloor => self.toggle_floor(ctx),
-            AppCommand::Balance => self.start_balance(ctx),
-            AppCommand::FrameAll => self.frame_all(ctx),
-            AppCommand::TurnObject(turn) => self.turn_object(turn, ctx),
-            AppCommand::RotateObject => self.rotate_object(ctx),
-            AppCommand::LookFrom(view) => self.look_from(view, ctx),
-            AppCommand::ToggleProjection => self.document.settings.camera.toggle_projection(),
-            AppCommand::SaveView => self.save_view(),
-            AppCommand::SaveLookInStrip => self.save_look(),
-            AppCommand::StoreView(slot) => self.save_view_under(slot),
-            AppCommand::RecallView(slot) => self.apply_kept_digit(slot, ctx),
-            AppCommand::GoToSaved(at, with_view) => self.apply_kept_item(at, with_view, ctx),
-            AppCommand::ReplaceSaved(at) => self.replace_kept_item(at),
-            AppCommand::CompareSaved(left, right) => self.compare_saved(left, right, ctx),
+            AppCommand::InvertTransfer => self.editor.document.settings.transfer.mirror(),
+            AppCommand::ToggleCrop => {
+                let crop = &mut self.editor.document.settings.cuts.crop;
+                crop.on ^= true;
+                self.layout.show_section(ctx, text::sections::CUTS, crop.on);
+            }
+            AppCommand::TogglePlane => {
+                let plane = &mut self.editor.document.settings.cuts.plane;
+                plane.on ^= true;
+                self.layout.show_section(ctx, text::sections::CUTS, plane.on);
+            }
+            AppCommand::FacePlane => self.editor.document.face_plane(),
+            AppCommand::ToggleFloor => {
+                let floor = &mut self.editor.document.settings.floor;
+                floor.on ^= true;
+                self.layout.show_section(ctx, text::sections::FLOOR, floor.on);
+            }
+            AppCommand::Balance => self.editor.start_balance(ctx),
+            AppCommand::FrameAll => self.editor.frame_all(ctx),
+            AppCommand::TurnObject(turn) => self.editor.turn_object(turn, ctx),
+            AppCommand::RotateObject => self.editor.rotate_object(ctx),
+            AppCommand::LookFrom(view) => self.editor.look_from(view, ctx),
+            AppCommand::ToggleProjection => self.editor.document.settings.camera.toggle_projection(),
+            AppCommand::SaveView => self.layout.kept |= self.editor.save_view(),
+            AppCommand::SaveLookInStrip => self.layout.kept |= self.editor.save_look(),
+            AppCommand::StoreView(slot) => self.layout.kept |= self.editor.save_view_under(slot),
+            AppCommand::RecallView(slot) => self.editor.apply_saved_digit(slot, ctx),
+            AppCommand::GoToSaved(at, with_view) => self.editor.apply_saved(at, with_view, ctx),
+            AppCommand::ReplaceSaved(at) => self.editor.replace_saved(at),
+            AppCommand::CompareSaved(left, right) => {
+                self.editor.compare_saved(left, right);
+                reveal::show_section(ctx, text::sections::COMPARE, true);
+            }
             AppCommand::ExportContactSheet => self.ask_file(FileDialogPurpose::ExportKept, frame, ctx),
             AppCommand::ToggleStrip => self.layout.kept ^= true,
             AppCommand::Scale(1) => gui_zoom::zoom_in(ctx),
@@ -77,26 +91,35 @@ impl App {
             AppCommand::ToggleOverlay => self.picture.overlay.visible ^= true,
             AppCommand::ToggleProbe => self.picture.light_probe.is_active ^= true,
             AppCommand::ShowPalette => self.windows.palette.open(),
-            AppCommand::UseRig(rig) => self.document.use_rig(rig),
-            AppCommand::UseLights(lights) => self.document.use_lights(lights),
-            AppCommand::UseLook(look) => self.document.use_look(*look),
-            AppCommand::TryLooks => self.try_looks(ctx),
+            AppCommand::UseRig(rig) => self.editor.document.use_rig(rig),
+            AppCommand::UseLights(lights) => self.editor.document.use_lights(lights),
+            AppCommand::UseLook(look) => self.editor.document.use_look(*look),
+            AppCommand::TryLooks => {
+                // The looks derive from the first look, which must have the current up axis.
+                if self.editor.ensure_first_look_up(Some(AppCommand::TryLooks), ctx) {
+                    self.windows.contact_sheet.open(ContactSheetKind::Looks);
+                }
+            }
             AppCommand::TryLights => self.windows.contact_sheet.open(ContactSheetKind::Lights),
             AppCommand::UseEnvironmentMap => self.ask_file(FileDialogPurpose::EnvironmentMap, frame, ctx),
             AppCommand::SuggestLight => self.windows.contact_sheet.open(ContactSheetKind::Suggestions),
             AppCommand::TryPresets => self.windows.contact_sheet.open(ContactSheetKind::Presets),
-            AppCommand::NextLight => self.document.step_light(1),
-            AppCommand::PreviousLight => self.document.step_light(-1),
-            AppCommand::Solo => self.document.solo_light(),
-            AppCommand::Mute => self.document.change_light(|light| light.on ^= true),
-            AppCommand::Brighter => self.document.change_light(|light| light_keys::brighten(light, 1)),
-            AppCommand::Dimmer => self.document.change_light(|light| light_keys::brighten(light, -1)),
+            AppCommand::NextLight => self.editor.document.step_light(1),
+            AppCommand::PreviousLight => self.editor.document.step_light(-1),
+            AppCommand::Solo => self.editor.document.solo_light(),
+            AppCommand::Mute => self.editor.document.change_light(|light| light.on ^= true),
+            AppCommand::Brighter => self.editor.document.change_light(|light| light_keys::brighten(light, 1)),
+            AppCommand::Dimmer => self.editor.document.change_light(|light| light_keys::brighten(light, -1)),
             AppCommand::ToggleSide => self.layout.side ^= true,
             AppCommand::ToggleTransfer => self.layout.transfer ^= true,
-            AppCommand::TogglePictureOnly => self.toggle_picture_only(),
+            AppCommand::TogglePictureOnly => self.layout.toggle_picture_only(&mut self.editor.messages),
             AppCommand::ToggleHandles => self.picture.handles.is_hidden ^= true,
-            AppCommand::ToggleCompare => self.toggle_compare(ctx),
-            AppCommand::Reveal(place) => self.reveal(place, ctx),
+            AppCommand::ToggleCompare => {
+                let compare = &mut self.editor.viewport.compare;
+                compare.on ^= true;
+                self.layout.show_section(ctx, text::sections::COMPARE, compare.on);
+            }
+            AppCommand::Reveal(place) => self.layout.reveal(place, ctx),
             AppCommand::ShowSlices => self.windows.slices.open ^= true,
             AppCommand::ShowLightVolume => self.windows.light_slice.open = true,
             AppCommand::CompareWithFile => self.ask_file(FileDialogPurpose::CompareSettings, frame, ctx),

@@ -14,10 +14,12 @@ impl App {
         match self.loader.take_outcome() {
             None => {}
             Some(LoadOutcome::Opened(opened)) => self.show_opened_with_session(*opened, ctx),
-            Some(LoadOutcome::Uploaded { renderer, dataset }) => self.viewport.set_scene(*renderer, dataset),
+            Some(LoadOutcome::Uploaded { renderer, dataset }) => {
+                self.editor.viewport.set_scene(*renderer, dataset)
+            }
             Some(LoadOutcome::Cancelled) => {
                 self.opening.requests.pending_look = None;
-                self.messages.note(text::messages::OPENING_CANCELLED);
+                self.editor.messages.note(text::messages::OPENING_CANCELLED);
             }
             Some(LoadOutcome::UnknownRawFormat { path, why, guess }) => {
                 self.dialogs.raw.open(&path, why, guess, ctx);
@@ -28,29 +30,29 @@ impl App {
             }
             Some(LoadOutcome::Failed { short, details }) => {
                 self.opening.requests.pending_look = None;
-                self.messages.error(short, details);
+                self.editor.messages.error(short, details);
             }
         }
         self.take_neighbour(ctx);
-        self.finish_kind_task(ctx);
+        self.editor.finish_kind_task(ctx);
         self.finish_file_tasks(ctx);
-        self.take_balances(ctx);
+        self.editor.take_balances(ctx);
         match self.windows.export.take_result() {
             None => {}
             Some(Ok(ExportOutcome::File(path))) => {
                 self.layout.exports =
                     std::path::absolute(&path).ok().and_then(|path| Some(path.parent()?.to_owned()));
-                self.messages.note(text::messages::exported(&path));
+                self.editor.messages.note(text::messages::exported(&path));
             }
             Some(Ok(ExportOutcome::Picture(picture))) => {
                 ctx.copy_image(picture);
-                self.messages.note(text::messages::PICTURE_COPIED);
+                self.editor.messages.note(text::messages::PICTURE_COPIED);
             }
-            Some(Ok(ExportOutcome::Cancelled)) => self.messages.note(text::messages::EXPORT_CANCELLED),
-            Some(Err(err)) => self.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
+            Some(Ok(ExportOutcome::Cancelled)) => self.editor.messages.note(text::messages::EXPORT_CANCELLED),
+            Some(Err(err)) => self.editor.messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
         }
         if self.dialogs.files.take_refused() {
-            self.messages.note(text::files::DIALOG_IS_OPEN);
+            self.editor.messages.note(text::files::DIALOG_IS_OPEN);
         }
         if let Some((purpose, path)) = self.dialogs.files.take_choice(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
@@ -63,10 +65,10 @@ impl App {
 
     /// Handles an error of the renderer. After the loss of the device, another window takes the place of this one.
     pub(crate) fn handle_render_error(&mut self, err: &GpuError, ctx: &egui::Context) {
-        if self.viewport.is_lost() {
+        if self.editor.viewport.is_lost() {
             self.close_for_successor(ctx);
         } else {
-            self.messages.error(text::messages::NOT_RENDERED, err.to_string());
+            self.editor.messages.error(text::messages::NOT_RENDERED, err.to_string());
         }
     }
 }

@@ -14,10 +14,12 @@ impl App {
         let read = |path: &Path| read_environment_map(path).map_err(|err| err.to_string());
         self.read_file(ReadPurpose::Surroundings, path, ctx, read, |app, read, _ctx| match read {
             Ok(surroundings) => {
-                app.document.settings.apply_environment_map(&surroundings);
-                app.document.selected_light = 0;
+                app.editor.document.settings.apply_environment_map(&surroundings);
+                app.editor.document.selected_light = 0;
                 let has_light = surroundings.light.is_some();
-                app.messages.note(text::messages::environment_map_applied(&surroundings.name, has_light));
+                app.editor
+                    .messages
+                    .note(text::messages::environment_map_applied(&surroundings.name, has_light));
             }
             Err(why) => app.report_read_failure(text::messages::ENVIRONMENT_MAP_NOT_READ, why),
         });

@@ -159,8 +159,8 @@ impl App {
     /// Reports that a file was not read.
     pub(crate) fn report_read_failure(&mut self, short: &str, why: FileReadFailure) {
         match why {
-            FileReadFailure::Cancelled => self.messages.note(text::files::READING_CANCELLED),
-            FileReadFailure::Failed(details) => self.messages.error(short, details),
+            FileReadFailure::Cancelled => self.editor.messages.note(text::files::READING_CANCELLED),
+            FileReadFailure::Failed(details) => self.editor.messages.error(short, details),
         }
     }
 

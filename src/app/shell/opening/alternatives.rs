@@ -11,18 +11,18 @@ use chiaroscuro_volume::{ChoiceAspect, VolumeChoice};
 impl App {
     /// Opens the chooser of an aspect of the open file.
     pub(crate) fn show_chooser(&mut self, aspect: ChoiceAspect) {
-        let held = self.document.volume.as_ref().map(|volume| &volume.held);
+        let held = self.editor.document.volume.as_ref().map(|volume| &volume.held);
         match held.and_then(|held| Alternatives::new(held, aspect)) {
             Some(all) => self.windows.volume_chooser.open(aspect, &all),
-            None => self.messages.note(text::chooser::single_item(aspect)),
+            None => self.editor.messages.note(text::chooser::single_item(aspect)),
         }
     }
 
     /// Opens the next or the previous volume of the open file.
     pub(crate) fn step_choice(&mut self, aspect: ChoiceAspect, is_forward: bool, ctx: &egui::Context) {
-        let held = self.document.volume.as_ref().map(|volume| &volume.held);
+        let held = self.editor.document.volume.as_ref().map(|volume| &volume.held);
         let Some(all) = held.and_then(|held| Alternatives::new(held, aspect)) else {
-            return self.messages.note(text::chooser::single_item(aspect));
+            return self.editor.messages.note(text::chooser::single_item(aspect));
         };
         let next = if is_forward { Some(all.current() + 1) } else { all.current().checked_sub(1) };
         if let Some(next) = next.filter(|&next| next < all.count()) {
@@ -34,7 +34,7 @@ impl App {
     /// Opens another volume of the open file; the current one stays until it is ready, and `keeps_look` keeps the
     /// look for it.
     pub(crate) fn open_choice(&mut self, choice: &VolumeChoice, keeps_look: bool, ctx: &egui::Context) {
-        let Some(volume) = &self.document.volume else { return };
+        let Some(volume) = &self.editor.document.volume else { return };
         if volume.held.choice() == *choice {
             // Cancels a choice in progress.
             self.loader.cancel();

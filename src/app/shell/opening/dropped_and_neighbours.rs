@@ -38,21 +38,21 @@ impl App {
         if let Some(folder) = slice_folder(paths) {
             if is_complete_folder(folder, paths) {
                 self.open(folder, ctx);
-                self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+                self.editor.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
                 return;
             }
             // The message was about another file.
-            self.messages.dismiss();
+            self.editor.messages.dismiss();
             let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
             if self.start_loading(folder, reading, ctx) {
                 self.opening.requests.pending_look = None;
-                self.messages.note(text::opening::part_of_folder(paths.len(), folder));
+                self.editor.messages.note(text::opening::part_of_folder(paths.len(), folder));
             }
             return;
         }
         self.open(first, ctx);
         if paths.len() > 1 {
-            self.messages.note(text::opening::first_of_dropped(paths.len(), first));
+            self.editor.messages.note(text::opening::first_of_dropped(paths.len(), first));
         }
     }
 
@@ -60,9 +60,10 @@ impl App {
     pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
         // Pressing the key again goes on from the file that is being opened.
         let opening = self.loader.progress().map(|progress| progress.source.to_owned());
-        let from = opening.or_else(|| self.document.volume.as_ref().map(|volume| volume.source.clone()));
+        let from =
+            opening.or_else(|| self.editor.document.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
-            return self.messages.note(text::opening::NO_FOLDER);
+            return self.editor.messages.note(text::opening::NO_FOLDER);
         };
         let control = Arc::new(LoadControl::new());
         let watched = Arc::clone(&control);
@@ -71,7 +72,7 @@ impl App {
             move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
         match BackgroundTask::start("next-file", ctx, task) {
             Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
-            Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
+            Err(err) => self.editor.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
         }
     }
 
@@ -87,8 +88,8 @@ impl App {
                     self.opening.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
                 }
             }
-            Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),
-            Err(panic) => self.messages.error(text::opening::NOT_OPENED, panic),
+            Ok(None) => self.editor.messages.note(text::opening::no_neighbour(is_forward)),
+            Err(panic) => self.editor.messages.error(text::opening::NOT_OPENED, panic),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Opening of looks from files: applied to the open volume, or to the volume that they name, which is opened first.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eframe::egui;
 
@@ -12,7 +12,6 @@ use crate::app::windows::file_dialogs::{self, FileDialogPurpose};
 use crate::app::windows::untrusted_path::UntrustedPathAnswer;
 use crate::app::{App, text};
 use chiaroscuro_scene::{LookRecord, VolumeLocation, VolumeRecord};
-use chiaroscuro_volume::ValueRanges;
 
 impl App {
     /// Opens the look of a session, a preset or a picture. A volume that it names is opened first, unless it is open;
@@ -57,7 +56,7 @@ impl App {
 
     /// Applies a look that was read from a file.
     fn open_look(&mut self, record: LookRecord, path: &Path, ctx: &egui::Context) {
-        let open = self.volume_record().map(|(_, content_id)| content_id);
+        let open = self.editor.volume_record().map(|(_, content_id)| content_id);
         match record.volume.clone() {
             Some(volume) if open.is_none_or(|open| !volume.matches_content(open)) => {
                 match self.locate_volume(&volume, path) {
@@ -69,7 +68,7 @@ impl App {
                     }
                 }
             }
-            Some(_) => drop(self.apply_record(&record, &self.document.value_ranges(), self.opened_id())),
+            Some(_) => drop(self.editor.apply_record_to_open(&record)),
             None => self.apply_look(record, ctx),
         }
     }
@@ -88,8 +87,8 @@ impl App {
     /// Returns true if a record may open a file outside its own folder: records of this program may, and others may
     /// open what the user has opened before.
     fn is_trusted(&self, record: &Path, volume: &Path) -> bool {
-        let is_known = || self.memory.recent().iter().any(|known| known.path == volume);
-        self.opening.requests.trusts_paths || self.memory.is_autosaved_look(record) || is_known()
+        let is_known = || self.editor.memory.recent().iter().any(|known| known.path == volume);
+        self.opening.requests.trusts_paths || self.editor.memory.is_autosaved_look(record) || is_known()
     }
 
     /// Applies a look to the volume that is open or being opened.
@@ -97,10 +96,10 @@ impl App {
         if self.loader.progress().is_some() {
             // The user will see it on the volume that is being opened.
             self.opening.requests.pending_look = Some(PendingLook::Record(Box::new(record)));
-        } else if self.volume_record().is_none() {
+        } else if self.editor.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record, ctx);
         } else {
-            self.apply_record(&record, &self.document.value_ranges(), self.opened_id());
+            self.editor.apply_record_to_open(&record);
         }
     }
 
@@ -145,11 +144,11 @@ impl App {
             file_dialogs::load_record,
             |app, read, _ctx| match read {
                 Ok(record) => {
-                    let open = app.volume_record().map(|(_, content_id)| content_id);
+                    let open = app.editor.volume_record().map(|(_, content_id)| content_id);
                     if record.volume.as_ref().zip(open).is_some_and(|(of, open)| !of.matches_content(open)) {
-                        app.messages.note(text::opening::OTHER_VOLUME);
+                        app.editor.messages.note(text::opening::OTHER_VOLUME);
                     }
-                    app.apply_record(&record, &app.document.value_ranges(), app.opened_id());
+                    app.editor.apply_record_to_open(&record);
                 }
                 Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
             },
@@ -161,54 +160,22 @@ impl App {
         self.read_file(ReadPurpose::Comparison, path, ctx, file_dialogs::load_record, |app, read, _ctx| {
             match read {
                 Ok(record) => {
-                    match app.document.settings_with_record(&record, &app.document.value_ranges()) {
+                    match app
+                        .editor
+                        .document
+                        .settings_with_record(&record, &app.editor.document.value_ranges())
+                    {
                         Ok(AppliedLook { settings, note }) => {
                             if let Some(note) = note {
-                                app.messages.note(note);
+                                app.editor.messages.note(note);
                             }
-                            app.picture.compare.start_with(settings);
+                            app.editor.viewport.compare.start_with(settings);
                         }
-                        Err(err) => app.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
+                        Err(err) => app.editor.messages.error(text::opening::SETTINGS_NOT_LOADED, err),
                     }
                 }
                 Err(why) => app.report_read_failure(text::opening::SETTINGS_NOT_LOADED, why),
             }
         });
-    }
-
-    /// Applies a record to the settings and returns true if it succeeded. Its corrections are applied only to the
-    /// volume for which they were made.
-    pub(super) fn apply_record(
-        &mut self,
-        record: &LookRecord,
-        ranges: &ValueRanges,
-        opened_id: Option<u64>,
-    ) -> bool {
-        let note = self.document.apply_record(record, ranges, opened_id);
-        let is_applied = note.is_ok();
-        if let Some(note) = self.messages.report(text::opening::SETTINGS_NOT_LOADED, note) {
-            self.messages.note(note);
-        }
-        is_applied
-    }
-
-    /// Returns path and identifier of the open volume, for records.
-    pub(crate) fn volume_record(&self) -> Option<(&Path, u64)> {
-        Some((&self.document.volume.as_ref()?.source, self.opened_id()?))
-    }
-
-    /// Returns the path to which Ctrl+S writes; if the file is protected, shows the reason and returns `None`.
-    pub(crate) fn session_to_save(&mut self) -> Option<PathBuf> {
-        let session = self.document.session.as_ref()?;
-        let Some((path, why)) = session.protection() else { return Some(session.path().to_owned()) };
-        self.messages.note(text::persistence::session_protected(path, why));
-        None
-    }
-
-    pub(crate) fn save_settings(&mut self, path: &Path) {
-        match self.document.save_session(path, self.opened_id()) {
-            Ok(()) => self.messages.note(text::opening::session_saved(path)),
-            Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
-        }
     }
 }

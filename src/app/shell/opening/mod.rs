@@ -34,7 +34,7 @@ impl App {
     pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
         let source = source.as_ref();
         // The message was about another file.
-        self.messages.dismiss();
+        self.editor.messages.dismiss();
         if file_dialogs::may_be_look_file(source) {
             self.open_volume_or_look(source, ctx);
         } else {
@@ -83,7 +83,7 @@ impl App {
 
     /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
     pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
-        let is_empty = self.document.volume.is_none() && self.viewport.dataset().is_none();
+        let is_empty = self.editor.document.volume.is_none() && self.editor.viewport.dataset().is_none();
         let is_busy =
             self.loader.progress().is_some() || self.opening.file_tasks.is_reading(ReadPurpose::Open);
         if reason == ReadPurpose::Open && is_empty && !is_busy {
@@ -94,7 +94,7 @@ impl App {
     /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
     /// or being opened.
     pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
-        let is_free = self.document.volume.is_none()
+        let is_free = self.editor.document.volume.is_none()
             && self.loader.progress().is_none()
             && !self.dialogs.untrusted_path.is_open();
         if std::mem::take(&mut self.opening.default_open_waits) && is_free {
@@ -104,7 +104,7 @@ impl App {
 
     /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
     fn open_volume_of_session(&mut self, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().map(|session| session.path().to_owned());
+        let session = self.editor.document.session.as_ref().map(|session| session.path().to_owned());
         let Some(session) = session.filter(|path| path.exists()) else { return };
         let path = session.clone();
         self.read_file(ReadPurpose::Open, &path, ctx, file_dialogs::load_record, move |app, read, ctx| {
@@ -137,7 +137,7 @@ impl App {
                     return;
                 }
                 // The volume is shown nevertheless.
-                Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
+                Err(err) => self.editor.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
             }
         }
         let reading = ReadChoices { raw: Some(layout.to_format()), ..ReadChoices::default() };
@@ -146,8 +146,8 @@ impl App {
 
     /// Reads the open volume again with another subsampling; the look stays.
     pub(crate) fn reload_subsampled(&mut self, thinning: Downsampling, ctx: &egui::Context) {
-        let Some(volume) = &self.document.volume else { return };
-        let mut settings = self.document.settings.clone();
+        let Some(volume) = &self.editor.document.volume else { return };
+        let mut settings = self.editor.document.settings.clone();
         // The opacity unit keeps its thickness, whatever the number of voxels.
         if let OpacityLength::Voxels(_) = settings.opacity_unit {
             let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
@@ -170,40 +170,13 @@ impl App {
         self.dialogs.raw.close();
         self.dialogs.large_volume.close();
         let known = RememberedFileSettings {
-            up: self.memory.up_of(source),
-            corrections: self.memory.corrections_of(source),
+            up: self.editor.memory.up_of(source),
+            corrections: self.editor.memory.corrections_of(source),
         };
         let started = self.loader.open_on_thread(source, reading, known, ctx);
         if let Err(err) = &started {
-            self.messages.error(text::opening::NOT_OPENED, err.clone());
+            self.editor.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
-    }
-
-    /// Identifier of the open file's volume.
-    pub(super) fn opened_id(&self) -> Option<u64> {
-        self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
-    }
-
-    /// Records a notice from before there was a window to show it.
-    pub(crate) fn add_notice(&mut self, found: Option<String>) {
-        if let Some(notice) = found {
-            self.memory.add_notice(notice);
-        }
-    }
-
-    /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
-    pub(crate) fn autosave_look(&mut self) {
-        if let Some((volume, opened_id)) = self.document.volume.as_ref().zip(self.opened_id()) {
-            self.memory.autosave(&self.document.settings, &volume.source, opened_id, &volume.held.choice());
-            if let Some(picture) = self.viewport.take_finished() {
-                self.memory.autosave_thumbnail(picture);
-            }
-            // Not before there is a volume, which clears the messages.
-            let notices = self.memory.take_notices();
-            if !notices.is_empty() {
-                self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
-            }
-        }
     }
 }

@@ -33,7 +33,7 @@ fn kept_look(mut look: Settings, first: &Settings) -> Settings {
 impl App {
     /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
     pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
+        let session = self.editor.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
                 let read = file_dialogs::load_record;
@@ -50,7 +50,7 @@ impl App {
         let OpenedVolume { source, reading, dataset, original_dims, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.report_opened(&volume, original_dims);
-        let open = self.document.volume.as_ref();
+        let open = self.editor.document.volume.as_ref();
         let plan = OpenPlan::new(OpenRequest {
             requested: self.opening.requests.pending_look.take(),
             keeps_look: self.opening.requests.keeps_look,
@@ -61,14 +61,14 @@ impl App {
         // Session and adjustment apply to the first volume only.
         self.opening.requests.session_is_due = false;
         self.apply_plan(plan, settings, session, &volume);
-        self.memory.add_recent(&source, &volume.contents().choice());
+        self.editor.memory.add_recent(&source, &volume.contents().choice());
         self.panels.recent_pictures.clear();
-        self.look_tasks.light_search = None;
+        self.editor.look_tasks.light_search = None;
         self.windows.contact_sheet.discard();
         self.panels.kept_strip.reset();
         let facts = VolumeFacts::new(source, reading, &dataset);
-        self.viewport.set_scene(renderer, dataset);
-        let document = &mut self.document;
+        self.editor.viewport.set_scene(renderer, dataset);
+        let document = &mut self.editor.document;
         document.volume = Some(facts);
         // Treated as its own kind of data, with its own up axis.
         document.kind_override = KindOverride::default();
@@ -81,15 +81,15 @@ impl App {
 
     /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.
     fn report_opened(&mut self, volume: &Volume, original_dims: Option<[usize; 3]>) {
-        self.messages.clear();
+        self.editor.messages.clear();
         if let Some(before) = original_dims {
-            self.messages.note(text::opening::downsampled(before, volume.dims()));
+            self.editor.messages.note(text::opening::downsampled(before, volume.dims()));
         }
         for remark in volume.remarks() {
-            self.messages.note(remark.clone());
+            self.editor.messages.note(remark.clone());
         }
         if !volume.corrections().is_none() {
-            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
+            self.editor.messages.note(text::corrections::restored(&volume.corrections().in_words()));
         }
     }
 
@@ -102,14 +102,14 @@ impl App {
         volume: &Volume,
     ) {
         let OpenPlan { start, changes, keeps_selection, places_lights } = plan;
-        let before = std::mem::take(&mut self.document.settings);
-        self.document.settings = match start {
+        let before = std::mem::take(&mut self.editor.document.settings);
+        self.editor.document.settings = match start {
             StartingLook::FirstLook => first.clone(),
             StartingLook::KeptLook => kept_look(before.clone(), &first),
         };
         // Measurements belong to the volume before; a first look is balanced, a kept look is not.
         let is_balanced = start == StartingLook::FirstLook;
-        self.document.keep_balanced = AutoBalance::new(&self.document.settings, is_balanced);
+        self.editor.document.keep_balanced = AutoBalance::new(&self.editor.document.settings, is_balanced);
         for change in changes {
             match change {
                 LookChange::Session => {
@@ -120,27 +120,28 @@ impl App {
                 LookChange::Record(record) => {
                     let of = record.volume.as_ref();
                     if of.is_some_and(|of| !of.matches_content(volume.opened_id())) {
-                        self.messages.note(text::opening::OTHER_VALUES);
+                        self.editor.messages.note(text::opening::OTHER_VALUES);
                     }
-                    self.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
+                    self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
                 }
-                LookChange::Settings(settings) => self.document.replace_settings(*settings),
+                LookChange::Settings(settings) => self.editor.document.replace_settings(*settings),
                 LookChange::Current(corrections) => {
                     let volume = match corrections {
                         CorrectionsOrigin::OpenedFile => first.volume,
                         CorrectionsOrigin::CurrentLook => before.volume,
                     };
-                    self.document.replace_settings(Settings { volume, ..before.clone() });
+                    self.editor.document.replace_settings(Settings { volume, ..before.clone() });
                 }
                 LookChange::Adjustment => {
                     if let Some(adjust) = self.opening.adjust_first_look.take() {
-                        self.document.settings = adjust(std::mem::take(&mut self.document.settings));
-                        self.document.settings.sanitise();
+                        self.editor.document.settings =
+                            adjust(std::mem::take(&mut self.editor.document.settings));
+                        self.editor.document.settings.sanitise();
                     }
                 }
             }
         }
-        let document = &mut self.document;
+        let document = &mut self.editor.document;
         // Saved views are useful on other volumes, too.
         if document.settings.kept.is_empty() {
             document.settings.kept = before.kept;
@@ -155,16 +156,16 @@ impl App {
 
     /// Applies the session that was read for a volume, or reports why it was not read.
     fn apply_session(&mut self, read: SessionRead, volume: &Volume) {
-        let Some(mut session) = self.document.session.take() else { return };
+        let Some(mut session) = self.editor.document.session.take() else { return };
         session.set_record(read.as_ref().ok());
         match read {
             Ok(record) => {
-                if !self.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                if !self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
                     session.protect_invalid();
                 }
             }
             Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
         }
-        self.document.session = Some(session);
+        self.editor.document.session = Some(session);
     }
 }

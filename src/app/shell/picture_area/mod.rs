@@ -65,8 +65,9 @@ pub(crate) fn show(ui: &mut egui::Ui, mut inputs: PictureInputs<'_>) -> (Canvas,
     let result = inputs.request_picture(ui, canvas);
     inputs.tools.first_run_hints.show(ui, canvas.rect, &response);
     let pictures = inputs.viewport.pictures();
-    inputs.tools.compare.show(ui, canvas.rect, &pictures);
-    for (place, (part, shape)) in places.into_iter().zip(inputs.tools.compare.shapes(canvas.rect, &pictures))
+    inputs.viewport.compare.show(ui, canvas.rect, &pictures);
+    for (place, (part, shape)) in
+        places.into_iter().zip(inputs.viewport.compare.shapes(canvas.rect, &pictures))
     {
         ui.painter_at(part).set(place, shape);
     }
@@ -89,7 +90,7 @@ fn allocate_canvas(ui: &mut egui::Ui, export_preview: Option<&ImageSpec>) -> Can
 impl PictureInputs<'_> {
     /// Returns true if the whole picture shows one view, which the mouse can change.
     fn is_one_view(&self) -> bool {
-        !self.tools.compare.shows_two_views()
+        !self.viewport.compare.shows_two_views()
     }
 
     /// Navigates with the mouse; double clicks move the orbit centre, and clicks the cursor of the slices.
@@ -153,7 +154,7 @@ impl PictureInputs<'_> {
         let Some(volume) = volume else { return };
         let (tools, commands) = (&mut *self.tools, &mut *self.commands);
         // A comparison has captions at the top and at the bottom.
-        let body = volume.is_anatomical.then(|| tools.compare.area_without_labels(ui, area));
+        let body = volume.is_anatomical.then(|| self.viewport.compare.area_without_labels(ui, area));
         let chips = tools
             .overlay
             .visible
@@ -208,9 +209,9 @@ impl PictureInputs<'_> {
         let looks = match self.tools.camera_animation.current_view(&settings.camera, now_s) {
             Some(camera) => {
                 ui.ctx().request_repaint();
-                self.tools.compare.looks(&Settings { camera, ..settings.clone() })
+                self.viewport.compare.looks(&Settings { camera, ..settings.clone() })
             }
-            None => self.tools.compare.looks(settings),
+            None => self.viewport.compare.looks(settings),
         };
         self.viewport.update(looks, canvas.size, ui.ctx())
     }
@@ -238,10 +239,10 @@ impl App {
         facts: &RendererStatus,
         commands: &mut Vec<AppCommand>,
     ) {
-        let outline = self.document.outline(self.viewport.dataset().as_ref());
+        let outline = self.editor.document.outline(self.editor.viewport.dataset().as_ref());
         let inputs = PictureInputs {
-            document: &mut self.document,
-            viewport: &mut self.viewport,
+            document: &mut self.editor.document,
+            viewport: &mut self.editor.viewport,
             tools: &mut self.picture,
             slices: &mut self.windows.slices,
             outline: outline.as_deref(),
@@ -253,12 +254,12 @@ impl App {
         let (canvas, result) = shown.inner;
         self.picture.canvas = Some(canvas);
         // At the top of the whole central area, clear of a dialog beside a smaller picture.
-        self.messages.notice(ui.ctx(), shown.response.rect);
-        self.messages.list(ui.ctx());
+        self.editor.messages.notice(ui.ctx(), shown.response.rect);
+        self.editor.messages.list(ui.ctx());
         if let Err(err) = result {
             self.handle_render_error(&err, ui.ctx());
         }
-        self.document.update_shown_range(self.viewport.dataset().as_ref());
+        self.editor.document.update_shown_range(self.editor.viewport.dataset().as_ref());
     }
 }
 

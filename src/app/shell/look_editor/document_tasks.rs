@@ -3,13 +3,14 @@
 
 use eframe::egui;
 
+use super::LookEditor;
 use crate::app::common::commands::AppCommand;
-use crate::app::{App, text};
+use crate::app::text;
 
-impl App {
+impl LookEditor {
     /// Returns true if the first look has the up axis of the settings, wherever these come from. Otherwise it is
     /// turned, and `then` is executed afterwards.
-    pub(super) fn ensure_first_look_up(&mut self, then: Option<AppCommand>, ctx: &egui::Context) -> bool {
+    pub(crate) fn ensure_first_look_up(&mut self, then: Option<AppCommand>, ctx: &egui::Context) -> bool {
         let is_up = self.document.ensure_first_look_up(then, self.viewport.dataset(), ctx);
         self.messages.report(text::messages::TURN_FAILED, is_up)
     }
@@ -27,35 +28,36 @@ impl App {
     }
 
     /// Takes over an outline from its thread, and starts a search when the window is idle and the look has changed.
-    /// Returns the command that has waited for the outline.
-    pub(crate) fn update_outline(&mut self, ctx: &egui::Context) -> Option<AppCommand> {
+    /// Returns the command that has waited for the outline; `is_opening` is true while a file is opened or read.
+    pub(crate) fn update_outline(&mut self, is_opening: bool, ctx: &egui::Context) -> Option<AppCommand> {
         self.document.take_outline();
         let dataset = self.viewport.dataset();
         if self.document.knows_outline(dataset.as_ref()) {
             return self.document.take_waiting_command();
         }
-        if self.document.is_outline_awaited() || self.is_complete() {
+        if self.document.is_outline_awaited() || (!is_opening && self.is_complete()) {
             self.document.start_outline_search(dataset, ctx);
         }
         None
     }
 
     /// Takes over the look for another kind of data from its thread.
-    pub(super) fn finish_kind_task(&mut self, ctx: &egui::Context) {
+    pub(crate) fn finish_kind_task(&mut self, ctx: &egui::Context) {
         let is_new = self.document.finish_kind_task(self.viewport.dataset(), ctx);
         if self.messages.report(text::messages::LOOK_NOT_MADE, is_new) {
             self.look_tasks.light_search = None;
         }
     }
 
-    /// Starts correcting the volume as the settings say, and shows the result.
-    pub(crate) fn update_corrections(&mut self, ctx: &egui::Context) {
+    /// Starts correcting the volume as the settings say, and shows the result. Returns true if another volume is shown.
+    pub(crate) fn update_corrections(&mut self, ctx: &egui::Context) -> bool {
         let now_s = ctx.input(|input| input.time);
         let corrected = self.document.take_corrected(self.viewport.dataset().as_ref(), now_s);
-        if let Some(dataset) = self.messages.report(text::corrections::CORRECTION_FAILED, corrected) {
+        let corrected = self.messages.report(text::corrections::CORRECTION_FAILED, corrected);
+        let is_corrected = corrected.is_some();
+        if let Some(dataset) = corrected {
             // Results in progress belong to the volume before.
             (self.look_tasks.light_search, self.look_tasks.balance) = (None, None);
-            self.windows.contact_sheet.discard();
             self.viewport.set_dataset(dataset);
             ctx.request_repaint();
         }
@@ -63,5 +65,6 @@ impl App {
             let started = self.document.start_correction_if_due(dataset, &mut self.memory, ctx);
             self.messages.report(text::corrections::CORRECTION_FAILED, started);
         }
+        is_corrected
     }
 }

@@ -7,11 +7,12 @@ use std::time::Duration;
 
 use eframe::egui;
 
+use super::LookEditor;
 use crate::app::document::auto_balance::{BalanceAction, BalanceFrame};
 use crate::app::document::light_placement::{LightPlacementAction, LightPlacementFrame};
+use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
-use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight};
+use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight, ShaderLibrary};
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
 const CANDIDATE_PAUSE: Duration = Duration::from_millis(1);
@@ -42,9 +43,15 @@ pub(crate) struct LookTasks {
     pub light_search: Option<LightSearchTask>,
 }
 
-impl App {
-    /// Finishes the first look of the volume with the lights found, unless the user has edited it.
-    pub(crate) fn finish_first_look(&mut self, ctx: &egui::Context) {
+impl LookEditor {
+    /// Finishes the first look of the volume with the lights found, unless the user has edited it. The search uses
+    /// compiled `shaders`, and waits while a file is opened or read (`is_opening`).
+    pub(crate) fn finish_first_look(
+        &mut self,
+        is_opening: bool,
+        shaders: &ShaderLibrary,
+        ctx: &egui::Context,
+    ) {
         if let Some(result) =
             self.look_tasks.light_search.as_ref().and_then(|seeking| seeking.work.take_result())
         {
@@ -58,7 +65,7 @@ impl App {
             self.look_tasks.light_search = None;
         }
         let now_s = ctx.input(|input| input.time);
-        let is_complete = self.is_complete();
+        let is_complete = !is_opening && self.is_complete();
         let document = &mut self.document;
         let moment = LightPlacementFrame {
             now_s,
@@ -69,7 +76,7 @@ impl App {
         };
         match document.first_lights.next_action(moment) {
             LightPlacementAction::Nothing => {}
-            LightPlacementAction::Search => self.start_light_search(ctx),
+            LightPlacementAction::Search => self.start_light_search(shaders, ctx),
             LightPlacementAction::Set(next) => {
                 document.apply_placed_lights(*next, now_s);
                 ctx.request_repaint();
@@ -78,9 +85,9 @@ impl App {
     }
 
     /// Starts a light search on a thread, on the render device, whose pipelines are compiled already.
-    fn start_light_search(&mut self, ctx: &egui::Context) {
+    fn start_light_search(&mut self, shaders: &ShaderLibrary, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset() else { return self.document.first_lights.stop() };
-        let (shaders, settings) = (self.loader.shaders().clone(), self.document.settings.clone());
+        let (shaders, settings) = (shaders.clone(), self.document.settings.clone());
         let is_unwanted = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&is_unwanted);
         let task = move || -> Result<Option<LightSearchResult>, GpuError> {
@@ -106,7 +113,7 @@ impl App {
     }
 
     /// Starts measuring the balance of the current settings, on a device of its own; does nothing without a volume.
-    pub(super) fn start_balance(&mut self, ctx: &egui::Context) {
+    pub(crate) fn start_balance(&mut self, ctx: &egui::Context) {
         let Some(dataset) = self.viewport.dataset().filter(|_| self.look_tasks.balance.is_none()) else {
             return;
         };
@@ -121,18 +128,17 @@ impl App {
         }
     }
 
-    /// Keeps the picture as bright as without shadows, if the setting is on.
-    pub(crate) fn update_balance(&mut self, ctx: &egui::Context) {
+    /// Keeps the picture as bright as without shadows, if the setting is on and no file is opened or read.
+    pub(crate) fn update_balance(&mut self, is_opening: bool, ctx: &egui::Context) {
         let now_s = ctx.input(|input| input.time);
         let (held, busy, has_its_volume) =
-            (is_user_active(ctx), self.look_tasks.balance.is_some(), self.is_volume_ready());
+            (is_user_active(ctx), self.look_tasks.balance.is_some(), !is_opening && !self.is_correcting());
         let is_due = self.document.keep_balanced.is_due(&self.document.settings);
         self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
         let act = self.document.keep_balanced.next_action(BalanceFrame {
             now_s,
             settings: &self.document.settings,
-            is_shown: has_its_volume
-                && self.viewport.displays(&self.picture.compare.looks(&self.document.settings)),
+            is_shown: has_its_volume && self.viewport.displays(&self.shown_looks()),
             user_active: held,
             busy,
         });
@@ -148,7 +154,7 @@ impl App {
     }
 
     /// Takes the results of the measurements of balance.
-    pub(super) fn take_balances(&mut self, ctx: &egui::Context) {
+    pub(crate) fn take_balances(&mut self, ctx: &egui::Context) {
         if let Some(result) = self.look_tasks.balance.as_ref().and_then(BackgroundTask::take_result) {
             self.look_tasks.balance = None;
             match result {
