@@ -41,7 +41,7 @@ use self::common::{light_keys, reveal, shortcuts};
 use self::layout::WindowLayout;
 use self::layout::outer_panels::OuterPanels;
 use self::shell::look_editor::LookEditor;
-use self::shell::opening::OpeningState;
+use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
 use self::shell::status_file;
 use self::shell::status_file::StatusFile;
@@ -50,7 +50,6 @@ use self::start::window_device::WindowDevice;
 use self::viewport::paint_callback;
 use self::windows::file_dialogs;
 use self::worker::background_task;
-use self::worker::loader::Loader;
 use chiaroscuro_scene::Settings;
 
 /// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
@@ -72,7 +71,6 @@ pub struct App {
     layout: WindowLayout,
     /// Cancelling of drags by Escape.
     drag_cancel: DragCancel,
-    loader: Loader,
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
@@ -112,7 +110,7 @@ impl App {
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
     /// first look is finished, and the balance, if it is kept, has been measured for these settings.
     pub fn is_idle(&self) -> bool {
-        !self.is_opening() && self.editor.is_complete() && !self.editor.is_changing()
+        !self.opening.is_opening() && self.editor.is_complete() && !self.editor.is_changing()
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
@@ -121,9 +119,46 @@ impl App {
         self.editor.document.is_making_look()
     }
 
-    /// Returns true while a volume is being opened, or another file is being read.
-    fn is_opening(&self) -> bool {
-        self.loader.progress().is_some() || self.opening.file_tasks.path().is_some()
+    /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
+    /// The open volume stays until the new one is ready.
+    pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
+        self.opener(ctx).open(source.as_ref());
+    }
+
+    /// Reads a transfer function of another program on a thread and applies it to the look.
+    pub fn import_transfer(&mut self, path: &Path, ctx: &egui::Context) {
+        self.opener(ctx).import_transfer(path);
+    }
+
+    /// Reads an environment map on a thread and lights the scene by it; supersedes one that is still being read.
+    pub fn read_environment_map(&mut self, path: &Path, ctx: &egui::Context) {
+        self.opener(ctx).read_environment_map(path);
+    }
+
+    /// Blocks the reading of files while the returned guard lives.
+    #[cfg(feature = "testing")]
+    pub fn block_file_tasks() -> impl Sized {
+        self::shell::opening::file_tasks::test_lock::wait()
+    }
+
+    /// Path of the file that is being read.
+    #[cfg(feature = "testing")]
+    pub fn file_being_read(&self) -> Option<&Path> {
+        self.opening.file_tasks.path()
+    }
+
+    /// Returns the opener of volumes and looks for this window.
+    fn opener<'a>(&'a mut self, ctx: &'a egui::Context) -> VolumeOpener<'a> {
+        VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx }
+    }
+
+    /// Drops the pictures of the volume before, if another one has replaced it.
+    fn drop_pictures_of_replaced(&mut self) {
+        if self.opening.take_opened() {
+            self.panels.recent_pictures.clear();
+            self.windows.contact_sheet.discard();
+            self.panels.kept_strip.reset();
+        }
     }
 
     /// Rectangle of the picture in points, and its size in physical pixels.
@@ -224,7 +259,7 @@ impl eframe::App for App {
         self.windows.volume_chooser.ui(
             &ctx,
             self.editor.document.volume.as_ref(),
-            self.loader.options(),
+            self.opening.loader.options(),
             &mut commands,
         );
         self.show_outer_panels(ui, &facts, &mut commands);
@@ -233,10 +268,11 @@ impl eframe::App for App {
         light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
         self.show_windows(frame, &ctx, &mut commands);
         self.drag_cancel.end(&mut self.editor.document.settings);
-        self.ask_for_volume(frame, &ctx);
+        let mut opener = VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx: &ctx };
+        opener.ask_for_volume(&mut self.dialogs.files, frame);
         self.editor.document.history.observe(&ctx, &self.editor.document.history_step());
         commands.extend(self.editor.finish_framing());
-        commands.extend(self.editor.update_outline(self.is_opening(), &ctx));
+        commands.extend(self.editor.update_outline(self.opening.is_opening(), &ctx));
         let before = self.editor.document.settings.camera.clone();
         for command in commands {
             self.execute(command, frame, &ctx);
@@ -246,13 +282,14 @@ impl eframe::App for App {
             &self.editor.document.settings.camera,
             ctx.input(|input| input.time),
         );
-        self.cancel_files_by_key(&ctx);
+        self.opener(&ctx).cancel_files_by_key();
+        self.drop_pictures_of_replaced();
         self.layout.leave_picture_only(&ctx);
         if self.editor.update_corrections(&ctx) {
             self.windows.contact_sheet.discard();
         }
-        let is_opening = self.is_opening();
-        self.editor.finish_first_look(is_opening, self.loader.shaders(), &ctx);
+        let is_opening = self.opening.is_opening();
+        self.editor.finish_first_look(is_opening, self.opening.loader.shaders(), &ctx);
         self.editor.update_balance(is_opening, &ctx);
         self.editor.autosave_look();
         let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
@@ -262,11 +299,11 @@ impl eframe::App for App {
         self.status_file.longest_ui_ms = self.status_file.longest_ui_ms.max(ui_ms);
         let idle = self.is_idle();
         if idle {
-            self.loader.warm_up_rest();
+            self.opening.loader.warm_up_rest();
         }
         let state = status_file::WindowStatus {
             response: self.editor.viewport.response_times(),
-            loading: self.is_opening(),
+            loading: self.opening.is_opening(),
             idle,
             canvas: self.picture.canvas.filter(|_| self.editor.document.volume.is_some()),
             handles: self.picture.handles.positions(),
@@ -277,7 +314,7 @@ impl eframe::App for App {
             pixels_per_point: ctx.pixels_per_point(),
         };
         self.status_file.update(&state);
-        if self.loader.progress().is_some() || self.windows.export.is_busy() {
+        if self.opening.loader.progress().is_some() || self.windows.export.is_busy() {
             // The progress bar moves; and an export started by an earlier window cannot wake this one.
             ctx.request_repaint_after(std::time::Duration::from_millis(100));
         }

@@ -74,7 +74,7 @@ impl App {
             },
         );
         let file_progress = status::CancellableTasks {
-            opening: self.loader.progress(),
+            opening: self.opening.loader.progress(),
             reading: self.opening.file_tasks.path(),
             exporting: self.windows.export.background_progress(),
         };
@@ -157,7 +157,7 @@ impl App {
         let id = self.editor.viewport.dataset().map(|dataset| dataset.volume().content_id());
         let settings = &self.editor.document.settings;
         let Some(wanted) = self.panels.kept_strip.missing_thumbnails(settings, id) else { return };
-        if !self.is_opening()
+        if !self.opening.is_opening()
             && self.editor.is_complete()
             && !self.windows.export.is_busy()
             && let Some(subject) = self.editor.export_subject()

@@ -7,7 +7,7 @@ use eframe::egui;
 use crate::app::common::commands::AppCommand;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::windows::slices::SliceLook;
-use crate::app::windows::{export, large_volume, light_slice, recovery};
+use crate::app::windows::{export, light_slice, recovery};
 use crate::app::{App, text};
 
 impl App {
@@ -21,9 +21,9 @@ impl App {
         if let Some(answer) = self.dialogs.recovery.ui(ctx) {
             self.editor.memory.acknowledge_crashes();
             if let recovery::RecoveryAnswer::Restore(look) = answer {
-                self.open_record(&look, ctx);
+                self.opener(ctx).open_record(&look);
             }
-            self.open_deferred(ctx);
+            self.opener(ctx).open_deferred();
         }
         self.windows.history.show(ctx, &self.editor.document, commands);
         self.dialogs.quit.ui(ctx, self.windows.export.is_busy());
@@ -39,16 +39,7 @@ impl App {
         if let Err(err) = self.windows.contact_sheet.ui(ctx, commands) {
             self.editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
         }
-        if let Some(raw_description) = self.dialogs.raw.ui(ctx) {
-            self.open_raw(&raw_description, ctx);
-        }
-        match self.dialogs.large_volume.ui(ctx) {
-            None => {}
-            Some(large_volume::LargeVolumeAnswer::Cancel) => self.opening.requests.pending_look = None,
-            Some(large_volume::LargeVolumeAnswer::Read { source, reading }) => {
-                self.start_loading(&source, *reading, ctx);
-            }
-        }
+        self.opener(ctx).show_questions();
         if let Some((purpose, path)) = self.dialogs.files.typed_path_ui(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
         }
@@ -66,7 +57,7 @@ impl App {
             settings: &self.editor.document.settings,
             dataset: self.editor.viewport.dataset(),
             context: self.editor.viewport.context(),
-            is_idle: !self.is_opening() && self.editor.is_complete(),
+            is_idle: !self.opening.is_opening() && self.editor.is_complete(),
         };
         match self.windows.light_slice.ui(ctx, &scene) {
             Ok(false) => {}

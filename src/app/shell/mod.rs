@@ -2,7 +2,6 @@
 //! the document.
 
 pub(super) mod execute;
-pub(super) mod file_tasks;
 pub(super) mod history;
 pub(super) mod look_editor;
 pub(super) mod menu;

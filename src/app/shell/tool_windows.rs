@@ -1,20 +1,21 @@
 //! Windows over the picture, with their state: tool windows, and dialogs that ask the user.
 
 use super::history::HistoryWindow;
+use super::look_editor::LookEditor;
+use crate::app::common::alternatives::Alternatives;
+use crate::app::text;
 use crate::app::windows::contact_sheet::ContactSheetWindow;
 use crate::app::windows::device_loss::DeviceLossDialog;
 use crate::app::windows::export::ExportWindow;
 use crate::app::windows::file_dialogs::FileDialogs;
 use crate::app::windows::help::HelpWindows;
-use crate::app::windows::large_volume::LargeVolumeDialog;
 use crate::app::windows::light_slice::LightSliceWindow;
 use crate::app::windows::palette::CommandPalette;
 use crate::app::windows::quit_dialog::QuitDialog;
-use crate::app::windows::raw_dialog::RawDialog;
 use crate::app::windows::recovery::RecoveryDialog;
 use crate::app::windows::slices::SlicesWindow;
-use crate::app::windows::untrusted_path::UntrustedPathDialog;
 use crate::app::windows::volume_chooser::VolumeChooser;
+use chiaroscuro_volume::ChoiceAspect;
 
 /// State of the tool windows.
 #[derive(Debug, Default)]
@@ -37,6 +38,17 @@ pub(crate) struct ToolWindows {
     pub help: HelpWindows,
 }
 
+impl ToolWindows {
+    /// Opens the chooser of an aspect of the open file, or notes that there is nothing to choose.
+    pub(crate) fn show_chooser(&mut self, aspect: ChoiceAspect, editor: &mut LookEditor) {
+        let held = editor.document.volume.as_ref().map(|volume| &volume.held);
+        match held.and_then(|held| Alternatives::new(held, aspect)) {
+            Some(all) => self.volume_chooser.open(aspect, &all),
+            None => editor.messages.note(text::chooser::single_item(aspect)),
+        }
+    }
+}
+
 /// State of the dialogs.
 #[derive(Default)]
 pub(crate) struct AppDialogs {
@@ -48,10 +60,4 @@ pub(crate) struct AppDialogs {
     pub quit: QuitDialog,
     /// Question after the graphics device was lost repeatedly.
     pub device_loss: DeviceLossDialog,
-    /// Layout of a file of bare voxels.
-    pub raw: RawDialog,
-    /// Portion of a volume that does not fit into memory.
-    pub large_volume: LargeVolumeDialog,
-    /// Question before a look opens its volume.
-    pub untrusted_path: UntrustedPathDialog,
 }

@@ -62,8 +62,11 @@ impl App {
 
     /// Leaves the state for the successor window.
     pub(crate) fn hand_over(&mut self) {
-        let opening =
-            self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
+        let opening = self
+            .opening
+            .loader
+            .progress()
+            .map(|progress| (progress.source.to_owned(), progress.reading.clone()));
         let carried = WindowHandover {
             document: std::mem::take(&mut self.editor.document),
             dataset: self.editor.viewport.dataset(),
@@ -75,7 +78,7 @@ impl App {
             compare: self.editor.viewport.compare.clone(),
             probe_on: self.picture.light_probe.is_active,
             export: std::mem::take(&mut self.windows.export),
-            load: self.loader.options().clone(),
+            load: self.opening.loader.options().clone(),
             storage: self.device.storage.clone(),
             on_cpu: self.device.wants_cpu,
         };
@@ -106,20 +109,17 @@ impl App {
             app.restore_volume(&cc.egui_ctx);
         }
         if let Some((source, reading)) = carried.opening {
-            app.start_loading(&source, reading, &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).start_loading(&source, reading);
         } else if app.editor.document.volume.is_none() {
-            app.open_first(None, None, &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).open_first(None, None);
         }
         Ok(app)
     }
 
     /// Shows the volume again that the earlier window had open.
     pub(crate) fn restore_volume(&mut self, ctx: &egui::Context) {
-        if let Some(dataset) = self.device.handed_over_dataset.take()
-            && let Err(err) = self.loader.upload(dataset, ctx)
-        {
-            self.editor.messages.error(text::messages::NOT_RENDERED, err);
-        }
+        let dataset = self.device.handed_over_dataset.take();
+        self.opener(ctx).restore(dataset);
     }
 
     /// Executes the user's answer after the device was lost again within a short time.

@@ -62,7 +62,7 @@ impl App {
         app.opening.requests.trusts_paths = trust_paths;
         let is_named = source.is_some() || volume.is_some() || app.editor.document.session.is_some();
         if is_named || !app.dialogs.recovery.is_open() {
-            app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
         } else {
             app.opening.default_open_waits = true;
         }
@@ -88,7 +88,7 @@ impl App {
         if app.dialogs.recovery.is_open() {
             app.opening.default_open_waits = true;
         } else {
-            app.open_first(None, None, &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).open_first(None, None);
         }
         Ok(app)
     }
@@ -112,11 +112,10 @@ impl App {
         layout.apply(&cc.egui_ctx);
         let viewport = Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?;
         Ok(Self {
-            opening: OpeningState::default(),
+            opening: OpeningState::new(Loader::new(context, load, storage.as_deref())?),
             picture: PictureTools::default(),
             windows: ToolWindows::default(),
             dialogs: AppDialogs::default(),
-            loader: Loader::new(context, load, storage.as_deref())?,
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),
             editor: LookEditor::new(viewport, memory),
             layout,

@@ -18,14 +18,6 @@ impl App {
         self.dialogs.files.open_dialog(purpose, frame, ctx);
     }
 
-    /// Reopens the volume with the look of the previous run.
-    pub(super) fn reopen_last(&mut self, ctx: &egui::Context) {
-        match self.editor.memory.previous_look() {
-            Some(path) => self.open_record(&path, ctx),
-            None => self.editor.messages.note(text::messages::NO_SESSION_TO_REOPEN),
-        }
-    }
-
     /// Saves the session to its file, or asks for a file.
     pub(super) fn save_session(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
         match self.editor.session_to_save() {
@@ -53,8 +45,8 @@ impl App {
         ctx: &egui::Context,
     ) {
         match purpose {
-            FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.open(path, ctx),
-            FileDialogPurpose::VolumeOfLook => self.open_for_look(path, ctx),
+            FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.opener(ctx).open(path),
+            FileDialogPurpose::VolumeOfLook => self.opener(ctx).open_for_look(path),
             FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
             FileDialogPurpose::SaveSettings => self.editor.save_settings(path),
             FileDialogPurpose::ExportKept => {
@@ -71,7 +63,7 @@ impl App {
                     Err(err) => self.editor.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
                 }
             }
-            FileDialogPurpose::LoadSettings => self.load_settings(path, ctx),
+            FileDialogPurpose::LoadSettings => self.opener(ctx).load_settings(path),
             FileDialogPurpose::EnvironmentMap => self.read_environment_map(path, ctx),
             FileDialogPurpose::ImportTransfer => self.import_transfer(path, ctx),
             FileDialogPurpose::ExportTransfer => {
@@ -84,7 +76,7 @@ impl App {
                     Err(err) => self.editor.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
                 }
             }
-            FileDialogPurpose::CompareSettings => self.compare_with_file(path, ctx),
+            FileDialogPurpose::CompareSettings => self.opener(ctx).compare_with_file(path),
         }
     }
 

@@ -17,18 +17,24 @@ impl App {
         match command {
             AppCommand::OpenDialog => self.ask_file(FileDialogPurpose::OpenVolume, frame, ctx),
             AppCommand::OpenFolder => self.ask_file(FileDialogPurpose::OpenFolder, frame, ctx),
-            AppCommand::OpenDropped(paths) => self.open_dropped(&paths, ctx),
-            AppCommand::NextFile => self.seek_neighbour(true, ctx),
-            AppCommand::PreviousFile => self.seek_neighbour(false, ctx),
+            AppCommand::OpenDropped(paths) => self.opener(ctx).open_dropped(&paths),
+            AppCommand::NextFile => self.opener(ctx).seek_neighbour(true),
+            AppCommand::PreviousFile => self.opener(ctx).seek_neighbour(false),
             AppCommand::OpenPath => self.dialogs.files.open_typed_path(FileDialogPurpose::OpenVolume),
-            AppCommand::Open(source) => self.open(&source, ctx),
-            AppCommand::OpenAgain(path, choice) => self.open_again(&path, &choice, ctx),
-            AppCommand::ShowChooser(aspect) => self.show_chooser(aspect),
-            AppCommand::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
-            AppCommand::OpenChoice(choice, keeps_look) => self.open_choice(&choice, keeps_look, ctx),
-            AppCommand::Subsample(thinning) => self.reload_subsampled(thinning, ctx),
-            AppCommand::ReopenLast => self.reopen_last(ctx),
-            AppCommand::CancelOpening => self.cancel_files(ctx),
+            AppCommand::Open(source) => self.opener(ctx).open(&source),
+            AppCommand::OpenAgain(path, choice) => self.opener(ctx).open_again(&path, &choice),
+            AppCommand::ShowChooser(aspect) => self.windows.show_chooser(aspect, &mut self.editor),
+            AppCommand::StepChoice(aspect, is_forward) => {
+                let keeps_look = self.windows.volume_chooser.keeps_look(aspect);
+                self.opener(ctx).step_choice(aspect, is_forward, keeps_look);
+            }
+            AppCommand::OpenChoice(choice, keeps_look) => self.opener(ctx).open_choice(&choice, keeps_look),
+            AppCommand::Subsample(thinning) => self.opener(ctx).reload_subsampled(thinning),
+            AppCommand::ReopenLast => self.opener(ctx).reopen_last(),
+            AppCommand::CancelOpening => {
+                self.opener(ctx).cancel_files();
+                self.drop_pictures_of_replaced();
+            }
             AppCommand::SaveSettings => self.save_session(frame, ctx),
             AppCommand::LoadSettings => self.ask_file(FileDialogPurpose::LoadSettings, frame, ctx),
             AppCommand::Export => self.open_export(),

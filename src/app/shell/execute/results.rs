@@ -4,38 +4,17 @@ use eframe::egui;
 
 use crate::app::windows::export::ExportOutcome;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
-use crate::app::worker::loader::LoadOutcome;
 use crate::app::{App, text};
 use chiaroscuro_render::GpuError;
 
 impl App {
     /// Collects the results that worker threads have finished.
     pub(crate) fn collect_results(&mut self, ctx: &egui::Context) {
-        match self.loader.take_outcome() {
-            None => {}
-            Some(LoadOutcome::Opened(opened)) => self.show_opened_with_session(*opened, ctx),
-            Some(LoadOutcome::Uploaded { renderer, dataset }) => {
-                self.editor.viewport.set_scene(*renderer, dataset)
-            }
-            Some(LoadOutcome::Cancelled) => {
-                self.opening.requests.pending_look = None;
-                self.editor.messages.note(text::messages::OPENING_CANCELLED);
-            }
-            Some(LoadOutcome::UnknownRawFormat { path, why, guess }) => {
-                self.dialogs.raw.open(&path, why, guess, ctx);
-            }
-            // A look that is pending for this volume stays pending.
-            Some(LoadOutcome::NeedsMemoryDecision { source, reading, weighed }) => {
-                self.dialogs.large_volume.open(source, *reading, weighed);
-            }
-            Some(LoadOutcome::Failed { short, details }) => {
-                self.opening.requests.pending_look = None;
-                self.editor.messages.error(short, details);
-            }
-        }
-        self.take_neighbour(ctx);
+        self.opener(ctx).take_outcome();
+        self.opener(ctx).take_neighbour();
         self.editor.finish_kind_task(ctx);
-        self.finish_file_tasks(ctx);
+        self.opener(ctx).finish_file_tasks();
+        self.drop_pictures_of_replaced();
         self.editor.take_balances(ctx);
         match self.windows.export.take_result() {
             None => {}

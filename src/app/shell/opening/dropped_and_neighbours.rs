@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui;
-
+use super::VolumeOpener;
 use super::plan::PendingLook;
+use crate::app::text;
 use crate::app::windows::file_dialogs;
 use crate::app::worker::background_task::BackgroundTask;
 use crate::app::worker::loader::ReadChoices;
-use crate::app::{App, text};
 use chiaroscuro_volume::LoadControl;
 use chiaroscuro_volume_io::neighbour_volume;
 
@@ -30,36 +29,36 @@ impl Drop for NeighbourSearch {
     }
 }
 
-impl App {
+impl VolumeOpener<'_> {
     /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
     /// of other files the first is opened.
-    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
+    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf]) {
         let Some(first) = paths.first() else { return };
         if let Some(folder) = slice_folder(paths) {
             if is_complete_folder(folder, paths) {
-                self.open(folder, ctx);
+                self.open(folder);
                 self.editor.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
                 return;
             }
             // The message was about another file.
             self.editor.messages.dismiss();
             let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
-            if self.start_loading(folder, reading, ctx) {
-                self.opening.requests.pending_look = None;
+            if self.start_loading(folder, reading) {
+                self.state.requests.pending_look = None;
                 self.editor.messages.note(text::opening::part_of_folder(paths.len(), folder));
             }
             return;
         }
-        self.open(first, ctx);
+        self.open(first);
         if paths.len() > 1 {
             self.editor.messages.note(text::opening::first_of_dropped(paths.len(), first));
         }
     }
 
     /// Searches the folder for the file after or before the open one.
-    pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
+    pub(crate) fn seek_neighbour(&mut self, is_forward: bool) {
         // Pressing the key again goes on from the file that is being opened.
-        let opening = self.loader.progress().map(|progress| progress.source.to_owned());
+        let opening = self.state.loader.progress().map(|progress| progress.source.to_owned());
         let from =
             opening.or_else(|| self.editor.document.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
@@ -70,22 +69,22 @@ impl App {
         // Pictures with an embedded look are no volumes.
         let task =
             move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
-        match BackgroundTask::start("next-file", ctx, task) {
-            Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
+        match BackgroundTask::start("next-file", self.ctx, task) {
+            Ok(work) => self.state.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
             Err(err) => self.editor.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
         }
     }
 
     /// Opens the file that the search has found.
-    pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
-        let Some(neighbour) = &self.opening.next_file_search else { return };
+    pub(crate) fn take_neighbour(&mut self) {
+        let Some(neighbour) = &self.state.next_file_search else { return };
         let Some(found) = neighbour.work.take_result() else { return };
         let is_forward = neighbour.is_forward;
-        self.opening.next_file_search = None;
+        self.state.next_file_search = None;
         match found {
             Ok(Some(path)) => {
-                if self.start_loading(&path, ReadChoices::default(), ctx) {
-                    self.opening.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
+                if self.start_loading(&path, ReadChoices::default()) {
+                    self.state.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
                 }
             }
             Ok(None) => self.editor.messages.note(text::opening::no_neighbour(is_forward)),

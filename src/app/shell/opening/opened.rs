@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::VolumeOpener;
+use super::file_tasks::{FileReadFailure, ReadPurpose};
 use super::plan::{CorrectionsOrigin, LookChange, OpenPlan, OpenRequest, StartingLook};
 use super::similarity::VolumeSimilarity;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -11,10 +13,9 @@ use crate::app::document::auto_balance::AutoBalance;
 use crate::app::document::corrections::CorrectionState;
 use crate::app::document::data_kind::KindOverride;
 use crate::app::document::light_placement::LightPlacement;
-use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
+use crate::app::text;
 use crate::app::windows::file_dialogs;
 use crate::app::worker::loader::OpenedVolume;
-use crate::app::{App, text};
 use chiaroscuro_scene::{LookRecord, ObjectRotation, Settings};
 use chiaroscuro_volume::Volume;
 
@@ -30,42 +31,39 @@ fn kept_look(mut look: Settings, first: &Settings) -> Settings {
     look
 }
 
-impl App {
+impl VolumeOpener<'_> {
     /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
-    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.editor.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
+    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume) {
+        let session = self.editor.document.session.as_ref().filter(|_| self.state.requests.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
                 let read = file_dialogs::load_record;
-                self.read_file(ReadPurpose::Session, &path, ctx, read, |app, read, ctx| {
-                    app.show_opened(opened, Some(read), ctx);
+                self.read_file(ReadPurpose::Session, &path, read, |opener, read| {
+                    opener.show_opened(opened, Some(read));
                 });
             }
-            None => self.show_opened(opened, None, ctx),
+            None => self.show_opened(opened, None),
         }
     }
 
     /// Replaces the open volume by one that is ready, with the session that was read for it.
-    fn show_opened(&mut self, opened: OpenedVolume, session: Option<SessionRead>, ctx: &egui::Context) {
+    fn show_opened(&mut self, opened: OpenedVolume, session: Option<SessionRead>) {
         let OpenedVolume { source, reading, dataset, original_dims, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.report_opened(&volume, original_dims);
         let open = self.editor.document.volume.as_ref();
         let plan = OpenPlan::new(OpenRequest {
-            requested: self.opening.requests.pending_look.take(),
-            keeps_look: self.opening.requests.keeps_look,
+            requested: self.state.requests.pending_look.take(),
+            keeps_look: self.state.requests.keeps_look,
             similarity: open.map(|open| VolumeSimilarity::between(open, &volume)),
             has_session: session.is_some(),
-            has_adjustment: self.opening.adjust_first_look.is_some(),
+            has_adjustment: self.state.adjust_first_look.is_some(),
         });
         // Session and adjustment apply to the first volume only.
-        self.opening.requests.session_is_due = false;
+        self.state.requests.session_is_due = false;
         self.apply_plan(plan, settings, session, &volume);
         self.editor.memory.add_recent(&source, &volume.contents().choice());
-        self.panels.recent_pictures.clear();
         self.editor.look_tasks.light_search = None;
-        self.windows.contact_sheet.discard();
-        self.panels.kept_strip.reset();
         let facts = VolumeFacts::new(source, reading, &dataset);
         self.editor.viewport.set_scene(renderer, dataset);
         let document = &mut self.editor.document;
@@ -76,7 +74,8 @@ impl App {
         document.start_history(&volume);
         document.corrections = CorrectionState::new(stamp, document.settings.volume);
         let title = text::opening::title(document.volume_name());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        self.state.has_opened = true;
+        self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 
     /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.
@@ -133,7 +132,7 @@ impl App {
                     self.editor.document.replace_settings(Settings { volume, ..before.clone() });
                 }
                 LookChange::Adjustment => {
-                    if let Some(adjust) = self.opening.adjust_first_look.take() {
+                    if let Some(adjust) = self.state.adjust_first_look.take() {
                         self.editor.document.settings =
                             adjust(std::mem::take(&mut self.editor.document.settings));
                         self.editor.document.settings.sanitise();
@@ -164,7 +163,7 @@ impl App {
                     session.protect_invalid();
                 }
             }
-            Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
+            Err(why) => why.report(text::opening::SESSION_NOT_LOADED, &mut self.editor.messages),
         }
         self.editor.document.session = Some(session);
     }

@@ -3,17 +3,16 @@
 //! The window stays responsive meanwhile. The content is used on the window's thread when the task has ended, or when
 //! the user has cancelled it; a cancelled task runs to its end, and its result is dropped.
 
-mod environment_map;
-mod transfer;
-
 use std::io;
 use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
+use super::VolumeOpener;
 use crate::app::common::overlay_windows;
+use crate::app::shell::messages::MessageLog;
+use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
-use crate::app::{App, text};
 
 /// Purpose for which a file is read; at most one file per purpose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,11 +40,21 @@ pub(crate) enum FileReadFailure {
     Failed(String),
 }
 
+impl FileReadFailure {
+    /// Reports that a file was not read.
+    pub(super) fn report(self, short: &str, messages: &mut MessageLog) {
+        match self {
+            Self::Cancelled => messages.note(text::files::READING_CANCELLED),
+            Self::Failed(details) => messages.error(short, details),
+        }
+    }
+}
+
 /// Continuation on the window's thread after a task has ended.
-type TaskContinuation = Box<dyn FnOnce(&mut App, &egui::Context)>;
+type TaskContinuation = Box<dyn FnOnce(&mut VolumeOpener<'_>)>;
 
 /// Continuation that uses the content of a file.
-type ContentHandler<T> = Box<dyn FnOnce(&mut App, Result<T, FileReadFailure>, &egui::Context)>;
+type ContentHandler<T> = Box<dyn FnOnce(&mut VolumeOpener<'_>, Result<T, FileReadFailure>)>;
 
 /// File that is being read on a thread, with its continuation.
 struct FileTask<T> {
@@ -66,11 +75,11 @@ impl<T: Send + 'static> ErasedFileTask for FileTask<T> {
     fn end(self: Box<Self>) -> Result<TaskContinuation, Box<dyn ErasedFileTask>> {
         let Some(result) = self.work.take_result() else { return Err(self) };
         let (content, then) = (result.and_then(|read| read).map_err(FileReadFailure::Failed), self.handler);
-        Ok(Box::new(move |app, ctx| then(app, content, ctx)))
+        Ok(Box::new(move |opener| then(opener, content)))
     }
 
     fn cancel(self: Box<Self>) -> TaskContinuation {
-        Box::new(move |app, ctx| (self.handler)(app, Err(FileReadFailure::Cancelled), ctx))
+        Box::new(move |opener| (self.handler)(opener, Err(FileReadFailure::Cancelled)))
     }
 }
 
@@ -141,78 +150,54 @@ impl FileTasks {
     }
 }
 
-impl App {
+impl VolumeOpener<'_> {
     /// Reads a file on a thread; `then` gets the content, or the reason why it is missing.
     pub(crate) fn read_file<T: Send + 'static>(
         &mut self,
         reason: ReadPurpose,
         path: &Path,
-        ctx: &egui::Context,
         read: impl FnOnce(&Path) -> Result<T, String> + Send + 'static,
-        then: impl FnOnce(&mut Self, Result<T, FileReadFailure>, &egui::Context) + 'static,
+        then: impl FnOnce(&mut VolumeOpener<'_>, Result<T, FileReadFailure>) + 'static,
     ) {
-        if let Err((err, then)) = self.opening.file_tasks.start(reason, path, ctx, read, Box::new(then)) {
-            then(self, Err(FileReadFailure::Failed(text::files::no_thread(err))), ctx);
-        }
-    }
-
-    /// Reports that a file was not read.
-    pub(crate) fn report_read_failure(&mut self, short: &str, why: FileReadFailure) {
-        match why {
-            FileReadFailure::Cancelled => self.editor.messages.note(text::files::READING_CANCELLED),
-            FileReadFailure::Failed(details) => self.editor.messages.error(short, details),
+        if let Err((err, then)) = self.state.file_tasks.start(reason, path, self.ctx, read, Box::new(then)) {
+            then(self, Err(FileReadFailure::Failed(text::files::no_thread(err))));
         }
     }
 
     /// Runs the continuations of the tasks that have ended.
-    pub(crate) fn finish_file_tasks(&mut self, ctx: &egui::Context) {
-        for (reason, finish) in self.opening.file_tasks.take_finished() {
-            finish(self, ctx);
-            self.open_default_if_empty(reason, ctx);
+    pub(crate) fn finish_file_tasks(&mut self) {
+        for (reason, finish) in self.state.file_tasks.take_finished() {
+            finish(self);
+            self.open_default_if_empty(reason);
         }
     }
 
     /// Cancels opening a volume and reading other files.
-    pub(crate) fn cancel_files(&mut self, ctx: &egui::Context) {
-        self.loader.cancel();
-        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.opening.file_tasks.running)
-        {
-            task.cancel()(self, ctx);
-            self.open_default_if_empty(reason, ctx);
+    pub(crate) fn cancel_files(&mut self) {
+        self.state.loader.cancel();
+        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.state.file_tasks.running) {
+            task.cancel()(self);
+            self.open_default_if_empty(reason);
         }
     }
 
     /// Cancels opening and reading when Escape was pressed and no window or widget takes the key.
-    pub(crate) fn cancel_files_by_key(&mut self, ctx: &egui::Context) {
-        let is_reading = self.opening.file_tasks.path().is_some() || self.loader.progress().is_some();
-        if is_reading && overlay_windows::escape_for_picture(ctx) {
-            self.cancel_files(ctx);
+    pub(crate) fn cancel_files_by_key(&mut self) {
+        if self.state.is_opening() && overlay_windows::escape_for_picture(self.ctx) {
+            self.cancel_files();
         }
     }
 }
 
 /// Lock that blocks the reading of files, for tests that inspect the window meanwhile.
 #[cfg(feature = "testing")]
-mod test_lock {
+pub(crate) mod test_lock {
     use std::sync::{Mutex, MutexGuard, PoisonError};
 
     static HELD: Mutex<()> = Mutex::new(());
 
     /// Waits until no test holds the lock.
-    pub(super) fn wait() -> MutexGuard<'static, ()> {
+    pub(crate) fn wait() -> MutexGuard<'static, ()> {
         HELD.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-#[cfg(feature = "testing")]
-impl App {
-    /// Blocks the reading of files while the returned guard lives.
-    pub fn block_file_tasks() -> impl Sized {
-        test_lock::wait()
-    }
-
-    /// Path of the file that is being read.
-    pub fn file_being_read(&self) -> Option<&Path> {
-        self.opening.file_tasks.path()
     }
 }
