@@ -50,6 +50,7 @@ use self::start::window_device::WindowDevice;
 use self::viewport::paint_callback;
 use self::windows::file_dialogs;
 use self::worker::background_task;
+use chiaroscuro_render::GpuError;
 use chiaroscuro_scene::Settings;
 
 /// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
@@ -152,6 +153,15 @@ impl App {
         VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx }
     }
 
+    /// Handles an error of the renderer. After the loss of the device, another window takes the place of this one.
+    fn handle_render_error(&mut self, err: &GpuError, ctx: &egui::Context) {
+        if self.editor.viewport.is_lost() {
+            self.close_for_successor(ctx);
+        } else {
+            self.editor.messages.error(text::messages::NOT_RENDERED, err.to_string());
+        }
+    }
+
     /// Drops the pictures of the volume before, if another one has replaced it.
     fn drop_pictures_of_replaced(&mut self) {
         if self.opening.take_opened() {
@@ -210,7 +220,7 @@ impl App {
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.windows.export.set_size(size);
         self.windows.export.allow_replacing(path);
-        self.start_export(ctx);
+        self.windows.start_export(&mut self.editor, ctx);
     }
 
     /// Returns true while an export is being rendered or written.

@@ -5,7 +5,7 @@ pub(super) mod outer_panels;
 mod overlay_windows;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, Modifiers, ThemePreference};
 use serde::{Deserialize, Serialize};
@@ -95,6 +95,11 @@ impl WindowLayout {
         *(if is_of_editor { &mut self.transfer } else { &mut self.side }) = true;
         self.picture_only = false;
         reveal::reveal(ctx, place);
+    }
+
+    /// Remembers the folder of an exported file, where the next one is proposed.
+    pub(crate) fn remember_export(&mut self, path: &Path) {
+        self.exports = std::path::absolute(path).ok().and_then(|path| Some(path.parent()?.to_owned()));
     }
 
     /// Switches between the picture alone and the panels, and notes which key brings the panels back.

@@ -65,12 +65,12 @@ impl App {
             Err(err) => self.editor.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
         }
         let is_anatomical = self.editor.document.is_anatomical();
-        match self.windows.export.ui(ctx, self.viewport_size(), is_anatomical) {
+        match self.windows.export.ui(ctx, self.picture.available_size(), is_anatomical) {
             None => {}
             Some(export::ExportRequest::ChooseFile) => {
                 self.dialogs.files.open_dialog(FileDialogPurpose::ExportPicture, frame, ctx);
             }
-            Some(export::ExportRequest::Export) => self.start_export(ctx),
+            Some(export::ExportRequest::Export) => self.windows.start_export(&mut self.editor, ctx),
             Some(export::ExportRequest::FileManagerFailed(why)) => {
                 self.editor.messages.error(text::export::NO_FOLDER, why);
             }

@@ -1,12 +1,17 @@
 //! Windows over the picture, with their state: tool windows, and dialogs that ask the user.
 
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+
 use super::history::HistoryWindow;
 use super::look_editor::LookEditor;
+use super::messages::MessageLog;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
 use crate::app::windows::contact_sheet::ContactSheetWindow;
 use crate::app::windows::device_loss::DeviceLossDialog;
-use crate::app::windows::export::ExportWindow;
+use crate::app::windows::export::{ExportOutcome, ExportWindow};
 use crate::app::windows::file_dialogs::FileDialogs;
 use crate::app::windows::help::HelpWindows;
 use crate::app::windows::light_slice::LightSliceWindow;
@@ -46,6 +51,61 @@ impl ToolWindows {
             Some(all) => self.volume_chooser.open(aspect, &all),
             None => editor.messages.note(text::chooser::single_item(aspect)),
         }
+    }
+
+    /// Starts the export that the user has set up.
+    pub(crate) fn start_export(&mut self, editor: &mut LookEditor, ctx: &egui::Context) {
+        if let Some(subject) = editor.export_subject()
+            && let Err(err) = self.export.start(subject, ctx)
+        {
+            editor.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+        }
+    }
+
+    /// Starts to render a picture of the given size for the clipboard, unless an export runs.
+    pub(crate) fn copy_picture(&mut self, size: [u32; 2], editor: &mut LookEditor, ctx: &egui::Context) {
+        if self.export.is_busy() {
+            editor.messages.note(text::messages::EXPORT_RUNS);
+        } else if let Some(subject) = editor.export_subject()
+            && let Err(err) = self.export.copy_to_clipboard(subject, size, ctx)
+        {
+            editor.messages.error(text::messages::PICTURE_NOT_COPIED, err);
+        }
+    }
+
+    /// Starts to render all kept views and looks into one picture.
+    pub(crate) fn export_kept_sheet(&mut self, path: &Path, editor: &mut LookEditor, ctx: &egui::Context) {
+        if let Some(subject) = editor.export_subject()
+            && let Err(err) = self.export.export_kept_sheet(subject, path, ctx)
+        {
+            editor.messages.error(text::messages::PICTURE_NOT_EXPORTED, err);
+        }
+    }
+
+    /// Writes the slice or the volume of light that is shown.
+    pub(crate) fn export_light(&self, path: &Path, editor: &mut LookEditor) {
+        let Some(dataset) = editor.viewport.dataset() else { return };
+        match self.light_slice.export(path, dataset.volume()) {
+            Ok(()) => editor.messages.note(text::messages::exported(path)),
+            Err(err) => editor.messages.error(text::messages::LIGHT_VOLUME_NOT_EXPORTED, err),
+        }
+    }
+
+    /// Takes the result of an export and reports it. Returns the file that was written, if it is one.
+    pub(crate) fn take_export(&mut self, messages: &mut MessageLog, ctx: &egui::Context) -> Option<PathBuf> {
+        match self.export.take_result()? {
+            Ok(ExportOutcome::File(path)) => {
+                messages.note(text::messages::exported(&path));
+                return Some(path);
+            }
+            Ok(ExportOutcome::Picture(picture)) => {
+                ctx.copy_image(picture);
+                messages.note(text::messages::PICTURE_COPIED);
+            }
+            Ok(ExportOutcome::Cancelled) => messages.note(text::messages::EXPORT_CANCELLED),
+            Err(err) => messages.error(text::messages::PICTURE_NOT_EXPORTED, err),
+        }
+        None
     }
 }
 

@@ -17,6 +17,7 @@ use crate::app::shell::messages::MessageLog;
 use crate::app::text;
 use crate::app::viewport::Viewport;
 use crate::app::windows::export::ExportScene;
+use crate::app::windows::file_dialogs;
 use crate::app::worker::request::ComparedLooks;
 use chiaroscuro_scene::{LookRecord, Settings};
 use chiaroscuro_volume::ValueRanges;
@@ -128,6 +129,15 @@ impl LookEditor {
         match self.document.save_session(path, self.opened_id()) {
             Ok(()) => self.messages.note(text::opening::session_saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
+        }
+    }
+
+    /// Writes the transfer function to a file for other programs.
+    pub(crate) fn export_transfer(&mut self, path: &Path) {
+        let Document { settings, .. } = &self.document;
+        match file_dialogs::export_transfer_file(path, settings, &self.document.value_ranges()) {
+            Ok(()) => self.messages.note(text::messages::written(path)),
+            Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
         }
     }
 

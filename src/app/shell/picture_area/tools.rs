@@ -35,3 +35,11 @@ pub(crate) struct PictureTools {
     /// Row of common CT presets.
     pub ct_looks: CtPresetRow,
 }
+
+impl PictureTools {
+    /// Returns the size in physical pixels of a picture that fills the area.
+    pub(crate) fn available_size(&self) -> [u32; 2] {
+        // Before there is a picture: the resolution of the smallest common screens.
+        self.canvas.map_or([1280, 720], |canvas| canvas.available_size.map(|n| n.max(1)))
+    }
+}

@@ -1,7 +1,7 @@
-//! Execution of commands, and collection of the results of worker threads.
+//! Distribution of the window's inputs to its parts: commands of the user, files that were chosen, and the results of
+//! worker threads.
 
-mod files;
-mod results;
+use std::path::Path;
 
 use eframe::egui::{self, gui_zoom};
 
@@ -15,8 +15,12 @@ impl App {
     /// Executes a command of the user.
     pub(crate) fn execute(&mut self, command: AppCommand, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
-            AppCommand::OpenDialog => self.ask_file(FileDialogPurpose::OpenVolume, frame, ctx),
-            AppCommand::OpenFolder => self.ask_file(FileDialogPurpose::OpenFolder, frame, ctx),
+            AppCommand::OpenDialog => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::OpenVolume, frame, ctx)
+            }
+            AppCommand::OpenFolder => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::OpenFolder, frame, ctx)
+            }
             AppCommand::OpenDropped(paths) => self.opener(ctx).open_dropped(&paths),
             AppCommand::NextFile => self.opener(ctx).seek_neighbour(true),
             AppCommand::PreviousFile => self.opener(ctx).seek_neighbour(false),
@@ -35,11 +39,21 @@ impl App {
                 self.opener(ctx).cancel_files();
                 self.drop_pictures_of_replaced();
             }
-            AppCommand::SaveSettings => self.save_session(frame, ctx),
-            AppCommand::LoadSettings => self.ask_file(FileDialogPurpose::LoadSettings, frame, ctx),
-            AppCommand::Export => self.open_export(),
+            AppCommand::SaveSettings => match self.editor.session_to_save() {
+                Some(path) => self.editor.save_settings(&path),
+                None => self.dialogs.files.open_dialog(FileDialogPurpose::SaveSettings, frame, ctx),
+            },
+            AppCommand::LoadSettings => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::LoadSettings, frame, ctx)
+            }
+            AppCommand::Export => {
+                let (size, folder) = (self.picture.available_size(), self.layout.exports.as_deref());
+                self.windows.export.open(size, folder, self.editor.document.volume_name());
+            }
             AppCommand::CancelExport => self.windows.export.cancel(),
-            AppCommand::CopyPicture => self.copy_picture(ctx),
+            AppCommand::CopyPicture => {
+                self.windows.copy_picture(self.picture.available_size(), &mut self.editor, ctx);
+            }
             AppCommand::ToggleKeepLook => self.opening.requests.keeps_look ^= true,
             AppCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             AppCommand::Undo => self.editor.undo_or_redo(true, !self.layout.picture_only, ctx),
@@ -53,8 +67,12 @@ impl App {
             AppCommand::TreatAs(kind) => self.editor.treat_as(kind, ctx),
             AppCommand::UsePreset(preset) => self.editor.use_preset(&preset),
             AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
-            AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
-            AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
+            AppCommand::ImportTransfer => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::ImportTransfer, frame, ctx)
+            }
+            AppCommand::ExportTransfer => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::ExportTransfer, frame, ctx)
+            }
             AppCommand::InvertTransfer => self.editor.document.settings.transfer.mirror(),
             AppCommand::ToggleCrop => {
                 let crop = &mut self.editor.document.settings.cuts.crop;
@@ -88,7 +106,9 @@ impl App {
                 self.editor.compare_saved(left, right);
                 reveal::show_section(ctx, text::sections::COMPARE, true);
             }
-            AppCommand::ExportContactSheet => self.ask_file(FileDialogPurpose::ExportKept, frame, ctx),
+            AppCommand::ExportContactSheet => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::ExportKept, frame, ctx)
+            }
             AppCommand::ToggleStrip => self.layout.kept ^= true,
             AppCommand::Scale(1) => gui_zoom::zoom_in(ctx),
             AppCommand::Scale(-1) => gui_zoom::zoom_out(ctx),
@@ -107,7 +127,9 @@ impl App {
                 }
             }
             AppCommand::TryLights => self.windows.contact_sheet.open(ContactSheetKind::Lights),
-            AppCommand::UseEnvironmentMap => self.ask_file(FileDialogPurpose::EnvironmentMap, frame, ctx),
+            AppCommand::UseEnvironmentMap => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::EnvironmentMap, frame, ctx)
+            }
             AppCommand::SuggestLight => self.windows.contact_sheet.open(ContactSheetKind::Suggestions),
             AppCommand::TryPresets => self.windows.contact_sheet.open(ContactSheetKind::Presets),
             AppCommand::NextLight => self.editor.document.step_light(1),
@@ -128,11 +150,58 @@ impl App {
             AppCommand::Reveal(place) => self.layout.reveal(place, ctx),
             AppCommand::ShowSlices => self.windows.slices.open ^= true,
             AppCommand::ShowLightVolume => self.windows.light_slice.open = true,
-            AppCommand::CompareWithFile => self.ask_file(FileDialogPurpose::CompareSettings, frame, ctx),
+            AppCommand::CompareWithFile => {
+                self.dialogs.files.open_dialog(FileDialogPurpose::CompareSettings, frame, ctx)
+            }
             AppCommand::ShowHelp => self.windows.help.keys_open ^= true,
             AppCommand::ShowAbout => self.windows.help.about_open = true,
         }
         ctx.request_repaint();
+    }
+
+    /// Collects the results that worker threads have finished.
+    pub(crate) fn collect_results(&mut self, ctx: &egui::Context) {
+        self.opener(ctx).take_outcome();
+        self.opener(ctx).take_neighbour();
+        self.editor.finish_kind_task(ctx);
+        self.opener(ctx).finish_file_tasks();
+        self.drop_pictures_of_replaced();
+        self.editor.take_balances(ctx);
+        if let Some(path) = self.windows.take_export(&mut self.editor.messages, ctx) {
+            self.layout.remember_export(&path);
+        }
+        if self.dialogs.files.take_refused() {
+            self.editor.messages.note(text::files::DIALOG_IS_OPEN);
+        }
+        if let Some((purpose, path)) = self.dialogs.files.take_choice(ctx) {
+            self.handle_chosen_file(purpose, &path, ctx);
+            if purpose == FileDialogPurpose::ExportPicture {
+                // The desktop's file dialog has already asked before overwriting.
+                self.windows.export.allow_replacing(&path);
+            }
+        }
+    }
+
+    /// Handles a file that was chosen in a dialog or typed.
+    pub(crate) fn handle_chosen_file(
+        &mut self,
+        purpose: FileDialogPurpose,
+        path: &Path,
+        ctx: &egui::Context,
+    ) {
+        match purpose {
+            FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.opener(ctx).open(path),
+            FileDialogPurpose::VolumeOfLook => self.opener(ctx).open_for_look(path),
+            FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
+            FileDialogPurpose::SaveSettings => self.editor.save_settings(path),
+            FileDialogPurpose::ExportKept => self.windows.export_kept_sheet(path, &mut self.editor, ctx),
+            FileDialogPurpose::ExportLight => self.windows.export_light(path, &mut self.editor),
+            FileDialogPurpose::LoadSettings => self.opener(ctx).load_settings(path),
+            FileDialogPurpose::EnvironmentMap => self.opener(ctx).read_environment_map(path),
+            FileDialogPurpose::ImportTransfer => self.opener(ctx).import_transfer(path),
+            FileDialogPurpose::ExportTransfer => self.editor.export_transfer(path),
+            FileDialogPurpose::CompareSettings => self.opener(ctx).compare_with_file(path),
+        }
     }
 }
 
