@@ -39,7 +39,7 @@ use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
 use self::common::{light_keys, reveal, shortcuts};
 use self::layout::WindowLayout;
-use self::layout::outer_panels::OuterPanels;
+use self::layout::outer_panels::{OuterPanelInputs, OuterPanels};
 use self::shell::look_editor::LookEditor;
 use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
@@ -272,8 +272,29 @@ impl eframe::App for App {
             self.opening.loader.options(),
             &mut commands,
         );
-        self.show_outer_panels(ui, &facts, &mut commands);
-        self.show_picture(ui, &facts, &mut commands);
+        let mut inputs = OuterPanelInputs {
+            editor: &mut self.editor,
+            opening: &self.opening,
+            picture: &self.picture,
+            windows: &mut self.windows,
+            layout: &mut self.layout,
+            facts: &facts,
+            commands: &mut commands,
+        };
+        self.panels.show(ui, &mut inputs);
+        let export_preview = self.windows.export.requested_image().filter(|_| !self.layout.picture_only);
+        let drawn = self.picture.show_picture(
+            ui,
+            &mut self.editor,
+            &mut self.windows.slices,
+            export_preview,
+            &facts,
+            &mut commands,
+        );
+        if let Err(err) = drawn {
+            self.handle_render_error(&err, &ctx);
+        }
+        self.editor.document.update_shown_range(self.editor.viewport.dataset().as_ref());
         shortcuts::commands_from_keys(&ctx, &mut commands);
         light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
         self.show_windows(frame, &ctx, &mut commands);

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::common::dock;
 use super::common::reveal::{self, SettingPlace};
 use super::shell::messages::MessageLog;
+use super::shell::tool_windows::ToolWindows;
 use crate::app::text;
 use crate::app::windows::slices::plane::ViewingConvention;
 
@@ -74,6 +75,18 @@ impl WindowLayout {
     pub(crate) fn apply(&self, ctx: &egui::Context) {
         ctx.set_theme(self.theme);
         dock::set_docked(ctx, &self.docked);
+    }
+
+    /// Takes note of the colour theme, which the user may have changed.
+    fn observe_theme(&mut self, ctx: &egui::Context) {
+        self.theme = ctx.options(|options| options.theme_preference);
+    }
+
+    /// Takes note of the tools that are open and docked.
+    fn observe_tools(&mut self, ctx: &egui::Context, windows: &ToolWindows) {
+        self.docked = dock::docked_titles(ctx);
+        (self.slices, self.light_slice) = (windows.slices.open, windows.light_slice.open);
+        self.slice_convention = windows.slices.convention;
     }
 
     /// Stores the layout for the next run.
