@@ -156,7 +156,7 @@ impl App {
     /// Handles an error of the renderer. After the loss of the device, another window takes the place of this one.
     fn handle_render_error(&mut self, err: &GpuError, ctx: &egui::Context) {
         if self.editor.viewport.is_lost() {
-            self.close_for_successor(ctx);
+            self.device.close_for_successor(&self.editor.memory, ctx);
         } else {
             self.editor.messages.error(text::messages::NOT_RENDERED, err.to_string());
         }
@@ -231,11 +231,10 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.inject_faults();
+        self.device.inject_faults(self.editor.viewport.context());
         // Checked before anything is drawn, because drawing on a lost device would panic.
-        let is_lost = self.device.context.is_lost() || self.editor.viewport.context().is_known_lost();
-        if self.device.is_lost || is_lost {
-            return self.close_for_successor(ctx);
+        if self.device.is_lost_with(self.editor.viewport.context()) {
+            return self.device.close_for_successor(&self.editor.memory, ctx);
         }
         self.collect_results(ctx);
         // Runs even while the window is hidden and nothing is drawn.
@@ -358,7 +357,13 @@ impl eframe::App for App {
     fn on_exit(&mut self) {
         self.editor.autosave_look();
         if self.device.is_lost {
-            self.hand_over();
+            self.device.hand_over(
+                &mut self.editor,
+                &mut self.opening,
+                &mut self.windows,
+                &self.layout,
+                self.picture.light_probe.is_active,
+            );
         } else {
             self.windows.export.cancel_and_wait();
         }

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::common::commands::AppCommand;
+use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::windows::slices::SliceLook;
 use crate::app::windows::{export, light_slice, recovery};
 use crate::app::{App, text};
+use chiaroscuro_scene::QualityPreset;
 
 impl App {
     /// Shows the windows over the picture, and acts on the answers that they return.
@@ -75,5 +77,27 @@ impl App {
                 self.editor.messages.error(text::export::NO_FOLDER, why);
             }
         }
+    }
+
+    /// Executes the user's answer after the device was lost again within a short time.
+    fn answer_loss(&mut self, answer: DeviceLossAnswer, ctx: &egui::Context) {
+        match answer {
+            DeviceLossAnswer::TryAgain => self.restore_volume(ctx),
+            DeviceLossAnswer::LowerQuality => {
+                QualityPreset::Fast.apply(&mut self.editor.document.settings);
+                self.restore_volume(ctx);
+            }
+            DeviceLossAnswer::UseCpu => {
+                self.device.wants_cpu = true;
+                self.device.close_for_successor(&self.editor.memory, ctx);
+            }
+            DeviceLossAnswer::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    /// Shows the volume again that the earlier window had open.
+    fn restore_volume(&mut self, ctx: &egui::Context) {
+        let dataset = self.device.handed_over_dataset.take();
+        self.opener(ctx).restore(dataset);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::error::AppError;
-use super::handover::HandoverSlot;
+use super::handover::{HandoverSlot, WindowHandover};
 use super::options::WindowOptions;
 use super::window_device::WindowDevice;
 use crate::app::common::drag_cancel::DragCancel;
@@ -23,13 +23,9 @@ use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::windows::recovery::RecoveryDialog;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
-use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
 use chiaroscuro_render::{GpuContext, WindowPainter};
 use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
-
-/// Counter of the frames of all windows, for fault injection.
-static FRAMES: FaultCounter = FaultCounter::new();
 
 impl App {
     /// Starts the program in a window, and begins to open the first volume.
@@ -93,6 +89,38 @@ impl App {
         Ok(app)
     }
 
+    /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
+    /// (`asks`) the user is asked first.
+    pub(crate) fn resume(
+        cc: &eframe::CreationContext<'_>,
+        carried: WindowHandover,
+        legacy: HandoverSlot,
+        asks: bool,
+    ) -> Result<Self, AppError> {
+        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
+        app.editor.document = carried.document.restarted();
+        app.opening.requests = carried.requests;
+        app.device.handed_over_dataset = carried.dataset;
+        carried.layout.apply(&cc.egui_ctx);
+        (app.editor.messages, app.layout) = (carried.messages, carried.layout);
+        (app.editor.viewport.compare, app.picture.light_probe.is_active) =
+            (carried.compare, carried.probe_on);
+        app.windows.export = carried.export;
+        if asks {
+            app.dialogs.device_loss.open();
+        } else {
+            app.editor.messages.note(text::messages::DEVICE_REPLACED);
+            let dataset = app.device.handed_over_dataset.take();
+            app.opener(&cc.egui_ctx).restore(dataset);
+        }
+        if let Some((source, reading)) = carried.opening {
+            app.opener(&cc.egui_ctx).start_loading(&source, reading);
+        } else if app.editor.document.volume.is_none() {
+            app.opener(&cc.egui_ctx).open_first(None, None);
+        }
+        Ok(app)
+    }
+
     /// Builds an empty window without a volume.
     pub(crate) fn build(
         cc: &eframe::CreationContext<'_>,
@@ -123,20 +151,5 @@ impl App {
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
         })
-    }
-
-    /// Injects the faults that `--fault` asks for.
-    pub(crate) fn inject_faults(&self) {
-        panic_if_injected(FaultThread::Window);
-        std::thread::sleep(fault::frame_delay());
-        let frame = FRAMES.next();
-        if fault::is_on(InjectedFault::DeviceLost(frame)) {
-            self.device.context.destroy_device();
-        }
-        if fault::is_on(InjectedFault::DeviceLost(frame))
-            || fault::is_on(InjectedFault::RendererDeviceLost(frame))
-        {
-            self.editor.viewport.context().destroy_device();
-        }
     }
 }
