@@ -1,15 +1,11 @@
 //! Windows over the picture: dialogs, tool windows and their answers.
 
-use std::sync::Arc;
-
 use eframe::egui;
 
 use crate::app::common::commands::AppCommand;
 use crate::app::windows::device_loss::DeviceLossAnswer;
-use crate::app::windows::file_dialogs::FileDialogPurpose;
-use crate::app::windows::slices::SliceLook;
-use crate::app::windows::{export, light_slice, recovery};
-use crate::app::{App, text};
+use crate::app::windows::{ToolRequest, ToolScene, recovery};
+use crate::app::App;
 use chiaroscuro_scene::QualityPreset;
 
 impl App {
@@ -32,49 +28,25 @@ impl App {
         if let Some(answer) = self.dialogs.device_loss.ui(ctx, self.editor.viewport.context().is_software()) {
             self.answer_loss(answer, ctx);
         }
-        if self.windows.contact_sheet.needs_start() {
-            let subject = self.editor.export_subject();
-            if let Err(err) = self.windows.contact_sheet.start(subject, ctx) {
-                self.editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
-            }
-        }
-        if let Err(err) = self.windows.contact_sheet.ui(ctx, commands) {
-            self.editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
-        }
+        self.windows.show_contact_sheet(&mut self.editor, ctx, commands);
         self.opener(ctx).show_questions();
         if let Some((purpose, path)) = self.dialogs.files.typed_path_ui(ctx) {
             self.handle_chosen_file(purpose, &path, ctx);
         }
-        let volume = self.editor.viewport.dataset().map(|dataset| Arc::clone(dataset.volume()));
-        let settings_as_drawn = volume
-            .as_ref()
-            .filter(|_| self.windows.slices.open)
-            .map(|volume| self.editor.document.settings.resolved_for(volume));
-        let transfer = settings_as_drawn
-            .as_ref()
-            .map_or(&self.editor.document.settings.transfer, |drawn| &drawn.transfer);
-        let look = SliceLook { transfer, labels: &self.editor.document.settings.labels };
-        self.windows.slices.ui(ctx, volume.as_ref(), self.editor.document.volume.as_ref(), look);
-        let scene = light_slice::LightSliceContext {
+        let scene = ToolScene {
             settings: &self.editor.document.settings,
+            volume: self.editor.document.volume.as_ref(),
             dataset: self.editor.viewport.dataset(),
             context: self.editor.viewport.context(),
+            picture_size: self.picture.available_size(),
             is_idle: !self.opening.is_opening() && self.editor.is_complete(),
         };
-        match self.windows.light_slice.ui(ctx, &scene) {
-            Ok(false) => {}
-            Ok(true) => self.dialogs.files.open_dialog(FileDialogPurpose::ExportLight, frame, ctx),
-            Err(err) => self.editor.messages.error(text::messages::LIGHT_VOLUME_NOT_SHOWN, err),
-        }
-        let is_anatomical = self.editor.document.is_anatomical();
-        match self.windows.export.ui(ctx, self.picture.available_size(), is_anatomical) {
-            None => {}
-            Some(export::ExportRequest::ChooseFile) => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::ExportPicture, frame, ctx);
-            }
-            Some(export::ExportRequest::Export) => self.windows.start_export(&mut self.editor, ctx),
-            Some(export::ExportRequest::FileManagerFailed(why)) => {
-                self.editor.messages.error(text::export::NO_FOLDER, why);
+        let requests = self.windows.scene_tools().map(|tool| tool.show(ctx, &scene));
+        for request in requests.into_iter().flatten() {
+            match request {
+                ToolRequest::AskFile(purpose) => self.dialogs.files.open_dialog(purpose, frame, ctx),
+                ToolRequest::Export => self.windows.start_export(&mut self.editor, ctx),
+                ToolRequest::Report(headline, details) => self.editor.messages.error(headline, details),
             }
         }
     }

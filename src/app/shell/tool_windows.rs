@@ -8,7 +8,9 @@ use super::history::HistoryWindow;
 use super::look_editor::LookEditor;
 use super::messages::MessageLog;
 use crate::app::common::alternatives::Alternatives;
+use crate::app::common::commands::AppCommand;
 use crate::app::text;
+use crate::app::windows::SceneTool;
 use crate::app::windows::contact_sheet::ContactSheetWindow;
 use crate::app::windows::device_loss::DeviceLossDialog;
 use crate::app::windows::export::{ExportOutcome, ExportWindow};
@@ -44,6 +46,29 @@ pub(crate) struct ToolWindows {
 }
 
 impl ToolWindows {
+    /// Lists the tools that read the scene, in the order in which they are shown.
+    pub(crate) fn scene_tools(&mut self) -> [&mut dyn SceneTool; 3] {
+        [&mut self.slices, &mut self.light_slice, &mut self.export]
+    }
+
+    /// Shows the contact sheet, if it is open, and renders its pictures when they are due.
+    pub(crate) fn show_contact_sheet(
+        &mut self,
+        editor: &mut LookEditor,
+        ctx: &egui::Context,
+        commands: &mut Vec<AppCommand>,
+    ) {
+        if self.contact_sheet.needs_start() {
+            let subject = editor.export_subject();
+            if let Err(err) = self.contact_sheet.start(subject, ctx) {
+                editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+            }
+        }
+        if let Err(err) = self.contact_sheet.ui(ctx, commands) {
+            editor.messages.error(text::messages::LOOKS_NOT_TRIED, err);
+        }
+    }
+
     /// Opens the chooser of an aspect of the open file, or notes that there is nothing to choose.
     pub(crate) fn show_chooser(&mut self, aspect: ChoiceAspect, editor: &mut LookEditor) {
         let held = editor.document.volume.as_ref().map(|volume| &volume.held);

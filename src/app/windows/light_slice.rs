@@ -5,17 +5,19 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
+use super::file_dialogs::FileDialogPurpose;
+use super::{SceneTool, ToolRequest, ToolScene};
 use crate::app::common::dock::ToolWindow;
 use crate::app::text;
 use crate::app::worker::background_task::BackgroundTask;
 use chiaroscuro_files::write_atomically;
 use chiaroscuro_media::ExportError;
 use chiaroscuro_render::{
-    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, WorkOptions, export_slice,
+    AttenuationData, GpuError, RenderOptions, Renderer, WorkOptions, export_slice,
     plan::{LightKey, RenderRequest},
 };
-use chiaroscuro_scene::{LightStorage, Settings};
-use chiaroscuro_volume::{Dataset, Volume, math::false_color};
+use chiaroscuro_scene::LightStorage;
+use chiaroscuro_volume::{Volume, math::false_color};
 use chiaroscuro_volume_io::write::nrrd_of_blocks;
 
 /// Longest edge of the slice on screen, in points.
@@ -61,21 +63,19 @@ impl std::fmt::Debug for LightSliceWindow {
     }
 }
 
-/// Context of the window: settings, volume and device.
-pub(crate) struct LightSliceContext<'a> {
-    /// Current settings, for the light's key.
-    pub settings: &'a Settings,
-    /// Open volume, if there is one.
-    pub dataset: Option<Dataset>,
-    /// Window's device; the worker opens a sibling of it.
-    pub context: &'a GpuContext,
-    /// True when the scene is idle, so that a light volume filled now will be used.
-    pub is_idle: bool,
+impl SceneTool for LightSliceWindow {
+    fn show(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Option<ToolRequest> {
+        match self.ui(ctx, scene) {
+            Ok(false) => None,
+            Ok(true) => Some(ToolRequest::AskFile(FileDialogPurpose::ExportLight)),
+            Err(err) => Some(ToolRequest::Report(text::messages::LIGHT_VOLUME_NOT_SHOWN, err)),
+        }
+    }
 }
 
 impl LightSliceWindow {
     /// Shows the window if it is open; returns true if the user wants to export.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<bool, String> {
+    fn ui(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Result<bool, String> {
         if !self.open {
             return Ok(false);
         }
@@ -153,7 +153,7 @@ impl LightSliceWindow {
     }
 
     /// Takes the result of the worker, and starts it again if another light volume is to be shown.
-    fn collect(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<(), String> {
+    fn collect(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Result<(), String> {
         if let Some(result) = self.work.as_ref().and_then(BackgroundTask::take_result) {
             self.work = None;
             match result {

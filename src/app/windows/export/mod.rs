@@ -32,17 +32,6 @@ enum ExportKind {
     LightTurntable,
 }
 
-/// Request of the user to the export window.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum ExportRequest {
-    /// Choose a file with the file dialog.
-    ChooseFile,
-    /// Render the picture and write it.
-    Export,
-    /// Reports that no file manager could be started, and why.
-    FileManagerFailed(String),
-}
-
 /// Progress of an export whose window is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ExportProgress {
