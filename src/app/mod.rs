@@ -9,6 +9,7 @@
 
 mod common;
 mod document;
+mod frame;
 mod kept_views;
 mod layout;
 mod panels;
@@ -29,32 +30,22 @@ pub use self::start::error::AppError;
 pub use self::start::main_loop::{run, storage_folder, wgpu_setup};
 pub use self::start::options::WindowOptions;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
-use self::common::{light_keys, reveal, shortcuts};
 use self::layout::WindowLayout;
-use self::layout::outer_panels::{OuterPanelInputs, OuterPanels};
+use self::layout::outer_panels::OuterPanels;
 use self::shell::look_editor::LookEditor;
 use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
-use self::shell::status_file;
 use self::shell::status_file::StatusFile;
 use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
-use self::viewport::paint_callback;
-use self::windows::file_dialogs;
 use self::worker::background_task;
-use chiaroscuro_render::GpuError;
 use chiaroscuro_scene::Settings;
-
-/// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
-const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
@@ -153,15 +144,6 @@ impl App {
         VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx }
     }
 
-    /// Handles an error of the renderer. After the loss of the device, another window takes the place of this one.
-    fn handle_render_error(&mut self, err: &GpuError, ctx: &egui::Context) {
-        if self.editor.viewport.is_lost() {
-            self.device.close_for_successor(&self.editor.memory, ctx);
-        } else {
-            self.editor.messages.error(text::messages::NOT_RENDERED, err.to_string());
-        }
-    }
-
     /// Drops the pictures of the volume before, if another one has replaced it.
     fn drop_pictures_of_replaced(&mut self) {
         if self.opening.take_opened() {
@@ -226,150 +208,5 @@ impl App {
     /// Returns true while an export is being rendered or written.
     pub fn is_exporting(&self) -> bool {
         self.windows.export.is_busy()
-    }
-}
-
-impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.device.inject_faults(self.editor.viewport.context());
-        // Checked before anything is drawn, because drawing on a lost device would panic.
-        if self.device.is_lost_with(self.editor.viewport.context()) {
-            return self.device.close_for_successor(&self.editor.memory, ctx);
-        }
-        self.collect_results(ctx);
-        // Runs even while the window is hidden and nothing is drawn.
-        self.editor.autosave_look();
-    }
-
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if self.device.is_lost {
-            return;
-        }
-        let ctx = ui.ctx().clone();
-        let start = std::time::Instant::now();
-        ui.painter().add(paint_callback::fill_shape(
-            ctx.viewport_rect(),
-            &self.device.painter,
-            ui.visuals().panel_fill,
-        ));
-        self.drag_cancel.begin(&ctx, &self.editor.document.settings);
-        let mut commands = Vec::new();
-        let dropped = file_dialogs::dropped_files(&ctx);
-        if !dropped.is_empty() {
-            commands.push(AppCommand::OpenDropped(dropped));
-        }
-        let facts = self.editor.viewport.renderer_status(&self.editor.shown_looks());
-        self.windows.palette.ui(
-            &ctx,
-            self.editor.document.settings.camera.up,
-            self.editor.document.volume.as_ref(),
-            &mut commands,
-        );
-        self.windows.volume_chooser.ui(
-            &ctx,
-            self.editor.document.volume.as_ref(),
-            self.opening.loader.options(),
-            &mut commands,
-        );
-        let mut inputs = OuterPanelInputs {
-            editor: &mut self.editor,
-            opening: &self.opening,
-            picture: &self.picture,
-            windows: &mut self.windows,
-            layout: &mut self.layout,
-            facts: &facts,
-            commands: &mut commands,
-        };
-        self.panels.show(ui, &mut inputs);
-        let export_preview = self.windows.export.requested_image().filter(|_| !self.layout.picture_only);
-        let drawn = self.picture.show_picture(
-            ui,
-            &mut self.editor,
-            &mut self.windows.slices,
-            export_preview,
-            &facts,
-            &mut commands,
-        );
-        if let Err(err) = drawn {
-            self.handle_render_error(&err, &ctx);
-        }
-        self.editor.document.update_shown_range(self.editor.viewport.dataset().as_ref());
-        shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
-        self.show_windows(frame, &ctx, &mut commands);
-        self.drag_cancel.end(&mut self.editor.document.settings);
-        let mut opener = VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx: &ctx };
-        opener.ask_for_volume(&mut self.dialogs.files, frame);
-        self.editor.document.history.observe(&ctx, &self.editor.document.history_step());
-        commands.extend(self.editor.finish_framing());
-        commands.extend(self.editor.update_outline(self.opening.is_opening(), &ctx));
-        let before = self.editor.document.settings.camera.clone();
-        for command in commands {
-            self.execute(command, frame, &ctx);
-        }
-        self.picture.camera_animation.begin(
-            &before,
-            &self.editor.document.settings.camera,
-            ctx.input(|input| input.time),
-        );
-        self.opener(&ctx).cancel_files_by_key();
-        self.drop_pictures_of_replaced();
-        self.layout.leave_picture_only(&ctx);
-        if self.editor.update_corrections(&ctx) {
-            self.windows.contact_sheet.discard();
-        }
-        let is_opening = self.opening.is_opening();
-        self.editor.finish_first_look(is_opening, self.opening.loader.shaders(), &ctx);
-        self.editor.update_balance(is_opening, &ctx);
-        self.editor.autosave_look();
-        let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
-        if ui_ms > SLOW_FRAME_MS {
-            log::debug!("the window's thread was busy for {ui_ms:.0} ms");
-        }
-        self.status_file.longest_ui_ms = self.status_file.longest_ui_ms.max(ui_ms);
-        let idle = self.is_idle();
-        if idle {
-            self.opening.loader.warm_up_rest();
-        }
-        let state = status_file::WindowStatus {
-            response: self.editor.viewport.response_times(),
-            loading: self.opening.is_opening(),
-            idle,
-            canvas: self.picture.canvas.filter(|_| self.editor.document.volume.is_some()),
-            handles: self.picture.handles.positions(),
-            light_rebuilds: self.light_rebuilds(),
-            errors: self.editor.messages.errors(),
-            path_window: self.dialogs.files.typed_path_title(),
-            places: if self.status_file.is_on() { reveal::reported_areas(&ctx) } else { BTreeMap::new() },
-            pixels_per_point: ctx.pixels_per_point(),
-        };
-        self.status_file.update(&state);
-        if self.opening.loader.progress().is_some() || self.windows.export.is_busy() {
-            // The progress bar moves; and an export started by an earlier window cannot wake this one.
-            ctx.request_repaint_after(std::time::Duration::from_millis(100));
-        }
-    }
-
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.layout.store(storage);
-    }
-
-    fn on_exit(&mut self) {
-        self.editor.autosave_look();
-        if self.device.is_lost {
-            self.device.hand_over(
-                &mut self.editor,
-                &mut self.opening,
-                &mut self.windows,
-                &self.layout,
-                self.picture.light_probe.is_active,
-            );
-        } else {
-            self.windows.export.cancel_and_wait();
-        }
-    }
-
-    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
-        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

@@ -2,7 +2,6 @@
 //! sections, and the zoom factor.
 
 pub(super) mod outer_panels;
-mod overlay_windows;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
