@@ -7,6 +7,7 @@ use eframe::egui::{self, gui_zoom};
 
 use crate::app::common::commands::AppCommand;
 use crate::app::common::{light_keys, reveal};
+use crate::app::text::sections::{COMPARE, CUTS, FLOOR};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
@@ -15,12 +16,8 @@ impl App {
     /// Executes a command of the user.
     pub(crate) fn execute(&mut self, command: AppCommand, frame: &eframe::Frame, ctx: &egui::Context) {
         match command {
-            AppCommand::OpenDialog => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::OpenVolume, frame, ctx)
-            }
-            AppCommand::OpenFolder => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::OpenFolder, frame, ctx)
-            }
+            AppCommand::OpenDialog => self.ask_file(FileDialogPurpose::OpenVolume, frame, ctx),
+            AppCommand::OpenFolder => self.ask_file(FileDialogPurpose::OpenFolder, frame, ctx),
             AppCommand::OpenDropped(paths) => self.opener(ctx).open_dropped(&paths),
             AppCommand::NextFile => self.opener(ctx).seek_neighbour(true),
             AppCommand::PreviousFile => self.opener(ctx).seek_neighbour(false),
@@ -35,21 +32,10 @@ impl App {
             AppCommand::OpenChoice(choice, keeps_look) => self.opener(ctx).open_choice(&choice, keeps_look),
             AppCommand::Subsample(thinning) => self.opener(ctx).reload_subsampled(thinning),
             AppCommand::ReopenLast => self.opener(ctx).reopen_last(),
-            AppCommand::CancelOpening => {
-                self.opener(ctx).cancel_files();
-                self.drop_pictures_of_replaced();
-            }
-            AppCommand::SaveSettings => match self.editor.session_to_save() {
-                Some(path) => self.editor.save_settings(&path),
-                None => self.dialogs.files.open_dialog(FileDialogPurpose::SaveSettings, frame, ctx),
-            },
-            AppCommand::LoadSettings => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::LoadSettings, frame, ctx)
-            }
-            AppCommand::Export => {
-                let (size, folder) = (self.picture.available_size(), self.layout.exports.as_deref());
-                self.windows.export.open(size, folder, self.editor.document.volume_name());
-            }
+            AppCommand::CancelOpening => self.cancel_files(ctx),
+            AppCommand::SaveSettings => self.save_session(frame, ctx),
+            AppCommand::LoadSettings => self.ask_file(FileDialogPurpose::LoadSettings, frame, ctx),
+            AppCommand::Export => self.open_export(),
             AppCommand::CancelExport => self.windows.export.cancel(),
             AppCommand::CopyPicture => {
                 self.windows.copy_picture(self.picture.available_size(), &mut self.editor, ctx);
@@ -67,29 +53,13 @@ impl App {
             AppCommand::TreatAs(kind) => self.editor.treat_as(kind, ctx),
             AppCommand::UsePreset(preset) => self.editor.use_preset(&preset),
             AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
-            AppCommand::ImportTransfer => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::ImportTransfer, frame, ctx)
-            }
-            AppCommand::ExportTransfer => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::ExportTransfer, frame, ctx)
-            }
+            AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
+            AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
             AppCommand::InvertTransfer => self.editor.document.settings.transfer.mirror(),
-            AppCommand::ToggleCrop => {
-                let crop = &mut self.editor.document.settings.cuts.crop;
-                crop.on ^= true;
-                self.layout.show_section(ctx, text::sections::CUTS, crop.on);
-            }
-            AppCommand::TogglePlane => {
-                let plane = &mut self.editor.document.settings.cuts.plane;
-                plane.on ^= true;
-                self.layout.show_section(ctx, text::sections::CUTS, plane.on);
-            }
+            AppCommand::ToggleCrop => self.layout.show_section(ctx, CUTS, self.editor.toggle_crop()),
+            AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),
-            AppCommand::ToggleFloor => {
-                let floor = &mut self.editor.document.settings.floor;
-                floor.on ^= true;
-                self.layout.show_section(ctx, text::sections::FLOOR, floor.on);
-            }
+            AppCommand::ToggleFloor => self.layout.show_section(ctx, FLOOR, self.editor.toggle_floor()),
             AppCommand::Balance => self.editor.start_balance(ctx),
             AppCommand::FrameAll => self.editor.frame_all(ctx),
             AppCommand::TurnObject(turn) => self.editor.turn_object(turn, ctx),
@@ -102,13 +72,8 @@ impl App {
             AppCommand::RecallView(slot) => self.editor.apply_saved_digit(slot, ctx),
             AppCommand::GoToSaved(at, with_view) => self.editor.apply_saved(at, with_view, ctx),
             AppCommand::ReplaceSaved(at) => self.editor.replace_saved(at),
-            AppCommand::CompareSaved(left, right) => {
-                self.editor.compare_saved(left, right);
-                reveal::show_section(ctx, text::sections::COMPARE, true);
-            }
-            AppCommand::ExportContactSheet => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::ExportKept, frame, ctx)
-            }
+            AppCommand::CompareSaved(left, right) => self.compare_saved(left, right, ctx),
+            AppCommand::ExportContactSheet => self.ask_file(FileDialogPurpose::ExportKept, frame, ctx),
             AppCommand::ToggleStrip => self.layout.kept ^= true,
             AppCommand::Scale(1) => gui_zoom::zoom_in(ctx),
             AppCommand::Scale(-1) => gui_zoom::zoom_out(ctx),
@@ -120,16 +85,9 @@ impl App {
             AppCommand::UseRig(rig) => self.editor.document.use_rig(rig),
             AppCommand::UseLights(lights) => self.editor.document.use_lights(lights),
             AppCommand::UseLook(look) => self.editor.document.use_look(*look),
-            AppCommand::TryLooks => {
-                // The looks derive from the first look, which must have the current up axis.
-                if self.editor.ensure_first_look_up(Some(AppCommand::TryLooks), ctx) {
-                    self.windows.contact_sheet.open(ContactSheetKind::Looks);
-                }
-            }
+            AppCommand::TryLooks => self.try_looks(ctx),
             AppCommand::TryLights => self.windows.contact_sheet.open(ContactSheetKind::Lights),
-            AppCommand::UseEnvironmentMap => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::EnvironmentMap, frame, ctx)
-            }
+            AppCommand::UseEnvironmentMap => self.ask_file(FileDialogPurpose::EnvironmentMap, frame, ctx),
             AppCommand::SuggestLight => self.windows.contact_sheet.open(ContactSheetKind::Suggestions),
             AppCommand::TryPresets => self.windows.contact_sheet.open(ContactSheetKind::Presets),
             AppCommand::NextLight => self.editor.document.step_light(1),
@@ -142,21 +100,53 @@ impl App {
             AppCommand::ToggleTransfer => self.layout.transfer ^= true,
             AppCommand::TogglePictureOnly => self.layout.toggle_picture_only(&mut self.editor.messages),
             AppCommand::ToggleHandles => self.picture.handles.is_hidden ^= true,
-            AppCommand::ToggleCompare => {
-                let compare = &mut self.editor.viewport.compare;
-                compare.on ^= true;
-                self.layout.show_section(ctx, text::sections::COMPARE, compare.on);
-            }
+            AppCommand::ToggleCompare => self.layout.show_section(ctx, COMPARE, self.editor.toggle_compare()),
             AppCommand::Reveal(place) => self.layout.reveal(place, ctx),
             AppCommand::ShowSlices => self.windows.slices.open ^= true,
             AppCommand::ShowLightVolume => self.windows.light_slice.open = true,
-            AppCommand::CompareWithFile => {
-                self.dialogs.files.open_dialog(FileDialogPurpose::CompareSettings, frame, ctx)
-            }
+            AppCommand::CompareWithFile => self.ask_file(FileDialogPurpose::CompareSettings, frame, ctx),
             AppCommand::ShowHelp => self.windows.help.keys_open ^= true,
             AppCommand::ShowAbout => self.windows.help.about_open = true,
         }
         ctx.request_repaint();
+    }
+
+    /// Asks for a file in a dialog of the desktop.
+    fn ask_file(&mut self, purpose: FileDialogPurpose, frame: &eframe::Frame, ctx: &egui::Context) {
+        self.dialogs.files.open_dialog(purpose, frame, ctx);
+    }
+
+    /// Saves the session to its file, or asks for a file.
+    fn save_session(&mut self, frame: &eframe::Frame, ctx: &egui::Context) {
+        match self.editor.session_to_save() {
+            Some(path) => self.editor.save_settings(&path),
+            None => self.ask_file(FileDialogPurpose::SaveSettings, frame, ctx),
+        }
+    }
+
+    /// Cancels opening a volume and reading other files.
+    fn cancel_files(&mut self, ctx: &egui::Context) {
+        self.opener(ctx).cancel_files();
+        self.drop_pictures_of_replaced();
+    }
+
+    /// Shows the export dialog for pictures and turntables.
+    fn open_export(&mut self) {
+        let (size, folder) = (self.picture.available_size(), self.layout.exports.as_deref());
+        self.windows.export.open(size, folder, self.editor.document.volume_name());
+    }
+
+    /// Shows the contact sheet of looks, which derive from the first look; it must have the current up axis.
+    fn try_looks(&mut self, ctx: &egui::Context) {
+        if self.editor.ensure_first_look_up(Some(AppCommand::TryLooks), ctx) {
+            self.windows.contact_sheet.open(ContactSheetKind::Looks);
+        }
+    }
+
+    /// Compares two saved views or looks, or the picture (`None`) with one.
+    fn compare_saved(&mut self, left: Option<usize>, right: usize, ctx: &egui::Context) {
+        self.editor.compare_saved(left, right);
+        reveal::show_section(ctx, COMPARE, true);
     }
 
     /// Collects the results that worker threads have finished.

@@ -10,6 +10,34 @@ use chiaroscuro_scene::{ObjectRotation, Preset, StandardView};
 use chiaroscuro_volume::KindName;
 
 impl LookEditor {
+    /// Switches the crop box on or off, and returns true if it is on.
+    pub(crate) fn toggle_crop(&mut self) -> bool {
+        let crop = &mut self.document.settings.cuts.crop;
+        crop.on ^= true;
+        crop.on
+    }
+
+    /// Switches the clip plane on or off, and returns true if it is on.
+    pub(crate) fn toggle_plane(&mut self) -> bool {
+        let plane = &mut self.document.settings.cuts.plane;
+        plane.on ^= true;
+        plane.on
+    }
+
+    /// Shows or hides the floor under the volume, and returns true if it is shown.
+    pub(crate) fn toggle_floor(&mut self) -> bool {
+        let floor = &mut self.document.settings.floor;
+        floor.on ^= true;
+        floor.on
+    }
+
+    /// Switches the comparison of two looks on or off, and returns true if it is on.
+    pub(crate) fn toggle_compare(&mut self) -> bool {
+        let compare = &mut self.viewport.compare;
+        compare.on ^= true;
+        compare.on
+    }
+
     /// Resets the camera to that of the first look.
     pub(crate) fn reset_view(&mut self, ctx: &egui::Context) {
         if self.ensure_first_look_up(Some(AppCommand::ResetView), ctx) {
