@@ -1,11 +1,14 @@
 //! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
-//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads
-//! beside the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light
-//! volumes, and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
-//! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
-//! included. Panels see settings and read-only facts.
+//! The document holds the look, the facts about its volume and the undo history. `LookEditor` joins it with its
+//! picture and the messages, and `VolumeOpener` opens volumes into it; beside them are the window's own parts, each
+//! with its methods. A frame is in `frame.rs`, the effect of commands in `shell/execute.rs`.
+//!
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside the
+//! window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes, and the
+//! measurement of brightness. So does everything that visits all voxels (first looks for another kind of data, or for
+//! an object that stands another way up) and everything that reads untrusted files, looks and sessions included. Panels
+//! see settings and read-only facts.
 
 mod common;
 mod document;

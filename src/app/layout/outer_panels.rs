@@ -39,7 +39,7 @@ pub(crate) struct OuterPanelInputs<'a> {
     pub picture: &'a PictureTools,
     /// Tool windows, among them the help that is shown without panels, too.
     pub windows: &'a mut ToolWindows,
-    /// Panels that are shown.
+    /// Panels and tool windows that are shown.
     pub layout: &'a mut WindowLayout,
     /// Statistics and state of the renderer.
     pub facts: &'a RendererStatus,

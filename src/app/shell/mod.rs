@@ -1,5 +1,4 @@
-//! Shell of the window: opening of files, commands, menu, picture area, status bar, messages, and the tasks that change
-//! the document.
+//! Shell of the window: editor of the look, opening of files, commands, menu, picture area, status bar and messages.
 
 pub(super) mod execute;
 pub(super) mod history;

@@ -1,4 +1,5 @@
-//! Windows over the main window: export, files, slices, contact sheet, help.
+//! Windows over the main window: export, files, slices, contact sheet, help; and the trait of tools that read the
+//! scene.
 
 pub(super) mod contact_sheet;
 pub(super) mod device_loss;
@@ -42,7 +43,7 @@ pub(crate) struct ToolScene<'a> {
 /// Request of a tool to the window.
 #[derive(Debug)]
 pub(crate) enum ToolRequest {
-    /// Ask for a file.
+    /// Ask the user for a file.
     AskFile(FileDialogPurpose),
     /// Render the picture and write it, as the export window says.
     Export,

@@ -10,7 +10,7 @@ mod steps;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use self::automatic_changes::LookTasks;
+use self::automatic_changes::LookTasks;
 use crate::app::document::Document;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
@@ -28,7 +28,7 @@ pub(crate) struct LookEditor {
     pub document: Document,
     /// Picture on screen, and the connection to the render thread.
     pub viewport: Viewport,
-    /// Messages to the user.
+    /// Messages that are shown to the user.
     pub messages: MessageLog,
     /// Tasks whose results change the look.
     pub look_tasks: LookTasks,

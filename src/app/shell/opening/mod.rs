@@ -53,7 +53,7 @@ pub(crate) struct OpeningState {
     pub adjust_first_look: Option<SettingsAdjustment>,
     /// True while the default volume waits for the user's answer about reopening the last session.
     pub default_open_waits: bool,
-    /// Thread that reads volumes.
+    /// Reader of volumes, on threads of its own.
     pub loader: Loader,
     /// Search for the next file in the folder, while it runs.
     next_file_search: Option<NeighbourSearch>,
