@@ -11,6 +11,7 @@ use crate::app::text::sections::{COMPARE, CUTS, FLOOR};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
+use chiaroscuro_volume::ChoiceAspect;
 
 impl App {
     /// Executes a command of the user.
@@ -25,10 +26,7 @@ impl App {
             AppCommand::Open(source) => self.opener(ctx).open(&source),
             AppCommand::OpenAgain(path, choice) => self.opener(ctx).open_again(&path, &choice),
             AppCommand::ShowChooser(aspect) => self.windows.show_chooser(aspect, &mut self.editor),
-            AppCommand::StepChoice(aspect, is_forward) => {
-                let keeps_look = self.windows.volume_chooser.keeps_look(aspect);
-                self.opener(ctx).step_choice(aspect, is_forward, keeps_look);
-            }
+            AppCommand::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
             AppCommand::OpenChoice(choice, keeps_look) => self.opener(ctx).open_choice(&choice, keeps_look),
             AppCommand::Subsample(thinning) => self.opener(ctx).reload_subsampled(thinning),
             AppCommand::ReopenLast => self.opener(ctx).reopen_last(),
@@ -42,10 +40,10 @@ impl App {
             }
             AppCommand::ToggleKeepLook => self.opening.requests.keeps_look ^= true,
             AppCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            AppCommand::Undo => self.editor.undo_or_redo(true, !self.layout.picture_only, ctx),
-            AppCommand::Redo => self.editor.undo_or_redo(false, !self.layout.picture_only, ctx),
+            AppCommand::Undo => self.go_steps(-1, ctx),
+            AppCommand::Redo => self.go_steps(1, ctx),
             AppCommand::ToggleHistory => self.windows.history.open ^= true,
-            AppCommand::GoSteps(steps) => self.editor.go_steps(steps, !self.layout.picture_only, ctx),
+            AppCommand::GoSteps(steps) => self.go_steps(steps, ctx),
             AppCommand::ToggleMessages => self.editor.messages.list_open ^= true,
             AppCommand::ResetView => self.editor.reset_view(ctx),
             AppCommand::AddLight => self.editor.add_light(),
@@ -114,6 +112,21 @@ impl App {
     /// Asks for a file in a dialog of the desktop.
     fn ask_file(&mut self, purpose: FileDialogPurpose, frame: &eframe::Frame, ctx: &egui::Context) {
         self.dialogs.files.open_dialog(purpose, frame, ctx);
+    }
+
+    /// Opens the next or the previous volume of the open file.
+    fn step_choice(&mut self, aspect: ChoiceAspect, is_forward: bool, ctx: &egui::Context) {
+        let keeps_look = self.windows.volume_chooser.keeps_look(aspect);
+        let mut opener = self.opener(ctx);
+        if let Some(choice) = opener.neighbour_choice(aspect, is_forward) {
+            opener.open_choice(&choice, keeps_look);
+        }
+    }
+
+    /// Goes the given number of undo steps forward, or back if it is negative.
+    fn go_steps(&mut self, steps: i32, ctx: &egui::Context) {
+        // Without panels there is no status bar.
+        self.editor.go_steps(steps, !self.layout.picture_only, ctx);
     }
 
     /// Saves the session to its file, or asks for a file.

@@ -6,19 +6,16 @@ use super::LookEditor;
 use crate::app::text;
 
 impl LookEditor {
-    /// Goes the given number of steps forward, or back if it is negative; see [`Self::undo_or_redo`].
+    /// Goes the given number of steps forward, or back if it is negative, and shows the last one in the status bar, or
+    /// as a note if there is none.
     pub(crate) fn go_steps(&mut self, steps: i32, has_status_bar: bool, ctx: &egui::Context) {
-        // Only the last step shows a message.
+        let is_back = steps < 0;
         for _ in 1..steps.unsigned_abs() {
-            self.take_step(steps < 0, ctx);
+            self.take_step(is_back, ctx);
         }
-        if steps != 0 {
-            self.undo_or_redo(steps < 0, has_status_bar, ctx);
+        if steps == 0 {
+            return;
         }
-    }
-
-    /// Takes one step back or forward and shows it in the status bar, or as a note if there is none.
-    pub(crate) fn undo_or_redo(&mut self, is_back: bool, has_status_bar: bool, ctx: &egui::Context) {
         let what = self.document.history.describe_next(&self.document.history_step(), is_back);
         self.take_step(is_back, ctx);
         if let Some(what) = what {
@@ -32,7 +29,7 @@ impl LookEditor {
         }
     }
 
-    /// Takes a step as [`Self::undo_or_redo`] does, without a message.
+    /// Takes one step back or forward, without a message.
     fn take_step(&mut self, is_back: bool, ctx: &egui::Context) {
         // Only a step that has turned the object changes the remembered up axis.
         if self.document.take_step(is_back) {

@@ -8,17 +8,19 @@ use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_volume::{ChoiceAspect, VolumeChoice};
 
 impl VolumeOpener<'_> {
-    /// Opens the next or the previous volume of the open file; `keeps_look` keeps the look for it.
-    pub(crate) fn step_choice(&mut self, aspect: ChoiceAspect, is_forward: bool, keeps_look: bool) {
+    /// Returns the next or the previous volume of the open file, or `None` at the end; notes if there is only one.
+    pub(crate) fn neighbour_choice(
+        &mut self,
+        aspect: ChoiceAspect,
+        is_forward: bool,
+    ) -> Option<VolumeChoice> {
         let held = self.editor.document.volume.as_ref().map(|volume| &volume.held);
         let Some(all) = held.and_then(|held| Alternatives::new(held, aspect)) else {
-            return self.editor.messages.note(text::chooser::single_item(aspect));
+            self.editor.messages.note(text::chooser::single_item(aspect));
+            return None;
         };
         let next = if is_forward { Some(all.current() + 1) } else { all.current().checked_sub(1) };
-        if let Some(next) = next.filter(|&next| next < all.count()) {
-            let choice = all.choice(next);
-            self.open_choice(&choice, keeps_look);
-        }
+        next.filter(|&next| next < all.count()).map(|next| all.choice(next))
     }
 
     /// Opens another volume of the open file; the current one stays until it is ready, and `keeps_look` keeps the
