@@ -42,7 +42,7 @@ impl Renderer {
     /// the rays would take too much memory.
     pub fn sky_divisor(&self) -> Option<usize> {
         let skies = &self.loaded.as_ref()?.product.skies;
-        skies.last_used().map(|sky| sky.divisor)
+        skies.last_used().map(|sky| sky.blocks.divisor)
     }
 
     /// Returns the statistics of a request's scattered-light volume at full resolution, if there is one.
@@ -53,7 +53,7 @@ impl Renderer {
         Some(self.volume_statistics(
             bounces.is_complete(),
             &bounces.product.fill_time,
-            bounces.product.bytes(),
+            bounces.product.blocks.bytes(),
         ))
     }
 

@@ -63,7 +63,7 @@ impl Renderer {
         let key = SkyKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
-        self.texels(&found.product.view)
+        self.texels(&found.product.blocks.view)
     }
 
     /// Returns the scattered light of each block of voxels: linear RGB, and 1.
@@ -80,7 +80,7 @@ impl Renderer {
         let key = BouncesKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.bounces.iter().find(|bounces| bounces.is_valid_for(&key)).ok_or_else(none)?;
-        self.texels(&found.product.view)
+        self.texels(&found.product.blocks.view)
     }
 
     /// Draws a small picture with light volumes filled everywhere, and returns its request.

@@ -49,7 +49,7 @@ impl LoadedVolume {
         let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         let least_reach = required_reach(wanted, reach);
         let has_cells = |_: &BouncesKey, known: &ScatteredLightVolume| {
-            cells(known.divisor, least_reach).is_subset(&known.filled_cells)
+            cells(known.blocks.divisor, least_reach).is_subset(&known.filled_cells)
         };
         if let Some(slot) = self.bounces.find([Some(full), coarse.as_ref()], has_cells) {
             return Ok(ScatteredLightPlace::with_complete(self.bounces.claim(slot, now), slot));
@@ -76,6 +76,6 @@ impl LoadedVolume {
 
     /// Returns the size of all volumes of scattered light, in bytes.
     pub(crate) fn bounces_bytes(&self) -> u64 {
-        self.bounces.iter().map(|known| known.product.bytes()).sum()
+        self.bounces.iter().map(|known| known.product.blocks.bytes()).sum()
     }
 }
