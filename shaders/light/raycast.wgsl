@@ -1,5 +1,5 @@
 // Ray casting of a light volume: a ray from every voxel to the light (P §3.4, eq. 8), one thread per voxel.
-#import "density/table.wgsl"
+#import "volume/material.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
 #import "common/space.wgsl"
@@ -31,7 +31,7 @@ var<private> raycast: RaycastUniform;
 
 // White light or a single colour is followed, so extinction is a scalar.
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
-    return Transmittance(classified_extinction(slab_density(frame, ray, k)));
+    return Transmittance(extinction_of(slab_field(frame, ray, k)));
 }
 
 fn light_distance(cell: vec3f) -> i32 {

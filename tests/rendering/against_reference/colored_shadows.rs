@@ -233,7 +233,7 @@ fn mistakes_are_detected() {
         (&settings, "eye/eye_pass.wgsl", "return texel.rgb;", "return texel.rrr;"),
         (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
         (&classified, "eye/eye_pass.wgsl", "return texel.gba;", "return texel.rrr;"),
-        (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
+        (&on_floor, "eye/floor.wgsl", "extinction_of(Field(met.g))", "extinction_of(Field(met.b))"),
     ] {
         assert_in_shader(shader, from);
         assert!(!differences(settings, (from, to)).is_empty(), "{to:?} for {from:?} is not noticed");

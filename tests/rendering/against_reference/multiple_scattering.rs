@@ -159,8 +159,8 @@ fn mistakes_in_light_of_one_color_are_noticed() {
         ("scattered_light/sweep.wgsl", "return found.g;", "return found.r;"),
         (
             "scattered_light/source.wgsl",
-            "vec4f(given.r, found.a, 0.0, 0.0)",
-            "vec4f(given.r, 0.5 * found.a, 0.0, 0.0)",
+            "vec4f(emission.r, extinction, 0.0, 0.0)",
+            "vec4f(emission.r, 0.5 * extinction, 0.0, 0.0)",
         ),
         ("scattered_light/single_scattering.wgsl", "return found.g;", "return found.r;"),
     ];

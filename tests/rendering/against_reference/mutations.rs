@@ -282,7 +282,7 @@ fn undamaged_slabs_by_need_agree() {
 fn damaged_slabs_by_need_are_noticed() {
     let damages = [
         // As dense as thin slabs.
-        ("found.material.a * f32(width)", "found.material.a"),
+        ("found.material.extinction * f32(width)", "found.material.extinction"),
         // Sampled at their front.
         ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
         // Subdivided behind occluding material.
@@ -290,7 +290,10 @@ fn damaged_slabs_by_need_are_noticed() {
         ("const MAX_UNDIVIDED_SHARE = 0.125", "const MAX_UNDIVIDED_SHARE = 0.25"),
         ("const GRADIENT_SAFETY = 1.25", "const GRADIENT_SAFETY = 0.5"),
         // Ignoring material between this sample and a denser one.
-        ("found.density - change, found.density + change", "found.density, found.density"),
+        (
+            "found.field.density - change, found.field.density + change",
+            "found.field.density, found.field.density",
+        ),
     ];
     for (from, to) in damages {
         assert_in_shader("eye/eye_pass.wgsl", from);

@@ -200,9 +200,14 @@ fn scattering_samples_no_density() {
         if binds("pyramid_texture") {
             assert!(binds("presence_texture"), "{name} has the pyramid");
             let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("its text is there");
-            for density in
-                ["pyramid(", " density(", "slab_density(", "density_by_kernel(", "preclassified_at("]
-            {
+            for density in [
+                "pyramid_density(",
+                "pyramid_field(",
+                "field_at(",
+                "slab_field(",
+                "density_by_kernel(",
+                "preclassified_at(",
+            ] {
                 assert!(!text.contains(density), "{name} reads the pyramid by {density}");
             }
         }

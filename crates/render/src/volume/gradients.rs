@@ -59,9 +59,9 @@ pub(crate) fn fill_gradients(
         &pipeline,
         0,
         &[
-            bind_view("source", &level_view(&volume.pyramid, level)),
+            bind_view("source_texture", &level_view(&volume.pyramid, level)),
             bind_buffer("bound_resample", &uniform),
-            bind_view("gradients", &level_view(gradients, level)),
+            bind_view("gradient_level", &level_view(gradients, level)),
             bind_buffer("bricks", &list),
         ],
     );

@@ -133,8 +133,8 @@ pub(crate) fn fill_pyramid(
     let (uniform, list) = level_buffers(context, level, bricks);
     let target = level_view(&volume.pyramid, level);
     let mut entries = vec![
-        bind_view("source", &source),
-        sampler("clamped", &volume.clamped),
+        bind_view("source_texture", &source),
+        sampler("source_sampler", &volume.clamped),
         bind_view("level", &target),
         bind_buffer("bound_resample", &uniform),
         bind_buffer("bricks", &list),
