@@ -3,7 +3,7 @@
 #import "volume/field.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/looked_up_light.wgsl"
-#import "common/listed_bricks.wgsl"
+#import "common/listed_voxels.wgsl"
 #import "density/gradient.wgsl"
 
 struct CombineUniform {
@@ -27,12 +27,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     combine = bound_combine;
     eye = bound_eye;
     grid = bound_grid;
-    let listed = listed_brick(group);
-    if (listed >= combine.bricks) {
-        return;
-    }
-    let voxel = voxel_in(bricks[listed].x, group, local);
-    if (!is_listed(bricks[listed], group, local) || any(voxel >= combine.dims)) {
+    let voxel = voxel_of_listed_brick(group, local, combine.bricks);
+    if (any(voxel >= combine.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;

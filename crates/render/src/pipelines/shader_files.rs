@@ -12,6 +12,7 @@ macro_rules! shader_files {
 pub const SHADERS: &[(&str, &str)] = shader_files![
     "common/listed_bricks.wgsl",
     "common/listed_cells.wgsl",
+    "common/listed_voxels.wgsl",
     "common/most_light.wgsl",
     "common/sizes.wgsl",
     "common/slab_mean.wgsl",
