@@ -22,14 +22,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let opacity = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
         lights: vec![LightSettings { position: [0.0, 0.0, 3.0], ..LightSettings::default() }],
-        transfer: TransferFunction {
-            points: vec![opacity(0.0, 0.0), opacity(1.0, 0.1)],
-            interpolation: OpacityInterpolation::Extinction,
-            ..TransferFunction::default()
-        },
-        opacity_unit: OpacityLength::Mm(1.0),
         ..Settings::default()
-    };
+    }
+    .with_transfer(TransferFunction {
+        points: vec![opacity(0.0, 0.0), opacity(1.0, 0.1)],
+        interpolation: OpacityInterpolation::Extinction,
+        ..TransferFunction::default()
+    })
+    .with_opacity_unit(OpacityLength::Mm(1.0));
     // One volume per light, not combined with others.
     settings.shadows.storage = LightStorage::PerLight;
 

@@ -64,7 +64,8 @@ impl Soak {
             self.settings.camera.orbit(3.0, 0.2);
         }
         if at.is_multiple_of(50) {
-            self.settings.transfer.points[0].value += if at.is_multiple_of(100) { 0.5 } else { -0.5 };
+            self.settings.layer_mut().transfer.points[0].value +=
+                if at.is_multiple_of(100) { 0.5 } else { -0.5 };
         }
         self.draw(at.is_multiple_of(PREVIEWS_PER_REST));
         start.elapsed()

@@ -176,6 +176,12 @@ need_program() {
     [ -x "$program" ] || die "there is no program $program"
 }
 
+# need_faults: fails unless `program` was built with injected faults, which programs for distribution lack.
+need_faults() {
+    "$program" info builtin:box:8 --fault slow:0 >/dev/null 2>&1 ||
+        die "$program has no option --fault; build it with: cargo build --release --features faults"
+}
+
 # open_screen: starts a virtual X server, with empty settings and state as at the first start. Closed when the script
 # ends.
 open_screen() {

@@ -1,5 +1,8 @@
 // Transmittance, 0 … 1, and extinction of light: a scalar, or red, green and blue where shadows are coloured. Tables
 // of coloured extinction hold the share of the extinction for each colour of light in place of the material's colour.
+
+#option COLORED: transmittance differs between red, green and blue light
+
 #if COLORED
 alias Transmittance = vec3f;
 #else
@@ -11,15 +14,6 @@ fn stored_transmittance(texel: vec4f) -> Transmittance {
     return texel.rgb;
 #else
     return texel.r;
-#endif
-}
-
-// Extinction of light for an entry of its table.
-fn entry_extinction(entry: vec4f) -> Transmittance {
-#if COLORED
-    return entry.rgb * entry.a;
-#else
-    return entry.a;
 #endif
 }
 

@@ -1,6 +1,6 @@
 // Empty-space skipping over cells of 2³ voxels in which nothing is visible (crates/volume/src/cells.rs).
 #import "common/sizes.wgsl"
-#import "density/volume.wgsl"
+#import "density/slab_field.wgsl"
 
 // Ray in cell coordinates: position at slab 0, and step from slab to slab.
 struct CellRay {

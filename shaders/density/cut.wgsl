@@ -1,5 +1,6 @@
 // Crop box and clip plane (crates/volume/src/math/clip_region.rs): region of the volume that remains, and the part of
 // each slab of a ray inside it.
+#import "density/boundaries.wgsl"
 #import "sheets/sheet_frame.wgsl"
 
 // Set if the crop box or the clip plane removes anything.

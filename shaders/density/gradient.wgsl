@@ -1,5 +1,5 @@
 // Gradients of the prefiltered density, for normals.
-#import "density/volume.wgsl"
+#import "volume/field.wgsl"
 
 // Gradient, in index space, of the density as the B-spline reconstructs it: differences of the prefiltered density at
 // ± one and ± two voxels of a pyramid level, weighted to be exact for polynomials up to the fourth order. The
@@ -17,7 +17,7 @@ fn index_gradient(p: vec3f, level: f32) -> vec3f {
     ) / h;
 }
 
-// Pyramid level of the normals for kernels stretched to `level`. PRECLASSIFY: labels change abruptly between voxels,
+// Pyramid level of the normals for kernels stretched to `level`. Labels change abruptly between voxels,
 // and look like stairs from nearby; a kernel twice as wide smooths their slope.
 fn normal_level(level: f32) -> f32 {
 #if PRECLASSIFY
@@ -29,7 +29,7 @@ fn normal_level(level: f32) -> f32 {
 
 // Derivative of the density along `step`, per step.
 fn derivative_along(p: vec3f, step: vec3f, level: f32) -> f32 {
-    let near = pyramid(p + step, level) - pyramid(p - step, level);
-    let far = pyramid(p + 2.0 * step, level) - pyramid(p - 2.0 * step, level);
+    let near = pyramid_density(p + step, level) - pyramid_density(p - step, level);
+    let far = pyramid_density(p + 2.0 * step, level) - pyramid_density(p - 2.0 * step, level);
     return (8.0 * near - far) / 12.0;
 }

@@ -9,12 +9,6 @@ override SIGMA: f32 = 0.6;
 
 // Quadrature points per slab: 1 in the middle, or 2 by Gauss–Legendre, whose mean is the paper's h̄.
 override QUADRATURE: u32 = 1u;
-// Set if voxels are missing (density/volume.wgsl).
-#if MISSING
-const MISSING = true;
-#else
-const MISSING = false;
-#endif
 
 // Weights of the neighbours at −1, 0, 1, 2 for a point at fraction f in [0, 1); they sum to 1.
 fn kernel_weights(f: f32) -> vec4f {

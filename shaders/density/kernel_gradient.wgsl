@@ -1,6 +1,8 @@
 // Gradients for normals: analytic gradient of the kernel, or the stored one.
 #import "density/stored_gradient.wgsl"
 
+#option KERNEL_GRADIENTS: gradients are those of the kernel
+
 // Derivatives of the cubic B-spline's weights with respect to f (kernel.wgsl); they sum to 0.
 fn kernel_derivatives(f: f32) -> vec4f {
     let g = 1.0 - f;
@@ -33,7 +35,7 @@ fn stretched_gradient(p: vec3f, level: f32) -> vec3f {
     return mix(gradient_by_kernel(p), blurred, level);
 }
 
-// Gradient of the volume in index space. KERNEL_GRADIENTS: analytic gradient of the kernel.
+// Gradient of the volume in index space.
 fn gradient_at(p: vec3f, level: f32) -> vec3f {
 #if KERNEL_GRADIENTS
     return stretched_gradient(p, level);

@@ -1,7 +1,6 @@
 // Presence: the fraction of a kernel that lies on voxels of the grid. Outside the grid there is no material, whatever
-// the transfer function: density continues there with its border value, and extinction fades with presence. FACES:
-// something is visible near the faces of the grid; other variants omit this code, which compiles faster. FACES > 1:
-// the grid is so thin that a kernel may reach two opposite faces.
+// the transfer function: density continues there with its border value, and extinction fades with presence.
+#import "density/boundaries.wgsl"
 #import "density/kernel.wgsl"
 
 // Reach of the kernels on either side of the grid's edges, which lie half a voxel outside its outermost voxels (index

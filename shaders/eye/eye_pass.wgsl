@@ -3,7 +3,7 @@
 //
 // The result is linear, premultiplied and not yet tone-mapped.
 #import "common/sizes.wgsl"
-#import "density/classify.wgsl"
+#import "density/slab_material.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/near_light.wgsl"
@@ -18,21 +18,22 @@
 // For rays to lights: g is the distance in cells to the nearest that attenuates light.
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
-// DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3). SHEET_GRADIENTS: gradients are
-// differences of neighbouring sheets.
+#option DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3)
+#option BY_NEED: slabs are subdivided by need (slabs_by_need.wgsl)
+#option PREINTEGRATED: opacity is integrated through steps that are shaded together (preintegrated_slabs.wgsl)
+
+// Takes gradients from differences of neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
-// BY_NEED: slabs are subdivided by need (slabs_by_need.wgsl). PREINTEGRATED: opacity is integrated through steps,
-// several of which are shaded together (preintegrated_slabs.wgsl).
 
 // Extinction of slab k for rays to lights.
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if PRECLASSIFY
     let depth = depth_of(frame, k);
     let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
-    return lighting_extinction(0.5 * (lighting_density(ray.origin + ray.direction * (depth - offset), 0.0)
-        + lighting_density(ray.origin + ray.direction * (depth + offset), 0.0)));
+    return lighting_extinction(0.5 * (lighting_field(ray.origin + ray.direction * (depth - offset), 0.0)
+        + lighting_field(ray.origin + ray.direction * (depth + offset), 0.0)));
 #else
-    return lighting_extinction(slab_density(frame, ray, k));
+    return lighting_extinction(slab_field(frame, ray, k));
 #endif
 }
 
@@ -63,7 +64,7 @@ fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface
 // Value of a sheet at a pixel; 0 before the first slab and behind the last.
 fn sheet_value(pixel: vec2f, k: f32) -> f32 {
     let inside = k >= 0.0 && k < f32(eye.frame.slab_count);
-    return select(0.0, slab_density(eye.frame, ray_of(eye.frame, pixel), k), inside);
+    return select(0.0, slab_field(eye.frame, ray_of(eye.frame, pixel), k).density, inside);
 }
 
 // Differences between neighbouring sheets and their pixels, as an engine that stores only sheets has them
@@ -94,8 +95,8 @@ fn shade_slab(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
 
 // Light from material with the gradient `volume_slope` in scene space; `rising` is the gradient of presence.
 fn shade_material(p: vec3f, level: f32, volume_slope: vec3f, rising: vec3f, found: SlabSample) -> vec3f {
-    let slope = volume_slope + face_slope(p, level, found.density, rising);
-    return shade(VolumeSample(p, slope, found.density, level), found.material.rgb);
+    let slope = volume_slope + face_slope(p, level, found.field, rising);
+    return shade(VolumeSample(p, slope, found.field, level), found.material.color);
 }
 
 // Next slab, from `first` on, in a cell that may be visible; beyond the last if there is none.
@@ -118,7 +119,7 @@ fn next_visible_slab(walk: CellRay, first: i32, last: i32) -> i32 {
 // Sample of a slab centred at slab k and `width` times as thick, reduced to the part inside the cut.
 fn visible_slab_sample(ray: Ray, span: vec2f, k: f32, width: f32) -> SlabSample {
     var found = slab_sample(eye.frame, ray, k);
-    found.material.a *= slab_fraction_inside(span, depth_of(eye.frame, k), width * eye.frame.slab);
+    found.material.extinction *= slab_fraction_inside(span, depth_of(eye.frame, k), width * eye.frame.slab);
     return found;
 }
 
@@ -131,14 +132,14 @@ struct VisibleSample {
 // mostly find nothing: the search continues until they do, although all lanes of a vector wait for the slowest. For
 // unstretched kernels the search would take longer than shading the few empty samples.
 fn next_sample(ray: Ray, walk: CellRay, span: vec2f, first: i32, last: i32) -> VisibleSample {
-    var at = VisibleSample(next_visible_slab(walk, first, last), SlabSample(vec4f(0.0), 0.0, 1.0));
+    var at = VisibleSample(next_visible_slab(walk, first, last), SlabSample(Material(vec3f(0.0), 0.0), Field(0.0), 1.0));
     if (STRETCH) {
         loop {
             if (at.k > last) {
                 break;
             }
             at.found = visible_slab_sample(ray, span, f32(at.k), 1.0);
-            if (at.found.material.a > 0.0) {
+            if (at.found.material.extinction > 0.0) {
                 break;
             }
             at.k = next_visible_slab(walk, at.k + 1, last);
@@ -172,8 +173,8 @@ fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> RayResult {
         if (!STRETCH) {
             at.found = visible_slab_sample(ray, span, f32(at.k), 1.0);
         }
-        if (at.found.material.a > 0.0) {
-            let passed = exp(-at.found.material.a * eye.frame.slab * ray.obliquity);
+        if (at.found.material.extinction > 0.0) {
+            let passed = exp(-at.found.material.extinction * eye.frame.slab * ray.obliquity);
             let weight = t * (1.0 - passed);
             color += weight * shade_slab(ray, pixel, at.k, at.found);
             t *= passed;

@@ -2,7 +2,7 @@
 // light, through everything that attenuates it. The result is linear and premultiplied; the display pass composites
 // the volume over it (output/display.wgsl).
 #import "common/sizes.wgsl"
-#import "density/classify.wgsl"
+#import "density/slab_material.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/light_volumes.wgsl"
@@ -64,14 +64,12 @@ const MIN_VISIBLE_OPACITY = 0.0005;
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if COLORED
 #if PRECLASSIFY
-    let met = preclassified_in_slab(frame, ray, k).gba;
-    return vec3f(classified_extinction(met.r), classified_extinction(met.g), classified_extinction(met.b));
+    return extinction_of_colors(preclassified_in_slab(frame, ray, k).gba);
 #else
-    let at = table_entry(slab_density(frame, ray, k));
-    return mix(entry_extinction(table.entries[at.low]), entry_extinction(table.entries[at.low + 1u]), vec3f(at.fraction));
+    return extinction_by_color(slab_field(frame, ray, k));
 #endif
 #else
-    return classified_extinction(slab_density(frame, ray, k));
+    return extinction_of(slab_field(frame, ray, k));
 #endif
 }
 

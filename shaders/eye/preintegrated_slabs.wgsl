@@ -4,7 +4,7 @@
 // depends on where samples hit them. The frame's slabs are as thick as steps; a step reaches from the middle of one
 // slab to that of the next.
 #import "density/cells.wgsl"
-#import "density/classify.wgsl"
+#import "density/slab_material.wgsl"
 
 // Maximum number of steps in a layer: two slabs. A step is cheap compared with shading.
 const LAYER_STEPS = 4;
@@ -18,12 +18,6 @@ const MIN_COUNTED_SHARE = 0.0625;
 
 // Optical depth of an empty step: a thousandth of the smallest that 8 bits can show.
 const EMPTY_OPTICAL_DEPTH = 4e-6;
-
-// Integral of extinction over densities from 0 to a position in the table.
-fn extinction_integral(at: f32) -> f32 {
-    let low = min(u32(at), TABLE_SIZE - 2u);
-    return mix(table.integrals[low], table.integrals[low + 1u], at - f32(low));
-}
 
 // End point of a step.
 struct StepEnd {
@@ -40,9 +34,9 @@ fn step_end(ray: Ray, k: i32) -> StepEnd {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
-    let found = density(p, level);
-    let entry = clamp(found, 0.0, 1.0) * f32(TABLE_SIZE - 1u);
-    return StepEnd(found, entry, extinction_integral(entry), presence_at(p, level));
+    let found = field_at(p, level);
+    let entry = table_position(found.density);
+    return StepEnd(found.density, entry, extinction_integral(entry), presence_at(p, level));
 }
 
 // Steps that are shaded together.
@@ -74,7 +68,7 @@ fn with_step(layer: Layer, a: StepEnd, b: StepEnd, k: i32, length: f32) -> Layer
     // Integrals are linear between entries, and differences of nearby ones are dominated by rounding.
     let is_even = abs(half) < 1.0;
     let per_half = 1.0 / select(half, 1.0, is_even);
-    let alike = table.entries[nearest_entry(middle)].a;
+    let alike = nearest_extinction(Field(middle));
     let present_length = 0.25 * length * (a.presence + b.presence);
     let front = present_length * select((integral - a.integral) * per_half, alike, is_even);
     let back = present_length * select((b.integral - integral) * per_half, alike, is_even);
@@ -135,11 +129,11 @@ fn preintegrated_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
         t = layer.transmittance;
         if (layer.share > 0.0) {
             let depth = depth_of(eye.frame, layer.places / layer.share);
-            let dense = layer.densities / layer.share;
+            let field = Field(layer.densities / layer.share);
             let p = ray.origin + ray.direction * depth;
             let level = kernel_level(eye.frame, depth);
             let slope = gradient_to_scene(eye.space, gradient_at(p, level));
-            let found = SlabSample(classify(dense), dense, 1.0);
+            let found = SlabSample(material_of(field), field, 1.0);
             color += layer.share * shade_material(p, level, slope, presence_gradient(p, level), found);
         }
         if (t < eye.min_transmittance) {

@@ -1,7 +1,7 @@
 // Adaptive slabs along a ray: a slab that may contribute much of the visible light is divided into quarters, because
 // normals and light vary within it. The slabs of the frame are the quarters.
 #import "density/cells.wgsl"
-#import "density/classify.wgsl"
+#import "density/slab_material.wgsl"
 
 // Number of parts into which a slab is divided; a power of two.
 const THIN_SLABS = 4;
@@ -40,7 +40,7 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
         var needed = width;
         if (width == THIN_SLABS) {
             let change = 0.5 * GRADIENT_SAFETY * thick * abs(dot(slope, ray.direction));
-            let largest = largest_extinction(found.density - change, found.density + change);
+            let largest = largest_extinction(found.field.density - change, found.field.density + change);
             var share = t * (1.0 - exp(-largest * thick * ray.obliquity));
 #if MISSING
 #if PRECLASSIFY
@@ -60,8 +60,8 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
             end = start + THIN_SLABS;
         }
         if (needed == width) {
-            if (found.material.a > 0.0) {
-                let passed = exp(-found.material.a * f32(width) * eye.frame.slab * ray.obliquity);
+            if (found.material.extinction > 0.0) {
+                let passed = exp(-found.material.extinction * f32(width) * eye.frame.slab * ray.obliquity);
                 color += t * (1.0 - passed) * shade_material(p, level, gradient_to_scene(eye.space, slope), rising, found);
                 t *= passed;
             }

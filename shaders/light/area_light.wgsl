@@ -1,6 +1,6 @@
 // Average of the attenuation volumes of points on an area light: adds the volumes of a batch of points to the partial
 // sum, and after the last batch stores the mean. One thread per voxel.
-#import "common/listed_bricks.wgsl"
+#import "common/listed_voxels.wgsl"
 
 struct AverageUniform {
     dims: vec3u,
@@ -34,12 +34,8 @@ override IS_LAST: bool = true;
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     average = bound_average;
-    let listed = listed_brick(group);
-    if (listed >= average.bricks) {
-        return;
-    }
-    let voxel = voxel_in(bricks[listed].x, group, local);
-    if (!is_listed(bricks[listed], group, local) || any(voxel >= average.dims)) {
+    let voxel = voxel_of_listed_brick(group, local, average.bricks);
+    if (any(voxel >= average.dims)) {
         return;
     }
     var sum = textureLoad(point_0, voxel, 0).r;

@@ -72,7 +72,7 @@ fn weights_in_next_texel(weights: vec4f, place: i32) -> vec4f {
 }
 
 // Sums a kernel one pixel wide and one slab deep: four pixels and four slabs. Across, two linear fetches per axis (as
-// in density/volume.wgsl), or one if the kernel is a tent.
+// in volume/field.wgsl), or one if the kernel is a tent.
 fn gather_narrow(pixel: vec2f, slab: f32) -> f32 {
     let cell = vec3f(floor(pixel), floor(slab));
     let f = vec3f(pixel, slab) - cell;

@@ -1,5 +1,5 @@
 // Merging of the attenuation volumes of red, green and blue light into one. One thread per voxel.
-#import "common/listed_bricks.wgsl"
+#import "common/listed_voxels.wgsl"
 
 @group(0) @binding(0) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(1) var red: texture_3d<f32>;
@@ -9,12 +9,9 @@
 
 @compute @workgroup_size(8, 8, 4)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let listed = listed_brick(group);
-    if (listed < arrayLength(&bricks)) {
-        let voxel = voxel_in(bricks[listed].x, group, local);
-        if (is_listed(bricks[listed], group, local) && all(voxel < textureDimensions(attenuation))) {
-            let rgb = vec3f(textureLoad(red, voxel, 0).r, textureLoad(green, voxel, 0).r, textureLoad(blue, voxel, 0).r);
-            textureStore(attenuation, voxel, vec4f(rgb, 1.0));
-        }
+    let voxel = voxel_of_listed_brick(group, local, arrayLength(&bricks));
+    if (all(voxel < textureDimensions(attenuation))) {
+        let rgb = vec3f(textureLoad(red, voxel, 0).r, textureLoad(green, voxel, 0).r, textureLoad(blue, voxel, 0).r);
+        textureStore(attenuation, voxel, vec4f(rgb, 1.0));
     }
 }

@@ -1,9 +1,9 @@
 // Combined light: all shadowed lights in one volume of colours (P §4). Shading is done here, once for every voxel,
 // and the eye pass only looks up diffuse light. One thread per voxel.
-#import "density/volume.wgsl"
+#import "volume/field.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/looked_up_light.wgsl"
-#import "common/listed_bricks.wgsl"
+#import "common/listed_voxels.wgsl"
 #import "density/gradient.wgsl"
 
 struct CombineUniform {
@@ -27,18 +27,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     combine = bound_combine;
     eye = bound_eye;
     grid = bound_grid;
-    let listed = listed_brick(group);
-    if (listed >= combine.bricks) {
-        return;
-    }
-    let voxel = voxel_in(bricks[listed].x, group, local);
-    if (!is_listed(bricks[listed], group, local) || any(voxel >= combine.dims)) {
+    let voxel = voxel_of_listed_brick(group, local, combine.bricks);
+    if (any(voxel >= combine.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
-    let density = pyramid(p, 0.0);
+    let field = pyramid_field(p, 0.0);
     let slope = gradient_to_scene(eye.space, index_gradient(p, normal_level(0.0)))
-        + face_slope(p, 0.0, density, presence_gradient(p, 0.0));
-    let found = VolumeSample(p, slope, density, 0.0);
+        + face_slope(p, 0.0, field, presence_gradient(p, 0.0));
+    let found = VolumeSample(p, slope, field, 0.0);
     textureStore(combined, voxel, vec4f(shadowed_light_sum(surface_of(found)).diffuse, 1.0));
 }

@@ -4,7 +4,7 @@
 // Sheets are stored in a ring of layers, which the back-projection reads before they are overwritten. Only what it
 // will read is stored; the rest of the ring holds stale values.
 #import "common/sizes.wgsl"
-#import "density/classify.wgsl"
+#import "density/slab_material.wgsl"
 #import "density/cells.wgsl"
 #import "sheets/march.wgsl"
 #import "sheets/tiles.wgsl"

@@ -1,9 +1,9 @@
 // Ray casting of a light volume: a ray from every voxel to the light (P §3.4, eq. 8), one thread per voxel.
-#import "density/table.wgsl"
+#import "volume/material.wgsl"
 #import "shading/shadow_ray.wgsl"
 #import "shading/lights.wgsl"
 #import "common/space.wgsl"
-#import "common/listed_bricks.wgsl"
+#import "common/listed_voxels.wgsl"
 
 struct RaycastUniform {
     light: LightUniform,
@@ -31,7 +31,7 @@ var<private> raycast: RaycastUniform;
 
 // White light or a single colour is followed, so extinction is a scalar.
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
-    return Transmittance(classified_extinction(slab_density(frame, ray, k)));
+    return Transmittance(extinction_of(slab_field(frame, ray, k)));
 }
 
 fn light_distance(cell: vec3f) -> i32 {
@@ -42,12 +42,8 @@ fn light_distance(cell: vec3f) -> i32 {
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     grid = bound_grid;
     raycast = bound_raycast;
-    let listed = listed_brick(group);
-    if (listed >= raycast.bricks) {
-        return;
-    }
-    let voxel = voxel_in(bricks[listed].x, group, local);
-    if (!is_listed(bricks[listed], group, local) || any(voxel >= raycast.dims)) {
+    let voxel = voxel_of_listed_brick(group, local, raycast.bricks);
+    if (any(voxel >= raycast.dims)) {
         return;
     }
     let p = (vec3f(voxel) + 0.5) * raycast.voxel_step - 0.5;

@@ -1,11 +1,11 @@
 // Eye pass over scattered sheets (P §3.5, eq. 9): one thread per pixel takes the slab's sum, classifies and shades
 // it, and composites it behind the previous slabs. Gradients come from the volume, or from the neighbouring sheets,
 // which are in the ring already.
-#import "density/table.wgsl"
 #import "scatter/slab.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/near_light.wgsl"
 #import "density/stored_gradient.wgsl"
+#import "density/slab_field.wgsl"
 
 // Distance, in bricks, to the nearest brick visible to the eye.
 @group(0) @binding(2) var distances: texture_3d<u32>;
@@ -55,11 +55,11 @@ fn sheet_value(pixel: vec2i, k: i32) -> f32 {
 }
 
 // Material of a sheet: its classified density times presence, or the sum of the voxels' materials.
-fn material_of(pixel: vec2i, k: i32) -> vec4f {
+fn sheet_material(pixel: vec2i, k: i32) -> Material {
     let presence = sheet_presence(ray_of(eye.frame, vec2f(pixel)), k);
     if (SPLAT != SPLAT_MATERIAL) {
-        let material = classify(sheet_value(pixel, k));
-        return vec4f(material.rgb, material.a * presence);
+        let material = material_of(Field(sheet_value(pixel, k)));
+        return Material(material.color, material.extinction * presence);
     }
     let at = sheet_index(vec2u(pixel), u32(k));
     let sums = vec4f(
@@ -71,7 +71,7 @@ fn material_of(pixel: vec2i, k: i32) -> vec4f {
     // Neighbours stand in for missing voxels, but not outside the grid.
     let in_grid = sheet_in_grid(ray_of(eye.frame, vec2f(pixel)), k);
     let share = select(1.0, presence / max(in_grid, MIN_PRESENCE), MISSING);
-    return vec4f(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
+    return Material(sums.rgb / max(sums.a, 1e-20), sums.a * scatter.extinction_unit * share);
 }
 
 fn gradient_between_sheets(pixel: vec2i, k: i32, met: Crossing) -> vec3f {
@@ -103,25 +103,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ray = ray_of(eye.frame, vec2f(id.xy));
     let met = crossing_of(ray, f32(k));
     let p = ray.origin + ray.direction * met.depth;
-    let material = material_of(pixel, k);
+    let material = sheet_material(pixel, k);
     let brick = brick_with_material(p);
     // Set for points in front of a perspective eye.
     let in_front = 1.0 + met.depth * eye.frame.inverse_distance > 1e-3;
-    if (material.a > 0.0 && transmittance >= eye.min_transmittance && brick.x >= 0 && in_front) {
+    if (material.extinction > 0.0 && transmittance >= eye.min_transmittance && brick.x >= 0 && in_front) {
         // Sums are complete only near visible bricks.
         if (i32(textureLoad(distances, brick, 0).r) <= eye.dilation) {
             let level = stretch_level(eye.frame, met.depth);
-            let density = sheet_value(pixel, k);
+            let field = Field(sheet_value(pixel, k));
             let share = slab_fraction_inside(span_within(eye.visible_cut, ray), met.depth, met.thickness);
-            let opacity = 1.0 - exp(-share * material.a * met.thickness * ray.obliquity);
+            let opacity = 1.0 - exp(-share * material.extinction * met.thickness * ray.obliquity);
             var slope: vec3f;
             if (SHEET_GRADIENTS) {
                 slope = gradient_between_sheets(pixel, k, met);
             } else {
                 slope = gradient_to_scene(eye.space, volume_gradient(p, level));
             }
-            slope += face_slope(p, level, density, presence_gradient(p, level));
-            let rgb = shade(VolumeSample(p, slope, density, level), material.rgb);
+            slope += face_slope(p, level, field, presence_gradient(p, level));
+            let rgb = shade(VolumeSample(p, slope, field, level), material.color);
             rays[at] = before + transmittance * opacity * vec4f(rgb, 1.0);
         }
     }

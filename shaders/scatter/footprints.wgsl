@@ -1,11 +1,9 @@
 // Compositing of every footprint separately (the paper's reference 25): one thread per voxel classifies and shades
 // its voxel and composites it over all pixels under its footprint. Voxels of one dispatch are so far apart in their
 // slice that no two of them touch the same pixel.
-#import "density/table.wgsl"
 #import "scatter/footprint.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/looked_up_light.wgsl"
-#import "scatter/voxels.wgsl"
 #import "common/listed_bricks.wgsl"
 
 // Phase of a dispatch: position, in the slice, of the voxels that it composites in every `stride`-th brick.
@@ -41,7 +39,7 @@ fn density_of(place: vec3i) -> f32 {
     if (first < 0) {
         return 0.0;
     }
-    return voxel_density(u32(first), vec3u(voxel % BRICK_EDGE));
+    return voxel_field(u32(first), vec3u(voxel % BRICK_EDGE)).density;
 }
 
 // Central differences between voxels, in scene space.
@@ -73,9 +71,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let slice = u32(slice_of(f32(scatter.k)));
     let voxel = brick * BRICK_EDGE * (u_axis + v_axis) + u_axis * phase.u + v_axis * phase.v + along * slice;
-    let density = voxel_density(listed.y, voxel % BRICK_EDGE);
-    let material = classify(density);
-    if (material.a <= 0.0 || any(vec3f(voxel) >= scatter.dims)) {
+    let field = voxel_field(listed.y, voxel % BRICK_EDGE);
+    let material = material_of(field);
+    if (material.extinction <= 0.0 || any(vec3f(voxel) >= scatter.dims)) {
         return;
     }
     let centre = vec3f(voxel);
@@ -95,12 +93,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
     let level = log2(max(stretch, 1.0));
-    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, density, presence_gradient(centre, level));
-    let rgb = shade(VolumeSample(centre, slope, density, 0.0), material.rgb);
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, field, presence_gradient(centre, level));
+    let rgb = shade(VolumeSample(centre, slope, field, 0.0), material.color);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));
-            let depth = whole_footprint(centre, ray, stretch) * material.a * ray.obliquity;
+            let depth = whole_footprint(centre, ray, stretch) * material.extinction * ray.obliquity;
             if (depth > 0.0) {
                 let pixel = u32(j) * scatter.frame.size.x + u32(i);
                 let before = rays[pixel];

@@ -1,9 +1,9 @@
 // March of light through scattered sheets (P §3.5, eq. 10): one thread per pixel takes the slab's sum and clears it
 // for the next slab.
-#import "density/table.wgsl"
-#import "density/volume.wgsl"
+#import "density/slab_field.wgsl"
 #import "sheets/march.wgsl"
 #import "scatter/slab.wgsl"
+#import "volume/material.wgsl"
 
 // Distances in bricks: g to the nearest that attenuates light.
 @group(0) @binding(2) var distances: texture_3d<u32>;
@@ -35,7 +35,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let in_grid = slab_in_grid(march.frame, ray, f32(scatter.k));
             let presence = slab_presence(march.frame, ray, f32(scatter.k));
             let mean = sum / max(in_grid, MIN_PRESENCE);
-            let classified = classified_extinction(mean) * presence;
+            let classified = extinction_of(Field(mean)) * presence;
             // Neighbours stand in for missing voxels, but not outside the grid.
             let splatted = select(sum, mean * presence, MISSING) * scatter.extinction_unit;
             let extinction = select(classified, splatted, SPLAT == SPLAT_EXTINCTION);

@@ -1,9 +1,8 @@
 // Forward splatting (P §3.5, eq. 9): one thread per voxel adds density × footprint to the sheet of a slab. Voxels are
 // read from lists; no texture is sampled.
-#import "density/table.wgsl"
 #import "scatter/footprint.wgsl"
 #import "common/listed_bricks.wgsl"
-#import "scatter/voxels.wgsl"
+#import "volume/material.wgsl"
 
 // Bricks of a slab: packed coordinates of ten bits each, and the word where their voxels begin.
 @group(0) @binding(0) var<storage, read> bricks: array<vec2u>;
@@ -19,9 +18,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     let brick = bricks[scatter.first + listed];
     let voxel = voxel_in(brick.x, group, local);
-    let density = voxel_density(brick.y, voxel % BRICK_EDGE);
-    let material = classify(density);
-    let extinction = material.a / scatter.extinction_unit;
+    let field = voxel_field(brick.y, voxel % BRICK_EDGE);
+    let density = field.density;
+    let material = material_of(field);
+    let extinction = material.extinction / scatter.extinction_unit;
     // Bricks may extend beyond the grid, where there are no voxels.
     if (any(vec3f(voxel) >= scatter.dims) || (density == 0.0 && (SPLAT == SPLAT_DENSITY || extinction == 0.0))) {
         return;
@@ -58,7 +58,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
                 atomicAdd(&sheets[at], share);
             }
             if (SPLAT == SPLAT_MATERIAL && extinction * weight > 0.0) {
-                let sums = vec4i(round(vec4f(material.rgb, 1.0) * (extinction * weight * FIXED_POINT_ONE)));
+                let sums = vec4i(round(vec4f(material.color, 1.0) * (extinction * weight * FIXED_POINT_ONE)));
                 atomicAdd(&sheets[channel_index(at, 1u)], sums.r);
                 atomicAdd(&sheets[channel_index(at, 2u)], sums.g);
                 atomicAdd(&sheets[channel_index(at, 3u)], sums.b);

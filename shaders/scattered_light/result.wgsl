@@ -1,5 +1,6 @@
 // Result of the bounces: stores the light that listed blocks receive with the last one.
 #import "scattered_light/bounce.wgsl"
+#import "scattered_light/medium.wgsl"
 #import "common/listed_cells.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;

@@ -3,6 +3,7 @@
 // A light that gives a white surface facing it the radiance E/π has a mean radiance over all directions of a quarter
 // of that: E / 4π.
 #import "scattered_light/bounce.wgsl"
+#import "scattered_light/medium.wgsl"
 #import "common/slab_mean.wgsl"
 #import "common/space.wgsl"
 #import "shading/lights.wgsl"
@@ -40,12 +41,7 @@ var<private> scene: SingleScatteringUniform;
 
 // Extinction of the medium at texture coordinates.
 fn medium_at(place: vec3f) -> f32 {
-    let found = textureSampleLevel(medium, clamped, place, 0.0);
-#if ONE_COLOR
-    return found.g;
-#else
-    return found.a;
-#endif
+    return extinction_in(textureSampleLevel(medium, clamped, place, 0.0));
 }
 
 // Transmittance of a light to a block with this extinction: the mean over the block, as for slabs, along a ray with

@@ -2,6 +2,7 @@
 // increase over the bounce before. Every other time the limit of the series is extrapolated from the last two bounces
 // (scattered_light/ratio.wgsl), and bouncing continues from there, which converges in fewer bounces.
 #import "scattered_light/bounce.wgsl"
+#import "scattered_light/medium.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(6) var<storage, read> first: array<vec4f>;
@@ -43,10 +44,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     last[at] = vec4f(light, 0.0);
     if (found.a > 0.0) {
         let given = min(first[at].rgb + found.rgb * light, vec3f(MAX_HALF_FLOAT));
-#if ONE_COLOR
-        textureStore(medium, id + 1u, vec4f(given.r, found.a, 0.0, 0.0));
-#else
-        textureStore(medium, id + 1u, vec4f(given, found.a));
-#endif
+        textureStore(medium, id + 1u, medium_texel(given, found.a));
     }
 }

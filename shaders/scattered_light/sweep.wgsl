@@ -4,13 +4,13 @@
 #import "sky/swept_ray.wgsl"
 #import "common/slab_source.wgsl"
 #import "common/most_light.wgsl"
+#import "scattered_light/medium.wgsl"
 
-// Emission per shortest edge (S times extinction) and extinction: in rgb and a, or in r and g.
+// Emission (S times extinction) and extinction.
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var sheets: texture_storage_3d<TARGET_FORMAT, write>;
 
-// If all light has one colour only its amount is followed, a third of the numbers.
 #if ONE_COLOR
 alias Radiance = f32;
 
@@ -20,10 +20,6 @@ fn incoming_radiance(rays: SweepRaysUniform) -> Radiance {
 
 fn emission_of(found: vec4f) -> Radiance {
     return found.r;
-}
-
-fn extinction_in(found: vec4f) -> f32 {
-    return found.g;
 }
 
 fn level_texel(light: Radiance) -> vec4f {
@@ -38,10 +34,6 @@ fn incoming_radiance(rays: SweepRaysUniform) -> Radiance {
 
 fn emission_of(found: vec4f) -> Radiance {
     return found.rgb;
-}
-
-fn extinction_in(found: vec4f) -> f32 {
-    return found.a;
 }
 
 fn level_texel(light: Radiance) -> vec4f {

@@ -207,6 +207,8 @@ fn apply_shadow_cures(shading: ShadingUniform, attenuation: Transmittance) -> Tr
     return 1.0 - shading.strength * (1.0 - light);
 }
 
+#option ANISOTROPIC: more light is scattered forward, or back
+
 // Phase function of material without a surface, relative to isotropic scattering: that of Henyey and Greenstein times
 // 4π, (1 − g²) / (1 + g² − 2 g cos θ)^(3/2).
 fn relative_phase_function(shading: ShadingUniform, surface: Surface, to_light: vec3f) -> f32 {

@@ -1,8 +1,7 @@
 // Near-field rays: short rays from samples towards lights (P eq. 8 for the first voxels), in front of the light
 // volumes.
-#import "density/lighting_density.wgsl"
-#import "density/table.wgsl"
 #import "density/cut.wgsl"
+#import "volume/material.wgsl"
 #import "shading/shade.wgsl"
 
 // Maximum number of near-field steps (crates/scene/src/settings/shadows.rs), or 0. Area lights take fewer.
@@ -25,7 +24,7 @@ fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface:
             is_taken * near_step_length(step) * eye.voxel_edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
         let length = min(width, max(towards.distance - way, 0.0));
         let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = nearest_lighting_extinction(lighting_density(p, surface.level));
+        let extinction = nearest_lighting_extinction(lighting_field(p, surface.level));
         depth += extinction * shading_fraction(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
         way += length;
         step += 1u;

@@ -1,8 +1,7 @@
 // Shading of samples: material, lights, and their attenuation (P eq. 2–5).
 //
 // The importing shader provides the attenuation of a shadowed light, as attenuation_at().
-#import "density/table.wgsl"
-#import "density/volume.wgsl"
+#import "volume/material.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/sky_light.wgsl"
 #import "shading/scattered_light.wgsl"
@@ -95,26 +94,16 @@ struct VolumeSample {
     point: vec3f,
     // Gradient in scene space.
     slope: vec3f,
-    density: f32,
+    field: Field,
     // Pyramid level for the stretch of the sample's kernel.
     level: f32,
-}
-
-// Side of a surface to which opacity falls; for pre-classified voxels, whose densities are opacities, always
-// outwards.
-fn side_at(density: f32) -> f32 {
-#if PRECLASSIFY
-    return 1.0;
-#else
-    return side_of(density);
-#endif
 }
 
 // Gradient, in scene space, of the faces of the visible region, including those of the grid: into the solid, in the
 // direction in which density rises or, if opacity falls with density, against it. `rising` is the gradient of
 // presence.
-fn face_slope(p: vec3f, level: f32, density: f32, rising: vec3f) -> vec3f {
-    let turned = select(1.0, -1.0, ONE_SIDED && side_at(density) < 0.0);
+fn face_slope(p: vec3f, level: f32, field: Field, rising: vec3f) -> vec3f {
+    let turned = select(1.0, -1.0, ONE_SIDED && side_of(field) < 0.0);
 #if PRECLASSIFY
     // Pre-classified materials end with their voxels.
     let faces = face_gradient(eye.visible_cut, p, level);
@@ -143,7 +132,7 @@ fn surface_of(found: VolumeSample) -> Surface {
         slope * (-1.0 / max(steepness, 1e-9)),
         steep2 / (steep2 + s.surface_gradient * s.surface_gradient),
         away * (1.0 / max(length(away), 1e-9)),
-        select(1.0, side_at(found.density), ONE_SIDED),
+        select(1.0, side_of(found.field), ONE_SIDED),
         found.level,
     );
 }
@@ -193,6 +182,8 @@ fn sky_light(surface: Surface) -> vec3f {
     return vec3f(0.0);
 #endif
 }
+
+#option BOUNCES: scattered light is looked up in a volume
 
 #if BOUNCES
 @group(2) @binding(9) var bounced_texture: texture_3d<f32>;

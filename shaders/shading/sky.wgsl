@@ -1,4 +1,7 @@
 // Sky whose radiance is linear in the direction (crates/scene/src/settings/light/sky.rs): L(ω) = l₀ + l₁·ω.
+
+#option SKY: the sky gives light: 1 if it is not occluded, 2 if its visibility is looked up in a volume
+
 struct SkyUniform {
     // Slope l₁, in scene space, and mean l₀ for each colour.
     red: vec4f,

@@ -1,8 +1,6 @@
 // Light of the sky (crates/scene/src/settings/light/sky.rs): radiance that is linear in the direction, times sky
 // visibility.
-//
-// SKY: 1 for an unoccluded sky, 2 for visibility from a volume.
-#import "density/volume.wgsl"
+#import "volume/field.wgsl"
 #import "shading/lights.wgsl"
 #import "shading/sky.wgsl"
 

@@ -1,8 +1,8 @@
 // Sample points of a block of voxels for its mean extinction: eight, or the single voxel of a block.
 #import "common/sizes.wgsl"
-#import "density/classify.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
+#import "volume/material.wgsl"
 
 struct BlocksUniform {
     // Number of blocks along x, y and z, without the border.
@@ -27,12 +27,7 @@ var<private> blocks: BlocksUniform;
 
 // Extinction at an index-space point.
 fn extinction_at(p: vec3f) -> f32 {
-#if PRECLASSIFY
-    let found = classified_extinction(preclassified_at(p, blocks.level).r);
-#else
-    let found = classified_extinction(pyramid(p, blocks.level)) * pyramid_presence(p, blocks.level);
-#endif
-    return found * shading_fraction(blocks.shading_cut, p);
+    return pyramid_extinction(p, blocks.level) * shading_fraction(blocks.shading_cut, p);
 }
 
 // Centre of a block in index space.

@@ -1,12 +1,12 @@
 // Gradients of a pyramid level at its texels, so that one fetch replaces twelve: differences between neighbours and
 // linear interpolation between texels commute.
+#import "volume/field.wgsl"
 #import "volume/levels.wgsl"
 
-@group(0) @binding(0) var source: texture_3d<f32>;
-@group(0) @binding(4) var gradients: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(4) var gradient_level: texture_storage_3d<rgba16float, write>;
 
 fn value(texel: vec3i) -> f32 {
-    return textureLoad(source, clamp(texel, vec3i(0), vec3i(textureDimensions(source)) - 1), 0).r;
+    return source_texel(clamp(texel, vec3i(0), vec3i(source_size()) - 1)).r;
 }
 
 // Derivative of the density per texel (density/gradient.wgsl).
@@ -20,7 +20,7 @@ fn derivative_along(texel: vec3i, step: vec3i) -> f32 {
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     resample = bound_resample;
     let texel = level_texel(group, local);
-    if (any(texel >= textureDimensions(gradients))) {
+    if (any(texel >= textureDimensions(gradient_level))) {
         return;
     }
     let at = vec3i(texel);
@@ -30,5 +30,5 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
         derivative_along(at, vec3i(0, 0, 1)),
     );
     // Texels of the level are `spacing` voxels apart.
-    textureStore(gradients, texel, vec4f(slopes / resample.spacing, 0.0));
+    textureStore(gradient_level, texel, vec4f(slopes / resample.spacing, 0.0));
 }

@@ -1,16 +1,9 @@
-// Pre-classification, level 0: materials of the voxels, blurred like densities (volume/prefilter.wgsl). Extinction
-// relative to the table's maximum first, then colours times that, so that all channels can be summed.
-//
+// Pre-classification, level 0: materials of the voxels, blurred like densities (volume/prefilter.wgsl).//
 // A workgroup classifies its 8 × 8 × 4 texels and those around them, each once.
-#import "density/stored_presence.wgsl"
-#import "density/table.wgsl"
 #import "volume/levels.wgsl"
+#import "volume/material.wgsl"
 
-// Density texture, with a border of one voxel.
-@group(0) @binding(0) var source: texture_3d<f32>;
 @group(0) @binding(2) var level: texture_storage_3d<rgba16float, write>;
-// Presence: the fraction of the blur on existing voxels.
-@group(0) @binding(4) var presence_level: texture_3d<f32>;
 
 const WIDTH = 10u;
 const DEPTH = 6u;
@@ -18,23 +11,21 @@ const COUNT = 600u;
 // Number of invocations in a workgroup.
 const INVOCATIONS = 256u;
 
-var<workgroup> voxels: array<vec4f, COUNT>;
+var<workgroup> materials: array<vec4f, COUNT>;
 
-// Material of a voxel; 0 outside the grid.
+// Material of a voxel of the density texture, which has a border of one voxel; 0 outside the grid.
 fn voxel_material(place: vec3i) -> vec4f {
-    let last = vec3i(textureDimensions(source)) - 1;
+    let last = vec3i(source_size()) - 1;
     // Texels of the border are not voxels.
     let voxel = clamp(place + 1, vec3i(1), last - 1);
-    let material = classify(textureLoad(source, voxel, 0).r);
-    // Maximum over all entries.
-    let share = material.a / max(table.peaks[10u * TABLE_SIZE], 1e-20);
+    let texel = preclassified_texel(material_of(Field(source_texel(voxel).r)));
 #if MISSING
     // Neighbours stand in for missing voxels, and the sum is multiplied by presence.
     let is_in_grid = true;
 #else
     let is_in_grid = all(voxel == place + 1);
 #endif
-    return select(vec4f(0.0), vec4f(share, material.rgb * share), is_in_grid);
+    return select(vec4f(0.0), texel, is_in_grid);
 }
 
 @compute @workgroup_size(8, 8, 4)
@@ -49,7 +40,7 @@ fn main(
     let first = vec3i(voxel_in(bricks[listed], group, vec3u(0u))) - 5;
     for (var turn = 0u; turn < COUNT; turn += INVOCATIONS) {
         let at = min(turn + index, COUNT - 1u);
-        voxels[at] = voxel_material(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
+        materials[at] = voxel_material(first + vec3i(vec3u(at % WIDTH, at / WIDTH % WIDTH, at / (WIDTH * WIDTH))));
     }
     workgroupBarrier();
     var sum = vec4f(0.0);
@@ -60,7 +51,7 @@ fn main(
                 // [1, 10, 1] / 12 along each axis.
                 let weights = select(vec3f(1.0 / 12.0), vec3f(5.0 / 6.0), side == vec3u(1u));
                 let at = local + side;
-                sum += weights.x * weights.y * weights.z * voxels[at.x + WIDTH * (at.y + WIDTH * at.z)];
+                sum += weights.x * weights.y * weights.z * materials[at.x + WIDTH * (at.y + WIDTH * at.z)];
             }
         }
     }
@@ -69,7 +60,8 @@ fn main(
         return;
     }
 #if MISSING
-    sum *= decode_presence(textureLoad(presence_level, texel, 0));
+    // The fraction of the blur on existing voxels.
+    sum *= presence_at_texel(texel);
 #endif
     textureStore(level, texel, sum);
 }

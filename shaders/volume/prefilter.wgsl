@@ -3,12 +3,11 @@
 //
 // [a, 1 − 2a, a] along an axis is the mean of two linear fetches at ± 2a from the voxel.
 //
-// MISSING: presence is the second channel, the fraction of the blur on existing voxels, so that one fetch has both.
+// Where voxels are missing, presence is the second channel, the fraction of the blur on existing voxels, so that one
+// fetch has both.
 #import "volume/resample.wgsl"
-#import "density/stored_presence.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<TARGET_FORMAT, write>;
-@group(0) @binding(4) var presence_level: texture_3d<f32>;
 
 const OFFSET = 1.0 / 6.0;
 
@@ -23,7 +22,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     // texture one.
     let prefiltered = mean_around(vec3f(texel) - 4.0 + 1.0 + 0.5, OFFSET).r;
 #if MISSING
-    let share = decode_presence(textureLoad(presence_level, texel, 0));
+    let share = presence_at_texel(texel);
     textureStore(level, texel, vec4f(prefiltered, share, 0.0, 0.0));
 #else
     textureStore(level, texel, vec4f(prefiltered));

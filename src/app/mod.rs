@@ -1,14 +1,18 @@
 //! Main window of the viewer, built on egui and wgpu (feature `window`).
 //!
-//! The document holds the look, the facts about its volume and the undo history; beside it are the window's own
-//! parts. Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads
-//! beside the window's: the render worker, the loader, the light search, exports, contact sheets, slices of light
-//! volumes, and the measurement of brightness. So does everything that visits all voxels (first looks for another kind of
-//! data, or for an object that stands another way up) and everything that reads untrusted files, looks and sessions
-//! included. Panels see settings and read-only facts.
+//! The document holds the look, the facts about its volume and the undo history. `LookEditor` joins it with its
+//! picture and the messages, and `VolumeOpener` opens volumes into it; beside them are the window's own parts, each
+//! with its methods. A frame is in `frame.rs`, the effect of commands in `shell/execute.rs`.
+//!
+//! Panels change one [`Settings`] value; the viewport turns it into a picture. All rendering runs on threads beside the
+//! window's: the render worker, the loader, the light search, exports, contact sheets, slices of light volumes, and the
+//! measurement of brightness. So does everything that visits all voxels (first looks for another kind of data, or for
+//! an object that stands another way up) and everything that reads untrusted files, looks and sessions included. Panels
+//! see settings and read-only facts.
 
 mod common;
 mod document;
+mod frame;
 mod kept_views;
 mod layout;
 mod panels;
@@ -29,46 +33,31 @@ pub use self::start::error::AppError;
 pub use self::start::main_loop::{run, storage_folder, wgpu_setup};
 pub use self::start::options::WindowOptions;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 use eframe::egui;
 
-use self::common::commands::AppCommand;
 use self::common::drag_cancel::DragCancel;
-use self::common::{light_keys, reveal, shortcuts};
-use self::document::Document;
 use self::layout::WindowLayout;
 use self::layout::outer_panels::OuterPanels;
-use self::persistence::PersistentState;
-use self::shell::automatic_changes::LookTasks;
-use self::shell::messages::MessageLog;
-use self::shell::opening::OpeningState;
+use self::shell::look_editor::LookEditor;
+use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
-use self::shell::status_file;
 use self::shell::status_file::StatusFile;
 use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
-use self::viewport::{Viewport, paint_callback};
-use self::windows::file_dialogs;
-use self::worker::background_task;
-use self::worker::loader::Loader;
+use self::worker::jobs::Jobs;
+#[cfg(feature = "testing")]
+use chiaroscuro_files::fault;
 use chiaroscuro_scene::Settings;
-
-/// Duration of a frame on the window's thread, in ms, from which on the delay is felt and logged.
-const SLOW_FRAME_MS: f64 = 50.0;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
-    /// Look that is edited, and the volume that it shows.
-    document: Document,
+    /// Look that is edited, with its volume, its picture and the messages about it.
+    editor: LookEditor,
     /// Requests for the next volume, and files that are being read.
     opening: OpeningState,
-    /// Tasks whose results change the look.
-    look_tasks: LookTasks,
-    /// Picture on screen, and the connection to the render thread.
-    viewport: Viewport,
     /// Handles, overlays and other tools over the picture.
     picture: PictureTools,
     windows: ToolWindows,
@@ -77,29 +66,23 @@ pub struct App {
     panels: OuterPanels,
     /// Panels and tool windows that are shown, as stored between runs.
     layout: WindowLayout,
-    messages: MessageLog,
     /// Cancelling of drags by Escape.
     drag_cancel: DragCancel,
-    loader: Loader,
-    /// State that outlives a run.
-    memory: PersistentState,
+    /// Running background tasks of this window, and of those that it has replaced.
+    jobs: Jobs,
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
 }
 
-/// Longest wait of a closing window for tasks that still use the graphics driver.
-const TASK_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
+/// Longest wait of a closing window for jobs that still use the graphics driver.
+const JOB_SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Drop for App {
     fn drop(&mut self) {
-        // The results of these tasks are no longer needed.
-        self.look_tasks.light_search = None;
-        self.windows.contact_sheet.discard();
-        self.panels.kept_strip.reset();
-        // If another window replaces this one, that window waits for the tasks when it closes.
+        // If another window replaces this one, that window waits for the jobs when it closes.
         if !self.device.is_lost {
-            background_task::wait_for_all_tasks(TASK_SHUTDOWN_TIMEOUT);
+            self.jobs.cancel_and_wait(JOB_SHUTDOWN_TIMEOUT);
         }
     }
 }
@@ -107,8 +90,8 @@ impl Drop for App {
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
-            .field("settings", &self.document.settings)
-            .field("volume", &self.document.volume)
+            .field("settings", &self.editor.document.settings)
+            .field("volume", &self.editor.document.volume)
             .finish_non_exhaustive()
     }
 }
@@ -116,38 +99,65 @@ impl std::fmt::Debug for App {
 impl App {
     /// Returns the current settings, that is the look.
     pub fn settings(&self) -> &Settings {
-        &self.document.settings
+        &self.editor.document.settings
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
     /// first look is finished, and the balance, if it is kept, has been measured for these settings.
     pub fn is_idle(&self) -> bool {
-        self.is_complete()
-            && !self.is_making_look()
-            && !self.document.first_lights.is_due()
-            && self.document.knows_outline(self.viewport.dataset().as_ref())
-            && !self.document.keep_balanced.is_due(&self.document.settings)
+        !self.opening.is_opening() && self.editor.is_complete() && !self.editor.is_changing()
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
     /// turned to stand another way up.
     pub fn is_making_look(&self) -> bool {
-        self.document.is_making_look()
+        self.editor.document.is_making_look()
     }
 
-    /// Returns true if the full-quality picture of the current settings is on screen and nothing is being opened,
-    /// read or corrected.
-    fn is_complete(&self) -> bool {
-        self.is_volume_ready() && self.viewport.is_idle(&self.picture.compare.looks(&self.document.settings))
+    /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
+    /// The open volume stays until the new one is ready.
+    pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
+        self.opener(ctx).open(source.as_ref());
     }
 
-    /// Returns true if no volume is being opened, read or corrected.
-    fn is_volume_ready(&self) -> bool {
-        self.loader.progress().is_none()
-            && self.opening.file_tasks.path().is_none()
-            && !self.document.is_correcting(self.viewport.dataset().as_ref())
+    /// Reads a transfer function of another program on a thread and applies it to the look.
+    pub fn import_transfer(&mut self, path: &Path, ctx: &egui::Context) {
+        self.opener(ctx).import_transfer(path);
     }
 
+    /// Reads an environment map on a thread and lights the scene by it; supersedes one that is still being read.
+    pub fn read_environment_map(&mut self, path: &Path, ctx: &egui::Context) {
+        self.opener(ctx).read_environment_map(path);
+    }
+
+    /// Returns the opener of volumes and looks for this window.
+    fn opener<'a>(&'a mut self, ctx: &'a egui::Context) -> VolumeOpener<'a> {
+        VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx }
+    }
+
+    /// Drops the pictures of the volume before, if another one has replaced it.
+    fn drop_pictures_of_replaced(&mut self) {
+        if self.opening.take_opened() {
+            self.panels.recent_pictures.clear();
+            self.windows.contact_sheet.discard();
+            self.panels.kept_strip.reset();
+        }
+    }
+
+    /// Number of light volume refills since this volume was opened.
+    pub fn light_rebuilds(&self) -> u64 {
+        self.editor.viewport.light_fill_count()
+    }
+
+    /// Records a notice from before there was a window to show it.
+    fn add_notice(&mut self, notice: String) {
+        self.editor.memory.add_notice(notice);
+    }
+}
+
+/// State of the window that only its tests inspect.
+#[cfg(feature = "testing")]
+impl App {
     /// Rectangle of the picture in points, and its size in physical pixels.
     pub fn viewport_rect(&self) -> Option<(egui::Rect, [u32; 2])> {
         self.picture.canvas.map(|canvas| (canvas.rect, canvas.size))
@@ -158,159 +168,58 @@ impl App {
         self.picture.handles.positions()
     }
 
-    /// Number of light volume refills since this volume was opened.
-    pub fn light_rebuilds(&self) -> u64 {
-        self.viewport.light_fill_count()
-    }
-
     /// Number of previews of this volume that were followed by a full-quality picture.
     pub fn full_quality_pictures(&self) -> u64 {
-        self.viewport.refinement_count()
+        self.editor.viewport.refinement_count()
     }
 
     /// Name of the open volume, or `None` if there is none.
     pub fn volume_name(&self) -> Option<&str> {
-        self.document.volume.as_ref().map(|volume| volume.name.as_str())
+        self.editor.document.volume.as_ref().map(|volume| volume.name.as_str())
     }
 
     /// Error messages since the volume was opened.
     pub fn errors(&self) -> &[String] {
-        self.messages.errors()
+        self.editor.messages.errors()
     }
 
     /// Latest note in the status bar since the volume was opened, even if it has disappeared.
     pub fn latest_note(&self) -> Option<&str> {
-        self.messages.latest_note()
+        self.editor.messages.latest_note()
     }
 
     /// Returns true while a note lies over the picture; notes disappear after some seconds.
     pub fn shows_note(&self) -> bool {
-        self.messages.shows_note()
+        self.editor.messages.shows_note()
     }
 
     /// Exports the picture as the export window does, replacing an existing file.
     pub fn export(&mut self, path: &Path, size: [u32; 2], ctx: &egui::Context) {
         self.windows.export.set_size(size);
         self.windows.export.allow_replacing(path);
-        self.start_export(ctx);
+        self.windows.start_export(&mut self.editor, ctx);
     }
 
     /// Returns true while an export is being rendered or written.
     pub fn is_exporting(&self) -> bool {
         self.windows.export.is_busy()
     }
-}
 
-impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        self.inject_faults();
-        // Checked before anything is drawn, because drawing on a lost device would panic.
-        let is_lost = self.device.context.is_lost() || self.viewport.context().is_known_lost();
-        if self.device.is_lost || is_lost {
-            return self.close_for_successor(ctx);
+    /// Blocks the reading of files while the returned guard lives.
+    pub fn block_file_tasks() -> impl Sized {
+        /// Guard that lets the files be read when dropped.
+        struct HeldFilesGuard;
+        impl Drop for HeldFilesGuard {
+            fn drop(&mut self) {
+                fault::set_faults(Vec::new());
+            }
         }
-        self.collect_results(ctx);
-        // Runs even while the window is hidden and nothing is drawn.
-        self.autosave_look();
+        fault::set_faults(vec![fault::InjectedFault::HeldFiles]);
+        HeldFilesGuard
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if self.device.is_lost {
-            return;
-        }
-        let ctx = ui.ctx().clone();
-        let start = std::time::Instant::now();
-        ui.painter().add(paint_callback::fill_shape(
-            ctx.viewport_rect(),
-            &self.device.painter,
-            ui.visuals().panel_fill,
-        ));
-        self.drag_cancel.begin(&ctx, &self.document.settings);
-        let mut commands = Vec::new();
-        let dropped = file_dialogs::dropped_files(&ctx);
-        if !dropped.is_empty() {
-            commands.push(AppCommand::OpenDropped(dropped));
-        }
-        let facts = self.viewport.renderer_status(&self.picture.compare.looks(&self.document.settings));
-        self.windows.palette.ui(
-            &ctx,
-            self.document.settings.camera.up,
-            self.document.volume.as_ref(),
-            &mut commands,
-        );
-        self.windows.volume_chooser.ui(
-            &ctx,
-            self.document.volume.as_ref(),
-            self.loader.options(),
-            &mut commands,
-        );
-        self.show_outer_panels(ui, &facts, &mut commands);
-        self.show_picture(ui, &facts, &mut commands);
-        shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.document.settings, self.document.selected_light);
-        self.show_windows(frame, &ctx, &mut commands);
-        self.drag_cancel.end(&mut self.document.settings);
-        self.ask_for_volume(frame, &ctx);
-        self.document.history.observe(&ctx, &self.document.history_step());
-        commands.extend(self.finish_framing());
-        commands.extend(self.update_outline(&ctx));
-        let before = self.document.settings.camera.clone();
-        for command in commands {
-            self.execute(command, frame, &ctx);
-        }
-        self.picture.camera_animation.begin(
-            &before,
-            &self.document.settings.camera,
-            ctx.input(|input| input.time),
-        );
-        self.cancel_files_by_key(&ctx);
-        self.leave_picture_only(&ctx);
-        self.update_corrections(&ctx);
-        self.finish_first_look(&ctx);
-        self.update_balance(&ctx);
-        self.autosave_look();
-        let ui_ms = start.elapsed().as_secs_f64() * 1000.0;
-        if ui_ms > SLOW_FRAME_MS {
-            log::debug!("the window's thread was busy for {ui_ms:.0} ms");
-        }
-        self.status_file.longest_ui_ms = self.status_file.longest_ui_ms.max(ui_ms);
-        let idle = self.is_idle();
-        if idle {
-            self.loader.warm_up_rest();
-        }
-        let state = status_file::WindowStatus {
-            response: self.viewport.response_times(),
-            loading: self.loader.progress().is_some() || self.opening.file_tasks.path().is_some(),
-            idle,
-            canvas: self.picture.canvas.filter(|_| self.document.volume.is_some()),
-            handles: self.picture.handles.positions(),
-            light_rebuilds: self.light_rebuilds(),
-            errors: self.messages.errors(),
-            path_window: self.dialogs.files.typed_path_title(),
-            places: if self.status_file.is_on() { reveal::reported_areas(&ctx) } else { BTreeMap::new() },
-            pixels_per_point: ctx.pixels_per_point(),
-        };
-        self.status_file.update(&state);
-        if self.loader.progress().is_some() || self.windows.export.is_busy() {
-            // The progress bar moves; and an export started by an earlier window cannot wake this one.
-            ctx.request_repaint_after(std::time::Duration::from_millis(100));
-        }
-    }
-
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.layout.store(storage);
-    }
-
-    fn on_exit(&mut self) {
-        self.autosave_look();
-        if self.device.is_lost {
-            self.hand_over();
-        } else {
-            self.windows.export.cancel_and_wait();
-        }
-    }
-
-    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
-        visuals.panel_fill.to_normalized_gamma_f32()
+    /// Path of the file that is being read.
+    pub fn file_being_read(&self) -> Option<&Path> {
+        self.opening.file_tasks.path()
     }
 }

@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::CliError;
 use super::output::{check_overwrites, finish_output, open_destination, warn_line};
-use super::scene::{LoadArgs, open_with_size_warning, parse_voxel_type};
+use super::scene::{LoadArgs, control_with_size_warning, parse_voxel_type};
 use chiaroscuro_files::check_writable;
 use chiaroscuro_volume::{AnatomicalAxes, ErrorExplanation, LoadError, ValueRange, VoxelType};
 use chiaroscuro_volume_io::{
-    ReadFiles,
+    open,
     write::{ConvertError, ExportVolume, NumberRequest, VolumeFormat, write_volume},
 };
 
@@ -141,11 +141,10 @@ pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let output = open_destination(&args.output, format.extensions()[0])?;
     // Checked before the input is read, which may take long.
     check_writable(output.path())?;
-    let read = ReadFiles::record();
-    let volume =
-        open_with_size_warning(&args.input, &args.load.load_options()?).map_err(with_own_option_names)?;
+    let control = control_with_size_warning(&args.input);
+    let volume = open(&args.input, &args.load.load_options()?, &control).map_err(with_own_option_names)?;
     // A header may refer to other files, and a slice or folder belongs to a series.
-    let read = read.paths();
+    let read = control.read_files();
     check_overwrites(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
     let wish = NumberRequest { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
     let refused = |err: ConvertError| args.usage(&err);

@@ -48,6 +48,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let portion = volume.contents().portion;
     let facts = json!({
         "name": volume.name(),
+        "format": volume.contents().format,
         "dims": volume.dims(),
         "file_dims": volume.contents().grid.unwrap_or_else(|| volume.file_dims()),
         "portion": portion,
@@ -77,6 +78,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     }
     let [nx, ny, nz] = volume.dims();
     print_line(volume.name())?;
+    if let Some(format) = volume.contents().format {
+        print_line(&format!("  format       {format}"))?;
+    }
     print_line(&format!("  voxels       {nx} × {ny} × {nz}, {}", volume.samples().voxel_type().name()))?;
     if let Some([x, y, z]) = volume.contents().grid.filter(|_| !portion.is_whole()) {
         print_line(&format!("  read         {} {x} × {y} × {z}", portion.in_words()))?;

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
+#[cfg(feature = "faults")]
 use chiaroscuro_files::fault::{self, InjectedFault};
 use chiaroscuro_media::may_carry_record;
 pub use error::CliError;
@@ -46,6 +47,7 @@ struct CommandLine {
     #[command(flatten)]
     load: LoadArgs,
     /// Inject a fault, for tests of error handling; may be repeated
+    #[cfg(feature = "faults")]
     #[arg(long, value_name = "FAULT", global = true, hide = true)]
     fault: Vec<InjectedFault>,
 }
@@ -53,7 +55,16 @@ struct CommandLine {
 impl CommandLine {
     /// Returns the request with which the window is opened.
     fn viewer_request(self) -> Result<ViewerRequest, CliError> {
-        let Self { command: _, file, session, volume, trust_paths, load, fault: _ } = self;
+        let Self {
+            command: _,
+            file,
+            session,
+            volume,
+            trust_paths,
+            load,
+            #[cfg(feature = "faults")]
+                fault: _,
+        } = self;
         if let (Some(file), Some(volume)) = (&file, &volume)
             && !is_look(file)
         {
@@ -127,6 +138,7 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
             return exit_code(print_line(text.trim_end()));
         }
     };
+    #[cfg(feature = "faults")]
     fault::set_faults(args.fault.clone());
     process::listen_for_signals(TERMINATION_ACTIONS);
     let result = process::start_thread_pool().and_then(|()| match args.command {

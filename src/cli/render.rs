@@ -13,7 +13,7 @@ use chiaroscuro_files::{
     OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
 use chiaroscuro_media::{check_picture, marks_layer, write_picture};
-use chiaroscuro_render::{RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance};
+use chiaroscuro_render::{BandProgress, RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance};
 use chiaroscuro_scene::{ImageRecord, LookRecord, VolumeRecord};
 
 /// Arguments of `render`.
@@ -96,9 +96,9 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);
     let (layer, mut first) = (marks_layer(&image_spec, &settings, loaded.volume()), 0);
     let mut rows = || -> Result<_, CliError> {
-        let (done, total) = bands.progress();
-        if total > 1 && done < total {
-            say(&format!("part {} of {total}", done + 1));
+        let BandProgress { drawn, total } = bands.progress();
+        if total > 1 && drawn < total {
+            say(&format!("part {} of {total}", drawn + 1));
         }
         let mut rows = bands.next_rows()?;
         if let Some(rows) = &mut rows {

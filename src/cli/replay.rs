@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::output::{check_overwrites, print_line, warn_line};
+use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
 use super::scene::{LoadArgs, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
 };
 use chiaroscuro_render::{PictureDistance, Renderer};
-use chiaroscuro_scene::{LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
+use chiaroscuro_scene::{AppliedSettings, LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
 use chiaroscuro_volume::Dataset;
 
 /// Maximum length of a path in a message, in characters.
@@ -85,7 +85,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     }
     let by = record.corrections_for(volume.opened_id()).unwrap_or_default();
     let volume = apply_corrections(&source, volume, &by)?;
-    let (settings, warnings) = record.apply(&Settings::default(), &volume.ranges()).map_err(preset)?;
+    let AppliedSettings { settings, warnings } =
+        record.apply(&Settings::default(), &volume.ranges()).map_err(preset)?;
     let settings = Settings { volume: by, ..settings };
     for warning in warnings {
         warn_line(&format!("warning: {warning} ({path})"));
@@ -114,12 +115,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
             image_spec.size
         )));
     }
-    let (_, before) = read_picture(&args.picture)?;
+    let before = read_picture(&args.picture)?.rows;
     if let Some(output) = &args.output {
         check_picture(output, &image_spec)?;
     }
     let mut renderer = Renderer::new(&context)?;
-    let mut again = renderer.bands(&loaded, &settings, &image_spec).all()?;
+    let mut bands = renderer.bands(&loaded, &settings, &image_spec);
+    let mut again = bands.all()?;
+    if bands.is_empty() {
+        warn_empty_picture();
+    }
     marks_layer(&image_spec, &settings, loaded.volume()).composite_over(&image_spec, 0, &mut again);
     let again = again.after_round_trip(&image_spec);
     if let Some(output) = &args.output {

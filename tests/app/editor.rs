@@ -11,10 +11,10 @@ use crate::harness::{SCENE, adjusted_window, click, drag, turn_wheel, wait_until
 #[test]
 fn the_transfer_function_is_edited_in_its_plot() {
     let mut harness = window();
-    let before = harness.state().settings().transfer.clone();
+    let before = harness.state().settings().layer().transfer.clone();
     let point = harness.get_by_label("Eye point 2").rect().center();
     drag(&mut harness, point, vec2(14.0, -12.0));
-    let after = harness.state().settings().transfer.clone();
+    let after = harness.state().settings().layer().transfer.clone();
     assert_eq!(after.points.len(), before.points.len());
     assert!(
         after.points[1].value > before.points[1].value && after.points[1].opacity > before.points[1].opacity
@@ -27,10 +27,10 @@ fn the_transfer_function_is_edited_in_its_plot() {
     let empty = plot.center_top() + vec2(10.0, 12.0);
     drag(&mut harness, empty, Vec2::ZERO);
     harness.run_steps(2);
-    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len() + 1);
+    assert_eq!(harness.state().settings().layer().transfer.points.len(), before.points.len() + 1);
     harness.key_press(egui::Key::Delete);
     harness.run_steps(2);
-    assert_eq!(harness.state().settings().transfer.points.len(), before.points.len());
+    assert_eq!(harness.state().settings().layer().transfer.points.len(), before.points.len());
     wait_until_idle(&mut harness);
 }
 
@@ -40,10 +40,11 @@ fn the_transfer_function_is_edited_in_its_plot() {
 fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     let adjust = |mut settings: Settings| {
         settings.shadows.keep_balanced = false;
-        let (first, last) = (settings.transfer.points[0], *settings.transfer.points.last().expect("a point"));
+        let (first, last) =
+            (settings.layer().transfer.points[0], *settings.layer().transfer.points.last().expect("a point"));
         let span = last.value - first.value;
         let point = |share: f64, opacity| ControlPoint::new(first.value + share * span, [1.0; 3], opacity);
-        settings.transfer.points = vec![point(0.4, 0.0), point(0.5, 0.8), point(0.6, 0.0)];
+        settings.layer_mut().transfer.points = vec![point(0.4, 0.0), point(0.5, 0.8), point(0.6, 0.0)];
         settings
     };
     let options = WindowOptions {
@@ -52,7 +53,7 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
         ..WindowOptions::default()
     };
     let mut harness = adjusted_window(options, Vec2::new(760.0, 1140.0));
-    let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
+    let transfer = |harness: &Harness<'_, App>| harness.state().settings().layer().transfer.clone();
     let before = transfer(&harness);
     let (first, last) = (before.points[0].value, before.points[2].value);
     let plot = harness.get_by_label("Transfer function plot").rect();
@@ -77,7 +78,7 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
 #[test]
 fn a_chain_links_the_curves() {
     let mut harness = window();
-    let is_linked = |harness: &Harness<'_, App>| harness.state().settings().lighting.linked;
+    let is_linked = |harness: &Harness<'_, App>| harness.state().settings().layer().lighting.linked;
     assert!(is_linked(&harness));
     for wanted in [false, true] {
         click(&mut harness, "Link the curves of eye and light");
@@ -89,7 +90,7 @@ fn a_chain_links_the_curves() {
 #[test]
 fn the_whole_curve_is_colored_moved_and_replaced() {
     let mut harness = window();
-    let transfer = |harness: &Harness<'_, App>| harness.state().settings().transfer.clone();
+    let transfer = |harness: &Harness<'_, App>| harness.state().settings().layer().transfer.clone();
     let first = transfer(&harness);
     click(&mut harness, "Transfer function");
     click(&mut harness, "Viridis");
@@ -123,7 +124,7 @@ fn the_whole_curve_is_colored_moved_and_replaced() {
 #[test]
 fn points_are_selected_and_changed_together() {
     let mut harness = window();
-    let points = |harness: &Harness<'_, App>| harness.state().settings().transfer.points.clone();
+    let points = |harness: &Harness<'_, App>| harness.state().settings().layer().transfer.points.clone();
     let before = points(&harness);
     assert!(before.len() >= 4);
     let place = |harness: &Harness<'_, App>, number: usize| {
@@ -211,18 +212,18 @@ fn points_are_selected_and_changed_together() {
 #[test]
 fn a_curve_is_drawn_by_hand() {
     let mut harness = window();
-    let before = harness.state().settings().transfer.clone();
+    let before = harness.state().settings().layer().transfer.clone();
     click(&mut harness, "Draw");
     let plot = harness.get_by_label("Transfer function plot").rect();
     let from = plot.left_center() + vec2(120.0, 30.0);
     drag(&mut harness, from, vec2(260.0, -50.0));
-    let drawn = harness.state().settings().transfer.clone();
+    let drawn = harness.state().settings().layer().transfer.clone();
     assert!(drawn != before && drawn.points.len() <= before.points.len() + 20, "{drawn:?}");
     // One undo step; Escape ends freehand drawing.
     harness.run_steps(8);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
-    assert_eq!(harness.state().settings().transfer, before);
+    assert_eq!(harness.state().settings().layer().transfer, before);
     harness.hover_at(plot.center());
     harness.step();
     harness.key_press(egui::Key::Escape);
@@ -232,7 +233,7 @@ fn a_curve_is_drawn_by_hand() {
     drag(&mut harness, empty, Vec2::ZERO);
     harness.run_steps(2);
     assert_eq!(
-        harness.state().settings().transfer.points.len(),
+        harness.state().settings().layer().transfer.points.len(),
         before.points.len() + 1,
         "points are added again"
     );

@@ -151,7 +151,7 @@ fn keys_that_are_struck_within_a_frame_are_counted() {
 fn level_and_window_are_dragged_in_the_picture() {
     let mut harness = window();
     let ends = |harness: &Harness<'_, App>| {
-        let points = &harness.state().settings().transfer.points;
+        let points = &harness.state().settings().layer().transfer.points;
         (points.first().expect("a point").value, points.last().expect("a point").value)
     };
     let (before, camera) = (ends(&harness), harness.state().settings().camera.clone());

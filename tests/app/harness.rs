@@ -238,5 +238,5 @@ pub(crate) fn autosaved_look(folder: &std::path::Path) -> Option<Settings> {
     let files = std::fs::read_dir(folder.join("runs")).ok()?.map(|file| file.expect("an entry").path());
     let latest = files.filter(|file| file.extension().is_some_and(|ending| ending == "json")).max()?;
     let record = LookRecord::parse(&std::fs::read_to_string(latest).expect("a text")).expect("a record");
-    Some(record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings").0)
+    Some(record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings").settings)
 }

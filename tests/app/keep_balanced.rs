@@ -34,7 +34,7 @@ fn a_balance_that_is_kept_follows_changes() {
     assert!(!harness.state().is_idle());
     wait_until_idle(&mut harness);
     let followed = harness.state().settings().clone();
-    assert_eq!(followed.lighting.scale, 0.1);
+    assert_eq!(followed.layer().lighting.scale, 0.1);
     assert_eq!(
         harness.state().full_quality_pictures(),
         refined + 1,

@@ -86,7 +86,7 @@ fn presets_are_tried_on_the_volume() {
     assert!(harness.query_by_label("Use CT angiography").is_some());
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
     click(&mut harness, "Use Lobster");
-    assert_ne!(harness.state().settings().transfer, before.transfer);
+    assert_ne!(harness.state().settings().layer().transfer, before.layer().transfer);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(3);
     assert_eq!(harness.state().settings(), &before);

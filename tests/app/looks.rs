@@ -165,7 +165,7 @@ fn looks_of_a_ct_are_offered_over_its_picture() {
     click(&mut harness, "Muscle and skin");
     wait_until_idle(&mut harness);
     let bone = harness.state().settings().clone();
-    assert_ne!(bone.transfer, before.transfer);
+    assert_ne!(bone.layer().transfer, before.layer().transfer);
     assert_eq!(bone.camera, before.camera);
     harness.run_steps(3);
     let is_marked = |harness: &Harness<'_, App>, title: &str| {

@@ -64,7 +64,11 @@ fn the_object_lies_down_stands_up_and_stays_so() {
     let on_end = settings(&harness);
     assert_ne!(on_end.camera.up, SceneAxis::PlusZ);
     assert!(on_end.floor.height < flat.floor.height - 0.2, "it is taller now: {}", on_end.floor.height);
-    assert_eq!((&on_end.cuts, &on_end.transfer), (&flat.cuts, &flat.transfer), "the data stay");
+    assert_eq!(
+        (&on_end.cuts, &on_end.layer().transfer),
+        (&flat.cuts, &flat.layer().transfer),
+        "the data stay"
+    );
     assert_ne!(on_end.lights[0].position, flat.lights[0].position, "lights stay with the viewer");
     wait_until_idle(&mut harness);
     assert!(harness.state().light_rebuilds() > fills, "and shine on another side");

@@ -215,14 +215,18 @@ fn a_volume_is_shown_as_the_kind_of_data_that_is_named() {
         folder.run_successfully(&format!(
             "render builtin:sphere:24 -o {kind}.png --size 32x24 --report {kind}.json --as {kind}"
         ));
-        folder.json(&format!("{kind}.json"))["settings"]["transfer"].clone()
+        folder.json(&format!("{kind}.json"))["settings"]["layers"][0]["transfer"].clone()
     };
     let points = |function: &Value| function["points"].as_array().map_or(0, Vec::len);
     let (scalar, mask, labels) = (settings("scalar"), settings("mask"), settings("labels"));
     assert!(scalar != mask && mask != labels);
     assert!(points(&labels) > points(&mask), "a colour for every number");
     folder.run_successfully("render builtin:sphere:24 -o own.png --size 32x24 --report own.json");
-    assert_eq!(folder.json("own.json")["settings"]["transfer"], scalar, "a scalar field is detected");
+    assert_eq!(
+        folder.json("own.json")["settings"]["layers"][0]["transfer"],
+        scalar,
+        "a scalar field is detected"
+    );
     folder.run_failing("render builtin:sphere:24 -o no.png --as something", 2);
 }
 

@@ -1,6 +1,6 @@
 //! Tests of the command `replay`: pictures rendered again from their own metadata or from a report.
 
-use chiaroscuro_media::{ExportError, export_png, read_picture, read_record, write_picture};
+use chiaroscuro_media::{ExportError, PicturePixels, export_png, read_picture, read_record, write_picture};
 use chiaroscuro_scene::{ImageSpec, PixelFormat};
 
 use crate::program::ProgramFolder;
@@ -111,7 +111,7 @@ fn fine_pictures_can_be_made_again_from_themselves() {
     assert!(words.iter().filter(|&&word| word % 257 != 0).count() > words.len() / 4, "more than bytes");
     // A different look is detected in these formats as well.
     let text = read_record(&folder.path("light.exr")).expect("a picture").expect("a record");
-    let (size, rows) = read_picture(&folder.path("light.exr")).expect("a picture");
+    let PicturePixels { size, rows } = read_picture(&folder.path("light.exr")).expect("a picture");
     let changed = text.replace("\"gain\": 1.0", "\"gain\": 0.4");
     assert_ne!(changed, text);
     let image_spec = ImageSpec { depth: PixelFormat::Linear, ..ImageSpec::new(size) };
@@ -140,6 +140,17 @@ fn pictures_may_be_larger_than_textures() {
     let wide = image::open(folder.path("wide.png")).expect("a picture").to_rgb8();
     assert_eq!((wide.width(), wide.height()), (20000, 3));
     assert!(folder.run_successfully("replay wide.png --check").contains("identical"));
+}
+
+#[test]
+fn replay_warns_of_a_picture_that_shows_nothing() {
+    let folder = ProgramFolder::new();
+    let warned = |name: &str, options: &str| {
+        folder.run_successfully(&format!("render builtin:sphere:16 --size 64x48 -o {name} {options}"));
+        folder.run(&format!("replay {name}")).stderr.contains("nothing of the volume is visible")
+    };
+    assert!(warned("away.png", "--set camera.target=[90,0,0] --set floor.on=false"));
+    assert!(!warned("sphere.png", ""));
 }
 
 #[test]

@@ -186,7 +186,7 @@ pub(crate) fn samples(folder: &Path) -> Vec<SampleFile> {
         .expect("a preset of ours");
     for ending in EXPORT_EXTENSIONS {
         let name = format!("function.{ending}");
-        let bytes = export_transfer(Path::new(&name), &with_preset.transfer, ct_range());
+        let bytes = export_transfer(Path::new(&name), &with_preset.layer().transfer, ct_range());
         add(&name, bytes.expect("it is one of ours"), reads_transfer_function);
     }
     found

@@ -58,7 +58,7 @@ fn manifest_differences(volume: &Volume, facts: &ManifestEntry) -> Vec<String> {
 fn first_look_flaws(volume: &Volume) -> Vec<String> {
     let settings = first_look::first_settings(volume, &Histogram::from_volume(volume));
     let mut found = Vec::new();
-    let values: Vec<f64> = settings.transfer.points.iter().map(|point| point.value).collect();
+    let values: Vec<f64> = settings.layer().transfer.points.iter().map(|point| point.value).collect();
     if !values.windows(2).all(|pair| pair[0] <= pair[1]) {
         found.push(format!("control points do not ascend: {values:?}"));
     }
@@ -69,7 +69,7 @@ fn first_look_flaws(volume: &Volume) -> Vec<String> {
     let (mut present, mut visible) = (0usize, 0usize);
     for density in places.filter_map(|place| shown.density_at(place)) {
         present += 1;
-        visible += usize::from(settings.transfer.opacity_at(shown.value_of(density)) > 0.05);
+        visible += usize::from(settings.layer().transfer.opacity_at(shown.value_of(density)) > 0.05);
     }
     let share = visible as f64 / present as f64;
     println!("{}: {:.1} % of the voxels are visible", volume.name(), share * 100.0);

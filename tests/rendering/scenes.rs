@@ -65,10 +65,10 @@ pub(crate) fn look() -> Settings {
             ..Camera::default()
         },
         lights: vec![light(LightGeometry::Parallel, [1.3, -0.8, 1.7])],
-        transfer: transfer(),
-        opacity_unit: OpacityLength::Voxels(1.0),
         ..Settings::default()
     }
+    .with_transfer(transfer())
+    .with_opacity_unit(OpacityLength::Voxels(1.0))
 }
 
 /// White light that casts shadows.

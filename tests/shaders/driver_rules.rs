@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use naga::valid::{Capabilities, GlobalUse, ValidationFlags, Validator};
 use wgpu::TextureFormat;
 
 use crate::sources::{entry_shaders, shader_source, validate_shader, variants, without_comments};
@@ -20,13 +21,27 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
         arrays.iter().fold(code.clone(), |code, of| code.replace(of, "")).matches(name).count()
     };
     let is_late = |name: &&str| {
-        let copy = name.strip_prefix("bound_").map(|own| format!("{own} = {name};"));
-        !copy.is_some_and(|copy| copies.contains(copy.as_str())) || reads(name) != 2
+        let Some(own) = name.strip_prefix("bound_") else { return true };
+        let is_copied = copies.contains(format!("{own} = {name};").as_str()) && reads(name) == 2;
+        // A shader that needs no copy makes none: imported files may declare uniforms for others.
+        let is_unused = || reads(name) == 1 && !is_variable_used(source, own);
+        !is_copied && !is_unused()
     };
     declared.filter(is_late).map(str::to_owned).collect()
 }
 
-/// Behind a branch, a software driver reads uniforms lane by lane (density/volume.wgsl).
+/// Returns true if a shader's entry point, or a function that it calls, uses a variable of the module.
+fn is_variable_used(source: &str, name: &str) -> bool {
+    let module = naga::front::wgsl::parse_str(source).expect("a shader");
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
+    let info = info.expect("a valid shader");
+    let used = |(handle, variable): (_, &naga::GlobalVariable)| {
+        variable.name.as_deref() == Some(name) && info.get_entry_point(0)[handle] != GlobalUse::empty()
+    };
+    module.global_variables.iter().any(used)
+}
+
+/// Behind a branch, a software driver reads uniforms lane by lane (volume/field.wgsl).
 #[test]
 fn uniforms_are_copied_before_anything_branches() {
     let late: Vec<_> = entry_shaders()
@@ -46,6 +61,7 @@ fn uniforms_are_copied_before_anything_branches() {
 fn uniforms_read_late_are_noticed() {
     let source = shader_source("eye/eye_pass.wgsl");
     for (from, to, name) in [
+        // Used without a copy.
         ("    grid = bound_grid;\n", "", "bound_grid"),
         ("grid = bound_grid;", "if (true) {}\n    grid = bound_grid;", "bound_grid"),
         ("let s = eye.shading;", "let s = bound_eye.shading;", "bound_eye"),

@@ -6,6 +6,8 @@ mod constants;
 mod driver_rules;
 mod imports;
 mod layouts;
+mod options;
 mod sources;
 mod structs;
 mod validity;
+mod voxel_access;

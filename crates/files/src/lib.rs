@@ -25,7 +25,7 @@ pub use atomic_write::{
 };
 pub use destination::OutputDestination;
 pub use error::{OpenFileError, WriteError};
-pub use own_files::{hold_lock, make_folder, quarantine, remove_own_file, rename_own_file};
+pub use own_files::{create_lock, hold_lock, make_folder, quarantine, remove_own_file, rename_own_file};
 pub use program_mark::is_written_by_us;
 pub use provenance::{MAX_LOOK_BYTES, PROVENANCE_MARK, provenance_mark, with_provenance_mark};
 pub use temporary_file::{

@@ -48,3 +48,13 @@ pub fn hold_lock(path: &Path) -> std::io::Result<File> {
     file.lock().ok();
     Ok(file)
 }
+
+/// Creates a lock file that must not exist yet, and holds its lock as [`hold_lock`] does.
+///
+/// # Errors
+/// `AlreadyExists` if the file exists; otherwise when it cannot be created.
+pub fn create_lock(path: &Path) -> std::io::Result<File> {
+    let file = File::options().create_new(true).write(true).open(path)?;
+    file.lock().ok();
+    Ok(file)
+}

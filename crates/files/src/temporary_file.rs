@@ -20,7 +20,8 @@ const ABANDONED_AFTER: Duration = Duration::from_hours(24);
 /// Longest wait of a terminating process for the list of files.
 const TERMINATION_WAIT: Duration = Duration::from_millis(500);
 
-/// Temporary files that this process is writing.
+/// Temporary files that this process is writing. They stay static: the panic hook and the handler of termination remove
+/// them, whoever writes.
 static TEMPORARY_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Temporary file that does not have its final name yet. Dropping it removes it.

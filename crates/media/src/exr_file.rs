@@ -14,7 +14,7 @@ use exr::prelude::Compression;
 
 use super::png_file::check_size;
 use super::rows::RECORD_KEY;
-use super::{ExportError, PixelRows, ReadPictureError};
+use super::{ExportError, PicturePixels, PixelRows, ReadPictureError};
 use chiaroscuro_files::{
     MAX_LOOK_BYTES, open_regular, provenance_mark, rename_into_place, temporary_file_for,
 };
@@ -191,7 +191,7 @@ pub(super) fn size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
 }
 
 /// Reads the pixels of an EXR file.
-pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
+pub(super) fn read(path: &Path) -> Result<PicturePixels, ReadPictureError> {
     let [width, height] = size(path)?.map(|edge| edge as usize);
     let mut room = Vec::new();
     let no_room = |err| ReadPictureError::new(path, &format!("there is not enough memory for it: {err}"));
@@ -216,7 +216,8 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureErro
     if [layer.size.width(), layer.size.height()] != [width, height] {
         return Err(ReadPictureError::new(path, &"its layers differ in size"));
     }
-    Ok(([width as u32, height as u32], PixelRows::Floats(layer.channel_data.pixels.values)))
+    let rows = PixelRows::Floats(layer.channel_data.pixels.values);
+    Ok(PicturePixels { size: [width as u32, height as u32], rows })
 }
 
 #[cfg(test)]
@@ -257,7 +258,7 @@ mod tests {
         let [found, written] =
             [text.as_str(), record].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
         assert_eq!(found, written);
-        assert_eq!(read(&path).unwrap(), ([3, 37], PixelRows::Floats(pixels)));
+        assert_eq!(read(&path).unwrap(), PicturePixels { size: [3, 37], rows: PixelRows::Floats(pixels) });
         // Writing the same picture again gives the same bytes.
         let before = std::fs::read(&path).unwrap();
         let mut next = || Ok::<_, ExportError>(again.take());

@@ -30,4 +30,4 @@ pub use picture_file::{
     PictureFormat, check_picture, may_carry_record, picture_size, read_picture, read_record, write_picture,
 };
 pub use png_file::{encode_png, export_png};
-pub use rows::PixelRows;
+pub use rows::{PicturePixels, PixelRows};

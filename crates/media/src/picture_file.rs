@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::animation::embedded_record;
-use super::{ExportError, PixelRows, ReadPictureError, exr_file, png_file};
+use super::{ExportError, PicturePixels, PixelRows, ReadPictureError, exr_file, png_file};
 use chiaroscuro_files::check_extension;
 use chiaroscuro_scene::{ImageSpec, PixelFormat};
 
@@ -85,11 +85,11 @@ pub fn picture_size(path: &Path) -> Result<[u32; 2], ReadPictureError> {
     }
 }
 
-/// Reads a picture: its columns and rows, and all rows as bytes (8-bit PNG) or floats.
+/// Reads the pixels of a picture.
 ///
 /// # Errors
 /// When the file cannot be read or is not a picture.
-pub fn read_picture(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
+pub fn read_picture(path: &Path) -> Result<PicturePixels, ReadPictureError> {
     match PictureFormat::from_path(path) {
         PictureFormat::Png => png_file::read(path),
         PictureFormat::Exr => exr_file::read(path),

@@ -4,7 +4,7 @@ use std::io::{BufReader, BufWriter, Write as _};
 use std::path::Path;
 
 use super::rows::{RECORD_KEY, quantize_u16};
-use super::{ExportError, PixelRows, ReadPictureError};
+use super::{ExportError, PicturePixels, PixelRows, ReadPictureError};
 use chiaroscuro_files::{
     MAX_LOOK_BYTES, check_extension, open_regular, provenance_mark, rename_into_place, temporary_file_for,
     write_atomically,
@@ -141,7 +141,7 @@ pub(super) fn check_size(path: &Path, size: [u32; 2]) -> Result<[u32; 2], ReadPi
 }
 
 /// Reads the pixels of a PNG file.
-pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureError> {
+pub(super) fn read(path: &Path) -> Result<PicturePixels, ReadPictureError> {
     let failed = |why: &dyn std::fmt::Display| ReadPictureError::new(path, why);
     let size = size(path)?;
     let [width, height] = size;
@@ -158,7 +158,7 @@ pub(super) fn read(path: &Path) -> Result<([u32; 2], PixelRows), ReadPictureErro
     } else {
         PixelRows::Bytes(image.to_rgba8().into_raw())
     };
-    Ok((size, rows))
+    Ok(PicturePixels { size, rows })
 }
 
 /// Reads the record in a PNG file, if there is one.
@@ -233,7 +233,7 @@ mod tests {
             assert_eq!(read, (0..80).map(expected).collect::<Vec<_>>());
             assert_eq!(
                 read_picture(&path).unwrap(),
-                ([5, 4], PixelRows::Floats(shown).after_round_trip(&image_spec))
+                PicturePixels { size: [5, 4], rows: PixelRows::Floats(shown).after_round_trip(&image_spec) }
             );
         }
     }

@@ -19,6 +19,15 @@ pub enum PixelRows {
     Floats(Vec<f32>),
 }
 
+/// Picture that was read from a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PicturePixels {
+    /// Number of columns and rows.
+    pub size: [u32; 2],
+    /// All rows, as bytes (8-bit PNG) or floats.
+    pub rows: PixelRows,
+}
+
 impl PixelRows {
     /// Number of rows of the given picture.
     pub fn count(&self, image_spec: &ImageSpec) -> usize {

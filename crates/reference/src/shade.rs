@@ -105,7 +105,7 @@ impl<'r> Shader<'r> {
                 .filter(|(_, light)| light.on)
                 .map(shaded_light)
                 .collect(),
-            opacity_unit: settings.opacity_unit.scene_units(&reference.scene).max(1e-9),
+            opacity_unit: settings.layer().opacity_unit.scene_units(&reference.scene).max(1e-9),
             lighting: reference.gathered_table(TransferSide::Lighting),
             profile: reference.profile(ReconstructionKernel::Prefiltered),
             remaining: reference.attenuating_region(),

@@ -44,7 +44,7 @@ mod volume;
 
 pub use self::readback::pictures::is_empty_light;
 pub use self::readback::statistics::LightVolumeStatistics;
-pub use self::readback::tiled::PictureBands;
+pub use self::readback::tiled::{BandProgress, PictureBands};
 pub use context::check_driver_address_space;
 pub use context::error::GpuError;
 pub use context::{GpuContext, device_descriptor};

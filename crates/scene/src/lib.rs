@@ -58,9 +58,12 @@ pub use self::settings::shadows::{
     MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, MAX_MIN_BLOCKS, NearFieldRay, ReverseKernel, ShadowAlgorithm,
     ShadowSettings,
 };
+pub use self::settings::volume_layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
-pub use self::settings_io::preset_json::{apply_json, apply_path, load_json, set_value, settings_to_json};
+pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value};
+#[cfg(any(test, feature = "testing"))]
+pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json};
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
 pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
 pub use self::settings_io::volume_location::VolumeLocation;
@@ -78,12 +81,11 @@ pub use light_direction::LightDirection;
 pub use lighting_rig::{LightingRig, key_and_fill};
 pub use object_rotation::{CameraLightRotation, ObjectRotation};
 pub use settings::{
-    Background, LightingTransfer, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA,
-    Settings, ToneMap,
+    Background, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA, Settings, ToneMap,
 };
 pub use transfer::{
     ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,
-    SMOOTH_SEGMENT_PIECES, TransferFunction, linear_from_srgb, srgb_from_linear,
+    SMOOTH_SEGMENT_PIECES, TransferFunction, TransferSample, linear_from_srgb, srgb_from_linear,
 };
 pub use transfer_exchange::{
     EXPORT_EXTENSIONS, ExchangeError, IMPORT_EXTENSIONS, export_transfer, import_transfer,

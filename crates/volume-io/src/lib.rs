@@ -27,10 +27,10 @@ use std::sync::Arc;
 pub use formats::{RawFormat, RawGuess, RawLayout, raw, supported_extensions};
 pub use neighbour::neighbour_volume;
 pub use open::open;
-pub use reading::read_files::ReadFiles;
 
 use chiaroscuro_volume::{
-    FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice, memory_budget_bytes,
+    ContentsRecorder, FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice,
+    memory_budget_bytes,
 };
 use formats::{FileFormat, READERS, detect_format, folder};
 use reading::input::{FileChangeGuard, InputFile};
@@ -86,7 +86,8 @@ impl LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let portion = options.choice.portion.unwrap_or_default();
     let read = |are_labels: bool| {
-        let (choice, watch) = VolumeChoice { are_labels, ..options.choice.clone() }.with_recorder();
+        let watch = ContentsRecorder::default();
+        let choice = VolumeChoice { are_labels, ..options.choice.clone() }.with_recorder(&watch);
         let options = LoadOptions { choice, ..options.clone() };
         let volume = control.run(|| load_watched(path, &options, control));
         // Cancellation takes precedence over the result.
@@ -112,7 +113,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
         return folder::load(path, options, control);
     }
     let mut input = InputFile::open(attempt)?;
-    let witness = FileChangeGuard::new(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input, control)?;
     let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
     // Voxels of a described raw file may begin like this by chance.
     if start.is_packed_twice() && options.raw.dims.is_none() {
@@ -134,6 +135,7 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
             ));
         }
     };
+    options.choice.record_format(reader.name);
     let loaded = (reader.load)(VolumeSource { path, input, start, options, control });
     witness.check_unchanged(attempt, loaded)
 }

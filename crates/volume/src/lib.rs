@@ -23,12 +23,10 @@ mod values;
 mod volume;
 
 pub use bricks::BrickBounds;
-pub use cancellation::{CancelToken, PIECE_VALUES};
+pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::{Dataset, DatasetField};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
-#[cfg(any(test, feature = "testing"))]
-pub use load_context::with_forced_averaging;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
     FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, Portion, ReadContext,
@@ -41,10 +39,9 @@ pub use value_metadata::{
 };
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
-pub use values::samples::{Samples, VoxelType};
+pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
-    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, VolumeProvenance, VoxelData, VoxelGrid,
-    block_counts,
+    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

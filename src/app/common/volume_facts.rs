@@ -147,7 +147,7 @@ impl VolumeFacts {
 
     /// Returns true if pictures with these settings show labels, whose looks are in a table.
     pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
-        !settings.labels.is_empty() && !self.labels.is_empty()
+        !settings.layer().labels.is_empty() && !self.labels.is_empty()
     }
 
     /// Updates the facts for a dataset that shows other values or is corrected.

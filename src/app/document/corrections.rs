@@ -7,7 +7,7 @@ use eframe::egui;
 use super::Document;
 use super::orientation::has_same_framing;
 use crate::app::persistence::{FileStamp, PersistentState};
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::{Corrections, Dataset, VolumeError};
 
@@ -18,13 +18,12 @@ struct CorrectedVolume {
     first: Settings,
 }
 
-/// Correction in progress on a thread.
+/// Inputs of a correction in progress on a thread.
 #[derive(Debug)]
-struct CorrectionTask {
+struct CorrectionInputs {
     corrections: Corrections,
     /// Identifier of the opened volume.
     opened_id: u64,
-    work: BackgroundTask<Result<CorrectedVolume, VolumeError>>,
 }
 
 /// State of the corrections of the open volume.
@@ -34,13 +33,13 @@ pub(crate) struct CorrectionState {
     stamp: FileStamp,
     /// Corrections that need not be remembered: from a session or preset, or remembered already.
     known: Corrections,
-    making: Option<CorrectionTask>,
+    making: JobSlot<Result<CorrectedVolume, VolumeError>, CorrectionInputs>,
 }
 
 impl CorrectionState {
     /// Starts with an opened volume and the corrections that it was opened with.
     pub(crate) fn new(stamp: FileStamp, known: Corrections) -> Self {
-        Self { stamp, known, making: None }
+        Self { stamp, known, making: JobSlot::default() }
     }
 
     /// Accepts corrections from a look, which need not be remembered.
@@ -64,7 +63,7 @@ impl Document {
     ) -> Result<(), String> {
         let (volume, wanted) = (dataset.volume(), self.settings.volume);
         if wanted == *volume.corrections() {
-            self.corrections.making = None;
+            self.corrections.making.discard();
             if self.defaults.volume != wanted {
                 // Restored by an undo.
                 self.defaults.apply_corrections(wanted, volume);
@@ -76,7 +75,7 @@ impl Document {
                     memory.remember_corrections(&facts.source, stamp, volume.opened_id(), wanted);
                 }
             }
-        } else if self.corrections.making.as_ref().is_none_or(|making| making.corrections != wanted) {
+        } else if self.corrections.making.inputs().is_none_or(|making| making.corrections != wanted) {
             return self.start_correction(dataset, ctx);
         }
         Ok(())
@@ -88,21 +87,17 @@ impl Document {
         let mut first = self.defaults.clone();
         first.apply_corrections(by, dataset.volume());
         let shown = dataset.clone();
-        let task = move || {
+        let task = move |_: &JobControl| {
             let dataset = dataset.corrected(&by)?;
             first_look::frame_object(&mut first, dataset.volume());
             Ok(CorrectedVolume { dataset, first })
         };
-        match BackgroundTask::start("corrections", ctx, task) {
-            Ok(work) => {
-                self.corrections.making = Some(CorrectionTask { corrections: by, opened_id, work });
-                Ok(())
-            }
-            Err(err) => {
-                self.restore_corrections(&shown);
-                Err(err.to_string())
-            }
-        }
+        let inputs = CorrectionInputs { corrections: by, opened_id };
+        let started = self.corrections.making.start(JobKind::Corrections, ctx, inputs, task);
+        started.map_err(|err| {
+            self.restore_corrections(&shown);
+            err.to_string()
+        })
     }
 
     /// Takes over a corrected volume from its thread. Returns the dataset that is to be shown instead of `shown`.
@@ -111,26 +106,19 @@ impl Document {
         shown: Option<&Dataset>,
         now_s: f64,
     ) -> Result<Option<Dataset>, String> {
-        let Some(made) = self.corrections.making.as_ref().and_then(|making| making.work.take_result()) else {
+        let Some((inputs, made)) = self.corrections.making.take_ended() else { return Ok(None) };
+        let Some(shown) = shown.filter(|shown| shown.volume().opened_id() == inputs.opened_id) else {
             return Ok(None);
         };
-        let Some(making) = self.corrections.making.take() else { return Ok(None) };
-        let Some(shown) = shown.filter(|shown| shown.volume().opened_id() == making.opened_id) else {
-            return Ok(None);
-        };
-        if making.corrections != self.settings.volume {
+        if inputs.corrections != self.settings.volume {
             // The settings have changed meanwhile.
             return Ok(None);
         }
-        match made {
-            Ok(Ok(made)) => Ok(Some(self.use_corrected(made, now_s))),
-            Ok(Err(err)) => {
+        match made.and_then(|made| made.map_err(|err| err.to_string())) {
+            Ok(made) => Ok(Some(self.use_corrected(made, now_s))),
+            Err(err) => {
                 self.restore_corrections(shown);
-                Err(err.to_string())
-            }
-            Err(panic) => {
-                self.restore_corrections(shown);
-                Err(panic)
+                Err(err)
             }
         }
     }

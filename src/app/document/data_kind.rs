@@ -9,7 +9,7 @@ use eframe::egui;
 
 use super::Document;
 use super::light_placement::LightPlacement;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobKind, JobSlot};
 use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, first_look};
 use chiaroscuro_volume::{Dataset, KindName};
 
@@ -28,7 +28,7 @@ pub(crate) struct KindOverride {
     kind: Option<KindName>,
     /// Values of the reset buttons for other kinds of data, one look for each.
     other_looks: Vec<(Option<KindName>, Settings)>,
-    task: Option<BackgroundTask<KindTaskResult>>,
+    task: JobSlot<KindTaskResult>,
 }
 
 impl KindOverride {
@@ -39,7 +39,7 @@ impl KindOverride {
 
     /// Returns true while a look is being made.
     pub(crate) fn is_busy(&self) -> bool {
-        self.task.is_some()
+        self.task.is_running()
     }
 
     /// Changes the kind, and with it the values of the reset buttons, if they have been made for it.
@@ -100,8 +100,7 @@ impl Document {
         task: impl FnOnce() -> KindTaskResult + Send + 'static,
         ctx: &egui::Context,
     ) -> io::Result<()> {
-        self.kind_override.task = Some(BackgroundTask::start("first-look", ctx, task)?);
-        Ok(())
+        self.kind_override.task.start(JobKind::KindLook, ctx, (), |_| task())
     }
 
     /// Takes over the result of a task from its thread. Returns true if it is a first look, which now replaces the
@@ -111,10 +110,7 @@ impl Document {
         dataset: Option<Dataset>,
         ctx: &egui::Context,
     ) -> Result<bool, String> {
-        let Some(made) = self.kind_override.task.as_ref().and_then(BackgroundTask::take_result) else {
-            return Ok(false);
-        };
-        self.kind_override.task = None;
+        let Some(made) = self.kind_override.task.take_result() else { return Ok(false) };
         match made? {
             KindTaskResult::Look(kind, look) if look.camera.up == self.settings.camera.up => {
                 self.use_first_look(kind, *look);
@@ -125,7 +121,8 @@ impl Document {
                 self.treat_as(kind, dataset, ctx).map_err(|err| err.to_string())?;
             }
             KindTaskResult::Transfer(transfer, labels) => {
-                (self.settings.transfer, self.settings.labels) = (transfer, labels);
+                let layer = self.settings.layer_mut();
+                (layer.transfer, layer.labels) = (transfer, labels);
             }
         }
         Ok(false)

@@ -8,7 +8,7 @@ impl Document {
     /// Colours the visible values by a colour map, given by its index.
     pub(crate) fn use_colors(&mut self, at: usize, reversed: bool) {
         if let Some(map) = COLOR_MAPS.get(at) {
-            self.settings.transfer.apply_color_map(map, reversed);
+            self.settings.layer_mut().transfer.apply_color_map(map, reversed);
         }
     }
 

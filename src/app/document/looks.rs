@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Document;
 use super::session::SessionFile;
-use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_scene::{AppliedSettings, LookRecord, Settings, VolumeRecord};
 use chiaroscuro_volume::ValueRanges;
 
 /// Settings with the look of a file, and notes about what could not be applied.
@@ -23,7 +23,8 @@ impl Document {
         record: &LookRecord,
         ranges: &ValueRanges,
     ) -> Result<AppliedLook, String> {
-        let (mut settings, warnings) = record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
+        let AppliedSettings { mut settings, warnings } =
+            record.apply(&self.settings, ranges).map_err(|err| err.to_string())?;
         // A look without saved views leaves the existing ones.
         if settings.kept.is_empty() {
             settings.kept.clone_from(&self.settings.kept);

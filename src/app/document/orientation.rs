@@ -10,7 +10,7 @@ use eframe::egui;
 use super::Document;
 use crate::app::common::commands::AppCommand;
 use crate::app::persistence::PersistentState;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobKind, JobSlot};
 use chiaroscuro_scene::{Camera, CameraLightRotation, ObjectRotation, SceneAxis, Settings, first_look};
 use chiaroscuro_volume::Dataset;
 
@@ -23,10 +23,9 @@ enum AfterFraming {
     Run(Option<AppCommand>),
 }
 
-/// First look that is being framed for another orientation.
+/// Inputs of a first look that is being framed for another orientation.
 #[derive(Debug)]
-struct FramingTask {
-    work: BackgroundTask<Settings>,
+struct FramingInputs {
     /// First look before the turn.
     first_look: Settings,
     /// Up axis of the current look when framing began.
@@ -37,14 +36,14 @@ struct FramingTask {
 /// Turn of the object in progress, and the queue of further commands.
 #[derive(Debug, Default)]
 pub(crate) struct OrientationTasks {
-    framing: Option<FramingTask>,
+    framing: JobSlot<Settings, FramingInputs>,
     waiting: VecDeque<AppCommand>,
 }
 
 impl OrientationTasks {
     /// Returns true while a turn is in progress.
     pub(crate) fn is_busy(&self) -> bool {
-        self.framing.is_some()
+        self.framing.is_running()
     }
 }
 
@@ -120,14 +119,12 @@ impl Document {
         ctx: &egui::Context,
     ) -> io::Result<()> {
         let Some(dataset) = dataset else { return Ok(()) };
-        let task = move || {
+        let (first_look, up) = (self.defaults.clone(), self.settings.camera.up);
+        let inputs = FramingInputs { first_look, up, then };
+        self.orientation.framing.start(JobKind::Framing, ctx, inputs, move |_| {
             first_look::frame_object(&mut turned, dataset.volume());
             turned
-        };
-        let (of, up) = (self.defaults.clone(), self.settings.camera.up);
-        let work = BackgroundTask::start("framing", ctx, task)?;
-        self.orientation.framing = Some(FramingTask { work, first_look: of, up, then });
-        Ok(())
+        })
     }
 
     /// Takes over the framed first look from its thread, and remembers the up axis after a turn. Returns the commands
@@ -137,14 +134,12 @@ impl Document {
         memory: &mut PersistentState,
     ) -> (Vec<AppCommand>, Result<(), String>) {
         let (mut commands, mut result) = (Vec::new(), Ok(()));
-        let Some(framing) = &self.orientation.framing else { return (commands, result) };
-        let Some(framed) = framing.work.take_result() else { return (commands, result) };
-        // An undo or the light placement may have intervened.
-        let is_of_this = framing.first_look == self.defaults && framing.up == self.settings.camera.up;
-        let Some(FramingTask { then, .. }) = self.orientation.framing.take() else {
+        let Some((inputs, framed)) = self.orientation.framing.take_ended() else {
             return (commands, result);
         };
-        match (framed, then) {
+        // An undo or the light placement may have intervened.
+        let is_of_this = inputs.first_look == self.defaults && inputs.up == self.settings.camera.up;
+        match (framed, inputs.then) {
             (Err(panic), _) => result = Err(panic),
             (Ok(_), AfterFraming::Turn(turn, _)) if !is_of_this => {
                 commands.push(AppCommand::TurnObject(turn));

@@ -8,9 +8,9 @@ use eframe::egui;
 
 use super::Document;
 use crate::app::common::commands::AppCommand;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobKind, JobSlot};
 use chiaroscuro_scene::{
-    Clipping, DensityRange, LabelTable, Settings, TransferFunction, first_look::ObjectOutline,
+    Clipping, DensityRange, LabelTable, Settings, TransferFunction, VolumeLayer, first_look::ObjectOutline,
 };
 use chiaroscuro_volume::Dataset;
 
@@ -27,10 +27,11 @@ struct OutlineInputs {
 impl OutlineInputs {
     fn matches(&self, settings: &Settings, content_id: u64) -> bool {
         let Self { content_id: of, transfer, labels, range, cuts } = self;
+        let layer = settings.layer();
         *of == content_id
-            && *transfer == settings.transfer
-            && *labels == settings.labels
-            && *range == settings.range
+            && *transfer == layer.transfer
+            && *labels == layer.labels
+            && *range == layer.range
             && *cuts == settings.cuts
     }
 }
@@ -39,7 +40,7 @@ impl OutlineInputs {
 #[derive(Debug, Default)]
 pub(crate) struct OutlineCache {
     known: Option<(OutlineInputs, Arc<ObjectOutline>)>,
-    work: Option<(OutlineInputs, BackgroundTask<ObjectOutline>)>,
+    search: JobSlot<ObjectOutline, OutlineInputs>,
     /// Volume for which the search failed; it is not retried.
     failed: Option<u64>,
     /// Latest command that waits for the outline.
@@ -84,16 +85,12 @@ impl Document {
 
     /// Takes over an outline from its thread.
     pub(crate) fn take_outline(&mut self) {
-        if let Some((_, work)) = &self.outline_cache.work
-            && let Some(found) = work.take_result()
-            && let Some((of, _)) = self.outline_cache.work.take()
-        {
-            match found {
-                Ok(outline) => self.outline_cache.known = Some((of, Arc::new(outline))),
-                Err(panic) => {
-                    log::warn!("the search for the outline of the object failed: {panic}");
-                    self.outline_cache.failed = Some(of.content_id);
-                }
+        match self.outline_cache.search.take_ended() {
+            None => {}
+            Some((of, Ok(outline))) => self.outline_cache.known = Some((of, Arc::new(outline))),
+            Some((of, Err(panic))) => {
+                log::warn!("the search for the outline of the object failed: {panic}");
+                self.outline_cache.failed = Some(of.content_id);
             }
         }
     }
@@ -110,23 +107,20 @@ impl Document {
 
     /// Starts the search for the current outline, unless one is running.
     pub(crate) fn start_outline_search(&mut self, dataset: Option<Dataset>, ctx: &egui::Context) {
-        let Some(dataset) = dataset.filter(|_| self.outline_cache.work.is_none()) else {
+        let Some(dataset) = dataset.filter(|_| !self.outline_cache.search.is_running()) else {
             return;
         };
         let settings = self.settings.clone();
-        let Settings { transfer, labels, range, cuts, .. } = settings.clone();
+        let VolumeLayer { transfer, labels, range, .. } = settings.layer().clone();
+        let cuts = settings.cuts.clone();
         let content_id = dataset.volume().content_id();
-        match BackgroundTask::start("outline", ctx, move || {
+        let inputs = OutlineInputs { content_id, transfer, labels, range, cuts };
+        let started = self.outline_cache.search.start(JobKind::Outline, ctx, inputs, move |_| {
             ObjectOutline::from_settings(&settings, dataset.volume())
-        }) {
-            Ok(work) => {
-                self.outline_cache.work =
-                    Some((OutlineInputs { content_id, transfer, labels, range, cuts }, work));
-            }
-            Err(err) => {
-                log::warn!("the search for the outline of the object could not start: {err}");
-                self.outline_cache.failed = Some(content_id);
-            }
+        });
+        if let Err(err) = started {
+            log::warn!("the search for the outline of the object could not start: {err}");
+            self.outline_cache.failed = Some(content_id);
         }
     }
 

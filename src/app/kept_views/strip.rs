@@ -10,7 +10,8 @@ use super::thumbnails::{KeptThumbnails, thumbnail_size};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::{shortcuts, theme};
 use crate::app::text::{self, ControlText};
-use chiaroscuro_scene::{DIGIT_KEYS, MAX_NAME_CHARS, SavedEntry, Settings};
+use crate::app::windows::export::ExportScene;
+use chiaroscuro_scene::{DIGIT_KEYS, MAX_NAME_CHARS, SavedContent, SavedEntry, Settings};
 
 /// Height of a thumbnail, in points.
 const THUMBNAIL_HEIGHT: f32 = 72.0;
@@ -45,8 +46,34 @@ impl KeptStrip {
         *self = Self::default();
     }
 
+    /// Collects the thumbnails that have been rendered since the last call.
+    pub(crate) fn collect_thumbnails(&mut self, ctx: &egui::Context) {
+        self.thumbnails.collect(ctx);
+    }
+
+    /// Returns the items that have no thumbnail yet; `None` if there are none, or while some are being rendered.
+    pub(crate) fn missing_thumbnails(
+        &mut self,
+        settings: &Settings,
+        content_id: Option<u64>,
+    ) -> Option<Vec<SavedContent>> {
+        self.thumbnails.missing(settings, content_id)
+    }
+
+    /// Starts to render thumbnails. Views are drawn in the current look.
+    pub(crate) fn render_thumbnails(
+        &mut self,
+        wanted: Vec<SavedContent>,
+        subject: ExportScene,
+        ctx: &egui::Context,
+    ) {
+        if let Err(err) = self.thumbnails.start(wanted, subject, ctx) {
+            log::warn!("thumbnails of saved views and looks cannot be rendered: {err}");
+        }
+    }
+
     /// Shows the strip below the picture.
-    pub(super) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<AppCommand>) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<AppCommand>) {
         // The list may have changed since the last frame, for example by undo.
         self.dragged_item = self.dragged_item.filter(|&at| at < settings.kept.len());
         let panel = egui::Panel::bottom("kept").resizable(false).frame(theme::panel(ui));
@@ -161,7 +188,7 @@ impl KeptStrip {
         }
         // A look has a swatch of its colours; a view has none.
         if let Some(look) = kept.as_look() {
-            let dots = look.transfer.points.iter().rev().take(3).map(|point| point.color);
+            let dots = look.layer().transfer.points.iter().rev().take(3).map(|point| point.color);
             for (number, color) in (0..).zip(dots) {
                 let middle = picture.left_bottom() + vec2(9.0 + 10.0 * number as f32, -9.0);
                 painter.circle(middle, 4.0, theme::color(color), Stroke::new(1.0, theme::OUTLINE));

@@ -6,7 +6,7 @@ use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 
 use crate::app::windows::contact_sheet::{SMALL, render_small};
 use crate::app::windows::export::{ExportScene, ExportWorker, settings_for_kept};
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_scene::{SavedContent, SavedEntry, Settings};
 
 /// Finished thumbnail of a kept item.
@@ -19,7 +19,6 @@ struct KeptThumbnail {
 
 /// Batch of thumbnails in progress on a background thread.
 struct ThumbnailBatch {
-    work: BackgroundTask<()>,
     results: mpsc::Receiver<(SavedContent, Option<ColorImage>)>,
     requested: Vec<SavedContent>,
     content_id: u64,
@@ -29,7 +28,7 @@ struct ThumbnailBatch {
 #[derive(Default)]
 pub(super) struct KeptThumbnails {
     finished: Vec<KeptThumbnail>,
-    batch: Option<ThumbnailBatch>,
+    batch: JobSlot<(), ThumbnailBatch>,
     content_id: Option<u64>,
 }
 
@@ -48,7 +47,7 @@ impl KeptThumbnails {
 
     /// Returns true while thumbnails are being rendered.
     pub(super) fn is_busy(&self) -> bool {
-        self.batch.is_some()
+        self.batch.is_running()
     }
 
     /// Items that have no thumbnail yet; `None` if there are none, or while a batch is in progress.
@@ -58,7 +57,7 @@ impl KeptThumbnails {
         content_id: Option<u64>,
     ) -> Option<Vec<SavedContent>> {
         self.content_id = content_id;
-        let id = content_id.filter(|_| self.batch.is_none())?;
+        let id = content_id.filter(|_| !self.batch.is_running())?;
         let kept = || settings.kept.iter().map(|kept| &kept.what);
         // Items that were removed or belong to another volume are dropped; should they return, they are rendered
         // again.
@@ -78,7 +77,7 @@ impl KeptThumbnails {
         let content_id = subject.dataset.volume().content_id();
         let (sender, drawn) = mpsc::channel();
         let (wake, all) = (ctx.clone(), wanted.clone());
-        let task = move || {
+        let task = move |job: &JobControl| {
             let mut worker = ExportWorker::new(&subject);
             for what in all {
                 let settings = settings_for_kept(&what, &subject.settings);
@@ -89,27 +88,26 @@ impl KeptThumbnails {
                 if let Err(err) = &picture {
                     log::warn!("a thumbnail of a saved view or look was not rendered: {err}");
                 }
-                if sender.send((what, picture.ok())).is_err() {
+                if sender.send((what, picture.ok())).is_err() || job.token().is_cancelled() {
                     return;
                 }
                 wake.request_repaint();
             }
         };
-        let work = BackgroundTask::start("kept", ctx, task)?;
-        self.batch = Some(ThumbnailBatch { work, results: drawn, requested: wanted, content_id });
-        Ok(())
+        let batch = ThumbnailBatch { results: drawn, requested: wanted, content_id };
+        self.batch.start(JobKind::SavedThumbnails, ctx, batch, task)
     }
 
     /// Collects the thumbnails that have been rendered since the last call.
     pub(super) fn collect(&mut self, ctx: &egui::Context) {
-        let Some(drawing) = &self.batch else { return };
-        // Queried before the channel is drained: no thumbnail is sent after the end of the task.
-        let is_over = drawing.work.take_result().is_some();
+        // Taken before the channel is drained: no thumbnail is sent after the end of the task.
+        let ended = self.batch.take_ended().map(|(batch, _)| batch);
+        let Some(drawing) = ended.as_ref().or(self.batch.inputs()) else { return };
         for (what, picture) in drawing.results.try_iter() {
             let texture = picture.map(|picture| ctx.load_texture("kept", picture, TextureOptions::LINEAR));
             self.finished.push(KeptThumbnail { key: (what, drawing.content_id), texture });
         }
-        if let Some(ThumbnailBatch { requested: wanted, content_id, .. }) = self.batch.take_if(|_| is_over) {
+        if let Some(ThumbnailBatch { requested: wanted, content_id, .. }) = ended {
             // Items that are missing because the thread panicked are marked as failed, so that they are not tried
             // again and again.
             for what in wanted {

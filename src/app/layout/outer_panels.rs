@@ -2,15 +2,21 @@
 
 use eframe::egui;
 
+use super::WindowLayout;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::dock;
 use crate::app::common::theme;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::kept_views::KeptStrip;
 use crate::app::persistence::RecentThumbnails;
+use crate::app::shell::look_editor::LookEditor;
+use crate::app::shell::opening::OpeningState;
+use crate::app::shell::picture_area::PictureTools;
+use crate::app::shell::tool_windows::ToolWindows;
 use crate::app::shell::{menu, status};
 use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::RendererStatus;
-use crate::app::{App, panels, text};
+use crate::app::{panels, text};
 use chiaroscuro_render::WindowPainter;
 
 /// State of the panels around the picture.
@@ -23,132 +29,165 @@ pub(crate) struct OuterPanels {
     pub recent_pictures: RecentThumbnails,
 }
 
+/// Inputs of the panels: the state that they show and change.
+pub(crate) struct OuterPanelInputs<'a> {
+    /// Look that the panels edit, and the messages of the status bar.
+    pub editor: &'a mut LookEditor,
+    /// Files that are being opened.
+    pub opening: &'a OpeningState,
+    /// Tools over the picture, which the menu switches.
+    pub picture: &'a PictureTools,
+    /// Tool windows, among them the help that is shown without panels, too.
+    pub windows: &'a mut ToolWindows,
+    /// Panels and tool windows that are shown.
+    pub layout: &'a mut WindowLayout,
+    /// Statistics and state of the renderer.
+    pub facts: &'a RendererStatus,
+    /// Queue of the commands that the user issues.
+    pub commands: &'a mut Vec<AppCommand>,
+}
+
 impl OuterPanels {
     /// Creates the panels of a window that draws with `painter`.
     pub(crate) fn new(painter: WindowPainter, recent_pictures: RecentThumbnails) -> Self {
         Self { editor: TransferEditor::new(painter), kept_strip: KeptStrip::default(), recent_pictures }
     }
-}
 
-impl App {
     /// Shows the panels around the picture; while only the picture is shown, just the help windows.
-    pub(crate) fn show_outer_panels(
-        &mut self,
-        ui: &mut egui::Ui,
-        facts: &RendererStatus,
-        commands: &mut Vec<AppCommand>,
-    ) {
-        self.layout.theme = ui.ctx().options(|options| options.theme_preference);
-        self.windows.help.ui(ui.ctx(), facts, self.document.settings.camera.up);
-        if self.layout.picture_only {
+    pub(crate) fn show(&mut self, ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+        inputs.layout.observe_theme(ui.ctx());
+        inputs.windows.help.ui(ui.ctx(), inputs.facts, inputs.editor.document.settings.camera.up);
+        if inputs.layout.picture_only {
             dock::hide(ui.ctx());
             return;
         }
-        let menu_title = self.menu_title();
-        let step = self.document.history_step();
-        let history = &self.document.history;
+        self.show_menu(ui, inputs);
+        show_status(ui, inputs);
+        self.show_transfer_editor(ui, inputs);
+        show_side_panel(ui, inputs);
+        self.render_missing_thumbnails(ui.ctx(), inputs);
+        if inputs.layout.kept && inputs.editor.document.volume.is_some() {
+            self.kept_strip.show(ui, &mut inputs.editor.document.settings, inputs.commands);
+        }
+        dock::reserve_space(ui);
+        inputs.layout.observe_tools(ui.ctx(), inputs.windows);
+    }
+
+    /// Shows the menu bar, with the name of the open volume.
+    fn show_menu(&mut self, ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+        let OuterPanelInputs { editor, opening, picture, layout, commands, .. } = inputs;
+        let step = editor.document.history_step();
+        let history = &editor.document.history;
         let name_of_step = |is_back: bool| history.describe_next(&step, is_back);
         let shown = menu::WindowParts {
-            side: self.layout.side,
-            transfer: self.layout.transfer,
-            strip: self.layout.kept,
-            handles: !self.picture.handles.is_hidden,
-            comparison: self.picture.compare.on,
-            overlay: self.picture.overlay.visible,
-            probe: self.picture.light_probe.is_active,
+            side: layout.side,
+            transfer: layout.transfer,
+            strip: layout.kept,
+            handles: !picture.handles.is_hidden,
+            comparison: editor.viewport.compare.on,
+            overlay: picture.overlay.visible,
+            probe: picture.light_probe.is_active,
         };
         menu::show(
             ui,
             &mut menu::MenuInputs {
-                settings: &mut self.document.settings,
-                title: menu_title,
+                settings: &mut editor.document.settings,
+                title: editor.document.volume.as_ref().map(volume_title),
                 describe_step: &name_of_step,
                 parts: shown,
-                alternatives: self.document.volume.as_ref().map(|volume| &volume.held),
-                recent: self.memory.recent(),
-                recent_pictures: &mut self.panels.recent_pictures,
-                keeps_look: self.opening.requests.keeps_look,
-                earlier_runs: self.memory.earlier_runs(),
-                frame_ms: &mut self.viewport.frame_ms,
+                alternatives: editor.document.volume.as_ref().map(|volume| &volume.held),
+                recent: editor.memory.recent(),
+                recent_pictures: &mut self.recent_pictures,
+                keeps_look: opening.requests.keeps_look,
+                earlier_runs: editor.memory.earlier_runs(),
+                frame_ms: &mut editor.viewport.frame_ms,
                 commands,
             },
         );
-        let file_progress = status::CancellableTasks {
-            opening: self.loader.progress(),
-            reading: self.opening.file_tasks.path(),
-            exporting: self.windows.export.background_progress(),
+    }
+
+    /// Shows the editor of the transfer function, or the table of labels, if a volume is open.
+    fn show_transfer_editor(&mut self, ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+        let OuterPanelInputs { editor, picture, layout, commands, .. } = inputs;
+        let Some(volume) = &editor.document.volume else { return };
+        // The label table has a default height of its own.
+        let (name, height) = if volume.is_shown_by_label(&editor.document.settings) {
+            ("labels", theme::LABEL_TABLE_HEIGHT)
+        } else {
+            ("transfer", theme::EDITOR_HEIGHT)
         };
-        let undone_step = self.document.history.last_step(&self.document.settings);
-        let status = status::StatusBar {
-            facts,
-            busy: file_progress,
-            background_task: self.background_task_name(),
-            last_step: undone_step,
-        };
-        status::show(ui, status, &mut self.messages, commands);
-        if let Some(volume) = &self.document.volume {
-            // The label table has a default height of its own.
-            let (name, height) = if volume.is_shown_by_label(&self.document.settings) {
-                ("labels", theme::LABEL_TABLE_HEIGHT)
-            } else {
-                ("transfer", theme::EDITOR_HEIGHT)
-            };
-            let panel = egui::Panel::bottom(name).resizable(true).default_size(height);
-            let panel = panel.frame(theme::panel(ui));
-            let panel = panel.size_range(90.0..=420.0);
-            panel.show_collapsible(ui, &mut self.layout.transfer, |ui| {
-                self.panels.editor.ui(
-                    ui,
-                    &mut self.document.settings,
-                    volume,
-                    self.picture.light_probe.value(),
-                    commands,
-                );
-            });
-        }
-        let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
-        let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
-        let treated_as = self.document.kind_override.kind();
-        panel.show_collapsible(ui, &mut self.layout.side, |ui| {
-            panels::show(
-                ui,
-                &mut panels::PanelContext {
-                    settings: &mut self.document.settings,
-                    first_look: &self.document.defaults,
-                    volume: self.document.volume.as_ref(),
-                    treated_as,
-                    selected_light: &mut self.document.selected_light,
-                    compare: &mut self.picture.compare,
-                    facts,
-                    is_balancing: self.look_tasks.balance.is_some(),
-                    commands,
-                },
-            );
+        let panel = egui::Panel::bottom(name).resizable(true).default_size(height);
+        let panel = panel.frame(theme::panel(ui));
+        let panel = panel.size_range(90.0..=420.0);
+        panel.show_collapsible(ui, &mut layout.transfer, |ui| {
+            let value = picture.light_probe.value();
+            self.editor.ui(ui, &mut editor.document.settings, volume, value, commands);
         });
-        self.show_kept_strip(ui, commands);
-        dock::reserve_space(ui);
-        self.layout.docked = dock::docked_titles(ui.ctx());
-        (self.layout.slices, self.layout.light_slice) =
-            (self.windows.slices.open, self.windows.light_slice.open);
-        self.layout.slice_convention = self.windows.slices.convention;
     }
 
-    /// Title in the menu bar: name, dimensions and spacing of the open volume.
-    fn menu_title(&self) -> Option<menu::VolumeTitle> {
-        let volume = self.document.volume.as_ref()?;
-        let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
-        Some(menu::VolumeTitle { name: volume.name.clone(), facts })
+    /// Renders missing thumbnails of kept items while nothing else is being computed.
+    fn render_missing_thumbnails(&mut self, ctx: &egui::Context, inputs: &mut OuterPanelInputs<'_>) {
+        self.kept_strip.collect_thumbnails(ctx);
+        if !inputs.layout.kept {
+            return;
+        }
+        let editor = &mut *inputs.editor;
+        let id = editor.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        let missing = self.kept_strip.missing_thumbnails(&editor.document.settings, id);
+        let Some(wanted) = missing else { return };
+        if !inputs.opening.is_opening()
+            && editor.is_complete()
+            && !inputs.windows.export.is_busy()
+            && let Some(subject) = editor.export_subject()
+        {
+            self.kept_strip.render_thumbnails(wanted, subject, ctx);
+        }
     }
+}
 
-    /// Task beside the pictures that the user waits for, in words; the first that is running.
-    fn background_task_name(&self) -> Option<&'static str> {
-        [
-            (self.document.is_correcting(self.viewport.dataset().as_ref()), text::status::CORRECTING),
-            (self.document.is_making_look(), text::status::PREPARING_LOOK),
-            (self.look_tasks.light_search.is_some(), text::status::PLACING_LIGHTS),
-            (self.look_tasks.balance.is_some(), text::status::BALANCING),
-        ]
-        .into_iter()
-        .find_map(|(is_made, words)| is_made.then_some(words))
-    }
+/// Shows the status bar, with the tasks in progress.
+fn show_status(ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+    let OuterPanelInputs { editor, opening, windows, facts, commands, .. } = inputs;
+    let file_progress = status::CancellableTasks {
+        opening: opening.loader.progress(),
+        reading: opening.file_tasks.path(),
+        exporting: windows.export.background_progress(),
+    };
+    let status = status::StatusBar {
+        facts,
+        busy: file_progress,
+        background_task: editor.background_task_name(),
+        last_step: editor.document.history.last_step(&editor.document.settings),
+    };
+    status::show(ui, status, &mut editor.messages, commands);
+}
+
+/// Shows the side panel, whose sections edit the settings.
+fn show_side_panel(ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+    let OuterPanelInputs { editor, layout, facts, commands, .. } = inputs;
+    let panel = egui::Panel::right("side").resizable(true).default_size(theme::SIDE_WIDTH);
+    let panel = panel.size_range(theme::SIDE_WIDTHS).frame(theme::panel(ui));
+    let treated_as = editor.document.kind_override.kind();
+    panel.show_collapsible(ui, &mut layout.side, |ui| {
+        panels::show(
+            ui,
+            &mut panels::PanelContext {
+                settings: &mut editor.document.settings,
+                first_look: &editor.document.defaults,
+                volume: editor.document.volume.as_ref(),
+                treated_as,
+                selected_light: &mut editor.document.selected_light,
+                compare: &mut editor.viewport.compare,
+                facts,
+                is_balancing: editor.look_tasks.balance.is_running(),
+                commands,
+            },
+        );
+    });
+}
+
+/// Returns the title in the menu bar: name, dimensions and spacing of a volume.
+fn volume_title(volume: &VolumeFacts) -> menu::VolumeTitle {
+    let facts = text::menu::facts(volume.dims, volume.spacing_mm, volume.has_unknown_scale);
+    menu::VolumeTitle { name: volume.name.clone(), facts }
 }

@@ -238,8 +238,9 @@ fn darkness_meter(ui: &mut Ui, share: Option<f64>) {
 
 fn light_opacity_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     let opacity = NumberRow::new(text::shadows::LIGHT_OPACITY, 0.01..=2.0).unit(FACTOR_SUFFIX).logarithmic();
-    opacity.show(ui, &mut panels.settings.lighting.scale, panels.first_look.lighting.scale);
-    let mut linked = panels.settings.lighting.linked;
+    let lighting = &mut panels.settings.layer_mut().lighting;
+    opacity.show(ui, &mut lighting.scale, panels.first_look.layer().lighting.scale);
+    let mut linked = lighting.linked;
     if switch_row(ui, text::shadows::LINKED, &mut linked).changed() {
         set_linked(panels.settings, linked);
     }
@@ -247,8 +248,9 @@ fn light_opacity_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
 
 /// Links or unlinks the lighting curve; when first unlinked, it starts as a copy of the eye's curve.
 pub(crate) fn set_linked(settings: &mut chiaroscuro_scene::Settings, linked: bool) {
-    settings.lighting.linked = linked;
-    if !linked && settings.lighting.curve.points.is_empty() {
-        settings.lighting.curve = settings.transfer.clone();
+    let layer = settings.layer_mut();
+    layer.lighting.linked = linked;
+    if !linked && layer.lighting.curve.points.is_empty() {
+        layer.lighting.curve = layer.transfer.clone();
     }
 }

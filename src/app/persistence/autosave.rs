@@ -184,7 +184,8 @@ pub(super) struct AutosaveThread {
 #[derive(Debug, Clone)]
 pub(crate) struct EmergencySave(Weak<AutosaveShared>);
 
-/// Handles of all windows of this process.
+/// Handles of all windows of this process. They stay static: the panic hook and the handler of termination write by
+/// them, and have no window at hand.
 static EMERGENCY_SAVES: Mutex<Vec<EmergencySave>> = Mutex::new(Vec::new());
 
 /// Writes the pending changes of all windows of this process.

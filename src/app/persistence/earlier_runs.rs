@@ -4,7 +4,6 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use eframe::egui::ColorImage;
@@ -54,9 +53,6 @@ fn lock_path(look: &Path) -> PathBuf {
     look.with_extension("lock")
 }
 
-/// Counter of the runs in this process, which may have several windows.
-static RUNS: AtomicU32 = AtomicU32::new(0);
-
 /// Files of the current run.
 #[derive(Debug)]
 pub(super) struct CurrentRun {
@@ -72,12 +68,21 @@ impl CurrentRun {
         chiaroscuro_files::make_folder(folder)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         // Names sort by time, and are unique among processes.
-        let number = RUNS.fetch_add(1, Ordering::Relaxed);
-        let name = format!("{:013}-{}-{number}.json", now.as_millis(), std::process::id());
-        let look = folder.join(name);
-        // On a file system without locks, a running window looks like a crashed one.
-        let lock = chiaroscuro_files::hold_lock(&lock_path(&look))?;
-        Ok(Self { look, lock: Some(lock) })
+        let name = format!("{:013}-{}", now.as_millis(), std::process::id());
+        let mut number = 0;
+        loop {
+            let look = folder.join(format!("{name}-{number}.json"));
+            number += 1;
+            // Another window of this process may have begun within the millisecond, and have left its look.
+            if look.exists() {
+                continue;
+            }
+            // On a file system without locks, a running window looks like a crashed one.
+            match chiaroscuro_files::create_lock(&lock_path(&look)) {
+                Err(err) if err.kind() == std::io::ErrorKind::AlreadyExists => {}
+                lock => return Ok(Self { look, lock: Some(lock?) }),
+            }
+        }
     }
 }
 

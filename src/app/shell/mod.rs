@@ -1,11 +1,8 @@
-//! Shell of the window: opening of files, commands, menu, picture area, status bar, messages, and the tasks that change
-//! the document.
+//! Shell of the window: editor of the look, opening of files, commands, menu, picture area, status bar and messages.
 
-pub(super) mod automatic_changes;
-mod document_tasks;
 pub(super) mod execute;
-pub(super) mod file_tasks;
 pub(super) mod history;
+pub(super) mod look_editor;
 pub(super) mod menu;
 pub(super) mod messages;
 pub(super) mod opening;

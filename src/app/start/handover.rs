@@ -1,42 +1,39 @@
 //! State that a window hands over to its successor after the loss of its graphics device.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use eframe::egui;
-
-use super::error::AppError;
 use crate::app::document::Document;
 use crate::app::layout::WindowLayout;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
 use crate::app::shell::opening::OpenRequests;
 use crate::app::viewport::compare::Compare;
-use crate::app::windows::device_loss::DeviceLossAnswer;
 use crate::app::windows::export::ExportWindow;
+use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::ReadChoices;
-use crate::app::{App, text};
-use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume::Dataset;
 use chiaroscuro_volume_io::LoadOptions;
 
 /// State of the user's work: the document with its volume in host memory, and what is being opened or exported.
 #[derive(Debug)]
 pub(crate) struct WindowHandover {
-    document: Document,
-    dataset: Option<Dataset>,
-    requests: OpenRequests,
+    pub(super) document: Document,
+    pub(super) dataset: Option<Dataset>,
+    pub(super) requests: OpenRequests,
     /// File that was being opened, with its options.
-    opening: Option<(PathBuf, ReadChoices)>,
-    memory: PersistentState,
+    pub(super) opening: Option<(PathBuf, ReadChoices)>,
+    pub(super) memory: PersistentState,
     /// All messages since the start.
-    messages: MessageLog,
-    layout: WindowLayout,
-    compare: Compare,
+    pub(super) messages: MessageLog,
+    pub(super) layout: WindowLayout,
+    pub(super) compare: Compare,
     /// True while the probe is on.
-    probe_on: bool,
+    pub(super) probe_on: bool,
     /// Running export, which goes on: it has a device of its own.
-    export: ExportWindow,
+    pub(super) export: ExportWindow,
+    /// Running jobs, for which the last window waits.
+    pub(super) jobs: Jobs,
     pub load: LoadOptions,
     pub storage: Option<PathBuf>,
     /// True if the user has chosen the software adapter (CPU).
@@ -45,95 +42,3 @@ pub(crate) struct WindowHandover {
 
 /// Slot in which a window leaves its state for a successor.
 pub(crate) type HandoverSlot = Arc<Mutex<Option<WindowHandover>>>;
-
-impl App {
-    /// Ends this window without drawing any further after the loss of its device; a successor takes its place.
-    pub(crate) fn close_for_successor(&mut self, ctx: &egui::Context) {
-        if !self.device.is_lost {
-            log::warn!("{}", text::messages::DEVICE_LOST);
-            self.device.is_lost = true;
-            if let Some(words) = self.memory.emergency_save() {
-                words.write();
-            }
-        }
-        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        ctx.request_repaint();
-    }
-
-    /// Leaves the state for the successor window.
-    pub(crate) fn hand_over(&mut self) {
-        let opening =
-            self.loader.progress().map(|progress| (progress.source.to_owned(), progress.reading.clone()));
-        let carried = WindowHandover {
-            document: std::mem::take(&mut self.document),
-            dataset: self.viewport.dataset(),
-            requests: std::mem::take(&mut self.opening.requests),
-            opening,
-            memory: std::mem::take(&mut self.memory),
-            messages: std::mem::take(&mut self.messages),
-            layout: self.layout.clone(),
-            compare: self.picture.compare.clone(),
-            probe_on: self.picture.light_probe.is_active,
-            export: std::mem::take(&mut self.windows.export),
-            load: self.loader.options().clone(),
-            storage: self.device.storage.clone(),
-            on_cpu: self.device.wants_cpu,
-        };
-        *self.device.handover.lock().unwrap_or_else(PoisonError::into_inner) = Some(carried);
-    }
-
-    /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
-    /// (`asks`) the user is asked first.
-    pub(crate) fn resume(
-        cc: &eframe::CreationContext<'_>,
-        carried: WindowHandover,
-        legacy: HandoverSlot,
-        asks: bool,
-    ) -> Result<Self, AppError> {
-        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
-        app.document = carried.document.restarted();
-        app.opening.requests = carried.requests;
-        app.device.handed_over_dataset = carried.dataset;
-        carried.layout.apply(&cc.egui_ctx);
-        (app.messages, app.layout) = (carried.messages, carried.layout);
-        (app.picture.compare, app.picture.light_probe.is_active) = (carried.compare, carried.probe_on);
-        app.windows.export = carried.export;
-        if asks {
-            app.dialogs.device_loss.open();
-        } else {
-            app.messages.note(text::messages::DEVICE_REPLACED);
-            app.restore_volume(&cc.egui_ctx);
-        }
-        if let Some((source, reading)) = carried.opening {
-            app.start_loading(&source, reading, &cc.egui_ctx);
-        } else if app.document.volume.is_none() {
-            app.open_first(None, None, &cc.egui_ctx);
-        }
-        Ok(app)
-    }
-
-    /// Shows the volume again that the earlier window had open.
-    pub(crate) fn restore_volume(&mut self, ctx: &egui::Context) {
-        if let Some(dataset) = self.device.handed_over_dataset.take()
-            && let Err(err) = self.loader.upload(dataset, ctx)
-        {
-            self.messages.error(text::messages::NOT_RENDERED, err);
-        }
-    }
-
-    /// Executes the user's answer after the device was lost again within a short time.
-    pub(crate) fn answer_loss(&mut self, answer: DeviceLossAnswer, ctx: &egui::Context) {
-        match answer {
-            DeviceLossAnswer::TryAgain => self.restore_volume(ctx),
-            DeviceLossAnswer::LowerQuality => {
-                QualityPreset::Fast.apply(&mut self.document.settings);
-                self.restore_volume(ctx);
-            }
-            DeviceLossAnswer::UseCpu => {
-                self.device.wants_cpu = true;
-                self.close_for_successor(ctx);
-            }
-            DeviceLossAnswer::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-        }
-    }
-}

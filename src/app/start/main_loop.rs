@@ -46,7 +46,9 @@ pub fn run(options: WindowOptions) -> Result<(), AppError> {
     let theirs = HandoverSlot::clone(&legacy);
     open_window(false, move |cc| {
         let mut app = App::start(cc, options, theirs)?;
-        app.add_notice(damaged);
+        if let Some(notice) = damaged {
+            app.add_notice(notice);
+        }
         Ok(app)
     })?;
     let mut losses: Vec<Instant> = Vec::new();

@@ -3,19 +3,17 @@
 use std::path::PathBuf;
 
 use super::error::AppError;
-use super::handover::HandoverSlot;
+use super::handover::{HandoverSlot, WindowHandover};
 use super::options::WindowOptions;
 use super::window_device::WindowDevice;
 use crate::app::common::drag_cancel::DragCancel;
 use crate::app::common::input_pacing::InputPacing;
 use crate::app::common::theme;
-use crate::app::document::Document;
 use crate::app::document::session::SessionFile;
 use crate::app::layout::WindowLayout;
 use crate::app::layout::outer_panels::OuterPanels;
 use crate::app::persistence::PersistentState;
-use crate::app::shell::automatic_changes::LookTasks;
-use crate::app::shell::messages::MessageLog;
+use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::picture_area::PictureTools;
 use crate::app::shell::status_file::StatusFile;
@@ -23,15 +21,12 @@ use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
 use crate::app::viewport::Viewport;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::windows::recovery::RecoveryDialog;
+use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
-use chiaroscuro_files::fault::{self, FaultCounter, FaultThread, InjectedFault, panic_if_injected};
 use chiaroscuro_render::{GpuContext, WindowPainter};
 use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
-
-/// Counter of the frames of all windows, for fault injection.
-static FRAMES: FaultCounter = FaultCounter::new();
 
 impl App {
     /// Starts the program in a window, and begins to open the first volume.
@@ -54,17 +49,17 @@ impl App {
             return Self::start_safely(cc, storage, memory, legacy);
         }
         let mut app = Self::build(cc, load, storage, memory, legacy)?;
-        app.dialogs.recovery = RecoveryDialog::from_runs(app.memory.earlier_runs(), &cc.egui_ctx);
-        app.picture.first_run_hints = FirstUseHints { visible: app.memory.is_first_use() };
+        app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
+        app.picture.first_run_hints = FirstUseHints { visible: app.editor.memory.is_first_use() };
         (app.windows.slices.open, app.windows.light_slice.open) = (app.layout.slices, app.layout.light_slice);
         app.windows.slices.convention = app.layout.slice_convention;
         app.opening.requests.session_is_due = session.is_some();
-        app.document.session = session.map(SessionFile::from_command_line);
+        app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
         app.opening.requests.trusts_paths = trust_paths;
-        let is_named = source.is_some() || volume.is_some() || app.document.session.is_some();
+        let is_named = source.is_some() || volume.is_some() || app.editor.document.session.is_some();
         if is_named || !app.dialogs.recovery.is_open() {
-            app.open_first(source.as_deref(), volume.as_deref(), &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
         } else {
             app.opening.default_open_waits = true;
         }
@@ -82,7 +77,7 @@ impl App {
         memory.add_notice(text::persistence::SAFE_START.to_owned());
         let mut app = Self::build(cc, LoadOptions::default(), None, memory, legacy)?;
         app.device.storage = storage;
-        app.dialogs.recovery = RecoveryDialog::from_runs(app.memory.earlier_runs(), &cc.egui_ctx);
+        app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
         app.opening.adjust_first_look = Some(Box::new(|mut settings| {
             QualityPreset::Fast.apply(&mut settings);
             settings
@@ -90,7 +85,40 @@ impl App {
         if app.dialogs.recovery.is_open() {
             app.opening.default_open_waits = true;
         } else {
-            app.open_first(None, None, &cc.egui_ctx);
+            app.opener(&cc.egui_ctx).open_first(None, None);
+        }
+        Ok(app)
+    }
+
+    /// Starts a successor window with the state of a window whose device was lost. After losses in short succession
+    /// (`asks`) the user is asked first.
+    pub(crate) fn resume(
+        cc: &eframe::CreationContext<'_>,
+        carried: WindowHandover,
+        legacy: HandoverSlot,
+        asks: bool,
+    ) -> Result<Self, AppError> {
+        carried.jobs.hand_to(&cc.egui_ctx);
+        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
+        app.editor.document = carried.document.restarted();
+        app.opening.requests = carried.requests;
+        app.device.handed_over_dataset = carried.dataset;
+        carried.layout.apply(&cc.egui_ctx);
+        (app.editor.messages, app.layout) = (carried.messages, carried.layout);
+        (app.editor.viewport.compare, app.picture.light_probe.is_active) =
+            (carried.compare, carried.probe_on);
+        app.windows.export = carried.export;
+        if asks {
+            app.dialogs.device_loss.open();
+        } else {
+            app.editor.messages.note(text::messages::DEVICE_REPLACED);
+            let dataset = app.device.handed_over_dataset.take();
+            app.opener(&cc.egui_ctx).restore(dataset);
+        }
+        if let Some((source, reading)) = carried.opening {
+            app.opener(&cc.egui_ctx).start_loading(&source, reading);
+        } else if app.editor.document.volume.is_none() {
+            app.opener(&cc.egui_ctx).open_first(None, None);
         }
         Ok(app)
     }
@@ -112,37 +140,19 @@ impl App {
         cc.egui_ctx.add_plugin(InputPacing::default());
         let layout = WindowLayout::restore(cc.storage);
         layout.apply(&cc.egui_ctx);
+        let viewport = Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?;
         Ok(Self {
-            document: Document::default(),
-            opening: OpeningState::default(),
-            look_tasks: LookTasks::default(),
-            viewport: Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?,
+            opening: OpeningState::new(Loader::new(context, load, storage.as_deref(), &cc.egui_ctx)?),
             picture: PictureTools::default(),
             windows: ToolWindows::default(),
             dialogs: AppDialogs::default(),
-            loader: Loader::new(context, load, storage.as_deref())?,
+            jobs: Jobs::from_context(&cc.egui_ctx),
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),
-            memory,
+            editor: LookEditor::new(viewport, memory),
             layout,
-            messages: MessageLog::default(),
             drag_cancel: DragCancel::default(),
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
         })
-    }
-
-    /// Injects the faults that `--fault` asks for.
-    pub(crate) fn inject_faults(&self) {
-        panic_if_injected(FaultThread::Window);
-        std::thread::sleep(fault::frame_delay());
-        let frame = FRAMES.next();
-        if fault::is_on(InjectedFault::DeviceLost(frame)) {
-            self.device.context.destroy_device();
-        }
-        if fault::is_on(InjectedFault::DeviceLost(frame))
-            || fault::is_on(InjectedFault::RendererDeviceLost(frame))
-        {
-            self.viewport.context().destroy_device();
-        }
     }
 }

@@ -111,7 +111,7 @@ fn compose(key: &BackdropKey, pixels_per_point: f32) -> Vec<u8> {
         let bar = value.and_then(|value| bars.bar_of(value)).map_or(0.0, |bar| heights[bar] * tall);
         let (curve, fill) = value.map_or((0.0, Color32::TRANSPARENT), |value| {
             let opacity = function.opacity_at(value) as f32;
-            let [r, g, b] = function.sample(value).0.map(|c| c as f32);
+            let [r, g, b] = function.sample(value).color.map(|c| c as f32);
             let share = MIN_FILL_OPACITY + (1.0 - MIN_FILL_OPACITY) * opacity;
             (opacity * tall, Color32::from(Rgba::from_rgb(r, g, b)).gamma_multiply(share))
         });

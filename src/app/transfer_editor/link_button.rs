@@ -15,7 +15,7 @@ const LINK_RADIUS: f32 = 2.8;
 
 /// Shows the button; a click links the two curves, or gives light a curve of its own.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
-    let is_linked = settings.lighting.linked;
+    let is_linked = settings.layer().lighting.linked;
     let (rect, response) = ui.allocate_exact_size(BUTTON_SIZE, Sense::click());
     let named = text::transfer::LINK;
     response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, is_linked, named.name));

@@ -95,7 +95,7 @@ impl TransferEditor {
         if volume.is_shown_by_label(settings) {
             return label_table::show(ui, settings, volume, commands);
         }
-        if settings.lighting.linked {
+        if settings.layer().lighting.linked {
             self.curve = EditedCurve::Eye;
         }
         if *self.edited_curve(settings) != self.last_curve {
@@ -167,7 +167,7 @@ impl TransferEditor {
         eye.on_hover_text(text::transfer::EYE.tooltip);
         link_button::show(ui, settings);
         let light = ui.selectable_value(&mut self.curve, EditedCurve::Light, text::transfer::LIGHT.name);
-        let is_linked = settings.lighting.linked;
+        let is_linked = settings.layer().lighting.linked;
         let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tooltip };
         if light.on_hover_text(tip).clicked() && is_linked {
             // Selecting the lighting curve to edit it implies a separate curve.
@@ -210,8 +210,8 @@ impl TransferEditor {
     /// Returns the curve that is being edited.
     fn edited_curve<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
         match self.curve {
-            EditedCurve::Eye => &mut settings.transfer,
-            EditedCurve::Light => &mut settings.lighting.curve,
+            EditedCurve::Eye => &mut settings.layer_mut().transfer,
+            EditedCurve::Light => &mut settings.layer_mut().lighting.curve,
         }
     }
 
@@ -257,8 +257,8 @@ impl TransferEditor {
             axes.width() * self.zoom.zoom_factor(volume.range),
         );
         let bars = HistogramBars { range: volume.range, counts, log: self.log_histogram };
-        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.transfer));
-        plot::paint_eye_curve(&painter, axes, &settings.transfer, self.curve == EditedCurve::Eye);
+        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.layer().transfer));
+        plot::paint_eye_curve(&painter, axes, &settings.layer().transfer, self.curve == EditedCurve::Eye);
         plot::paint_light_curve(&painter, axes, settings, self.curve == EditedCurve::Light);
         plot::paint_axis_labels(&painter, axes);
     }

@@ -8,7 +8,7 @@ use super::text;
 use super::theme::{self, PlotColors};
 use super::zoom::ShownValues;
 use crate::app::common::volume_facts::range_decimals;
-use chiaroscuro_scene::{Settings, TransferFunction};
+use chiaroscuro_scene::{Settings, TransferFunction, VolumeLayer};
 use chiaroscuro_volume::{Histogram, ValueRange};
 
 /// Distance between two samples of a curve, in points.
@@ -115,11 +115,11 @@ pub(super) fn paint_eye_curve(painter: &Painter, axes: &PlotAxes, function: &Tra
 
 /// Paints the lighting curve, dashed while it is linked to the eye's.
 pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, settings: &Settings, edited: bool) {
-    let linked = settings.lighting.linked;
-    let function = if linked { &settings.transfer } else { &settings.lighting.curve };
-    let scale = settings.lighting.scale;
+    let VolumeLayer { transfer, lighting, .. } = settings.layer();
+    let (linked, scale) = (lighting.linked, lighting.scale);
+    let function = if linked { transfer } else { &lighting.curve };
     // The scale multiplies the extinction, not the opacity.
-    let scaled = |value: f64| 1.0 - (-function.sample(value).1 * scale).exp();
+    let scaled = |value: f64| 1.0 - (-function.sample(value).depth * scale).exp();
     let line: Vec<Pos2> = axes.samples().map(|(x, value)| pos2(x, axes.y_of(scaled(value)))).collect();
     let stroke = Stroke::new(if edited { 2.0 } else { 1.2 }, axes.ink.light);
     if linked {
@@ -167,7 +167,7 @@ pub(super) fn paint_readout(ui: &Ui, axes: &PlotAxes, response: &Response, setti
     let painter = ui.painter_at(axes.area);
     let line = Stroke::new(1.0, axes.ink.eye.gamma_multiply(0.35));
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
-    let opacity = settings.transfer.opacity_at(value);
+    let opacity = settings.layer().transfer.opacity_at(value);
     let words = text::transfer::pointer_readout(&format_value(value, axes.range), opacity);
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };

@@ -58,6 +58,26 @@ impl Compare {
         self.names = [None, None];
     }
 
+    /// Starts a comparison of two saved views or looks, or of the current look (`None`) on the left with one of them.
+    pub(crate) fn start_with_saved(&mut self, settings: &Settings, left: Option<usize>, right: usize) {
+        let variant = |at: usize| {
+            settings.kept.get(at).map(|kept| match kept.as_look() {
+                Some(look) => ComparisonVariant::Look(Box::new(look.clone())),
+                None => ComparisonVariant::View(Box::new(kept.camera().clone())),
+            })
+        };
+        let name = |at: usize| settings.kept.get(at).map(|kept| kept.name.clone());
+        let names = [left.and_then(name), name(right)];
+        let left = match left {
+            Some(at) => variant(at),
+            None => Some(ComparisonVariant::Current),
+        };
+        if let Some((left, right)) = left.zip(variant(right)) {
+            (self.on, self.left, self.right) = (true, left, right);
+            self.names = names;
+        }
+    }
+
     /// Returns the looks to be rendered: the current one, or the left and the right one of a comparison.
     pub(crate) fn looks(&self, settings: &Settings) -> ComparedLooks {
         // Kept views and looks do not affect the picture.

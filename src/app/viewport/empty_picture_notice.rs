@@ -35,11 +35,7 @@ pub(crate) fn show_empty_picture_notice(
             *settings = first_look::with_visible_transfer(settings, volume);
         }
         if ui.add(egui::Button::new(reset.name)).on_hover_text(reset.tooltip).clicked() {
-            settings.range = defaults.range;
-            settings.transfer = defaults.transfer.clone();
-            settings.labels = defaults.labels.clone();
-            settings.lighting = defaults.lighting.clone();
-            settings.opacity_unit = defaults.opacity_unit;
+            settings.layer_mut().clone_from(defaults.layer());
         }
     });
 }

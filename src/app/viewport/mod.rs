@@ -24,6 +24,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+use self::compare::Compare;
 pub(super) use self::renderer_status::{LightCost, RendererActivity, RendererStatus};
 use super::worker::mailbox::FinishedFrame;
 use super::worker::quality::QualityLevel;
@@ -72,6 +73,8 @@ pub(super) struct ComparedPicture {
 pub(super) struct Viewport {
     /// Time budget for a frame during interaction, in milliseconds; `None` for the adapter's default.
     pub frame_ms: Option<f64>,
+    /// Comparison of two looks in one picture.
+    pub compare: Compare,
     context: GpuContext,
     /// Draws pictures into the window.
     window: WindowPainter,
@@ -111,6 +114,7 @@ impl Viewport {
         let thread = RenderThread::start(context.clone(), ctx.clone())?;
         Ok(Self {
             frame_ms: None,
+            compare: Compare::default(),
             context,
             window,
             thread,

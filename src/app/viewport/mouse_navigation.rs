@@ -58,7 +58,7 @@ pub(crate) fn navigate(
     range: Option<ValueRange>,
     (orbit, outline): (&mut OrbitDrag, Option<&ObjectOutline>),
 ) {
-    let Settings { camera, lights, transfer, .. } = settings;
+    let Settings { camera, lights, layers, .. } = settings;
     let (width, height) = (f64::from(response.rect.width()), f64::from(response.rect.height()));
     if response.drag_started() {
         *orbit = OrbitDrag::begin(camera, outline);
@@ -74,7 +74,10 @@ pub(crate) fn navigate(
     } else if let Some(range) = range.filter(|_| response.dragged_by(PointerButton::Secondary)) {
         // The direction matches that of the slice views: down means higher values.
         let shift = dy / height.max(1.0) * (range.high - range.low);
-        transfer.shift_and_stretch(shift, (LOG_WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
+        layers
+            .first_mut()
+            .transfer
+            .shift_and_stretch(shift, (LOG_WINDOW_PER_WIDTH * dx / width.max(1.0)).exp());
     } else if pans {
         camera.pan(dx, dy, width, height);
     } else if response.dragged_by(PointerButton::Primary) {

@@ -149,6 +149,7 @@ impl Viewport {
     }
 
     /// Number of full-quality pictures that followed previews.
+    #[cfg(feature = "testing")]
     pub(crate) fn refinement_count(&self) -> u64 {
         self.thread.statistics().refinements
     }

@@ -5,17 +5,19 @@ use std::sync::Arc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, Vec2};
 
+use super::file_dialogs::FileDialogPurpose;
+use super::{SceneTool, ToolRequest, ToolScene};
 use crate::app::common::dock::ToolWindow;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_files::write_atomically;
 use chiaroscuro_media::ExportError;
 use chiaroscuro_render::{
-    AttenuationData, GpuContext, GpuError, RenderOptions, Renderer, WorkOptions, export_slice,
+    AttenuationData, GpuError, RenderOptions, Renderer, WorkOptions, export_slice,
     plan::{LightKey, RenderRequest},
 };
-use chiaroscuro_scene::{LightStorage, Settings};
-use chiaroscuro_volume::{Dataset, Volume, math::false_color};
+use chiaroscuro_scene::LightStorage;
+use chiaroscuro_volume::{Volume, math::false_color};
 use chiaroscuro_volume_io::write::nrrd_of_blocks;
 
 /// Longest edge of the slice on screen, in points.
@@ -44,7 +46,7 @@ pub(crate) struct LightSliceWindow {
     axis: usize,
     /// Index of the slice along each axis; the middle until the user moves it.
     slice_indices: [Option<usize>; 3],
-    work: Option<BackgroundTask<Result<Option<FilledLightVolume>, GpuError>>>,
+    work: JobSlot<Result<Option<FilledLightVolume>, GpuError>>,
     filled: Option<(LightKey, Arc<AttenuationData>)>,
     /// Key of the light volume under the current settings.
     wanted_key: Option<LightKey>,
@@ -61,21 +63,19 @@ impl std::fmt::Debug for LightSliceWindow {
     }
 }
 
-/// Context of the window: settings, volume and device.
-pub(crate) struct LightSliceContext<'a> {
-    /// Current settings, for the light's key.
-    pub settings: &'a Settings,
-    /// Open volume, if there is one.
-    pub dataset: Option<Dataset>,
-    /// Window's device; the worker opens a sibling of it.
-    pub context: &'a GpuContext,
-    /// True when the scene is idle, so that a light volume filled now will be used.
-    pub is_idle: bool,
+impl SceneTool for LightSliceWindow {
+    fn show(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Option<ToolRequest> {
+        match self.ui(ctx, scene) {
+            Ok(false) => None,
+            Ok(true) => Some(ToolRequest::AskFile(FileDialogPurpose::ExportLight)),
+            Err(err) => Some(ToolRequest::Report(text::messages::LIGHT_VOLUME_NOT_SHOWN, err)),
+        }
+    }
 }
 
 impl LightSliceWindow {
     /// Shows the window if it is open; returns true if the user wants to export.
-    pub(crate) fn ui(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<bool, String> {
+    fn ui(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Result<bool, String> {
         if !self.open {
             return Ok(false);
         }
@@ -93,7 +93,7 @@ impl LightSliceWindow {
                 for (index, light) in casting {
                     ui.selectable_value(&mut self.light, index, &light.name);
                 }
-                if self.work.is_some() {
+                if self.work.is_running() {
                     ui.spinner();
                 }
             });
@@ -104,7 +104,7 @@ impl LightSliceWindow {
             });
             let Some((key, attenuation)) = self.filled.clone() else {
                 // While a volume is being filled, the window does not claim that there is none.
-                let is_filling = self.work.is_some() || !scene.is_idle;
+                let is_filling = self.work.is_running() || !scene.is_idle;
                 ui.weak(if is_filling {
                     text::light_volume::FILLING
                 } else {
@@ -153,18 +153,12 @@ impl LightSliceWindow {
     }
 
     /// Takes the result of the worker, and starts it again if another light volume is to be shown.
-    fn collect(&mut self, ctx: &egui::Context, scene: &LightSliceContext<'_>) -> Result<(), String> {
-        if let Some(result) = self.work.as_ref().and_then(BackgroundTask::take_result) {
-            self.work = None;
-            match result {
-                Ok(Ok(Some((key, attenuation)))) => {
-                    self.filled = Some((key, Arc::new(attenuation)));
-                    self.failed_key = None;
-                }
-                Ok(Ok(None)) => self.filled = None,
-                Ok(Err(err)) => return Err(err.to_string()),
-                Err(panic) => return Err(panic),
-            }
+    fn collect(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Result<(), String> {
+        if let Some(result) = self.work.take_result() {
+            self.filled = result?.map_err(|err| err.to_string())?.map(|(key, attenuation)| {
+                self.failed_key = None;
+                (key, Arc::new(attenuation))
+            });
         }
         self.wanted_key = None;
         let Some(dataset) = &scene.dataset else { return Ok(()) };
@@ -186,13 +180,13 @@ impl LightSliceWindow {
             return Ok(());
         };
         let known = self.filled.as_ref().is_some_and(|(filled, _)| *filled == key);
-        if known || self.work.is_some() || !scene.is_idle || self.failed_key.as_ref() == Some(&key) {
+        if known || self.work.is_running() || !scene.is_idle || self.failed_key.as_ref() == Some(&key) {
             return Ok(());
         }
         self.failed_key = Some(key.clone());
         let (context, dataset) = (scene.context.clone(), dataset.clone());
         let light = self.light;
-        let task = move || {
+        let task = move |_: &JobControl| {
             let mut renderer = Renderer::new(&context.second_device()?)?;
             // With combined storage there would be no volume for this light.
             request.settings.shadows.storage = LightStorage::PerLight;
@@ -201,8 +195,7 @@ impl LightSliceWindow {
             renderer.draw(&dataset, &request.settings, request.size, &options)?;
             Ok(renderer.attenuation(&request, light)?.map(|attenuation| (key, attenuation)))
         };
-        self.work = Some(BackgroundTask::start("light-slice", ctx, task).map_err(|err| err.to_string())?);
-        Ok(())
+        self.work.start(JobKind::LightSlice, ctx, (), task).map_err(|err| err.to_string())
     }
 
     fn picture(

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
 
 use eframe::egui;
 
-use super::background_task::BackgroundTask;
+use super::jobs::{JobControl, JobKind, JobProgress, JobSlot};
 use super::memory_estimate::{MemoryEstimate, PendingMemoryDecision, memory_checking_control};
 use super::warm_up::PipelineWarmUp;
 use crate::app::persistence::{CorrectedFile, FileStamp};
@@ -79,13 +78,12 @@ pub(crate) enum LoadOutcome {
     Failed { short: String, details: String },
 }
 
+/// Volume that is being opened.
 #[derive(Debug)]
-struct RunningLoad {
+struct LoadInputs {
     source: PathBuf,
     reading: ReadChoices,
     control: Arc<LoadControl>,
-    phase: Arc<AtomicU8>,
-    work: BackgroundTask<LoadOutcome>,
 }
 
 /// Progress of the volume that is being opened.
@@ -109,11 +107,11 @@ pub(crate) struct Loader {
     /// Shader pipelines of the device, shared by the renderers of all volumes.
     shaders: ShaderLibrary,
     options: LoadOptions,
-    running: Option<RunningLoad>,
+    running: JobSlot<LoadOutcome, LoadInputs>,
     warm_up: PipelineWarmUp,
 }
 
-/// Names of the phases, for the status bar.
+/// Names of the phases, for the status bar; a load reports the index of its phase as its progress.
 const PHASES: [&str; 5] = [
     text::opening::READING,
     text::opening::MEASURING_ADAPTER,
@@ -128,14 +126,15 @@ impl Loader {
         context: GpuContext,
         options: LoadOptions,
         storage: Option<&Path>,
+        ctx: &egui::Context,
     ) -> std::io::Result<Self> {
         let shaders = storage.map_or_else(
             || ShaderLibrary::new(&context),
             |folder| ShaderLibrary::with_cache(&context, &folder.join("pipelines")),
         );
         let mut warm_up = PipelineWarmUp::default();
-        warm_up.start(&shaders, ShaderLibrary::warm_up)?;
-        Ok(Self { context, shaders, options, running: None, warm_up })
+        warm_up.start(&shaders, ShaderLibrary::warm_up, ctx)?;
+        Ok(Self { context, shaders, options, running: JobSlot::default(), warm_up })
     }
 
     /// Returns the shader pipelines of the device that renders pictures.
@@ -144,9 +143,9 @@ impl Loader {
     }
 
     /// Compiles pipelines that may be needed later, once; to be called when the window is idle.
-    pub(crate) fn warm_up_rest(&mut self) {
-        if self.warm_up.thread_count() < 2
-            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_optional)
+    pub(crate) fn warm_up_rest(&mut self, ctx: &egui::Context) {
+        if self.warm_up.job_count() < 2
+            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_optional, ctx)
         {
             log::warn!("pipelines cannot be created ahead of time: {err}");
         }
@@ -161,7 +160,6 @@ impl Loader {
         ctx: &egui::Context,
     ) -> Result<(), String> {
         self.cancel();
-        let phase = Arc::new(AtomicU8::new(0));
         let mut options = self.options.clone();
         // Limited to the memory that is free now.
         options.memory_budget_bytes = options.memory_budget_bytes.min(memory_budget_bytes());
@@ -184,15 +182,9 @@ impl Loader {
             shaders: self.shaders.clone(),
             control: Arc::clone(&control),
             question,
-            phase: Arc::clone(&phase),
         };
-        let task = move || {
-            let control = Arc::clone(&opening.control);
-            control.run(|| open(opening))
-        };
-        let work = BackgroundTask::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        self.running = Some(RunningLoad { source: source.to_owned(), reading, control, phase, work });
-        Ok(())
+        let inputs = LoadInputs { source: source.to_owned(), reading, control };
+        self.start(inputs, 0, ctx, move |job| job.token().run(|| open(opening, job)))
     }
 
     /// Displays a volume that is already in memory on this device.
@@ -201,15 +193,25 @@ impl Loader {
         let (context, shaders) = (self.context.clone(), self.shaders.clone());
         let source = PathBuf::from(dataset.volume().name());
         let short = text::opening::not_shown(&source);
-        let task = move || match Renderer::with_shaders(&context, shaders) {
+        let inputs = LoadInputs { source, reading: ReadChoices::default(), control: Arc::default() };
+        // Only the last phases remain.
+        self.start(inputs, 3, ctx, move |_| match Renderer::with_shaders(&context, shaders) {
             Ok(renderer) => LoadOutcome::Uploaded { renderer: Box::new(renderer), dataset },
             Err(err) => LoadOutcome::Failed { short, details: err.to_string() },
-        };
-        let work = BackgroundTask::start("loader", ctx, task).map_err(text::opening::no_thread)?;
-        // Only the last phases remain.
-        let (control, phase) = (Arc::new(LoadControl::new()), Arc::new(AtomicU8::new(3)));
-        self.running = Some(RunningLoad { source, reading: ReadChoices::default(), control, phase, work });
-        Ok(())
+        })
+    }
+
+    /// Starts a load in one of the [`PHASES`].
+    fn start(
+        &mut self,
+        inputs: LoadInputs,
+        phase: u32,
+        ctx: &egui::Context,
+        task: impl FnOnce(&JobControl) -> LoadOutcome + Send + 'static,
+    ) -> Result<(), String> {
+        let begin = JobProgress { done: phase, ..JobProgress::default() };
+        let control = JobControl::with_token(inputs.control.token().clone(), begin);
+        self.running.start_with(JobKind::Load, ctx, control, inputs, task).map_err(text::opening::no_thread)
     }
 
     /// Returns the options with which files are read.
@@ -219,37 +221,33 @@ impl Loader {
 
     /// Cancels opening; the current volume stays.
     pub(crate) fn cancel(&self) {
-        if let Some(running) = &self.running {
-            running.control.cancel();
-        }
+        self.running.cancel();
     }
 
     /// Takes the result, if the attempt has ended; returns it only once.
     pub(crate) fn take_outcome(&mut self) -> Option<LoadOutcome> {
-        let running = self.running.as_ref()?;
-        if running.control.is_cancelled() {
-            self.running = None; // Its thread notices the cancellation at the next piece of work and ends.
+        if self.running.is_cancelled() {
+            self.running.discard(); // Its thread notices the cancellation at the next piece of work and ends.
             return Some(LoadOutcome::Cancelled);
         }
-        let outcome = running.work.take_result()?.unwrap_or_else(|panic| LoadOutcome::Failed {
-            short: text::opening::loader_panicked(&running.source),
+        let (inputs, result) = self.running.take_ended()?;
+        Some(result.unwrap_or_else(|panic| LoadOutcome::Failed {
+            short: text::opening::loader_panicked(&inputs.source),
             details: text::opening::panic_details(&panic),
-        });
-        self.running = None;
-        Some(outcome)
+        }))
     }
 
     /// Returns the progress of the volume that is being opened.
     pub(crate) fn progress(&self) -> Option<LoadProgress<'_>> {
-        let running = self.running.as_ref()?;
-        let phase = usize::from(running.phase.load(Ordering::Relaxed)).min(PHASES.len() - 1);
-        let read = running.control.bytes().filter(|_| phase == 0);
+        let LoadInputs { source, reading, control } = self.running.inputs()?;
+        let phase = (self.running.progress()?.done as usize).min(PHASES.len() - 1);
+        let read = control.bytes().filter(|_| phase == 0);
         // After the last byte has been read, the values are counted.
         let bytes = read.filter(|[done, total]| done < total);
         let phase = if read.is_some() && bytes.is_none() { 2 } else { phase };
         Some(LoadProgress {
-            source: &running.source,
-            reading: &running.reading,
+            source,
+            reading,
             phase: PHASES[phase],
             fraction: bytes.map(|[done, total]| done as f32 / total as f32),
             bytes,
@@ -288,8 +286,6 @@ struct LoadJob {
     control: Arc<LoadControl>,
     /// Memory estimate that requires a decision of the user before the volume is read.
     question: PendingMemoryDecision,
-    /// Index of the current phase in [`PHASES`].
-    phase: Arc<AtomicU8>,
 }
 
 /// Opens a volume. Of several, it opens the first unless the user has chosen one, and adds a remark about that.
@@ -317,8 +313,9 @@ fn apply_remembered_corrections(volume: Volume, known: Option<&CorrectedFile>, s
     }
 }
 
-fn open(opening: LoadJob) -> LoadOutcome {
-    let LoadJob { source, reading, known, options, context, shaders, control, question, phase } = opening;
+fn open(opening: LoadJob, job: &JobControl) -> LoadOutcome {
+    let LoadJob { source, reading, known, options, context, shaders, control, question } = opening;
+    let begin_phase = |index: u32| job.set_progress(index, PHASES.len() as u32);
     panic_if_injected(FaultThread::Loader);
     let stamp = FileStamp::read(&source);
     let volume = match open_first(&source, &options, &control) {
@@ -336,7 +333,7 @@ fn open(opening: LoadJob) -> LoadOutcome {
             return LoadOutcome::Failed { short, details: err.to_string() };
         }
     };
-    phase.store(1, Ordering::Relaxed);
+    begin_phase(1);
     let not_shown = |err: &GpuError| LoadOutcome::Failed {
         short: text::opening::not_shown(&source),
         details: err.to_string(),
@@ -353,14 +350,14 @@ fn open(opening: LoadJob) -> LoadOutcome {
     let original_dims = (volume.dims() != dims).then_some(dims);
     // The resulting choice is stored, so that reloading reads the same volume.
     let reading = ReadChoices { choice: Some(volume.contents().choice()), ..reading };
-    phase.store(2, Ordering::Relaxed);
+    begin_phase(2);
     let dataset = Dataset::new(apply_remembered_corrections(volume, known.corrections.as_ref(), stamp));
     if control.is_cancelled() {
         return LoadOutcome::Cancelled;
     }
-    phase.store(3, Ordering::Relaxed);
+    begin_phase(3);
     let look = Renderer::with_shaders(&context, shaders).and_then(|mut renderer| {
-        phase.store(4, Ordering::Relaxed);
+        begin_phase(4);
         let settings = first_look_upright(&mut renderer, &dataset, known.up)?;
         Ok((renderer, settings))
     });

@@ -1,9 +1,9 @@
 //! Background threads of the window: the renderer of its pictures, the loader, and other tasks.
 
-pub(super) mod background_task;
 mod brightness;
 pub(super) mod difference;
 mod exposure_compensation;
+pub(super) mod jobs;
 pub(super) mod loader;
 pub(super) mod mailbox;
 pub(super) mod memory_estimate;

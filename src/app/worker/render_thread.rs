@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use eframe::egui;
 
-use super::background_task::panic_message;
+use super::jobs::panic_message;
 use super::mailbox::{BalanceRequest, FinishedFrame, Mailbox, RenderStatistics, SharedMailbox};
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, RenderScene};

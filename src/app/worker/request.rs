@@ -100,8 +100,8 @@ mod tests {
         let typed =
             |low: f64, high: f64| DensityRange::Typed(ValueRange::new(all.value_at(low), all.value_at(high)));
         let look = |range| {
-            let mut look = Settings { range, ..Settings::default() };
-            look.transfer.points.clear();
+            let mut look = Settings::default().with_range(range);
+            look.layer_mut().transfer.points.clear();
             look
         };
         let [left, right] = [look(typed(0.0, 0.5)), look(typed(0.25, 1.0))];

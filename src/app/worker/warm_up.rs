@@ -1,35 +1,36 @@
 //! Warm-up: compiling shader pipelines in the background, before they are needed.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
+use std::time::Duration;
 
+use eframe::egui;
+
+use super::jobs::{JobHandle, JobKind};
 use chiaroscuro_render::{GpuError, ShaderLibrary};
+use chiaroscuro_volume::CancelToken;
 
-/// Threads that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a
-/// thread executes in it.
+/// Jobs that compile pipelines in advance. Dropping this waits for them: a driver must not be unloaded while a thread
+/// executes in it.
 #[derive(Debug, Default)]
 pub(super) struct PipelineWarmUp {
-    stop: Arc<AtomicBool>,
-    threads: Vec<JoinHandle<()>>,
+    jobs: Vec<JobHandle<()>>,
 }
 
 impl PipelineWarmUp {
-    /// Number of threads that were started.
-    pub(super) fn thread_count(&self) -> usize {
-        self.threads.len()
+    /// Number of jobs that were started.
+    pub(super) fn job_count(&self) -> usize {
+        self.jobs.len()
     }
 
-    /// Starts a thread that compiles pipelines by calling `what`.
+    /// Starts a job that compiles pipelines by calling `what`.
     pub(super) fn start(
         &mut self,
         shaders: &ShaderLibrary,
-        what: fn(&ShaderLibrary, &AtomicBool) -> Result<(), GpuError>,
+        what: fn(&ShaderLibrary, &CancelToken) -> Result<(), GpuError>,
+        ctx: &egui::Context,
     ) -> std::io::Result<()> {
-        let (shaders, stop) = (shaders.clone(), Arc::clone(&self.stop));
-        let thread = std::thread::Builder::new().name("warm-up".to_owned());
-        self.threads.push(thread.spawn(move || {
-            if let Err(err) = what(&shaders, &stop) {
+        let shaders = shaders.clone();
+        self.jobs.push(JobHandle::start(JobKind::WarmUp, ctx, move |job| {
+            if let Err(err) = what(&shaders, job.token()) {
                 log::error!("pipelines could not be created ahead of time: {err}");
             }
             if let Err(err) = shaders.save_cache() {
@@ -42,10 +43,10 @@ impl PipelineWarmUp {
 
 impl Drop for PipelineWarmUp {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        for thread in self.threads.drain(..) {
+        self.jobs.iter().for_each(|job| job.token().cancel());
+        for job in self.jobs.drain(..) {
             // A panic was logged by its thread.
-            drop(thread.join());
+            drop(job.wait(Duration::MAX));
         }
     }
 }

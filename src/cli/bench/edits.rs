@@ -20,7 +20,7 @@ impl VolumeBenchmark<'_> {
         for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
             let mut settings = self.settings.clone();
             let step = (frame % 7) as f64 - 3.0;
-            for point in &mut settings.transfer.points {
+            for point in &mut settings.layer_mut().transfer.points {
                 point.value += step * EDIT_SHARE * span;
             }
             self.frame(&settings, (frame >= WARM_UP_FRAMES).then_some(&mut samples))?;

@@ -13,12 +13,13 @@ use serde_json::{Value, json};
 use super::report::{CaseTimings, round_to_microsecond, spread_json};
 use super::{BenchArgs, VolumeBenchmark, case_json};
 use crate::cli::CliError;
+use crate::cli::scene::control_with_size_warning;
 use chiaroscuro_render::{
     GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, WorkOptions, first_look,
     plan::RenderRequest,
 };
 use chiaroscuro_scene::{Settings, first_look};
-use chiaroscuro_volume::{Dataset, Volume};
+use chiaroscuro_volume::{Dataset, LoadControl};
 
 /// Names of the stages, in their order.
 pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];
@@ -65,8 +66,8 @@ impl LapTimer {
 }
 
 /// Splits the time since the last call into reading the file and statistics gathered while reading, in milliseconds.
-fn split_read_time(lap: &mut LapTimer, volume: &Volume) -> [f64; 2] {
-    let looking = volume.analysis_time().as_secs_f64() * 1000.0;
+fn split_read_time(lap: &mut LapTimer, control: &LoadControl) -> [f64; 2] {
+    let looking = control.analysis_time().as_secs_f64() * 1000.0;
     [lap.lap_ms() - looking, looking]
 }
 
@@ -76,8 +77,9 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
     // The first repetition fills the file cache and starts the threads.
     for frame in 0..=usize::from(args.frames) {
         let mut lap = LapTimer::start();
-        let volume = args.look.read_volume(source)?;
-        let [read, mut looking] = split_read_time(&mut lap, &volume);
+        let control = control_with_size_warning(source);
+        let volume = args.look.read_volume(source, &control)?;
+        let [read, mut looking] = split_read_time(&mut lap, &control);
         let (name, dims, voxel_type) =
             (volume.name().to_owned(), volume.dims(), volume.samples().voxel_type().name());
         let dataset = Dataset::new(volume);
@@ -134,8 +136,9 @@ impl VolumeBenchmark<'_> {
             let mut loaded = None;
             keep.time(|| {
                 let mut lap = LapTimer::start();
-                let volume = self.args.look.read_volume(source)?;
-                [took[0], took[1]] = split_read_time(&mut lap, &volume);
+                let control = control_with_size_warning(source);
+                let volume = self.args.look.read_volume(source, &control)?;
+                [took[0], took[1]] = split_read_time(&mut lap, &control);
                 let dataset = self.args.look.adapter_dataset(source, volume, context)?;
                 dataset.volume().kind();
                 took[1] += lap.lap_ms();

@@ -26,7 +26,7 @@ mod sky;
 
 use super::CliError;
 use super::output::print_line;
-use super::scene::{LookArgs, parse_size};
+use super::scene::{LookArgs, control_with_size_warning, parse_size};
 use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, WorkOptions};
 use chiaroscuro_scene::{
     LightVolumeResolution, NearFieldRay, ReconstructionKernel, Settings, ShadowAlgorithm,
@@ -112,7 +112,8 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let context = GpuContext::headless()?;
     let mut orbits = Vec::new();
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
-        let loaded = args.look.adapter_dataset(volume, args.look.read_volume(volume)?, &context)?;
+        let opened = args.look.read_volume(volume, &control_with_size_warning(volume))?;
+        let loaded = args.look.adapter_dataset(volume, opened, &context)?;
         let mut renderer = Renderer::new(&context)?;
         let settings = args.look.look(&loaded)?.settings(&mut renderer, &loaded)?;
         let mut bench = VolumeBenchmark { args, loaded: &loaded, renderer, settings };

@@ -42,7 +42,7 @@ impl ScatteringBuild {
             for light in &mut settings.lights {
                 light.color = [1.0; 3];
             }
-            for point in &mut settings.transfer.points {
+            for point in &mut settings.layer_mut().transfer.points {
                 point.color = [point.color[1]; 3];
             }
         }

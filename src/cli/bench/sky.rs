@@ -66,7 +66,12 @@ impl VolumeBenchmark<'_> {
         let span = self.loaded.volume().shown_range().span();
         let edited = |settings: &mut Settings, frame: usize| {
             let step = (frame % 7) as f64 - 3.0;
-            settings.transfer.points.iter_mut().for_each(|point| point.value += step * EDIT_SHARE * span);
+            settings
+                .layer_mut()
+                .transfer
+                .points
+                .iter_mut()
+                .for_each(|point| point.value += step * EDIT_SHARE * span);
         };
         let pair = [lit.clone(), under_a_sky(6, LightVolumeResolution::Quarter)];
         let [without, with] = self.time_alternately(&pair, edited)?;

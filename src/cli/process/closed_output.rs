@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// True if standard output was closed. It stays static: nothing else exists when it is set, before `main`.
 static IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Records that standard output was closed when the process started. To be called before the runtime starts.

@@ -21,8 +21,9 @@ pub(super) fn with_assignments(before: Corrections, set: &[String]) -> Result<Co
     for assignment in set.iter().filter(|assignment| is_correction(assignment)) {
         // Malformed assignments are rejected later, when all of them are parsed.
         let Some((path, value)) = assignment.split_once('=') else { continue };
-        (settings, _) = set_value(&settings, path.trim(), value.trim())
-            .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
+        settings = set_value(&settings, path.trim(), value.trim())
+            .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?
+            .settings;
         if let Some(expected) = rejected_value(path.trim(), value.trim(), &settings.volume) {
             return Err(CliError::Usage(format!(
                 "--set: expected {expected}, found {:?} (command line, {assignment:?})",

@@ -29,9 +29,14 @@ const MAX_STRIDE: usize = 64;
 
 /// Opens a volume, with a warning if its files decompress to far more bytes than they have.
 pub(crate) fn open_with_size_warning(source: &Path, options: &LoadOptions) -> Result<Volume, LoadError> {
+    open(source, options, &control_with_size_warning(source))
+}
+
+/// Creates the control of a load, which warns if the volume's files decompress to far more bytes than they have.
+pub(crate) fn control_with_size_warning(source: &Path) -> LoadControl {
     let stored = stored_bytes(source);
     let is_said = AtomicBool::new(false);
-    let control = LoadControl::with_size_check(move |size| {
+    LoadControl::with_size_check(move |size| {
         // Readers may call this more than once.
         if let Some(stored) = decompression_exceeds(stored, size)
             && !is_said.swap(true, Ordering::Relaxed)
@@ -41,8 +46,7 @@ pub(crate) fn open_with_size_warning(source: &Path, options: &LoadOptions) -> Re
             warn_line(&format!("warning: {}{every}", size_text(stored, size)));
         }
         true
-    });
-    open(source, options, &control)
+    })
 }
 
 /// Opens a volume for an overview of its values. If its files decompress to far more bytes than they have, only every

@@ -14,7 +14,9 @@ use std::sync::OnceLock;
 use clap::Args;
 
 pub(super) use self::corrections::{apply_command_line_corrections, apply_corrections};
-pub(super) use self::decompression_warning::{open_for_overview, open_with_size_warning};
+pub(super) use self::decompression_warning::{
+    control_with_size_warning, open_for_overview, open_with_size_warning,
+};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};
@@ -29,7 +31,8 @@ use chiaroscuro_scene::{
     first_look::{self, FirstLookOptions},
     set_value,
 };
-use chiaroscuro_volume::{Dataset, KindName, ValueRanges, Volume};
+use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume};
+use chiaroscuro_volume_io::open;
 
 /// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
@@ -150,8 +153,8 @@ impl SceneArgs {
 
 impl LookArgs {
     /// Reads a volume, without regard to an adapter.
-    pub(super) fn read_volume(&self, source: &Path) -> Result<Volume, CliError> {
-        Ok(open_with_size_warning(source, &self.load.load_options()?)?)
+    pub(super) fn read_volume(&self, source: &Path, control: &LoadControl) -> Result<Volume, CliError> {
+        Ok(open(source, &self.load.load_options()?, control)?)
     }
 
     /// Returns the corrected dataset of a volume, downsampled if the adapter cannot hold it.
@@ -201,7 +204,7 @@ impl LookArgs {
             let (path, value) = assignment.split_once('=')?;
             let path = Some(path.trim()).filter(|path| ["camera", "camera.up"].contains(path))?;
             // Errors are reported when the setting is applied.
-            let (settings, _) = set_value(&Settings::default(), path, value.trim()).ok()?;
+            let settings = set_value(&Settings::default(), path, value.trim()).ok()?.settings;
             Some(settings.camera.up)
         };
         let of_overlays = overlays.iter().filter_map(|overlay| overlay.up(ranges));
@@ -272,7 +275,7 @@ impl LookArgs {
         named.add(|part| self.is_set(part));
         let says_how_high =
             self.is_set(FLOOR_HEIGHT) || overlays.iter().any(|one| one.contains_setting(FLOOR_HEIGHT));
-        let shows = |look: &Settings| (look.transfer.clone(), look.range, look.camera.up);
+        let shows = |look: &Settings| (look.layer().transfer.clone(), look.layer().range, look.camera.up);
         if !says_how_high && shows(&settings) != shows(&before) {
             first_look::lay_floor(&mut settings, volume);
         }

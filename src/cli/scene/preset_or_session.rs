@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::cli::CliError;
 use chiaroscuro_files::read_small_file;
 use chiaroscuro_media::{may_carry_record, read_record};
-use chiaroscuro_scene::{LookRecord, Preset, SceneAxis, Settings};
+use chiaroscuro_scene::{AppliedSettings, LookRecord, Preset, SceneAxis, Settings};
 use chiaroscuro_volume::{Corrections, ValueRanges};
 
 /// Preset or session that is applied to settings.
@@ -54,7 +54,7 @@ impl PresetOrSession {
     /// Returns the scene axis that points up, if it contains that setting.
     pub(super) fn up(&self, ranges: &ValueRanges) -> Option<SceneAxis> {
         // Errors are reported when the overlay is applied to the look.
-        let (settings, _) = self.record.apply(&Settings::default(), ranges).ok()?;
+        let settings = self.record.apply(&Settings::default(), ranges).ok()?.settings;
         self.contains_setting("camera.up").then_some(settings.camera.up)
     }
 
@@ -66,11 +66,9 @@ impl PresetOrSession {
         warn: impl Fn(&str),
     ) -> Result<Settings, CliError> {
         let Self { kind: what, name, record } = self;
-        let (next, warnings) = record.apply(settings, ranges).map_err(|source| CliError::Preset {
-            what,
-            path: name.clone(),
-            source,
-        })?;
+        let AppliedSettings { settings: next, warnings } = record
+            .apply(settings, ranges)
+            .map_err(|source| CliError::Preset { what, path: name.clone(), source })?;
         for warning in warnings {
             warn(&format!("warning: {what}: {warning} ({name})"));
         }

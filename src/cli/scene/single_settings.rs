@@ -21,12 +21,12 @@ impl LookArgs {
                     "--set: expected PATH=VALUE, found {assignment:?} (command line, --set)"
                 ))
             })?;
-            let (next, warning) = set_value(&settings, path.trim(), value.trim())
+            let applied = set_value(&settings, path.trim(), value.trim())
                 .map_err(|err| CliError::Usage(format!("--set: {err} (command line, {assignment:?})")))?;
-            if let Some(warning) = warning {
+            for warning in applied.warnings {
                 warn(&format!("warning: --set: {warning}"));
             }
-            settings = next;
+            settings = applied.settings;
         }
         match self.shadows {
             Some(ShadowArg::Off) => settings.shadows.algorithm = ShadowAlgorithm::Off,

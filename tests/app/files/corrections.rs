@@ -91,7 +91,10 @@ fn corrections_are_shown_undone_and_remembered() {
     let (after, _) = picture(&mut harness);
     assert!(before != after, "it is another picture");
     let flipped = settings(&harness);
-    assert_eq!((&flipped.transfer, &flipped.lights), (&as_opened.transfer, &as_opened.lights));
+    assert_eq!(
+        (&flipped.layer().transfer, &flipped.lights),
+        (&as_opened.layer().transfer, &as_opened.lights)
+    );
 
     // One undo step and one redo step.
     press(&mut harness, Modifiers::COMMAND, Key::Z);
@@ -186,7 +189,7 @@ fn a_look_that_is_kept_and_lengths_go_along() {
         adjust: Some(Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
             settings.shading.ambient = 0.4;
-            settings.opacity_unit = OpacityLength::Mm(2.0);
+            settings.layer_mut().opacity_unit = OpacityLength::Mm(2.0);
             settings.volume = Corrections { unit: Some(SpacingUnit::Um), ..Corrections::default() };
             settings
         })),
@@ -197,9 +200,13 @@ fn a_look_that_is_kept_and_lengths_go_along() {
     expand_corrections(&mut harness);
     click(&mut harness, "All as in the file");
     wait_until(&mut harness, "never corrected", |app| app.settings().volume.is_none() && app.is_idle());
-    assert_eq!(settings(&harness).opacity_unit, OpacityLength::Mm(2000.0), "the same share of the object");
+    assert_eq!(
+        settings(&harness).layer().opacity_unit,
+        OpacityLength::Mm(2000.0),
+        "the same share of the object"
+    );
     press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!((settings(&harness).opacity_unit, settings(&harness).volume.unit), {
+    assert_eq!((settings(&harness).layer().opacity_unit, settings(&harness).volume.unit), {
         (OpacityLength::Mm(2.0), Some(SpacingUnit::Um))
     });
     // The next volume keeps this look, but not its corrections.

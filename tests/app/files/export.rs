@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chiaroscuro_media::{export_png, read_picture};
+use chiaroscuro_media::{PicturePixels, export_png, read_picture};
 use chiaroscuro_render::{PictureOptions, RenderOptions};
 use chiaroscuro_scene::{ImageSpec, PixelFormat};
 use eframe::egui::{self, Modifiers};
@@ -62,7 +62,8 @@ fn fine_pictures_come_from_the_window() {
         let image_spec = ImageSpec { samples: 2, depth, ..ImageSpec::new([60, 45]) };
         let expected = renderer.bands(&dataset, app.settings(), &image_spec).all().unwrap();
         let found = read_picture(&path.with_extension(ending)).unwrap();
-        assert!(found == ([60, 45], expected.after_round_trip(&image_spec)), "{label}");
+        let expected = PicturePixels { size: [60, 45], rows: expected.after_round_trip(&image_spec) };
+        assert!(found == expected, "{label}");
     }
     assert!(harness.state().errors().is_empty());
 }

@@ -58,7 +58,7 @@ fn a_transfer_function_is_imported_while_the_window_goes_on() {
     harness.run_steps(2);
     drop(held);
     wait_for_file(&mut harness);
-    let points = &harness.state().settings().transfer.points;
+    let points = &harness.state().settings().layer().transfer.points;
     assert_eq!((points.len(), points[1].opacity), (2, 0.75));
     wait_until_idle(&mut harness);
 }
@@ -69,7 +69,7 @@ fn reading_is_cancelled_by_escape_and_by_the_button() {
     let path = write_file(folder.path(), "red.itf", &inviwo_transfer_function(""));
     let mut harness = window();
     let ctx = harness.ctx.clone();
-    let before = harness.state().settings().transfer.clone();
+    let before = harness.state().settings().layer().transfer.clone();
     for by_key in [true, false] {
         let held = App::block_file_tasks();
         harness.state_mut().import_transfer(&path, &ctx);
@@ -84,7 +84,7 @@ fn reading_is_cancelled_by_escape_and_by_the_button() {
         assert_eq!(harness.state().latest_note(), Some("Reading was cancelled"));
         drop(held);
         wait_until_idle(&mut harness);
-        assert_eq!(harness.state().settings().transfer, before, "by key: {by_key}");
+        assert_eq!(harness.state().settings().layer().transfer, before, "by key: {by_key}");
     }
     assert!(harness.state().errors().is_empty());
 }
@@ -98,7 +98,7 @@ fn xml_that_would_take_minutes_is_refused_within_a_frame_or_two() {
     let square = format!("<p{attributes}/>");
     let mut harness = window();
     let ctx = harness.ctx.clone();
-    let before = harness.state().settings().transfer.clone();
+    let before = harness.state().settings().layer().transfer.clone();
     for (name, text) in [("cubic.itf", cubic), ("square.tfi", square)] {
         let path = write_file(folder.path(), name, &inviwo_transfer_function(&text));
         harness.state_mut().import_transfer(&path, &ctx);
@@ -111,7 +111,7 @@ fn xml_that_would_take_minutes_is_refused_within_a_frame_or_two() {
         for words in [name, "more attributes and namespaces than can be compared"] {
             assert!(harness.query_all_by_label_contains(words).next().is_some(), "{words}");
         }
-        assert_eq!(harness.state().settings().transfer, before, "{name}");
+        assert_eq!(harness.state().settings().layer().transfer, before, "{name}");
     }
     assert_eq!(harness.state().errors().len(), 2);
 }

@@ -181,7 +181,7 @@ fn long_names_and_curves_do_not_hold_up_the_window() {
         assert!(start.elapsed() < Duration::from_secs(5), "{at}: {:?}", start.elapsed());
     }
     assert_eq!(harness.state().settings().lights[0].name, "n".repeat(200));
-    assert_eq!(harness.state().settings().transfer.points.len(), 4096);
+    assert_eq!(harness.state().settings().layer().transfer.points.len(), 4096);
     wait_until_idle(&mut harness);
     assert!(harness.state().errors().is_empty(), "{:?}", harness.state().errors());
 }

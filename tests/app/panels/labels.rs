@@ -33,7 +33,7 @@ fn label_map_window(labels: &[u8]) -> (Harness<'static, App>, tempfile::TempDir)
 
 /// Numbers of the labels that are visible.
 fn visible_labels(harness: &Harness<'_, App>) -> Vec<i64> {
-    let labels = &harness.state().settings().labels;
+    let labels = &harness.state().settings().layer().labels;
     labels.iter().filter(|(_, look)| look.visible).map(|(number, _)| number).collect()
 }
 
@@ -63,7 +63,10 @@ fn labels_are_hidden_and_shown_by_their_rows() {
     harness.get_by_label("Name of label 200").focus();
     harness.get_by_label("Name of label 200").type_text("Rib");
     harness.run_steps(3);
-    assert_eq!(harness.state().settings().labels.get(200).map(|look| look.name.as_str()), Some("Rib"));
+    assert_eq!(
+        harness.state().settings().layer().labels.get(200).map(|look| look.name.as_str()),
+        Some("Rib")
+    );
     press(&mut harness, "Show listed");
     assert_eq!(visible_labels(&harness), [3, 9, 200], "but not what is around them");
     press(&mut harness, "Hide listed");
@@ -104,15 +107,15 @@ fn the_table_is_below_the_picture_and_the_probe_names_labels() {
 #[test]
 fn a_curve_takes_the_place_of_the_table_and_gives_it_back() {
     let (mut harness, _folder) = label_map_window(&[3, 9, 200]);
-    let table = harness.state().settings().labels.clone();
+    let table = harness.state().settings().layer().labels.clone();
     assert_eq!(table.get(9).map(|look| look.name.as_str()), Some("Left lung"));
     assert!(harness.query_by_label("Transfer function plot").is_none(), "there is no curve");
     press(&mut harness, "Use a curve");
-    assert!(harness.state().settings().labels.is_empty());
+    assert!(harness.state().settings().layer().labels.is_empty());
     assert!(harness.query_by_label("Transfer function plot").is_some());
     assert!(harness.query_by_label("Show label 9").is_none());
     press(&mut harness, "Automatic");
-    assert_eq!(harness.state().settings().labels, table);
+    assert_eq!(harness.state().settings().layer().labels, table);
     assert_eq!(harness.state().errors(), [""; 0]);
 }
 

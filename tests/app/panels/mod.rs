@@ -37,8 +37,12 @@ fn panels_change_settings() {
 
     click(&mut harness, "Same opacity for light and eye");
     let settings = harness.state().settings();
-    assert!(!settings.lighting.linked);
-    assert_eq!(settings.lighting.curve, settings.transfer, "a fresh curve starts as the eye's");
+    assert!(!settings.layer().lighting.linked);
+    assert_eq!(
+        settings.layer().lighting.curve,
+        settings.layer().transfer,
+        "a fresh curve starts as the eye's"
+    );
 
     harness.get_by_role_and_label(Role::Slider, "Strength").set_value_accesskit(0.5);
     harness.run_steps(2);
@@ -89,10 +93,10 @@ fn voxels_are_averaged_and_the_look_stays() {
     };
     choose(&mut harness, "Means of 2 × 2 × 2", "16×16×16");
     let after = harness.state().settings().clone();
-    assert_eq!((&after.camera, &after.transfer), (&before.camera, &before.transfer));
+    assert_eq!((&after.camera, &after.layer().transfer), (&before.camera, &before.layer().transfer));
     assert_eq!(after.lights, before.lights);
     // The opacity unit of the chair is in millimetres already.
-    assert_eq!(after.opacity_unit, before.opacity_unit);
+    assert_eq!(after.layer().opacity_unit, before.layer().opacity_unit);
     harness.get_by_label("In file");
     choose(&mut harness, "Every second", "16×16×16");
     choose(&mut harness, "All", "32×32×32");
@@ -121,7 +125,7 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     };
     treat(&mut harness, "Mask");
     let mask = harness.state().settings().clone();
-    assert_ne!(mask.transfer, before.transfer);
+    assert_ne!(mask.layer().transfer, before.layer().transfer);
     assert_eq!((&mask.cuts, &mask.output.background), (&before.cuts, &before.output.background));
     assert!((mask.output.exposure / before.output.exposure - 1.0).abs() < 0.5, "near what it was");
     assert!((mask.shadows.balance / before.shadows.balance - 1.0).abs() < 0.5, "near what it was");
@@ -133,6 +137,6 @@ fn volumes_are_treated_as_other_data_in_one_step() {
     assert_eq!(harness.state().settings().camera, before.camera, "and what is reset to is as before");
     treat(&mut harness, "Labels");
     treat(&mut harness, "Automatic");
-    assert_eq!(harness.state().settings().transfer, before.transfer);
+    assert_eq!(harness.state().settings().layer().transfer, before.layer().transfer);
     assert_eq!(harness.state().errors(), [""; 0]);
 }

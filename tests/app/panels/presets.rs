@@ -23,9 +23,9 @@ fn presets_have_one_name_each_and_the_one_in_use_is_marked() {
         assert!(!is_marked(&harness, title), "{title}");
     }
     assert!(harness.unnamed_widgets().is_empty());
-    let before = harness.state().settings().transfer.clone();
+    let before = harness.state().settings().layer().transfer.clone();
     click(&mut harness, "Lobster");
-    assert_ne!(harness.state().settings().transfer, before);
+    assert_ne!(harness.state().settings().layer().transfer, before);
     harness.run_steps(4);
     click(&mut harness, "Presets");
     harness.run_steps(4);

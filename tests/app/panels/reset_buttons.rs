@@ -124,7 +124,7 @@ fn lengths_without_a_unit_are_said_in_voxels_everywhere() {
         source: Some(path),
         adjust: Some(Box::new(|mut settings| {
             settings.shadows.keep_balanced = false;
-            settings.opacity_unit = chiaroscuro_scene::OpacityLength::Mm(1.0);
+            settings.layer_mut().opacity_unit = chiaroscuro_scene::OpacityLength::Mm(1.0);
             settings
         })),
         ..WindowOptions::default()

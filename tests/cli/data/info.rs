@@ -97,7 +97,7 @@ fn labels_are_set_by_their_numbers() {
     write_label_slabs(&folder, "l.nrrd", &[0, 3, 9, 200]);
     let render = |arguments: &str| {
         folder.run_successfully(&format!("render l.nrrd --size 64x48 -o p.png --report r.json {arguments}"));
-        (folder.read("p.png"), folder.json("r.json")["settings"]["labels"].clone())
+        (folder.read("p.png"), folder.json("r.json")["settings"]["layers"][0]["labels"].clone())
     };
     let (first, labels) = render("");
     assert_eq!(labels.as_object().expect("an object").len(), 4);

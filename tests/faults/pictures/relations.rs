@@ -1,7 +1,7 @@
 //! Relations that must hold between pictures of any scene, each numbered P1 to P15.
 
 use chiaroscuro_render::{PictureOptions, RenderOptions, RenderedPicture, TestSwitches, plan::PixelWindow};
-use chiaroscuro_scene::{LookRecord, Settings};
+use chiaroscuro_scene::{AppliedSettings, LookRecord, Settings};
 use chiaroscuro_volume::{Dataset, Samples, ValueRanges};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -118,7 +118,9 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
     }
 
     // P3: fully transparent material does not appear.
-    let clear = with(&|settings| settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0));
+    let clear = with(&|settings| {
+        settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
+    });
     assert_eq!(largest_color(&studio.draw(&bytes, &clear).linear), 0.0, "seed {seed}");
 
     // P4: light is linear in the lights.
@@ -155,7 +157,8 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
 
     // P14: a look that was saved is loaded unchanged.
     let record = LookRecord::parse(&LookRecord::to_json(&settings, None, None)).expect("a record");
-    let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
+    let AppliedSettings { settings: read, warnings } =
+        record.apply(&Settings::default(), &ValueRanges::UNIT).expect("settings");
     assert_eq!((&read, warnings), (&settings, vec![]), "seed {seed}");
 
     // P7: the same world with its voxels in another order in memory.
@@ -179,7 +182,7 @@ fn check_relations(seed: u64, studio: &mut SceneRenderer) {
     }
 
     // P5: higher extinction for light makes nothing brighter.
-    let darker = with(&|settings| settings.lighting.scale *= 1.5);
+    let darker = with(&|settings| settings.layer_mut().lighting.scale *= 1.5);
     let darker = studio.draw(&bytes, &darker);
     let gained = darker.linear.iter().zip(&first.linear).flat_map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c]));
     let gained = gained.fold(0.0, f32::max);

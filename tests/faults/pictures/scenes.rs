@@ -45,7 +45,7 @@ pub(super) fn random_scene(seed: u64) -> RandomScene {
     settings.camera.azimuth_deg = random_share(&mut random) * 360.0;
     settings.camera.elevation_deg = random_share(&mut random) * 180.0 - 90.0;
     settings.camera.projection = [Projection::Perspective, Projection::Orthographic][random.below(2)];
-    settings.transfer.points = (0..3 + random.below(4))
+    settings.layer_mut().transfer.points = (0..3 + random.below(4))
         .map(|at| {
             let color = [(); 3].map(|()| random_share(&mut random) as f32);
             ControlPoint::new(

@@ -23,7 +23,7 @@ fn look() -> Settings {
     settings.shadows.transmission = 0.9;
     settings.lights.push(scenes::light(LightGeometry::Perspective, [-1.9, 1.2, 1.4]));
     let point = |value, color, opacity| ControlPoint::new(value, color, opacity);
-    settings.transfer.points = vec![
+    settings.layer_mut().transfer.points = vec![
         point(8.0, [0.9, 0.1, 0.1], 0.0),
         point(60.0, [0.2, 0.9, 0.3], 0.1),
         point(110.0, [0.9, 0.3, 0.1], 0.3),
@@ -108,10 +108,12 @@ fn by_splatting() {
 #[test]
 fn with_a_lighting_curve_of_its_own_and_cuts() {
     let mut settings = look();
-    settings.lighting.linked = false;
-    settings.lighting.curve = settings.transfer.clone();
-    settings.lighting.scale = 0.7;
-    for (point, color) in settings.lighting.curve.points.iter_mut().zip([[0.1, 0.2, 0.9], [0.9, 0.8, 0.1]]) {
+    settings.layer_mut().lighting.linked = false;
+    settings.layer_mut().lighting.curve = settings.layer().transfer.clone();
+    settings.layer_mut().lighting.scale = 0.7;
+    for (point, color) in
+        settings.layer_mut().lighting.curve.points.iter_mut().zip([[0.1, 0.2, 0.9], [0.9, 0.8, 0.1]])
+    {
         point.color = color;
     }
     settings.cuts.crop.on = true;
@@ -201,7 +203,7 @@ fn skies_are_attenuated_alike() {
 #[test]
 fn grey_matter_has_grey_shadows() {
     let mut settings = look();
-    for point in &mut settings.transfer.points {
+    for point in &mut settings.layer_mut().transfer.points {
         point.color = [0.7; 3];
     }
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
@@ -233,7 +235,7 @@ fn mistakes_are_detected() {
         (&settings, "eye/eye_pass.wgsl", "return texel.rgb;", "return texel.rrr;"),
         (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
         (&classified, "eye/eye_pass.wgsl", "return texel.gba;", "return texel.rrr;"),
-        (&on_floor, "eye/floor.wgsl", "classified_extinction(met.g)", "classified_extinction(met.b)"),
+        (&on_floor, "eye/floor.wgsl", "extinction_of(Field(met.g))", "extinction_of(Field(met.b))"),
     ] {
         assert_in_shader(shader, from);
         assert!(!differences(settings, (from, to)).is_empty(), "{to:?} for {from:?} is not noticed");

@@ -137,7 +137,7 @@ fn several_lights_and_every_cure_for_darkness() {
     settings.shadows.balance = 1.3;
     settings.shading.specular = 0.6;
     settings.shading.emission = 0.05;
-    settings.lighting.scale = 0.6;
+    settings.layer_mut().lighting.scale = 0.6;
     check("several lights", DVec3::ONE, &settings);
 }
 

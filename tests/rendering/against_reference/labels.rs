@@ -35,7 +35,7 @@ fn look(numbers: [u8; 5]) -> Settings {
         *labels.entry_mut(number.into()) =
             LabelLook { color, opacity, visible, ..LabelLook::default_for(number.into()) };
     }
-    Settings { labels, ..scenes::look() }
+    scenes::look().with_labels(labels)
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn numbers_of_labels_change_no_pixel() {
     compare("turned around", &channels_f32(&turned), &channels_f32(&before), SAME_WEIGHTS)
         .unwrap_or_else(|err| panic!("{err}"));
     let mut other = look([0, 3, 9, 40, 250]);
-    other.labels.entry_mut(9).visible = true;
+    other.layer_mut().labels.entry_mut(9).visible = true;
     let shown = render(&mut renderer, &Dataset::new(label_map([0, 3, 9, 40, 250])), &other, SIZE).linear;
     assert!(before != shown, "the hidden one is there");
 }

@@ -63,7 +63,7 @@ fn one_color() -> Settings {
     const COLOR: [f32; 3] = [0.6, 1.0, 0.8];
     let mut settings = look_with_all_light();
     settings.shading.emission = 0.0;
-    settings.transfer.points.iter_mut().for_each(|point| point.color = [0.8; 3]);
+    settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.color = [0.8; 3]);
     settings.lights.iter_mut().for_each(|light| light.color = COLOR);
     (settings.sky.zenith, settings.sky.horizon, settings.sky.ground) = (COLOR, [0.0; 3], [0.0; 3]);
     assert!(UniformLightColor::detect(&settings).is_some(), "it does not count as one colour");
@@ -143,7 +143,7 @@ fn mistakes_are_detected() {
     differs("no sky", &|settings| settings.sky.mode = SkyMode::Off);
     differs("upside down", &|settings| settings.sky.tilt_deg = 160.0);
     differs("another transfer function", &|settings| {
-        settings.transfer.points.iter_mut().for_each(|point| point.color[1] *= 0.9);
+        settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.color[1] *= 0.9);
     });
 }
 
@@ -159,8 +159,8 @@ fn mistakes_in_light_of_one_color_are_noticed() {
         ("scattered_light/sweep.wgsl", "return found.g;", "return found.r;"),
         (
             "scattered_light/source.wgsl",
-            "vec4f(given.r, found.a, 0.0, 0.0)",
-            "vec4f(given.r, 0.5 * found.a, 0.0, 0.0)",
+            "vec4f(emission.r, extinction, 0.0, 0.0)",
+            "vec4f(emission.r, 0.5 * extinction, 0.0, 0.0)",
         ),
         ("scattered_light/single_scattering.wgsl", "return found.g;", "return found.r;"),
     ];
@@ -206,8 +206,8 @@ fn light_agrees_with_random_walks() {
     {
         let volume = cloud(seed);
         let mut settings = with_scattering(scenes::look());
-        settings.transfer = scenes::linear_extinction(per_voxel);
-        settings.transfer.points[1].color = [1.0, 0.8, 0.5];
+        settings.layer_mut().transfer = scenes::linear_extinction(per_voxel);
+        settings.layer_mut().transfer.points[1].color = [1.0, 0.8, 0.5];
         settings.lights[0].color = [1.0, 0.9, 0.8];
         settings.sky = SkySettings { mode: SkyMode::Gradient, ..SkySettings::default() };
         settings.shading.emission = 0.1;

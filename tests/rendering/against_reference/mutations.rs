@@ -23,7 +23,7 @@ pub(super) fn look() -> Settings {
     let mut settings = scenes::look();
     settings.camera = Camera { distance: 2.2, fov_y_deg: 80.0, ..settings.camera };
     settings.lights = vec![scenes::light(LightGeometry::Perspective, [1.4, -1.1, 1.8])];
-    settings.transfer = scenes::linear_extinction(0.6);
+    settings.layer_mut().transfer = scenes::linear_extinction(0.6);
     settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma: 0.6 };
     settings.shadows.kernel = ReconstructionKernel::Gaussian { sigma: 0.6 };
     settings.shading.specular = 0.8;
@@ -180,7 +180,8 @@ fn ignored_faces_are_detected() {
 fn sided_look() -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [0.9, 0.7, 0.5], opacity);
     let mut settings = look();
-    settings.transfer.points = vec![point(0.0, 0.0), point(40.0, 0.0), point(90.0, 0.5), point(160.0, 0.05)];
+    settings.layer_mut().transfer.points =
+        vec![point(0.0, 0.0), point(40.0, 0.0), point(90.0, 0.5), point(160.0, 0.05)];
     settings.lights = vec![scenes::light(LightGeometry::Parallel, [1.4, -1.1, 1.8])];
     settings.lights[0].density_scale = 0.6;
     settings
@@ -282,7 +283,7 @@ fn undamaged_slabs_by_need_agree() {
 fn damaged_slabs_by_need_are_noticed() {
     let damages = [
         // As dense as thin slabs.
-        ("found.material.a * f32(width)", "found.material.a"),
+        ("found.material.extinction * f32(width)", "found.material.extinction"),
         // Sampled at their front.
         ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
         // Subdivided behind occluding material.
@@ -290,7 +291,10 @@ fn damaged_slabs_by_need_are_noticed() {
         ("const MAX_UNDIVIDED_SHARE = 0.125", "const MAX_UNDIVIDED_SHARE = 0.25"),
         ("const GRADIENT_SAFETY = 1.25", "const GRADIENT_SAFETY = 0.5"),
         // Ignoring material between this sample and a denser one.
-        ("found.density - change, found.density + change", "found.density, found.density"),
+        (
+            "found.field.density - change, found.field.density + change",
+            "found.field.density, found.field.density",
+        ),
     ];
     for (from, to) in damages {
         assert_in_shader("eye/eye_pass.wgsl", from);

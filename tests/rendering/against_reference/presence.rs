@@ -54,7 +54,7 @@ pub(super) fn two_lobes() -> Settings {
         interpolation: OpacityInterpolation::Opacity,
         ..TransferFunction::default()
     };
-    Settings { transfer, ..scenes::look() }
+    scenes::look().with_transfer(transfer)
 }
 
 fn gathering_look() -> Settings {

@@ -76,8 +76,8 @@ fn pre_classified() {
 #[test]
 fn visible_lowest_density() {
     let mut settings = scattering_look();
-    settings.transfer.points[0].opacity = 0.02;
-    settings.transfer.points[0].value = 0.0;
+    settings.layer_mut().transfer.points[0].opacity = 0.02;
+    settings.layer_mut().transfer.points[0].value = 0.0;
     check("scattered, nothing shows", DVec3::ONE, &settings);
     settings.sampling.classification = ClassificationOrder::Pre;
     check("scattered, nothing shows, pre-classified", DVec3::ONE, &settings);
@@ -155,12 +155,9 @@ fn single_voxels_reproduce_the_footprint() {
             fov_y_deg: 90.0,
             ..axis_camera(-57.0, 31.0)
         };
-        let mut settings = Settings {
-            transfer: linear_extinction(per_voxel),
-            opacity_unit: OpacityLength::Voxels(1.0),
-            camera,
-            ..Settings::default()
-        };
+        let mut settings = Settings { camera, ..Settings::default() }
+            .with_transfer(linear_extinction(per_voxel))
+            .with_opacity_unit(OpacityLength::Voxels(1.0));
         make_isotropic(&mut settings);
         settings.lights[0].casts_shadows = false;
         settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma };
@@ -200,9 +197,14 @@ fn scattering_samples_no_density() {
         if binds("pyramid_texture") {
             assert!(binds("presence_texture"), "{name} has the pyramid");
             let (_, text) = SHADERS.iter().find(|(known, _)| *known == name).expect("its text is there");
-            for density in
-                ["pyramid(", " density(", "slab_density(", "density_by_kernel(", "preclassified_at("]
-            {
+            for density in [
+                "pyramid_density(",
+                "pyramid_field(",
+                "field_at(",
+                "slab_field(",
+                "density_by_kernel(",
+                "preclassified_at(",
+            ] {
                 assert!(!text.contains(density), "{name} reads the pyramid by {density}");
             }
         }
@@ -216,20 +218,20 @@ fn brightness_while_turning(order: SheetOrder) -> Vec<f64> {
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
-        // A hard surface: small differences between sums of sheets show different parts of it.
-        transfer: TransferFunction {
-            points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
-            interpolation: OpacityInterpolation::Opacity,
-            ..TransferFunction::default()
-        },
-        opacity_unit: OpacityLength::Voxels(1.0),
         lights: vec![LightSettings {
             lock: LightLock::Camera,
             casts_shadows: false,
             ..scenes::light(LightGeometry::Parallel, [2.0, 0.3, 1.0])
         }],
         ..Settings::default()
-    };
+    }
+    // A hard surface: small differences between sums of sheets show different parts of it.
+    .with_transfer(TransferFunction {
+        points: vec![point(0.0, 0.0), point(110.0, 0.0), point(150.0, 0.8), point(255.0, 0.8)],
+        interpolation: OpacityInterpolation::Opacity,
+        ..TransferFunction::default()
+    })
+    .with_opacity_unit(OpacityLength::Voxels(1.0));
     settings.shading.ambient = 0.0;
     settings.sampling.engine = RenderEngine::Scatter;
     settings.sampling.order = order;
@@ -267,12 +269,9 @@ fn every_order_has_the_opacity_of_the_chord() {
     let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
     for order in [SheetOrder::ImageAligned, SheetOrder::VolumeAligned, SheetOrder::EveryFootprint] {
         for azimuth_deg in [-90.0, 0.0, 180.0] {
-            let mut settings = Settings {
-                transfer: linear_extinction(0.08),
-                opacity_unit: OpacityLength::Voxels(1.0),
-                camera: axis_camera(azimuth_deg, 0.0),
-                ..Settings::default()
-            };
+            let mut settings = Settings { camera: axis_camera(azimuth_deg, 0.0), ..Settings::default() }
+                .with_transfer(linear_extinction(0.08))
+                .with_opacity_unit(OpacityLength::Voxels(1.0));
             make_isotropic(&mut settings);
             settings.camera.distance = 2.0;
             settings.lights[0].casts_shadows = false;

@@ -81,9 +81,9 @@ fn soft_light_looks() -> [Settings; 3] {
     bounces.sky.resolution = LightVolumeResolution::Quarter;
     // The lighting curve shows less than the eye's; and pixels are wide.
     let mut apart = sky.clone();
-    apart.lighting.linked = false;
-    apart.lighting.curve = apart.transfer.clone();
-    apart.lighting.curve.points.iter_mut().for_each(|point| point.value += 40.0);
+    apart.layer_mut().lighting.linked = false;
+    apart.layer_mut().lighting.curve = apart.layer().transfer.clone();
+    apart.layer_mut().lighting.curve.points.iter_mut().for_each(|point| point.value += 40.0);
     apart.sky.resolution = LightVolumeResolution::Full;
     apart.camera.distance = 11.0;
     [sky, bounces, apart]
@@ -128,7 +128,7 @@ fn the_same_settings_give_the_same_bytes() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut other = settings.clone();
     other.lights[0].position = [0.0, 0.0, 1.0];
-    other.transfer.points[2].opacity = 0.9;
+    other.layer_mut().transfer.points[2].opacity = 0.9;
     render(&mut renderer, &loaded, &other, [30, 70]);
     full_attenuation(&mut renderer, &loaded, &other, 1);
     assert_eq!(first, render(&mut renderer, &loaded, &settings, SIZE));
@@ -140,7 +140,7 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let middle = |[x, y, z]: [usize; 3]| [x, y, z].iter().all(|c| (20..28).contains(c));
     let (loaded, mut settings) = (Dataset::new(scenes::block(48, middle)), three_lights());
     // Even the thinnest tail of a kernel attenuates light.
-    for (point, at) in settings.transfer.points.iter_mut().zip(1..) {
+    for (point, at) in settings.layer_mut().transfer.points.iter_mut().zip(1..) {
         (point.value, point.opacity) = (f64::from(at) / 2.0, if at == 1 { 0.0 } else { 0.3 });
     }
     settings.shadows.resolution = LightVolumeResolution::Quarter;
@@ -175,7 +175,7 @@ fn the_clear_margin_is_cleared_once() {
     let preview = |renderer: &mut Renderer, direction: [f64; 3], onset: f64| {
         let mut settings = settings.clone();
         settings.lights[0].position = direction;
-        for (point, at) in settings.transfer.points.iter_mut().zip(0..) {
+        for (point, at) in settings.layer_mut().transfer.points.iter_mut().zip(0..) {
             (point.value, point.opacity) = (onset + 0.1 * f64::from(at), if at == 0 { 0.0 } else { 0.3 });
         }
         // Filled for a fine picture, and looked up by a coarse one.

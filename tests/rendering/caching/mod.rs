@@ -157,7 +157,7 @@ fn a_lighting_transfer_edit_rebuilds_all() {
     let (loaded, mut settings) = (loaded(), three_lights());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     render(&mut renderer, &loaded, &settings, SIZE);
-    settings.lighting.scale = 0.5;
+    settings.layer_mut().lighting.scale = 0.5;
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [2, 2, 2]);
 }

@@ -62,11 +62,11 @@ fn base_settings() -> Settings {
             LightSettings { position: [0.0, 3.0, 0.0], ..LightSettings::default() },
             LightSettings { kind: LightGeometry::Perspective, ..LightSettings::default() },
         ],
-        transfer: TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() },
         // At the requested resolution, however small the volume.
         shadows: ShadowSettings { least_blocks: 1, ..ShadowSettings::default() },
         ..Settings::default()
     }
+    .with_transfer(TransferFunction { points: vec![point(0.1, 0.0), point(1.0, 0.5)], ..Default::default() })
 }
 
 /// Renderer of two looks in sequence, which counts the passes of the second.
@@ -208,12 +208,12 @@ fn an_eye_that_sees_more_fills_more_once() {
     (few.sky.mode, few.sky.directions) = (SkyMode::White, 6);
     (few.scattering.bounces, few.scattering.directions) = (1, 6);
     // The lighting curve shows the bright core alone.
-    few.lighting.linked = false;
+    few.layer_mut().lighting.linked = false;
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
-    few.lighting.curve.points = vec![point(210.0, 0.0), point(250.0, 0.5)];
-    few.transfer.points = few.lighting.curve.points.clone();
+    few.layer_mut().lighting.curve.points = vec![point(210.0, 0.0), point(250.0, 0.5)];
+    few.layer_mut().transfer.points = few.layer().lighting.curve.points.clone();
     let mut more = few.clone();
-    more.transfer.points = vec![point(8.0, 0.0), point(250.0, 0.5)];
+    more.layer_mut().transfer.points = vec![point(8.0, 0.0), point(250.0, 0.5)];
     let dataset = Dataset::new(scenes::creature(40, DVec3::ONE));
     let mut renderer = Renderer::with_shaders(&bench.context, bench.shaders.clone()).expect("a renderer");
     let mut filled = |settings: &Settings, preview: bool| {

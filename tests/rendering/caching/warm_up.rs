@@ -1,10 +1,8 @@
 //! Test of the pipeline warm-up: the pipelines compiled ahead of time are those of the first picture.
 
-use std::sync::atomic::AtomicBool;
-
 use chiaroscuro_render::{RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro_scene::{Settings, first_look};
-use chiaroscuro_volume::{Dataset, synthetic::builtin};
+use chiaroscuro_volume::{CancelToken, Dataset, synthetic::builtin};
 
 use crate::common::context;
 
@@ -12,7 +10,7 @@ use crate::common::context;
 fn pipelines_after_warm_up(change: impl Fn(&mut Settings)) -> usize {
     let context = context();
     let shaders = ShaderLibrary::new(&context);
-    shaders.warm_up(&AtomicBool::new(false)).expect("the warm-up");
+    shaders.warm_up(&CancelToken::new()).expect("the warm-up");
     let before = shaders.pipeline_count();
     assert!(before > 10, "the warm-up makes pipelines: {before}");
     let mut renderer = Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");

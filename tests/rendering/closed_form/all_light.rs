@@ -41,7 +41,7 @@ const MIN_PATH_WEIGHT: f64 = 1e-3;
 fn look() -> Settings {
     let mut settings = scenes::look();
     make_isotropic(&mut settings);
-    settings.range = DensityRange::Full;
+    settings.layer_mut().range = DensityRange::Full;
     settings.shadows.least_blocks = ShadowSettings::default().least_blocks;
     settings.camera.projection = Projection::Orthographic;
     settings.shading.emission = 0.05;
@@ -60,7 +60,7 @@ fn look() -> Settings {
     ];
     settings.sky = SkySettings { mode: SkyMode::Gradient, intensity: 0.6, ..SkySettings::default() };
     settings.scattering = ScatteringSettings { bounces: 8, albedo: 0.9, ..ScatteringSettings::default() };
-    for point in &mut settings.transfer.points {
+    for point in &mut settings.layer_mut().transfer.points {
         // Half of the light is absorbed within two voxels at most.
         point.opacity *= 0.35;
     }
@@ -333,7 +333,7 @@ fn all_light_is_that_of_a_path_tracer_in_a_scan() {
     // Without the surrounding air, which ends with the grid: there renderers clip by the share of the kernel, and the
     // path tracer by densities.
     let mut settings = look();
-    for point in &mut settings.transfer.points {
+    for point in &mut settings.layer_mut().transfer.points {
         point.value = AIR + point.value.max(0.0) * (255.0 - AIR) / 255.0;
     }
     let usual = check_finest("tooth", &Dataset::new(volume), 3072, &settings);

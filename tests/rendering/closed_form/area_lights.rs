@@ -177,7 +177,7 @@ fn no_size_is_a_point() {
 /// Look with a light beside a ball, so large that parts of it set long before others.
 fn look_beside_a_ball(light: LightSettings) -> Settings {
     let mut settings = scenes::look();
-    settings.transfer = scenes::linear_extinction(4.0);
+    settings.layer_mut().transfer = scenes::linear_extinction(4.0);
     settings.shading.sides = LitSides::One;
     (settings.shading.ambient, settings.shading.specular) = (0.0, 0.0);
     settings.shadows.near_field = NearFieldRay::Long;

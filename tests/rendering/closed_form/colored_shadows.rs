@@ -30,7 +30,7 @@ fn each_colour_is_absorbed_by_itself(engine: RenderEngine) {
         let mut settings = base(engine, per_voxel);
         settings.shadows.algorithm = algorithm;
         settings.shadows.transmission = 29.0 / 30.0;
-        for point in &mut settings.transfer.points {
+        for point in &mut settings.layer_mut().transfer.points {
             point.color = glass_color();
         }
         let mut renderer = renderer();

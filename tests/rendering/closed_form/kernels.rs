@@ -86,7 +86,7 @@ fn extremes_stay_finite(engine: RenderEngine) {
     for opacity in [0.0, 0.5, 1.0] {
         let mut settings = scenes::look();
         settings.sampling.engine = engine;
-        for point in &mut settings.transfer.points {
+        for point in &mut settings.layer_mut().transfer.points {
             point.opacity = opacity;
         }
         let picture = render(&mut renderer, &loaded, &settings, [64, 64]);

@@ -48,7 +48,7 @@ fn look(engine: RenderEngine) -> Settings {
         from = to;
     }
     let transfer = TransferFunction { points, ..TransferFunction::default() };
-    let mut settings = Settings { transfer, ..base(engine, 0.1) };
+    let mut settings = base(engine, 0.1).with_transfer(transfer);
     settings.sampling.classification = ClassificationOrder::Pre;
     settings.shading.specular = 0.0;
     settings
@@ -78,9 +78,10 @@ fn labels_between_are_not_seen(engine: RenderEngine) {
     }
     // Light meets none of them either: in its own table only green attenuates it.
     let mut settings = look(engine);
-    settings.lighting.linked = false;
-    settings.lighting.curve = TransferFunction {
+    settings.layer_mut().lighting.linked = false;
+    settings.layer_mut().lighting.curve = TransferFunction {
         points: settings
+            .layer()
             .transfer
             .points
             .iter()

@@ -25,12 +25,12 @@ pub(crate) fn renderer() -> Renderer {
 
 pub(crate) fn base(engine: RenderEngine, per_voxel: f64) -> Settings {
     let mut settings = Settings {
-        transfer: linear_extinction(per_voxel),
-        opacity_unit: OpacityLength::Voxels(1.0),
         lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
         camera: axis_camera(-90.0, 0.0),
         ..Settings::default()
-    };
+    }
+    .with_transfer(linear_extinction(per_voxel))
+    .with_opacity_unit(OpacityLength::Voxels(1.0));
     make_isotropic(&mut settings);
     use_paper_shadows(&mut settings);
     settings.sampling.engine = engine;

@@ -28,13 +28,9 @@ fn scattering_look(per_voxel: f64, (bounces, albedo, directions): (u32, f64, u32
         resolution: LightVolumeResolution::Full,
         ..ScatteringSettings::default()
     };
-    Settings {
-        transfer: linear_extinction(per_voxel),
-        range: DensityRange::Full,
-        scattering,
-        lights: Vec::new(),
-        ..scenes::look()
-    }
+    Settings { scattering, lights: Vec::new(), ..scenes::look() }
+        .with_transfer(linear_extinction(per_voxel))
+        .with_range(DensityRange::Full)
 }
 
 /// Scattered light in the red channel, by the reference and the GPU.

@@ -68,8 +68,8 @@ fn pictures_are_as_bright_as_a_path_tracers() {
         settings.camera.projection = Projection::Orthographic;
         settings.lights = vec![scenes::light(LightGeometry::Parallel, [-2.2, -1.2, 1.6])];
         // More than half of the light is absorbed within a voxel.
-        settings.opacity_unit = OpacityLength::Voxels(1.0);
-        for point in &mut settings.transfer.points {
+        settings.layer_mut().opacity_unit = OpacityLength::Voxels(1.0);
+        for point in &mut settings.layer_mut().transfer.points {
             point.opacity = point.opacity.min(1.0 - (-0.84_f64).exp());
             point.color = [1.0; 3];
         }

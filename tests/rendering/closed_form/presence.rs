@@ -3,7 +3,7 @@
 
 use chiaroscuro_reference::{cubic_b_spline, tent};
 use chiaroscuro_scene::{
-    ClassificationOrder, ControlPoint, OpacityInterpolation, ReconstructionKernel, RenderEngine, Settings,
+    ClassificationOrder, ControlPoint, OpacityInterpolation, ReconstructionKernel, RenderEngine,
     TransferFunction,
 };
 use chiaroscuro_volume::{Samples, Volume};
@@ -73,7 +73,7 @@ fn a_constant_volume_ends_at_its_faces(engine: RenderEngine) {
             (0, falling_extinction(per_voxel)),
             (255, constant_extinction(per_voxel)),
         ] {
-            let mut settings = Settings { transfer, ..base(engine, per_voxel) };
+            let mut settings = base(engine, per_voxel).with_transfer(transfer);
             settings.sampling.classification = classification;
             settings.sampling.slab = 0.5;
             let size = [96, 96];
@@ -126,7 +126,7 @@ fn holes_are_empty(engine: RenderEngine) {
     let loaded =
         Dataset::new(Volume::with_spacing("holes", [EDGE_VOXELS; 3], DVec3::ONE, samples).expect("a volume"));
     for kernel in [ReconstructionKernel::BSpline, ReconstructionKernel::Prefiltered] {
-        let mut settings = Settings { transfer: falling_extinction(per_voxel), ..base(engine, per_voxel) };
+        let mut settings = base(engine, per_voxel).with_transfer(falling_extinction(per_voxel));
         settings.sampling.kernel = kernel;
         settings.sampling.slab = 0.5;
         let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
@@ -183,7 +183,7 @@ fn lobes_of_either_sign_look_alike(engine: RenderEngine) {
     settings.camera.azimuth_deg = 20.0;
     settings.camera.elevation_deg = 30.0;
     let picture = |sign: f64, low, high| {
-        let settings = Settings { transfer: lobes(low, high), ..settings.clone() };
+        let settings = settings.clone().with_transfer(lobes(low, high));
         render(&mut renderer(), &wave(sign), &settings, [96, 96]).linear.concat()
     };
     let (one, other) = (picture(1.0, blue, red), picture(-1.0, red, blue));

@@ -46,12 +46,9 @@ fn visibility_moments(
     // So that the values span their range.
     values[0] = 255 - values[0];
     let volume = Volume::with_spacing("sky", dims, DVec3::ONE, Samples::U8(values)).expect("a volume");
-    let settings = Settings {
-        transfer: linear_extinction(per_voxel),
-        range: chiaroscuro_scene::DensityRange::Full,
-        sky: white_sky(directions),
-        ..scenes::look()
-    };
+    let settings = Settings { sky: white_sky(directions), ..scenes::look() }
+        .with_transfer(linear_extinction(per_voxel))
+        .with_range(chiaroscuro_scene::DensityRange::Full);
     let index = |[x, y, z]: [usize; 3]| x + nx * (y + ny * z);
     let openness = Reference::new(&volume, &settings, ReferenceOptions::default()).sky_visibility();
     let reference = at

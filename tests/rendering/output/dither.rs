@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [64, 96];
 /// Red channel of every pixel of an empty picture, row by row.
 fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     let mut settings: Settings = scenes::look();
-    settings.transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
+    settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
     settings.output.background = Background { top: [top; 3], bottom: [bottom; 3] };
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let options = RenderOptions::from(PictureOptions { transparent, ..PictureOptions::default() });

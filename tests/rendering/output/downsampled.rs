@@ -16,7 +16,7 @@ const SIZE: [u32; 2] = [96, 72];
 /// which softer surfaces shade themselves more: with full rays the mean is 4 % less.
 fn look(volume: &Volume) -> Settings {
     let first = first_look::first_settings(volume, &Histogram::from_volume(volume));
-    let mut settings = Settings { opacity_unit: first.opacity_unit, ..scenes::look() };
+    let mut settings = scenes::look().with_opacity_unit(first.layer().opacity_unit);
     scenes::use_paper_shadows(&mut settings);
     settings
 }

@@ -30,7 +30,7 @@ fn picture(
     image_spec: &ImageSpec,
     (edge, samples): (u32, u32),
 ) -> Vec<f32> {
-    let bands = renderer.bands_with_limits(loaded, settings, image_spec, edge, samples);
+    let mut bands = renderer.bands_with_limits(loaded, settings, image_spec, edge, samples);
     let rows = bands.all().expect("the picture is rendered");
     assert_eq!(matches!(rows, PixelRows::Bytes(_)), image_spec.depth == PixelFormat::Eight);
     rows.values()

@@ -105,12 +105,12 @@ fn the_comparison_notices_whole_slabs() {
 fn block() -> (Dataset, Settings) {
     let per_voxel = 2.0_f64.ln() / 16.0;
     let mut settings = Settings {
-        transfer: linear_extinction(per_voxel),
-        opacity_unit: OpacityLength::Voxels(1.0),
         lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
         camera: axis_camera(-90.0, 90.0),
         ..Settings::default()
-    };
+    }
+    .with_transfer(linear_extinction(per_voxel))
+    .with_opacity_unit(OpacityLength::Voxels(1.0));
     make_isotropic(&mut settings);
     let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
     (Dataset::new(scenes::block(48, inside)), settings)

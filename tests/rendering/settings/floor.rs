@@ -162,7 +162,7 @@ fn light_of_a_sky_ends_where_it_meets_the_floor() {
     let loaded =
         Dataset::new(scenes::block(32, |[x, y, z]| x < 14 && y < 12 && (4..30).contains(&z) && x + y < 20));
     let mut settings = with_floor(scenes::look());
-    settings.transfer = scenes::linear_extinction(0.2);
+    settings.layer_mut().transfer = scenes::linear_extinction(0.2);
     (settings.floor.height, settings.camera.elevation_deg) = (-0.2, 40.0);
     settings.sky =
         SkySettings { mode: SkyMode::White, intensity: 0.9, directions: 14, ..SkySettings::default() };
@@ -202,7 +202,7 @@ fn it_is_dark_below_and_bright_beside_the_object() {
     let loaded =
         Dataset::new(scenes::block(32, |[x, y, z]| (8..24).contains(&x) && (8..24).contains(&y) && z > 3));
     let mut settings = with_floor(scenes::look());
-    settings.transfer = scenes::linear_extinction(3.0);
+    settings.layer_mut().transfer = scenes::linear_extinction(3.0);
     settings.lights.clear();
     settings.floor.radius = 20.0;
     settings.sky =
@@ -263,13 +263,13 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     let inside = |at: [usize; 3]| at.iter().all(|c| (8..40).contains(c));
     let loaded = Dataset::new(scenes::block(48, inside));
     let mut settings = Settings {
-        transfer: linear_extinction(2.0_f64.ln() / 16.0),
-        opacity_unit: OpacityLength::Voxels(1.0),
         lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
         // From above, past the block: it looks at the floor beside the centre.
         camera: axis_camera(-90.0, 60.0),
         ..Settings::default()
-    };
+    }
+    .with_transfer(linear_extinction(2.0_f64.ln() / 16.0))
+    .with_opacity_unit(OpacityLength::Voxels(1.0));
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.floor =

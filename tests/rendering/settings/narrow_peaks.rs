@@ -16,7 +16,7 @@ fn a_thin_shell_is_seen_whole() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = scenes::look();
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
-    settings.transfer = TransferFunction {
+    settings.layer_mut().transfer = TransferFunction {
         points: vec![
             point(0.0, 0.0),
             point(120.0, 0.0),

@@ -47,9 +47,6 @@ fn light_below_a_face_has_the_physical_amount() {
         let z = (n - face) as f64 - 0.5 - depth;
         let height = (z + 0.5) / (n as f64 / 2.0) - 1.0;
         let mut settings = Settings {
-            transfer: linear_extinction(40.0),
-            lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) },
-            opacity_unit: OpacityLength::Voxels(1.0),
             lights: vec![scenes::light(LightGeometry::Parallel, [1.0, 0.0, 1.0])],
             camera: Camera {
                 target: [0.0, 0.2, height],
@@ -58,7 +55,10 @@ fn light_below_a_face_has_the_physical_amount() {
                 ..axis_camera(-90.0, 0.0)
             },
             ..Settings::default()
-        };
+        }
+        .with_transfer(linear_extinction(40.0))
+        .with_lighting(LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) })
+        .with_opacity_unit(OpacityLength::Voxels(1.0));
         settings.camera.projection = Projection::Perspective;
         make_isotropic(&mut settings);
         settings.sampling.slab = 0.25;

@@ -49,7 +49,7 @@ fn look() -> Settings {
         ..TransferFunction::default()
     };
     let camera = Camera { azimuth_deg: 150.0, elevation_deg: 20.0, ..Camera::default() };
-    Settings { transfer, camera, ..scenes::look() }
+    Settings { camera, ..scenes::look() }.with_transfer(transfer)
 }
 
 fn picture(renderer: &mut Renderer, volume: Volume) -> Vec<f64> {

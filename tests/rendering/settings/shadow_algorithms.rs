@@ -34,9 +34,6 @@ fn beer_lambert_by_rays_from_samples() {
             // The middle of the grid is the origin, and half the grid one unit.
             let height = (f64::from(z) + 0.5) / (n as f64 / 2.0) - 1.0;
             let mut settings = Settings {
-                transfer: linear_extinction(4.0),
-                lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) },
-                opacity_unit: OpacityLength::Voxels(1.0),
                 lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
                 camera: Camera {
                     target: [0.0, 0.2, height],
@@ -45,7 +42,14 @@ fn beer_lambert_by_rays_from_samples() {
                     ..axis_camera(-90.0, 0.0)
                 },
                 ..Settings::default()
-            };
+            }
+            .with_transfer(linear_extinction(4.0))
+            .with_lighting(LightingTransfer {
+                linked: false,
+                scale: 1.0,
+                curve: linear_extinction(per_voxel),
+            })
+            .with_opacity_unit(OpacityLength::Voxels(1.0));
             settings.camera.projection = Projection::Perspective;
             make_isotropic(&mut settings);
             settings.shadows.algorithm = ShadowAlgorithm::Direct;
@@ -74,13 +78,13 @@ fn beer_lambert_by_rays_from_samples_to_a_light_inside() {
     for (per_voxel, distance) in [(0.1, 3.3), (0.3, 3.3), (0.1, 7.8), (0.3, 7.8)] {
         let height = 2.0 * distance / n as f64;
         let mut settings = Settings {
-            transfer: linear_extinction(40.0),
-            lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) },
-            opacity_unit: OpacityLength::Voxels(1.0),
             lights: vec![scenes::light(LightGeometry::Perspective, [0.0, 0.0, height])],
             camera: Camera { distance: 0.3, fov_y_deg: 4.0, ..axis_camera(-90.0, 0.0) },
             ..Settings::default()
-        };
+        }
+        .with_transfer(linear_extinction(40.0))
+        .with_lighting(LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(per_voxel) })
+        .with_opacity_unit(OpacityLength::Voxels(1.0));
         settings.camera.projection = Projection::Perspective;
         // The eye sees the material right before it.
         settings.camera.target = [0.0, 0.3, 0.0];
@@ -113,18 +117,18 @@ fn shadow_profile(algorithm: ShadowAlgorithm, engine: RenderEngine) -> Vec<f64> 
     let loaded = Dataset::new(volume);
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
-        transfer: TransferFunction {
-            points: vec![point(0.0, 0.0), point(120.0, 0.0), point(255.0, 0.9)],
-            interpolation: OpacityInterpolation::Opacity,
-            ..TransferFunction::default()
-        },
-        // Thin: exp is straight enough that interpolating light or optical depth is the same.
-        lighting: LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(0.1) },
-        opacity_unit: OpacityLength::Voxels(1.0),
         lights: vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, 1.0])],
         camera: axis_camera(-90.0, 90.0),
         ..Settings::default()
-    };
+    }
+    .with_transfer(TransferFunction {
+        points: vec![point(0.0, 0.0), point(120.0, 0.0), point(255.0, 0.9)],
+        interpolation: OpacityInterpolation::Opacity,
+        ..TransferFunction::default()
+    })
+    // Thin: exp is straight enough that interpolating light or optical depth is the same.
+    .with_lighting(LightingTransfer { linked: false, scale: 1.0, curve: linear_extinction(0.1) })
+    .with_opacity_unit(OpacityLength::Voxels(1.0));
     make_isotropic(&mut settings);
     use_paper_shadows(&mut settings);
     let mut renderer = renderer();

@@ -29,8 +29,6 @@ fn panned_frames(renderer: &mut Renderer, engine: RenderEngine, loaded: &Dataset
     (0..if engine == RenderEngine::Scatter { 3 } else { 8 })
         .map(|step| {
             let mut settings = Settings {
-                transfer: linear_extinction(0.005),
-                opacity_unit: OpacityLength::Voxels(1.0),
                 camera: Camera {
                     target: [pixel * f64::from(step) / 8.0, 0.0, pixel * f64::from(step) / 16.0],
                     distance: 1.0,
@@ -39,7 +37,9 @@ fn panned_frames(renderer: &mut Renderer, engine: RenderEngine, loaded: &Dataset
                     ..axis_camera(-90.0, 0.0)
                 },
                 ..Settings::default()
-            };
+            }
+            .with_transfer(linear_extinction(0.005))
+            .with_opacity_unit(OpacityLength::Voxels(1.0));
             make_isotropic(&mut settings);
             settings.sampling.engine = engine;
             settings.lights[0].casts_shadows = false;

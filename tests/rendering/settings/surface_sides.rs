@@ -29,7 +29,7 @@ fn curve(points: &[(f64, f64)]) -> TransferFunction {
 }
 
 fn look(transfer: TransferFunction) -> Settings {
-    Settings { transfer, opacity_unit: OpacityLength::Voxels(1.0), ..scenes::look() }
+    scenes::look().with_transfer(transfer).with_opacity_unit(OpacityLength::Voxels(1.0))
 }
 
 /// Two balls of which one is the negative of the other, in a medium halfway between; values 0 … 255.

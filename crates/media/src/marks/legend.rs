@@ -24,7 +24,7 @@ pub(super) fn draw(
     size: [f64; 2],
     letters: f64,
 ) {
-    if settings.labels.is_empty() {
+    if settings.layer().labels.is_empty() {
         draw_value_legend(layer, settings, volume, size, letters);
     } else {
         draw_label_legend(layer, settings, volume, size, letters);
@@ -40,14 +40,22 @@ fn visible_range(settings: &Settings, volume: &Volume) -> Option<[f64; 2]> {
     let range = settings.shown_range(&volume.ranges());
     const STEPS: usize = 1024;
     let value = |at: usize| range.low + range.span() * at as f64 / STEPS as f64;
-    let is_seen = |at: &usize| settings.transfer.opacity_at(value(*at)) > MIN_OPACITY;
+    let is_seen = |at: &usize| settings.layer().transfer.opacity_at(value(*at)) > MIN_OPACITY;
     let first = (0..=STEPS).find(is_seen)?;
     let last = (0..=STEPS).rfind(is_seen)?;
     (last > first).then(|| [value(first), value(last)])
 }
 
-/// Returns round numbers between two values, and their number of decimals.
-fn ticks([low, high]: [f64; 2]) -> (Vec<f64>, usize) {
+/// Round numbers on a scale.
+#[derive(Debug, PartialEq)]
+struct ScaleTicks {
+    values: Vec<f64>,
+    /// Number of decimals with which the values are written.
+    decimals: usize,
+}
+
+/// Returns round numbers between two values.
+fn ticks([low, high]: [f64; 2]) -> ScaleTicks {
     let rough = (high - low) / MIN_TICKS;
     let power = 10f64.powf(rough.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= rough).unwrap_or(1.0) * power;
@@ -55,7 +63,8 @@ fn ticks([low, high]: [f64; 2]) -> (Vec<f64>, usize) {
     let first = (low / step).ceil() as i64;
     let last = (high / step).floor() as i64;
     // Bounded: a step exceeds a tenth of a quarter of the range.
-    ((first..=last.min(first + 50)).map(|at| at as f64 * step).collect(), decimals)
+    let values = (first..=last.min(first + 50)).map(|at| at as f64 * step).collect();
+    ScaleTicks { values, decimals }
 }
 
 fn draw_value_legend(
@@ -67,7 +76,7 @@ fn draw_value_legend(
 ) {
     let Some([low, high]) = visible_range(settings, volume) else { return };
     let (tall, wide) = ((height * BAR_HEIGHT).round(), (letters * 0.9).round());
-    let (numbers, decimals) = ticks([low, high]);
+    let ScaleTicks { values: numbers, decimals } = ticks([low, high]);
     let text = |value: &f64| match decimals {
         // Fixed notation would show nothing but zeros.
         9.. => format!("{value:.1e}"),
@@ -81,7 +90,7 @@ fn draw_value_legend(
     layer.fill([left - edge, top - edge], [wide + 2.0 * edge, tall + 2.0 * edge], OUTLINE_INK, 255);
     for row in 0..tall as usize {
         let value = high - (high - low) * (row as f64 + 0.5) / tall;
-        let (linear, _) = settings.transfer.sample(value);
+        let linear = settings.layer().transfer.sample(value).color;
         layer.fill([left, top + row as f64], [wide, 1.0], srgb_bytes(linear.map(srgb_from_linear)), 255);
     }
     for (value, text) in numbers.iter().zip(&texts) {
@@ -100,6 +109,7 @@ fn draw_label_legend(
 ) {
     let in_file = &volume.metadata().labels;
     let rows: Vec<(String, [u8; 3])> = settings
+        .layer()
         .labels
         .iter()
         .filter(|(_, look)| look.effective_opacity() > MIN_OPACITY)
@@ -145,9 +155,10 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_few() {
-        assert_eq!(ticks([0.0, 255.0]), (vec![0.0, 50.0, 100.0, 150.0, 200.0, 250.0], 0));
-        assert_eq!(ticks([-1000.0, 3000.0]).0, [-1000.0, 0.0, 1000.0, 2000.0, 3000.0]);
-        let (fine, decimals) = ticks([0.113, 0.147]);
+        let values = vec![0.0, 50.0, 100.0, 150.0, 200.0, 250.0];
+        assert_eq!(ticks([0.0, 255.0]), ScaleTicks { values, decimals: 0 });
+        assert_eq!(ticks([-1000.0, 3000.0]).values, [-1000.0, 0.0, 1000.0, 2000.0, 3000.0]);
+        let ScaleTicks { values: fine, decimals } = ticks([0.113, 0.147]);
         assert_eq!((fine.len(), decimals), (7, 3), "{fine:?}");
     }
 }

@@ -103,13 +103,18 @@ impl ContactSheetImage {
         self.layer.write(&name, middle, [0.5, 0.0], self.letters);
     }
 
-    /// Returns the size and the RGBA bytes of the finished sheet.
-    pub fn finish(self) -> ([u32; 2], Vec<u8>) {
+    /// Returns the number of columns and rows of the sheet, in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Returns the RGBA bytes of the finished sheet.
+    pub fn finish(self) -> Vec<u8> {
         let mut rows = crate::PixelRows::Bytes(self.pixels);
         self.layer.composite_over(&ImageSpec::new(self.size), 0, &mut rows);
         match rows {
-            crate::PixelRows::Bytes(shown) => (self.size, shown),
-            crate::PixelRows::Floats(_) => (self.size, Vec::new()),
+            crate::PixelRows::Bytes(shown) => shown,
+            crate::PixelRows::Floats(_) => Vec::new(),
         }
     }
 }
@@ -181,7 +186,8 @@ mod tests {
         for ink in [10, 100, 200] {
             sheet.add("name", &[ink; 64 * 48 * 4]);
         }
-        let ([width, height], shown) = sheet.finish();
+        let [width, height] = sheet.size();
+        let shown = sheet.finish();
         assert_eq!(shown.len(), (width * height * 4) as usize);
         for ink in [10, 100, 200] {
             let count = shown.chunks(4).filter(|pixel| **pixel == [ink; 4]).count();

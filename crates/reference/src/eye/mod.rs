@@ -12,7 +12,7 @@ use super::back_project::AttenuationVolume;
 use super::extent::cut::UncutRegion;
 use super::shade::{ShadedSample, Shader};
 use super::sheet_stack::{CutTreatment, SheetStack, SlabContribution};
-use chiaroscuro_render::plan::{SheetFrame, picture_frame};
+use chiaroscuro_render::plan::{GradientSteps, SheetFrame, picture_frame};
 use chiaroscuro_scene::{BakedTransfer, MAX_SLAB_PARTS};
 
 /// Share of what is visible along a ray above which a slab is divided.
@@ -52,7 +52,7 @@ impl Reference<'_> {
         }
         // Accumulated colour, with the transmittance in place of alpha.
         let mut rays = vec![[0.0, 0.0, 0.0, 1.0]; stack.pixel_count()];
-        let margin = frame.gradient_steps().1;
+        let margin = frame.gradient_steps().slabs;
         for first in (0..frame.slab_count).step_by(SLABS_IN_MEMORY as usize) {
             let slabs = first..(first + SLABS_IN_MEMORY).min(frame.slab_count);
             let sheets = SheetDensities::new(&stack, slabs.start.saturating_sub(margin)..slabs.end + margin);
@@ -226,7 +226,7 @@ impl<'s> SheetDensities<'s> {
     /// Densities are 0 before the first slab and behind the last.
     fn gradient(&self, pixel: u32, k: u32) -> DVec3 {
         let [width, height] = self.frame.size;
-        let (pixels, slabs) = self.frame.gradient_steps();
+        let GradientSteps { pixels, slabs } = self.frame.gradient_steps();
         let (i, j) = (pixel % width, pixel / width);
         let sheet = |k: Option<u32>, i: u32, j: u32| match k {
             Some(k) if k < self.frame.slab_count => self.at(k)[(i + j * width) as usize],

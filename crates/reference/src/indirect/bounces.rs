@@ -11,7 +11,7 @@ use super::sky::interpolate_with_zero_border;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
 use crate::{Reference, linear_from_srgb};
-use chiaroscuro_render::plan::{SweepFrame, sweep_directions};
+use chiaroscuro_render::plan::{SlicePosition, SweepFrame, sweep_directions};
 use chiaroscuro_scene::{LightGeometry, SKY_LOOKUP_DISTANCE, ScatteringSettings, SceneLight};
 
 /// Maximum number of points for an area light: bounced light shows no edges of shadows.
@@ -353,7 +353,7 @@ fn march_emission(
 
 /// Returns the light that a block receives, interpolated between the four rays around it.
 fn received_light(frame: &SweepFrame, deposits: &[[f64; 3]], block: DVec3, channel: usize) -> f64 {
-    let (slice, ray) = frame.ray_position(block);
+    let SlicePosition { slice, across: ray } = frame.ray_position(block);
     let low = ray.floor();
     let share = ray - low;
     let at = |i: usize, j: usize| {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::Reference;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
-use chiaroscuro_render::plan::{SweepFrame, directions_above, sweep_directions};
+use chiaroscuro_render::plan::{SlicePosition, SweepFrame, directions_above, sweep_directions};
 use chiaroscuro_scene::{ReconstructionKernel, SKY_LOOKUP_DISTANCE};
 
 /// Volume of sky visibility: two moments over directions.
@@ -277,14 +277,13 @@ pub(crate) fn interpolate_with_zero_border(dims: [usize; 3], values: &[f64], at:
 
 /// Returns the share of light that reaches a block, interpolated between the four rays around it.
 fn light_in_block(frame: &SweepFrame, deposits: &[f64], block: DVec3) -> f64 {
-    let (slice, ray) = frame.ray_position(block);
+    let SlicePosition { slice, across: ray } = frame.ray_position(block);
     interpolate_rays(frame, ray, |ray| deposits[ray * frame.slices() + slice as usize])
 }
 
 /// Returns the share of light that reaches a position of the floor in blocks, which may be outside the grid.
 fn light_on_floor(frame: &SweepFrame, left: &[f64], place: DVec3) -> f64 {
-    let (_, ray) = frame.ray_position(place);
-    interpolate_rays(frame, ray, |ray| left[ray])
+    interpolate_rays(frame, frame.ray_position(place).across, |ray| left[ray])
 }
 
 /// Interpolates between the four rays around a position; outside all rays light is unattenuated.

@@ -54,15 +54,15 @@ fn settings(depth: f64) -> Settings {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let points = vec![point(0.0, 0.0), point(1.0, -(-depth).exp_m1())];
     let mut settings = Settings {
-        transfer: TransferFunction {
-            points,
-            interpolation: OpacityInterpolation::Extinction,
-            ..TransferFunction::default()
-        },
         camera: Camera { distance: 4.0, ..Camera::default() },
         lights: vec![LightSettings { position: [0.0, 0.0, 4.0], ..LightSettings::default() }],
         ..Settings::default()
-    };
+    }
+    .with_transfer(TransferFunction {
+        points,
+        interpolation: OpacityInterpolation::Extinction,
+        ..TransferFunction::default()
+    });
     settings.shadows.slab = 1.0;
     settings.shadows.reverse_kernel = ReverseKernel::Forward;
     settings.shadows.near_field = NearFieldRay::Off;

@@ -19,7 +19,7 @@ use self::gpu_clock::GpuClock;
 pub(super) use self::texture_formats::pair_format;
 use super::GpuError;
 use chiaroscuro_files::{
-    fault::{self, FaultCounter, InjectedFault},
+    fault::{self, FaultEvent, InjectedFault},
     sanitised,
 };
 
@@ -55,9 +55,6 @@ pub struct GpuContext {
 /// Longest wait for submitted work before the device counts as lost. Parts of pictures are sized to take a tenth of a
 /// second; the slowest driver on a busy machine has needed ten seconds.
 const DEVICE_TIMEOUT: Duration = Duration::from_mins(2);
-
-/// Number of textures and buffers requested so far, for fault injection.
-pub(crate) static ALLOCATION_COUNT: FaultCounter = FaultCounter::new();
 
 /// Interval at which a waiting thread checks that the device is not lost.
 const LOSS_CHECK_INTERVAL: Duration = Duration::from_secs(2);
@@ -320,7 +317,7 @@ impl GpuContext {
         }
         let texels = u64::from(width) * u64::from(height) * u64::from(depth_or_array_layers);
         let bytes = texels * u64::from(descriptor.format.block_copy_size(None).unwrap_or(16));
-        if fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory) {
+        if fault::is_due(FaultEvent::Allocation, InjectedFault::OutOfMemory) {
             return Err(GpuError::OutOfMemory { what, mebibytes: bytes >> 20 });
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -360,7 +357,7 @@ impl GpuContext {
     /// Creates an uninitialised buffer. If memory is exhausted, the returned buffer is invalid, commands with it have
     /// no effect, and [`Self::check`] reports the error.
     pub(crate) fn uninitialised_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
-        let is_refused = fault::is_due(&ALLOCATION_COUNT, InjectedFault::OutOfMemory);
+        let is_refused = fault::is_due(FaultEvent::Allocation, InjectedFault::OutOfMemory);
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.device.create_buffer(descriptor);
         if pollster::block_on(scope.pop()).is_some() || is_refused {

@@ -65,7 +65,7 @@ impl EyePass {
             Projection::Perspective => (settings.camera.position(), 1.0),
             Projection::Orthographic => (settings.camera.scene_from_view().z_axis, 0.0),
         };
-        let (gradient_pixels, gradient_slabs) = frame.gradient_steps();
+        let gradient_steps = frame.gradient_steps();
         let uniform = uniforms::EyeUniform {
             frame: uniforms::SheetFrameUniform::new(&frame),
             shading: shading_uniform(settings, scene, options),
@@ -79,8 +79,8 @@ impl EyePass {
                 UNLIMITED_REACH
             },
             min_transmittance: options.switches.min_transmittance,
-            gradient_pixels: gradient_pixels as i32,
-            gradient_slabs: gradient_slabs as i32,
+            gradient_pixels: gradient_steps.pixels as i32,
+            gradient_slabs: gradient_steps.slabs as i32,
             runs: 1,
             voxel_edge: scene.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
@@ -324,7 +324,7 @@ pub(crate) fn shading_uniform(
     options: &RenderOptions,
 ) -> uniforms::ShadingUniform {
     let (shading, shadows) = (&settings.shading, &settings.shadows);
-    let unit = settings.opacity_unit.scene_units(scene).max(1e-9);
+    let unit = settings.layer().opacity_unit.scene_units(scene).max(1e-9);
     uniforms::ShadingUniform {
         emission: shading.emission as f32,
         ambient: settings.flat_ambient() as f32,

@@ -62,7 +62,7 @@ pub(crate) fn draw_floor(
         first_row: rows.start,
         end_row: rows.end,
         runs,
-        ..floor_uniform(eye, &volume.scene, settings, (lit, shadows))
+        ..floor_uniform(eye, &volume.scene, settings, lit, shadows)
     };
     let uniform = gpu.uniform("Floor::uniform", uniform);
     let pass_group = gpu.bind(
@@ -136,7 +136,8 @@ fn floor_uniform(
     eye: &EyePass,
     scene: &SceneSpace,
     settings: &Settings,
-    (lit, shadows): (&ActiveLights, &[Option<&FloorShadowMap>]),
+    lit: &ActiveLights,
+    shadows: &[Option<&FloorShadowMap>],
 ) -> uniforms::FloorUniform {
     let uniforms::EyeUniform { frame, shading, space, shading_cut, .. } = eye.uniform();
     let FloorSettings { on: _, height, radius, color, opacity, shadow_only } = settings.floor;

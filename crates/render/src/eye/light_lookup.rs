@@ -4,6 +4,7 @@ use crate::light::light_uniform::attenuation_bindings;
 use crate::pipelines::binding::{ShaderPipeline, bind_view};
 use crate::pipelines::uniforms;
 use crate::scattered_light::volume::ScatteredLightVolume;
+use crate::sky::block_texture::BlockTexture;
 use crate::sky::volume::SkyVolume;
 use crate::volume::VolumeContext;
 use chiaroscuro_scene::{SKY_LOOKUP_DISTANCE, Settings, SkyRadiance};
@@ -32,6 +33,7 @@ pub(crate) fn sky_uniform(
     scene: &SceneSpace,
     volume: Option<&SkyVolume>,
 ) -> uniforms::SkyUniform {
+    let blocks = volume.map(|volume| &volume.blocks);
     let radiance = settings.sky.radiance(settings.camera.up);
     let color = |c: usize| {
         let of = |sky: &SkyRadiance| sky.slope[c].extend(sky.mean[c]).as_vec4().into();
@@ -41,11 +43,14 @@ pub(crate) fn sky_uniform(
         red: color(0),
         green: color(1),
         blue: color(2),
-        lookup: volume.map_or([0.0; 3], SkyVolume::lookup),
-        lookup_distance: volume
-            .map_or(0.0, |volume| SKY_LOOKUP_DISTANCE * volume.divisor as f64 * scene.smallest_edge())
-            as f32,
+        lookup: blocks.map_or([0.0; 3], BlockTexture::lookup),
+        lookup_distance: lookup_distance(blocks, scene),
     }
+}
+
+/// Returns the distance in front of a surface at which blocks are looked up, in scene units; 0 without blocks.
+fn lookup_distance(blocks: Option<&BlockTexture>, scene: &SceneSpace) -> f32 {
+    blocks.map_or(0.0, |blocks| SKY_LOOKUP_DISTANCE * blocks.divisor as f64 * scene.smallest_edge()) as f32
 }
 
 /// Builds the uniform of scattered light; without a volume of it, the look-up parameters are zero.
@@ -54,12 +59,11 @@ pub(crate) fn scattered_light_uniform(
     scene: &SceneSpace,
     volume: Option<&ScatteredLightVolume>,
 ) -> uniforms::ScatteredLightUniform {
+    let blocks = volume.map(|volume| &volume.blocks);
     let scattering = &settings.scattering;
     uniforms::ScatteredLightUniform {
-        lookup: volume.map_or([0.0; 3], ScatteredLightVolume::lookup),
-        lookup_distance: volume
-            .map_or(0.0, |volume| SKY_LOOKUP_DISTANCE * volume.divisor as f64 * scene.smallest_edge())
-            as f32,
+        lookup: blocks.map_or([0.0; 3], BlockTexture::lookup),
+        lookup_distance: lookup_distance(blocks, scene),
         share: (scattering.strength * scattering.albedo) as f32,
         pad0: 0.0,
         pad1: 0.0,
@@ -74,7 +78,10 @@ pub(crate) fn light_bind_group(
     LightLookup { attenuation, ambient: around }: LightLookup<'_>,
 ) -> wgpu::BindGroup {
     let mut entries = attenuation_bindings(gpu, attenuation);
-    entries.push(bind_view("sky_texture", around.sky.map_or(gpu.placeholder, |volume| &volume.view)));
-    entries.push(bind_view("bounced_texture", around.bounces.map_or(gpu.placeholder, |volume| &volume.view)));
+    entries.push(bind_view("sky_texture", around.sky.map_or(gpu.placeholder, |volume| &volume.blocks.view)));
+    entries.push(bind_view(
+        "bounced_texture",
+        around.bounces.map_or(gpu.placeholder, |volume| &volume.blocks.view),
+    ));
     gpu.bind("LightVolume::bind_group", pipeline, 2, &entries)
 }

@@ -50,9 +50,10 @@ fn smallest_sufficient_block(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 pub(super) fn fast_settings(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
     let mut quick = with_fast_shadows(settings);
     // Opacities keep their reference length, although voxels are larger.
-    if let OpacityLength::Voxels(_) = quick.opacity_unit {
+    if let OpacityLength::Voxels(_) = quick.layer().opacity_unit {
         let scene = whole.scene();
-        quick.opacity_unit = OpacityLength::Mm(quick.opacity_unit.scene_units(&scene) * scene.mm_per_unit);
+        quick.layer_mut().opacity_unit =
+            OpacityLength::Mm(quick.layer().opacity_unit.scene_units(&scene) * scene.mm_per_unit);
     }
     quick.shadows.resolution = LightVolumeResolution::Full;
     (quick.shadows.kernel, quick.sampling.kernel) =

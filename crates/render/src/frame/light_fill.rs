@@ -81,7 +81,8 @@ impl LightFill {
         ProductRequest { context, request, options, .. }: ProductRequest<'_>,
         volume: &GpuVolume,
         index: usize,
-        (key, fresh): (&LightKey, &LightVolume),
+        key: &LightKey,
+        fresh: &LightVolume,
     ) -> Result<Self, GpuError> {
         let settings = &request.settings;
         let resolution = key.resolution();

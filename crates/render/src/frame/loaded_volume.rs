@@ -13,7 +13,7 @@ use crate::sky::volume::SkyVolume;
 use crate::volume::GpuVolume;
 use crate::volume::preclassified::PreclassifiedVoxels;
 use crate::volume::presence::PresenceTexture;
-use crate::volume::transfer_tables::TransferTables;
+use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{ClassificationOrder, Settings, SheetOrder};
 use chiaroscuro_volume::Dataset;
@@ -65,7 +65,8 @@ impl LoadedVolume {
         presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
-        let (tables, _) = TransferTables::new(context, &volume, settings, tables_key, None)?;
+        let TableBakeResult { tables, .. } =
+            TransferTables::bake(context, &volume, settings, tables_key, None)?;
         let tables = CacheEntry::complete(tables_key.clone(), tables);
         let dataset = dataset.clone();
         let materials = Vec::new();
@@ -102,9 +103,9 @@ impl LoadedVolume {
         if self.tables.is_valid_for(key) {
             return Ok(0);
         }
-        let known = Some((self.tables.key(), &self.tables.product));
-        let (fresh, baked) = TransferTables::new(context, &self.volume, settings, key, known)?;
-        self.tables = CacheEntry::complete(key.clone(), fresh);
+        let TableBakeResult { tables, baked } =
+            TransferTables::bake(context, &self.volume, settings, key, Some(&self.tables))?;
+        self.tables = CacheEntry::complete(key.clone(), tables);
         Ok(baked)
     }
 

@@ -1,9 +1,8 @@
 //! Out-of-memory tests of the renderer, with a failure injected at each texture or buffer allocation.
 
-use crate::context::ALLOCATION_COUNT;
 use crate::pipelines::shader_library::ShaderLibrary;
 use crate::{GpuContext, GpuError, RenderOptions, Renderer};
-use chiaroscuro_files::fault::{self, InjectedFault};
+use chiaroscuro_files::fault::{self, FaultEvent, InjectedFault};
 use chiaroscuro_scene::{
     LightDirection, LightStorage, RenderEngine, Settings, SkyMode, first_look, key_and_fill,
 };
@@ -24,10 +23,10 @@ fn with_refusal(
     k: u64,
     draw: impl FnOnce() -> Result<Vec<u8>, GpuError>,
 ) -> (Result<Vec<u8>, GpuError>, bool) {
-    let before = ALLOCATION_COUNT.so_far();
+    let before = fault::count_so_far(FaultEvent::Allocation);
     fault::set_faults(vec![InjectedFault::OutOfMemory(before + k)]);
     let result = draw();
-    let came = ALLOCATION_COUNT.so_far() >= before + k;
+    let came = fault::count_so_far(FaultEvent::Allocation) >= before + k;
     fault::set_faults(Vec::new());
     (result, came)
 }

@@ -167,12 +167,6 @@ impl Renderer {
         // Pending work may still report errors about dropped resources.
         self.tools.context.wait().ok();
     }
-
-    /// Invalidates finished pictures, so that the next one is drawn again: for measurements, and for tests of
-    /// determinism.
-    pub fn invalidate_pictures(&mut self) {
-        self.targets.invalidate();
-    }
 }
 
 fn milliseconds(start: Instant) -> f64 {

@@ -1,8 +1,6 @@
 //! Pre-compilation of the pipelines for the first pictures and previews: each can take a driver tens of milliseconds,
 //! which would stall the window.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crate::eye::eye_pass::EyeVariant;
 use crate::eye::floor::FloorVariant;
 use crate::light::backproject::BackprojectVariant;
@@ -14,6 +12,7 @@ use crate::{GpuError, ShaderLibrary};
 use chiaroscuro_scene::{
     ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SlabMode,
 };
+use chiaroscuro_volume::CancelToken;
 
 /// Number of lights in a first look.
 const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
@@ -25,26 +24,29 @@ const KERNELS_AND_SLABS: [(ReconstructionKernel, SlabMode); 2] = [
 ];
 
 impl ShaderLibrary {
-    /// Compiles the usual variants of every shader, until `stop` is set. To be called on a separate thread.
+    /// Compiles the usual variants of every shader, until `cancel` is cancelled. To be called on a separate thread.
     ///
     /// # Errors
     /// Returns an error if a shader is invalid.
-    pub fn warm_up(&self, stop: &AtomicBool) -> Result<(), GpuError> {
-        self.compile_unless_stopped(&PrefilterVariant { has_missing: false }, stop)?;
+    pub fn warm_up(&self, cancel: &CancelToken) -> Result<(), GpuError> {
+        self.compile_unless_cancelled(&PrefilterVariant { has_missing: false }, cancel)?;
         for shader in ["volume/downsample.wgsl", "volume/gradients.wgsl"] {
-            self.compile_unless_stopped(&SingleVariant(shader), stop)?;
+            self.compile_unless_cancelled(&SingleVariant(shader), cancel)?;
         }
-        self.compile_unless_stopped(&SingleVariant("light/clear_margin.wgsl"), stop)?;
-        self.compile_unless_stopped(&DisplayVariant { samples: 1, is_linear: false, is_deep: false }, stop)?;
-        self.warm_up_passes(&Clipping::default(), stop)
+        self.compile_unless_cancelled(&SingleVariant("light/clear_margin.wgsl"), cancel)?;
+        self.compile_unless_cancelled(
+            &DisplayVariant { samples: 1, is_linear: false, is_deep: false },
+            cancel,
+        )?;
+        self.warm_up_passes(&Clipping::default(), cancel)
     }
 
-    fn compile_unless_stopped(
+    fn compile_unless_cancelled(
         &self,
         variant: &impl PipelineVariant,
-        stop: &AtomicBool,
+        cancel: &CancelToken,
     ) -> Result<(), GpuError> {
-        if !stop.load(Ordering::Relaxed) {
+        if !cancel.is_cancelled() {
             self.pipeline(variant)?;
         }
         Ok(())
@@ -55,18 +57,18 @@ impl ShaderLibrary {
     ///
     /// # Errors
     /// Same as [`Self::warm_up`].
-    pub fn warm_up_optional(&self, stop: &AtomicBool) -> Result<(), GpuError> {
+    pub fn warm_up_optional(&self, cancel: &CancelToken) -> Result<(), GpuError> {
         for (kernel, _) in KERNELS_AND_SLABS {
             let shadows = ShadowSettings { kernel, ..ShadowSettings::default() };
             let settings = Settings { shadows, ..Settings::default() };
-            self.compile_unless_stopped(&FloorVariant::from_settings(&settings, FIRST_LIGHTS), stop)?;
+            self.compile_unless_cancelled(&FloorVariant::from_settings(&settings, FIRST_LIGHTS), cancel)?;
         }
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
-        self.warm_up_passes(&Clipping { plane, ..Clipping::default() }, stop)
+        self.warm_up_passes(&Clipping { plane, ..Clipping::default() }, cancel)
     }
 
     /// Compiles the passes of a splatted picture, of the whole volume or with cuts.
-    fn warm_up_passes(&self, cuts: &Clipping, stop: &AtomicBool) -> Result<(), GpuError> {
+    fn warm_up_passes(&self, cuts: &Clipping, cancel: &CancelToken) -> Result<(), GpuError> {
         for is_stretched in [false, true] {
             for (kernel, slabs) in KERNELS_AND_SLABS {
                 let settings = Settings {
@@ -76,12 +78,12 @@ impl ShaderLibrary {
                     ..Settings::default()
                 };
                 let eye = EyeVariant::from_settings(&settings, FIRST_LIGHTS, is_stretched);
-                self.compile_unless_stopped(&eye.with_gradients(true), stop)?;
-                self.compile_unless_stopped(
+                self.compile_unless_cancelled(&eye.with_gradients(true), cancel)?;
+                self.compile_unless_cancelled(
                     &BackprojectVariant::from_shadows(&self.context, &settings.shadows, is_stretched),
-                    stop,
+                    cancel,
                 )?;
-                self.compile_unless_stopped(&MarchVariant::from_settings(&settings, is_stretched), stop)?;
+                self.compile_unless_cancelled(&MarchVariant::from_settings(&settings, is_stretched), cancel)?;
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Back-projection, the second half of the light pass: splats the sheets back into the light volume.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -40,13 +40,14 @@ impl ChunkSchedule {
         view: &LightView,
         light: &LightVolume,
         chunk: u32,
-        (reach, has_floor): (i32, bool),
+        reach: i32,
+        has_floor: bool,
     ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
         for (brick, cells) in light.filled_cells.bricks() {
-            let (first, last) = final_slabs(scene, view, light, brick);
-            for list in &mut chunks[(first / chunk) as usize..=(last / chunk) as usize] {
+            let slabs = final_slabs(scene, view, light, brick);
+            for list in &mut chunks[(slabs.start() / chunk) as usize..=(slabs.end() / chunk) as usize] {
                 list.push(brick_list::brick_entry((brick, cells)));
             }
         }
@@ -76,8 +77,13 @@ fn brick_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 
     })
 }
 
-/// Returns the first and the last slab that completes any voxel of a brick.
-fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick: [usize; 3]) -> (u32, u32) {
+/// Returns the slabs, from the first to the last, that complete any voxel of a brick.
+fn final_slabs(
+    scene: &SceneSpace,
+    view: &LightView,
+    light: &LightVolume,
+    brick: [usize; 3],
+) -> RangeInclusive<u32> {
     let step = light.divisor as f64;
     let corner = |side: usize| {
         let at = |axis: usize| {
@@ -94,7 +100,7 @@ fn final_slabs(scene: &SceneSpace, view: &LightView, light: &LightVolume, brick:
     let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
     let last = f64::from(frame.slab_count.max(1) - 1);
     let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
-    (clamp(final_slab(near).floor() - 1.0), clamp(final_slab(far).floor() + 1.0))
+    clamp(final_slab(near).floor() - 1.0)..=clamp(final_slab(far).floor() + 1.0)
 }
 
 /// Returns the map from index space to light axes: x and y in pixels of the anchor plane, z in scene units.
@@ -155,7 +161,8 @@ pub(crate) fn backproject(
     gpu: VolumeContext<'_>,
     shadows: &ShadowSettings,
     view: &LightView,
-    (sheets, schedule): (&LightSheets, &ChunkSchedule),
+    sheets: &LightSheets,
+    schedule: &ChunkSchedule,
     light: &LightVolume,
     slabs: Range<u32>,
     part: WorkPart,

@@ -49,6 +49,13 @@ pub(crate) struct CombinedLight {
     pub filled: Arc<CellSet>,
 }
 
+/// Shading of the picture for which light is combined.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CombinedLightShading {
+    pub eye: uniforms::EyeUniform,
+    pub shading: ShadingVariant,
+}
+
 impl CombinedLight {
     /// Creates the texture with the dimensions of the light volumes; nothing is filled yet.
     ///
@@ -80,7 +87,7 @@ impl CombinedLight {
         &self,
         gpu: VolumeContext<'_>,
         tables: &TransferTables,
-        (eye, shading): (uniforms::EyeUniform, ShadingVariant),
+        CombinedLightShading { eye, shading }: CombinedLightShading,
         lights: &[LightInput<'_>],
         bricks: &[BrickEntry],
         encoder: &mut wgpu::CommandEncoder,

@@ -118,7 +118,8 @@ impl FloorShadowMap {
         &self,
         gpu: VolumeContext<'_>,
         of: PointView<'_>,
-        (march, sheets): (uniforms::MarchUniform, &LightSheets),
+        march: uniforms::MarchUniform,
+        sheets: &LightSheets,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let PointView { point, geometry, index, count, points } = of;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::fill_inputs::{LightTables, LightWithSettings};
 use crate::pipelines::binding::{NamedResource, bind_buffer, bind_view};
 use crate::pipelines::pipeline_variant::{
     GridBoundaries, PipelineVariant, ReconstructionVariant, ShaderConstants, deposit_constant, flag, is_cut,
@@ -12,7 +13,7 @@ use crate::resources::gpu_tools::GpuTools;
 use crate::resources::pass;
 use crate::resources::sheet_ring::SheetRing;
 use crate::volume::brick_list::one_workgroup_per_brick;
-use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
+use crate::volume::transfer_tables::UNLIMITED_REACH;
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuError, TestSwitches};
 use chiaroscuro_scene::{DepositMode, SceneLight, Settings};
@@ -172,8 +173,8 @@ pub(crate) fn march_uniform(
 #[expect(clippy::too_many_arguments, reason = "each is another thing: who, what, how, where from, where to")]
 pub(crate) fn march(
     gpu: VolumeContext<'_>,
-    (tables, color): (&TransferTables, Option<usize>),
-    (light, settings): (&SceneLight, &Settings),
+    LightTables { tables, color }: LightTables<'_>,
+    LightWithSettings { light, settings }: LightWithSettings<'_>,
     view: &LightView,
     sheets: &LightSheets,
     slabs: Range<u32>,

@@ -8,6 +8,7 @@ pub(super) mod area_light;
 pub(super) mod backproject;
 pub(super) mod colored_shadows;
 pub(super) mod combined_light;
+pub(super) mod fill_inputs;
 pub(super) mod floor_shadow;
 pub(super) mod light_uniform;
 pub(super) mod light_volume;

@@ -1,5 +1,6 @@
 //! Ray casting of a light volume: ray marching from every voxel to the light.
 
+use super::fill_inputs::{LightTables, LightWithSettings};
 use super::light_uniform::light_uniform;
 use super::light_volume::LightVolume;
 use crate::pipelines::binding::{bind_buffer, bind_view};
@@ -10,10 +11,10 @@ use crate::pipelines::uniforms;
 use crate::plan::ray_reach;
 use crate::resources::pass;
 use crate::volume::brick_list::{self, BrickEntry};
-use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
+use crate::volume::transfer_tables::UNLIMITED_REACH;
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{DepositMode, SceneLight, Settings};
+use chiaroscuro_scene::{DepositMode, Settings};
 
 /// Number of bricks per submission: 16 × 512 rays, each through the whole of a dense 256³ volume, take a software
 /// adapter some 0.2 s.
@@ -67,8 +68,8 @@ impl PipelineVariant for RaycastVariant {
 /// Fills the listed bricks of a light volume, for white light or one of its colours.
 pub(crate) fn raycast(
     gpu: VolumeContext<'_>,
-    (tables, color): (&TransferTables, Option<usize>),
-    (light, settings): (&SceneLight, &Settings),
+    LightTables { tables, color }: LightTables<'_>,
+    LightWithSettings { light, settings }: LightWithSettings<'_>,
     options: &RenderOptions,
     target: &LightVolume,
     bricks: &[BrickEntry],

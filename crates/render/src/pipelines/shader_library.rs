@@ -8,7 +8,7 @@ use super::binding::{BindingGroup, BindingSlot, ShaderPipeline, ring_format};
 use super::layouts::layouts;
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_variant::PipelineVariant;
-use super::preprocessor::{is_override, preprocess};
+use super::preprocessor::{override_constants, preprocess};
 use super::shader_files::SHADERS;
 use crate::context::{COMPILER_ADDRESS_BYTES, check_address_space};
 use crate::{GpuContext, GpuError};
@@ -81,7 +81,7 @@ impl ShaderLibrary {
     /// number of each name.
     ///
     /// # Errors
-    /// Returns an error if a file is missing or a condition is malformed.
+    /// Returns an error if a file is missing, or a condition is malformed or not declared.
     pub fn preprocessed_source(
         name: &str,
         format: wgpu::TextureFormat,
@@ -137,6 +137,7 @@ impl ShaderLibrary {
     }
 
     /// Returns the number of pipelines made so far.
+    #[cfg(feature = "testing")]
     pub fn pipeline_count(&self) -> usize {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
@@ -172,7 +173,7 @@ impl ShaderLibrary {
             constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
         };
         let mut source = Self::preprocessed_source(shader, self.context.storage_format, target, &value)?;
-        let overrides: Vec<_> = constants.iter().filter(|(name, _)| is_override(name)).copied().collect();
+        let overrides = override_constants(constants)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }

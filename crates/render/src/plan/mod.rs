@@ -23,9 +23,9 @@ pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
     scatter_reach_bricks, slab_reach, stretch_reach,
 };
-pub use self::geometry::sheet_frame::{MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
+pub use self::geometry::sheet_frame::{GradientSteps, MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use self::geometry::slice_order::SliceOrder;
-pub use self::geometry::sweep::{SweepFrame, directions_above, sweep_directions};
+pub use self::geometry::sweep::{SlicePosition, SweepFrame, directions_above, sweep_directions};
 pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
 pub use keys::{
     ActiveLight, ActiveLights, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey,

@@ -61,6 +61,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Same as [`Self::read_display`]; also if there is no floor.
+    #[cfg(feature = "testing")]
     pub fn read_floor(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         let target = self.displayed_target()?;
         if !target.has_floor() {

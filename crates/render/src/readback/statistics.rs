@@ -42,7 +42,7 @@ impl Renderer {
     /// the rays would take too much memory.
     pub fn sky_divisor(&self) -> Option<usize> {
         let skies = &self.loaded.as_ref()?.product.skies;
-        skies.last_used().map(|sky| sky.divisor)
+        skies.last_used().map(|sky| sky.blocks.divisor)
     }
 
     /// Returns the statistics of a request's scattered-light volume at full resolution, if there is one.
@@ -53,7 +53,7 @@ impl Renderer {
         Some(self.volume_statistics(
             bounces.is_complete(),
             &bounces.product.fill_time,
-            bounces.product.bytes(),
+            bounces.product.blocks.bytes(),
         ))
     }
 
@@ -102,6 +102,7 @@ impl Renderer {
 
     /// Returns the number of buffers, bind groups and rings made so far, which stays constant while the same things
     /// are drawn again.
+    #[cfg(feature = "testing")]
     pub fn created_resources(&self) -> u64 {
         self.tools.pool.created_count()
     }

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::tiled::PartLimits;
 use super::tiled::PictureBands;
+use crate::light::fill_inputs::{LightTables, LightWithSettings};
 use crate::light::march::{LightSheets, march};
 use crate::plan::{BouncesKey, MAX_CELL_DISTANCE, MarchTiles, RenderRequest, SkyKey, light_views};
 use crate::resources::gpu_tools::GpuTools;
 use crate::resources::textures::read_floats;
-use crate::scatter::light::LightScatterer;
+use crate::scatter::light::{LightScatterer, ScatterTarget};
 use crate::scatter::voxels::ScatterState;
 use crate::volume::VolumeContext;
 use crate::{GpuError, RenderOptions, Renderer, WorkOptions};
@@ -63,7 +64,7 @@ impl Renderer {
         let key = SkyKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
-        self.texels(&found.product.view)
+        self.texels(&found.product.blocks.view)
     }
 
     /// Returns the scattered light of each block of voxels: linear RGB, and 1.
@@ -80,7 +81,7 @@ impl Renderer {
         let key = BouncesKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.bounces.iter().find(|bounces| bounces.is_valid_for(&key)).ok_or_else(none)?;
-        self.texels(&found.product.view)
+        self.texels(&found.product.blocks.view)
     }
 
     /// Draws a small picture with light volumes filled everywhere, and returns its request.
@@ -137,27 +138,18 @@ impl Renderer {
         let sheets = LightSheets::new(&tools, geometry, count, i32::from(MAX_CELL_DISTANCE))?;
         let mut encoder =
             self.context().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let scene_light = (&scene_light, settings);
+        let source = LightWithSettings { light: &scene_light, settings };
+        let white = LightTables { tables, color: None };
         if let Some(voxels) = loaded.scatter_voxels.as_ref().filter(|_| settings.uses_scattering_engine()) {
             let scattering = ScatterState::new(self.context(), Arc::clone(voxels));
-            let of_light = (settings, target);
+            let target = ScatterTarget { settings, light_volume: target };
             let options = RenderOptions::default();
-            let scatter =
-                LightScatterer::new(gpu, &scattering, (tables, None), geometry, of_light, None, &options)?;
+            let scatter = LightScatterer::new(gpu, &scattering, white, geometry, target, None, &options)?;
             let table = &tables.lighting.buffer;
-            scatter.march(gpu, &scattering, table, scene_light, geometry, &sheets, 0..count, &mut encoder)?;
+            scatter.march(gpu, &scattering, table, source, geometry, &sheets, 0..count, &mut encoder)?;
         } else {
             let tiles = MarchTiles::all(geometry, sheets.chunk);
-            march(
-                gpu,
-                (tables, None),
-                scene_light,
-                geometry,
-                &sheets,
-                0..count,
-                tiles.chunk(0),
-                &mut encoder,
-            )?;
+            march(gpu, white, source, geometry, &sheets, 0..count, tiles.chunk(0), &mut encoder)?;
         }
         self.context().queue.submit([encoder.finish()]);
         // Four slabs per texel, in a texture that may be larger than the sheets.

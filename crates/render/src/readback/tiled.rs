@@ -79,10 +79,19 @@ impl Renderer {
     }
 }
 
+/// Number of bands of a picture that were drawn, and of all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BandProgress {
+    /// Number of bands that were drawn.
+    pub drawn: usize,
+    /// Number of all bands.
+    pub total: usize,
+}
+
 impl PictureBands<'_> {
     /// Returns the number of bands drawn, and the total.
-    pub fn progress(&self) -> (usize, usize) {
-        (self.total - self.remaining.len(), self.total)
+    pub fn progress(&self) -> BandProgress {
+        BandProgress { drawn: self.total - self.remaining.len(), total: self.total }
     }
 
     /// Returns true if the volume is not visible in the bands drawn so far.
@@ -131,7 +140,7 @@ impl PictureBands<'_> {
     ///
     /// # Errors
     /// Same as [`Self::next_rows`].
-    pub fn all(mut self) -> Result<PixelRows, GpuError> {
+    pub fn all(&mut self) -> Result<PixelRows, GpuError> {
         let mut whole = match self.spec.depth {
             PixelFormat::Eight => PixelRows::Bytes(Vec::new()),
             PixelFormat::Sixteen | PixelFormat::Linear => PixelRows::Floats(Vec::new()),
@@ -156,7 +165,7 @@ fn gradient_margin(volume: &Volume, settings: &Settings, size: [u32; 2], samples
     let scene = SceneSpace::new(volume.dims(), volume.world_from_index());
     let fine = PixelWindow::from(size).supersampled(samples);
     let frame = picture_frame(settings, &scene, fine);
-    frame.gradient_steps().0.div_ceil(samples)
+    frame.gradient_steps().pixels.div_ceil(samples)
 }
 
 /// Copies a part of the drawn texels to its place in a band.

@@ -188,6 +188,7 @@ impl ResourcePool {
     }
 
     /// Returns the number of buffers, bind groups and rings made so far.
+    #[cfg(feature = "testing")]
     pub(crate) fn created_count(&self) -> u64 {
         self.0.borrow().created_count
     }

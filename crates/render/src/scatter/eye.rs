@@ -74,16 +74,16 @@ impl EyeScatter {
         let sampling = &settings.sampling;
         let order = sampling.order;
         // Slices of voxels are one voxel apart.
-        let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().1 } else { 1 };
-        let kernel = SplatParameters { kernel: sampling.kernel, quadrature: sampling.quadrature, order };
+        let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().slabs } else { 1 };
         let seen = bricks_to_splat(frame, &tables.eye.occupied_bricks, options);
         let quantity = match sampling.classification {
             ClassificationOrder::Post => SplatQuantity::Density,
             ClassificationOrder::Pre => SplatQuantity::Material,
         };
-        let what = (quantity, &tables.eye);
+        let splat =
+            SplatParameters { kernel: sampling.kernel, quadrature: sampling.quadrature, order, quantity };
         let scatterer =
-            SheetScatterer::new(gpu, &scattering.voxels, frame, kernel, what, &seen, 2 * ahead + 1)?;
+            SheetScatterer::new(gpu, &scattering.voxels, frame, splat, &tables.eye, &seen, 2 * ahead + 1)?;
         let footprints = (order == SheetOrder::EveryFootprint)
             .then(|| FootprintPhases::new(gpu, &scatterer))
             .transpose()?;

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::eye::bricks_to_splat;
 use super::splat::{ScatterVariant, SheetScatterer, SplatParameters, SplatQuantity, sums};
 use super::voxels::ScatterState;
+use crate::light::fill_inputs::{LightTables, LightWithSettings};
 use crate::light::light_volume::LightVolume;
 use crate::light::march::{LightSheets, SLABS_PER_TEXEL, march_uniform};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
@@ -15,10 +16,10 @@ use crate::pipelines::pipeline_variant::{
 use crate::plan::{BrickSet, LightView, scatter_reach_bricks};
 use crate::resources::pass;
 use crate::volume::brick_list::{self, BrickEntry};
-use crate::volume::transfer_tables::{TransferTables, upload_distances};
+use crate::volume::transfer_tables::upload_distances;
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{ClassificationOrder, DepositMode, SceneLight, Settings, SheetOrder};
+use chiaroscuro_scene::{ClassificationOrder, DepositMode, Settings, SheetOrder};
 
 /// Pipeline variant of the march over scattered sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -67,26 +68,37 @@ pub(crate) struct LightScatterer {
     divisor: usize,
 }
 
+/// Light volume into which sheets are splatted back, with the settings of the picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScatterTarget<'a> {
+    pub settings: &'a Settings,
+    pub light_volume: &'a LightVolume,
+}
+
 impl LightScatterer {
     /// Prepares a view. Sheets are splatted back in the bricks of `read` only, or everywhere without it.
     pub(crate) fn new(
         gpu: VolumeContext<'_>,
         scattering: &ScatterState,
-        (tables, color): (&TransferTables, Option<usize>),
+        LightTables { tables, color }: LightTables<'_>,
         view: &LightView,
-        (settings, target): (&Settings, &LightVolume),
+        ScatterTarget { settings, light_volume: target }: ScatterTarget<'_>,
         read: Option<&BrickSet>,
         options: &RenderOptions,
     ) -> Result<Self, GpuError> {
         let seen = bricks_to_splat(&view.frame, &tables.lighting.occupied_bricks, options);
         let shadows = &settings.shadows;
-        let what = match settings.sampling.classification {
+        let quantity = match settings.sampling.classification {
             ClassificationOrder::Post => SplatQuantity::Density,
             ClassificationOrder::Pre => SplatQuantity::Extinction,
         };
-        let what = (what, tables.lighting_of_color(color));
-        let order = SheetOrder::ImageAligned;
-        let kernel = SplatParameters { kernel: shadows.kernel, quadrature: shadows.quadrature, order };
+        let table = tables.lighting_of_color(color);
+        let splat = SplatParameters {
+            kernel: shadows.kernel,
+            quadrature: shadows.quadrature,
+            order: SheetOrder::ImageAligned,
+            quantity,
+        };
         let [nx, ny, nz] = target.dims.map(|n| n as u32);
         let dims = tables.lighting.occupied_bricks.dims;
         let read_distances = read.map_or_else(|| BrickSet::full(dims).distances(), BrickSet::distances);
@@ -105,11 +117,12 @@ impl LightScatterer {
                 &pairs,
                 wgpu::TextureFormat::Rg8Uint,
             )?,
-            scatterer: SheetScatterer::new(gpu, &scattering.voxels, &view.frame, kernel, what, &seen, 1)?
+            scatterer: SheetScatterer::new(gpu, &scattering.voxels, &view.frame, splat, table, &seen, 1)?
                 .with_light_grid(
                     view.first_pixel.as_vec2().into(),
                     view.cube_face,
-                    (target.dims, target.divisor),
+                    target.dims,
+                    target.divisor,
                 ),
             light: sums(gpu.context, "LightScatter::light", nz, [nx, ny])?,
             weights: sums(gpu.context, "LightScatter::weights", nz, [nx, ny])?,
@@ -126,7 +139,7 @@ impl LightScatterer {
         gpu: VolumeContext<'_>,
         scattering: &ScatterState,
         table: &wgpu::Buffer,
-        (scene_light, settings): (&SceneLight, &Settings),
+        LightWithSettings { light: scene_light, settings }: LightWithSettings<'_>,
         view: &LightView,
         sheets: &LightSheets,
         slabs: Range<u32>,

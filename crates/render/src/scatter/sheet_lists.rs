@@ -6,15 +6,21 @@ use crate::plan::{SheetFrame, SliceOrder};
 use crate::volume::brick_list;
 use chiaroscuro_volume::BRICK_EDGE;
 
-/// Lists for every slab the bricks with voxels that reach it, and the word where those voxels begin.
-///
-/// Returns the start of each slab's list, and the lists themselves. `half_depth` is half the depth of a kernel.
+/// Bricks of all sheets, sheet by sheet.
+pub(crate) struct SheetLists {
+    /// Start of each sheet's list, with the end of the last as an additional entry.
+    pub starts: Vec<u32>,
+    /// Packed coordinates of each brick, and the word where its voxels begin.
+    pub bricks: Vec<[u32; 2]>,
+}
+
+/// Lists for every slab the bricks with voxels that reach it. `half_depth` is half the depth of a kernel.
 pub(crate) fn slab_lists(
     frame: &SheetFrame,
     sheets_from_index: &DAffine3,
     bricks: impl Iterator<Item = ([usize; 3], u32)>,
     half_depth: f64,
-) -> (Vec<u32>, Vec<[u32; 2]>) {
+) -> SheetLists {
     let count = frame.slab_count as usize;
     let mut lists = vec![Vec::new(); count];
     let last = (BRICK_EDGE - 1) as f64;
@@ -37,11 +43,11 @@ pub(crate) fn slab_lists(
     concatenate(lists)
 }
 
-/// Lists for every slice the bricks that it cuts, in the format of [`slab_lists`].
+/// Lists for every slice the bricks that it cuts.
 pub(crate) fn slice_lists(
     slices: &SliceOrder,
     bricks: impl Iterator<Item = ([usize; 3], u32)>,
-) -> (Vec<u32>, Vec<[u32; 2]>) {
+) -> SheetLists {
     let mut layers = vec![Vec::new(); (slices.count as usize).div_ceil(BRICK_EDGE)];
     for (brick, first_word) in bricks {
         layers[brick[slices.axis]].push([brick_list::pack_coordinates(brick), first_word]);
@@ -49,9 +55,8 @@ pub(crate) fn slice_lists(
     concatenate((0..slices.count).map(|k| layers[slices.slice(k) / BRICK_EDGE].clone()).collect())
 }
 
-/// Concatenates lists. Returns the start of each, with the end of the last as an additional entry, and the
-/// concatenation.
-fn concatenate(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
+/// Concatenates the lists of all sheets.
+fn concatenate(lists: Vec<Vec<[u32; 2]>>) -> SheetLists {
     let mut starts = vec![0];
     let mut all: Vec<[u32; 2]> = Vec::new();
     for list in lists {
@@ -62,5 +67,5 @@ fn concatenate(lists: Vec<Vec<[u32; 2]>>) -> (Vec<u32>, Vec<[u32; 2]>) {
     if all.is_empty() {
         all.push([0; 2]);
     }
-    (starts, all)
+    SheetLists { starts, bricks: all }
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::footprint_table::{RADIUS, footprint_table};
-use super::sheet_lists::{slab_lists, slice_lists};
+use super::sheet_lists::{SheetLists, slab_lists, slice_lists};
 use super::voxels::{ScatterState, ScatterVoxels};
 use crate::pipelines::binding::{ShaderPipeline, bind_buffer};
 use crate::pipelines::pipeline_variant::{PipelineVariant, ReconstructionVariant, ShaderConstants};
@@ -71,12 +71,13 @@ impl SplatQuantity {
     }
 }
 
-/// Parameters of splatting: kernel, quadrature and order.
+/// Parameters of splatting: kernel, quadrature, order of the sheets, and the quantity that is splatted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SplatParameters {
     pub kernel: ReconstructionKernel,
     pub quadrature: SlabQuadrature,
     pub order: SheetOrder,
+    pub quantity: SplatQuantity,
 }
 
 /// Pipeline variant shared by the scattering passes.
@@ -134,8 +135,8 @@ impl SheetScatterer {
         gpu: VolumeContext<'_>,
         voxels: &ScatterVoxels,
         frame: &SheetFrame,
-        SplatParameters { kernel, quadrature, order }: SplatParameters,
-        (what, table): (SplatQuantity, &TransferTable),
+        SplatParameters { kernel, quadrature, order, quantity }: SplatParameters,
+        table: &TransferTable,
         seen: &BrickSet,
         layers: u32,
     ) -> Result<Self, GpuError> {
@@ -146,7 +147,7 @@ impl SheetScatterer {
         let tabulated_kernel = if slices.is_some() { isotropic_kernel(kernel) } else { kernel };
         let half = half_extents(frame, &sheets_from_index, tabulated_kernel);
         let widest = frame.widest_stretch();
-        let (starts, listed) = match &slices {
+        let SheetLists { starts, bricks: listed } = match &slices {
             None => slab_lists(frame, &sheets_from_index, voxels.bricks_in(seen), half.z * widest),
             Some(slices) => slice_lists(slices, voxels.bricks_in(seen)),
         };
@@ -176,7 +177,7 @@ impl SheetScatterer {
                 reconstruction: ReconstructionVariant::new(kernel, quadrature)
                     .with_boundaries(volume.possible_boundaries()),
                 order,
-                splat: what,
+                splat: quantity,
             },
             slices,
             uniform,
@@ -184,7 +185,7 @@ impl SheetScatterer {
             max_stretch: widest,
             bricks: context.buffer("Scatterer::bricks", &listed, wgpu::BufferUsages::STORAGE),
             starts,
-            sheets: sums(context, "Scatterer::sheets", layers * what.sum_count(), frame.size)?,
+            sheets: sums(context, "Scatterer::sheets", layers * quantity.sum_count(), frame.size)?,
             table: table.buffer.clone(),
             footprints: context.buffer(
                 "Scatterer::footprints",
@@ -200,7 +201,8 @@ impl SheetScatterer {
         mut self,
         first_pixel: [f32; 2],
         cube_face: bool,
-        (light_dims, divisor): ([usize; 3], usize),
+        light_dims: [usize; 3],
+        divisor: usize,
     ) -> Self {
         self.uniform.first_pixel = first_pixel;
         self.uniform.cube_face = u32::from(cube_face);

@@ -58,16 +58,17 @@ impl ScatteredLightFill {
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: VolumeContext<'_>,
-        (tables, options): (&TransferTables, &RenderOptions),
+        tables: &TransferTables,
+        options: &RenderOptions,
         key: &BouncesKey,
-        (has_sky, lights): (bool, usize),
+        settings: &Settings,
         volume: &ScatteredLightVolume,
     ) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
         let frames = [key.directions_of_a_bounce(), key.directions()].map(|directions| {
             sweep_directions(directions)
                 .into_iter()
-                .map(|towards| SweepFrame::new(scene, volume.divisor, towards))
+                .map(|towards| SweepFrame::new(scene, volume.blocks.divisor, towards))
                 .collect::<Vec<_>>()
         });
         let one_color = key.one_color();
@@ -76,8 +77,10 @@ impl ScatteredLightFill {
         let followed = key.bounces().saturating_sub(1) as usize * frames_per_bounce + last;
         let size = sheet_size(frames.iter().flatten(), format, followed);
         let textures = ScatteringTextures::new(gpu.context, volume, size, one_color.is_some())?;
+        let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
-        let met = extinction_blocks::attenuating_cells(tables, options, volume.dims, volume.divisor);
+        let met =
+            extinction_blocks::attenuating_cells(tables, options, volume.blocks.dims, volume.blocks.divisor);
         // Pictures also look up the last bounce beside the blocks that scatter light.
         let visible_cells = met.union(&volume.filled_cells);
         let [each, last] = frames;
@@ -88,11 +91,11 @@ impl ScatteredLightFill {
             ],
             attenuating_cells: CellList::new(gpu.context, &met),
             output_cells: CellList::new(gpu.context, &volume.filled_cells),
-            dims: volume.dims,
+            dims: volume.blocks.dims,
             rays_per_block: rays,
             bounces: key.bounces(),
             max_light_points: key.points(),
-            has_sky,
+            has_sky: settings.sky.is_on(),
             one_color,
             textures,
         })
@@ -100,8 +103,9 @@ impl ScatteredLightFill {
 
     /// Returns the steps of the filling, in order.
     pub(crate) fn steps(&self) -> Vec<ScatteringStep> {
-        let slices = (self.dims[2], self.slices_per_step());
-        scattering_steps(self.bounces, self.has_sky, slices, |followed| self.batches(followed).count())
+        let [slices, at_once] = [self.dims[2], self.slices_per_step()];
+        let batches = |followed| self.batches(followed).count();
+        scattering_steps(self.bounces, self.has_sky, slices, at_once, batches)
     }
 
     /// Returns the number of slices of blocks that cast rays to lights in one step, so that it takes no longer than a
@@ -134,7 +138,7 @@ impl ScatteredLightFill {
         match step {
             ScatteringStep::Blocks => self.fill_blocks(gpu, look, volume, encoder),
             ScatteringStep::Batch(followed, batch) => {
-                self.fill_batch(gpu, look.settings, volume, (followed, batch), encoder)
+                self.fill_batch(gpu, look.settings, volume, followed, batch, encoder)
             }
             ScatteringStep::SingleScattering { slice } => {
                 self.fill_single_scattering(gpu, look, volume, slice, encoder)
@@ -194,7 +198,7 @@ impl ScatteredLightFill {
         followed: SweepSource,
     ) -> wgpu::Buffer {
         let uniform = uniforms::BounceUniform {
-            dims: volume.dims.map(|n| n as u32),
+            dims: volume.blocks.dims.map(|n| n as u32),
             share: 1.0 / self.batches(followed).directions() as f32,
             color: self.one_color.map_or([1.0; 3], |one| one.color.as_vec3().into()),
             min_extinction: if followed == SweepSource::LastBounce { -1.0 } else { f32::MIN_POSITIVE },
@@ -212,8 +216,8 @@ impl ScatteredLightFill {
         let scattering = &settings.scattering;
         let pass = BlocksPass {
             shader: "scattered_light/blocks.wgsl",
-            dims: volume.dims,
-            divisor: volume.divisor,
+            dims: volume.blocks.dims,
+            divisor: volume.blocks.divisor,
             density_scale: scattering.density_scale,
             albedo: scattering.albedo,
             one_color: self.one_color.is_some(),
@@ -238,7 +242,8 @@ impl ScatteredLightFill {
         gpu: VolumeContext<'_>,
         settings: &Settings,
         volume: &ScatteredLightVolume,
-        (followed, batch): (SweepSource, usize),
+        followed: SweepSource,
+        batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let ScatteringTextures { medium, sheets, scattering, sums, .. } = &self.textures;
@@ -253,7 +258,7 @@ impl ScatteredLightFill {
             shader: "scattered_light/sweep.wgsl",
             one_color: self.one_color.is_some(),
             rays: batches.rays(batch),
-            dims: volume.dims,
+            dims: volume.blocks.dims,
             sheets,
             is_first: batch == 0,
             share: 0.0,
@@ -300,8 +305,8 @@ impl ScatteredLightFill {
         }
         let uniform = uniforms::SingleScatteringUniform {
             space: uniforms::SpaceUniform::new(scene),
-            block_scale: volume.dims.map(|n| 1.0 / (n + 2) as f32),
-            voxel_step: volume.divisor as f32,
+            block_scale: volume.blocks.dims.map(|n| 1.0 / (n + 2) as f32),
+            voxel_step: volume.blocks.divisor as f32,
             count: lit.all().len() as u32,
             shadowed: shadowed as u32,
             edge: scene.smallest_edge() as f32,
@@ -368,7 +373,7 @@ impl ScatteredLightFill {
                 bind_buffer("change", change),
                 bind_buffer("ratio", ratio),
             ]),
-            _ => entries.extend([bind_view("bounced", &volume.view), self.output_cells.binding()]),
+            _ => entries.extend([bind_view("bounced", &volume.blocks.view), self.output_cells.binding()]),
         }
         let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
@@ -383,5 +388,5 @@ impl ScatteredLightFill {
 }
 
 fn workgroups_over_blocks(volume: &ScatteredLightVolume) -> [u32; 3] {
-    volume.dims.map(|n| (n as u32).div_ceil(4))
+    volume.blocks.dims.map(|n| (n as u32).div_ceil(4))
 }

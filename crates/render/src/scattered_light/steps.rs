@@ -31,7 +31,8 @@ pub(crate) enum SweepSource {
 pub(super) fn scattering_steps(
     bounces: u32,
     has_sky: bool,
-    (slices, at_once): (usize, usize),
+    slices: usize,
+    at_once: usize,
     batches: impl Fn(SweepSource) -> usize,
 ) -> Vec<ScatteringStep> {
     let batch_steps =

@@ -51,7 +51,7 @@ impl ScatteringTextures {
         sheet_size: [usize; 3],
         one_color: bool,
     ) -> Result<Self, GpuError> {
-        let dims = volume.dims;
+        let dims = volume.blocks.dims;
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let medium_format = if one_color { pair_format(context.storage_format) } else { COLOR_FORMAT };
         let sheet_format = Self::sheet_format(context, one_color);

@@ -64,20 +64,22 @@ impl SkyFill {
     /// Returns an error if memory is exhausted.
     pub(crate) fn new(
         gpu: VolumeContext<'_>,
-        (tables, options): (&TransferTables, &RenderOptions),
+        tables: &TransferTables,
+        options: &RenderOptions,
         key: &SkyKey,
         volume: &SkyVolume,
     ) -> Result<Self, GpuError> {
         let scene = &gpu.volume.scene;
         let frames_of = |directions: Vec<DVec3>| {
             let frames =
-                directions.into_iter().map(|towards| SweepFrame::new(scene, volume.divisor, towards));
+                directions.into_iter().map(|towards| SweepFrame::new(scene, volume.blocks.divisor, towards));
             frames.collect::<Vec<_>>()
         };
         let around = frames_of(sweep_directions(key.directions()));
         let up = volume.floor.as_ref().map(|floor| floor.extent.up.direction());
         let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
-        let met = extinction_blocks::attenuating_cells(tables, options, volume.dims, volume.divisor);
+        let met =
+            extinction_blocks::attenuating_cells(tables, options, volume.blocks.dims, volume.blocks.divisor);
         let read = boxes_around(&met.union(&volume.filled_cells));
         let size = sheet_size(around.iter(), gpu.context.storage_format, around.len());
         let around = DirectionBatches::new(around, size[2], &read);
@@ -116,8 +118,8 @@ impl SkyFill {
         volume.clear_margin(gpu, encoder)?;
         let pass = BlocksPass {
             shader: "sky/extinction_blocks.wgsl",
-            dims: volume.dims,
-            divisor: volume.divisor,
+            dims: volume.blocks.dims,
+            divisor: volume.blocks.divisor,
             density_scale: self.density_scale,
             albedo: 0.0,
             one_color: false,
@@ -146,7 +148,7 @@ impl SkyFill {
             shader: "sky/sweep.wgsl",
             one_color: false,
             rays: self.all_directions.rays(batch),
-            dims: volume.dims,
+            dims: volume.blocks.dims,
             sheets,
             is_first: batch == 0,
             share: 1.0 / self.all_directions.directions() as f32,
@@ -160,7 +162,7 @@ impl SkyFill {
             bind_view("sheets", &sheets.view),
             sampler("clamped", &gpu.volume.clamped),
             bind_buffer("sums", sums),
-            bind_view("moments", &volume.view),
+            bind_view("moments", &volume.blocks.view),
             self.output_cells.binding(),
         ];
         let own = gpu.bind("Sky::moments", &gather, 0, &entries);
@@ -181,14 +183,17 @@ impl SkyFill {
             return Ok(());
         };
         let Some(floor) = &volume.floor else { return Ok(()) };
-        let place =
-            floor.uniform(&gpu.volume.scene, volume.divisor, 1.0 / self.upper_directions.directions() as f64);
+        let place = floor.uniform(
+            &gpu.volume.scene,
+            volume.blocks.divisor,
+            1.0 / self.upper_directions.directions() as f64,
+        );
         let place = gpu.uniform("Sky::floor_map", place);
         let pass = SweepPass {
             shader: "sky/floor_sweep.wgsl",
             one_color: false,
             rays: self.upper_directions.rays(batch),
-            dims: volume.dims,
+            dims: volume.blocks.dims,
             sheets: transmittance,
             is_first: batch == 0,
             share: 0.0,
@@ -227,7 +232,7 @@ impl SkyTextures {
     ) -> Result<Self, GpuError> {
         let usages = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let format = context.storage_format;
-        let block_size = volume.dims.map(|n| n + 2);
+        let block_size = volume.blocks.dims.map(|n| n + 2);
         let blocks = context.texture(&texture_3d("Sky::blocks", block_size, format, usages))?;
         let sheets = RaySheets::new(context, sheet_size, format)?;
         let sums = |label, count: u64| {

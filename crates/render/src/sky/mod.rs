@@ -5,6 +5,7 @@
 //! transmittance is summed into two moments over directions: the mean transmittance V₀, and the mean V₁ of
 //! transmittance times direction.
 
+pub(super) mod block_texture;
 pub(super) mod direction_batches;
 pub(super) mod extinction_blocks;
 pub(super) mod fill;

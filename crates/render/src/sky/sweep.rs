@@ -47,7 +47,7 @@ impl SweepPass<'_> {
         let mut layer = 0;
         let mut tiles: Vec<u32> = Vec::new();
         for (slot, DirectionRays { frame, tiles: own }) in packed.iter_mut().zip(rays) {
-            *slot = pack_rays(frame, edge, (layer, tiles.len()), radiance(frame.towards));
+            *slot = pack_rays(frame, edge, layer, tiles.len(), radiance(frame.towards));
             layer += frame.slices();
             tiles.extend(&own.0);
         }
@@ -82,7 +82,8 @@ impl SweepPass<'_> {
 fn pack_rays(
     frame: &SweepFrame,
     edge: f64,
-    (layer, tile): (usize, usize),
+    layer: usize,
+    tile: usize,
     arriving: DVec3,
 ) -> uniforms::SweepRaysUniform {
     uniforms::SweepRaysUniform {

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
+use super::block_texture::BlockTexture;
 use super::floor_map::FloorSkyMap;
 use crate::pipelines::binding::bind_view;
 use crate::pipelines::pipeline_variant::SingleVariant;
 use crate::plan::{CellSet, FloorPlane};
 use crate::resources::fill_time::FillStopwatch;
 use crate::resources::pass;
+use crate::volume::VolumeContext;
 use crate::volume::cell_list::CellList;
-use crate::volume::{VolumeContext, texture_3d};
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::LightVolumeResolution;
 use chiaroscuro_volume::math::SceneSpace;
@@ -23,12 +24,8 @@ pub(crate) const MAX_DIRECTION_TEXELS: u64 = 1 << 26;
 /// Sky visibility of blocks of voxels.
 #[derive(Debug)]
 pub(crate) struct SkyVolume {
-    /// Number of blocks along x, y and z.
-    pub dims: [usize; 3],
-    /// Number of voxels along the edge of a block.
-    pub divisor: usize,
-    /// View of the moments: V₁ in rgb, V₀ in a.
-    pub view: wgpu::TextureView,
+    /// Moments of each block: V₁ in rgb, V₀ in a.
+    pub blocks: BlockTexture,
     /// Sky-visibility map of the floor, if there was a floor when the volume was filled.
     pub floor: Option<FloorSkyMap>,
     /// Cells (of blocks) that hold values, or will when the volume is complete.
@@ -61,27 +58,10 @@ impl SkyVolume {
         divisor: usize,
         SkyVolumeExtent { filled, margin, floor }: SkyVolumeExtent,
     ) -> Result<Self, GpuError> {
-        let dims = scene.dims.map(|n| n.div_ceil(divisor));
-        let texture = context.texture(&texture_3d(
-            "SkyVolume::texture",
-            dims,
-            wgpu::TextureFormat::Rgba16Float,
-            wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-        ))?;
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let blocks = BlockTexture::new(context, "SkyVolume::texture", scene.dims, divisor)?;
         let block = scene.smallest_edge() * divisor as f64;
         let floor = floor.map(|place| FloorSkyMap::new(context, place, block)).transpose()?;
-        Ok(Self {
-            dims,
-            divisor,
-            view,
-            floor,
-            filled_cells: filled,
-            margin,
-            fill_time: FillStopwatch::default(),
-        })
+        Ok(Self { blocks, floor, filled_cells: filled, margin, fill_time: FillStopwatch::default() })
     }
 
     /// Sets the cells of the margin to an unoccluded sky.
@@ -96,21 +76,15 @@ impl SkyVolume {
             "SkyVolume::clear_margin",
             &pipeline,
             0,
-            &[cells.binding(), bind_view("moments", &self.view)],
+            &[cells.binding(), bind_view("moments", &self.blocks.view)],
         );
         pass::dispatch(encoder, "SkyVolume::clear_margin", &pipeline, &[&own], cells.workgroups());
         Ok(())
     }
 
-    /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.
-    pub(crate) fn lookup(&self) -> [f32; 3] {
-        self.dims.map(|n| 1.0 / (n * self.divisor) as f32)
-    }
-
     /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.floor.as_ref().map_or(0, FloorSkyMap::bytes)
-            + 8 * self.dims.iter().map(|&n| n as u64).product::<u64>()
+        self.floor.as_ref().map_or(0, FloorSkyMap::bytes) + self.blocks.bytes()
     }
 }
 
@@ -123,7 +97,7 @@ pub(crate) fn divisor_for_adapter(
     most_texels: u64,
 ) -> usize {
     let most_sums = context.device.limits().max_storage_buffer_binding_size / SUM_BYTES;
-    divisor_for(grid, resolution, (most_texels, most_sums))
+    divisor_for(grid, resolution, most_texels, most_sums)
 }
 
 /// Returns the number of voxels along the edge of a block.
@@ -133,7 +107,8 @@ pub(crate) fn divisor_for_adapter(
 fn divisor_for(
     grid: [usize; 3],
     resolution: LightVolumeResolution,
-    (most_texels, most_sums): (u64, u64),
+    most_texels: u64,
+    most_sums: u64,
 ) -> usize {
     let mut divisor = resolution.divisor();
     let texels = |divisor: usize| {
@@ -154,7 +129,7 @@ mod tests {
 
     #[test]
     fn large_volumes_are_followed_in_larger_blocks() {
-        let of = |n: usize, resolution| divisor_for([n; 3], resolution, (MAX_DIRECTION_TEXELS, u64::MAX));
+        let of = |n: usize, resolution| divisor_for([n; 3], resolution, MAX_DIRECTION_TEXELS, u64::MAX);
         assert_eq!(of(256, LightVolumeResolution::Full), 1);
         assert_eq!(of(257, LightVolumeResolution::Full), 2);
         assert_eq!(of(512, LightVolumeResolution::Half), 2);
@@ -162,12 +137,12 @@ mod tests {
         assert_eq!(of(2048, LightVolumeResolution::Quarter), 8);
         // In a single row of voxels the rays drift as far as they advance, so only 256 blocks are possible.
         assert_eq!(
-            divisor_for([4096, 1, 1], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, u64::MAX)),
+            divisor_for([4096, 1, 1], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, u64::MAX),
             16
         );
         // The smallest limit on bindings of all adapters is 128 MiB.
         let least = (128 << 20) / SUM_BYTES;
-        assert_eq!(divisor_for([256; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 2);
-        assert_eq!(divisor_for([203; 3], LightVolumeResolution::Full, (MAX_DIRECTION_TEXELS, least)), 1);
+        assert_eq!(divisor_for([256; 3], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, least), 2);
+        assert_eq!(divisor_for([203; 3], LightVolumeResolution::Full, MAX_DIRECTION_TEXELS, least), 1);
     }
 }

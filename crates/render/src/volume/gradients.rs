@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::GpuVolume;
-use super::pyramid::{level_buffers, level_view};
+use super::pyramid::{LevelBuffers, level_buffers, level_view};
 use crate::pipelines::binding::{bind_buffer, bind_view};
 use crate::pipelines::pipeline_variant::SingleVariant;
 use crate::resources::pass;
@@ -52,16 +52,16 @@ pub(crate) fn fill_gradients(
     let Some(gradients) = &volume.gradients else { return Ok(()) };
     let bricks = &volume.filled_levels[level as usize][range.clone()];
     let pipeline = shaders.pipeline(&SingleVariant("volume/gradients.wgsl"))?;
-    let (uniform, list) = level_buffers(context, level, bricks);
+    let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
     let bind_group = pass::bind(
         context,
         "Gradients::bind_group",
         &pipeline,
         0,
         &[
-            bind_view("source", &level_view(&volume.pyramid, level)),
+            bind_view("source_texture", &level_view(&volume.pyramid, level)),
             bind_buffer("bound_resample", &uniform),
-            bind_view("gradients", &level_view(gradients, level)),
+            bind_view("gradient_level", &level_view(gradients, level)),
             bind_buffer("bricks", &list),
         ],
     );

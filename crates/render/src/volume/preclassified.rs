@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::brick_list::two_workgroups_per_brick;
-use super::pyramid::{self, level_buffers, level_view};
+use super::pyramid::{self, LevelBuffers, level_buffers, level_view};
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
@@ -128,10 +128,10 @@ impl PreclassifiedVoxels {
             _ => level_view(&self.texture, level - 1),
         };
         let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
-        let (uniform, list) = level_buffers(context, level, bricks);
+        let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
         let target = level_view(&self.texture, level);
         let mut entries = vec![
-            bind_view("source", &source),
+            bind_view("source_texture", &source),
             bind_view("level", &target),
             bind_buffer("bound_resample", &uniform),
             bind_buffer("bricks", &list),
@@ -141,7 +141,7 @@ impl PreclassifiedVoxels {
                 bind_buffer("table", table),
                 bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)),
             ]),
-            _ => entries.push(sampler("clamped", &volume.clamped)),
+            _ => entries.push(sampler("source_sampler", &volume.clamped)),
         }
         let bind_group = pass::bind(context, "Materials::bind_group", &pipeline, 0, &entries);
         let groups = two_workgroups_per_brick(bricks.len().max(1) as u32);

@@ -79,19 +79,22 @@ pub(crate) fn level_view(texture: &wgpu::Texture, level: u32) -> wgpu::TextureVi
     })
 }
 
+/// Buffers of a pass that fills bricks of one level.
+pub(crate) struct LevelBuffers {
+    pub uniform: wgpu::Buffer,
+    /// List of the bricks to be filled.
+    pub bricks: wgpu::Buffer,
+}
+
 /// Creates the uniform of a level and the list of its bricks, which has at least one entry.
-pub(crate) fn level_buffers(
-    context: &GpuContext,
-    level: u32,
-    bricks: &[u32],
-) -> (wgpu::Buffer, wgpu::Buffer) {
+pub(crate) fn level_buffers(context: &GpuContext, level: u32, bricks: &[u32]) -> LevelBuffers {
     let spacing = (1u32 << level) as f32;
     let uniform = uniforms::PyramidLevelUniform { bricks: bricks.len() as u32, spacing, pad0: 0, pad1: 0 };
     let list = if bricks.is_empty() { &[0] } else { bricks };
-    (
-        context.buffer("Pyramid::uniform", &[uniform], wgpu::BufferUsages::UNIFORM),
-        context.buffer("Pyramid::bricks", list, wgpu::BufferUsages::STORAGE),
-    )
+    LevelBuffers {
+        uniform: context.buffer("Pyramid::uniform", &[uniform], wgpu::BufferUsages::UNIFORM),
+        bricks: context.buffer("Pyramid::bricks", list, wgpu::BufferUsages::STORAGE),
+    }
 }
 
 /// Pipeline variant of the pass that blurs the volume into level 0.
@@ -130,11 +133,11 @@ pub(crate) fn fill_pyramid(
         _ => level_view(&volume.pyramid, level - 1),
     };
     let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
-    let (uniform, list) = level_buffers(context, level, bricks);
+    let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
     let target = level_view(&volume.pyramid, level);
     let mut entries = vec![
-        bind_view("source", &source),
-        sampler("clamped", &volume.clamped),
+        bind_view("source_texture", &source),
+        sampler("source_sampler", &volume.clamped),
         bind_view("level", &target),
         bind_buffer("bound_resample", &uniform),
         bind_buffer("bricks", &list),

@@ -8,6 +8,7 @@ use super::preclassified::PreclassifiedVoxels;
 use super::{GpuVolume, PassPyramids, PyramidViews, brick_dims};
 use crate::pipelines::pipeline_variant::GridBoundaries;
 use crate::plan::{BrickSet, CellDistances, CellSet, NearFieldOffset, TablesKey};
+use crate::resources::cache_entry::CacheEntry;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::{BakedTransfer, LIGHT_COLORS, Settings};
 use chiaroscuro_volume::CELL_EDGE;
@@ -194,35 +195,40 @@ pub(crate) struct CellRequirement {
 /// Maximum number of cached sets of needed cells: for eight lights, two settings and two resolutions.
 const MAX_CACHED_SETS: usize = 32;
 
+/// Transfer tables for a key, and how many of them had to be baked.
+pub(crate) struct TableBakeResult {
+    pub tables: TransferTables,
+    /// Number of tables that were baked; the others were taken from earlier ones.
+    pub baked: u32,
+}
+
 impl TransferTables {
-    /// Bakes the tables that differ from `previous`, which belong to the same volume and another key. Returns the
-    /// tables and the number of tables baked.
+    /// Bakes the tables that differ from `previous`, which belong to the same volume and another key.
     ///
     /// # Errors
     /// Returns an error if memory is exhausted.
-    pub(crate) fn new(
+    pub(crate) fn bake(
         context: &GpuContext,
         volume: &GpuVolume,
         settings: &Settings,
         key: &TablesKey,
-        previous: Option<(&TablesKey, &Self)>,
-    ) -> Result<(Self, u32), GpuError> {
+        previous: Option<&CacheEntry<TablesKey, Self>>,
+    ) -> Result<TableBakeResult, GpuError> {
         let range = volume.volume.table_range();
         let bounded = key.cells_are_bounds;
-        let previous = previous.filter(|(known, _)| known.cells_are_bounds == bounded);
-        let known = || previous.into_iter().flat_map(|(_, tables)| [&tables.eye, &tables.lighting]);
+        let previous = previous.filter(|known| known.key().cells_are_bounds == bounded);
+        let known = || previous.into_iter().flat_map(|known| [&known.product.eye, &known.product.lighting]);
         let mut baked = 0;
-        let eye = if let Some((_, tables)) = previous.filter(|(known, _)| known.eye == key.eye) {
-            tables.eye.clone()
+        let eye = if let Some(known) = previous.filter(|known| known.key().eye == key.eye) {
+            known.product.eye.clone()
         } else {
             baked += 1;
             TransferTable::new(context, volume, settings.bake_eye(range, &volume.scene), bounded, known())
         };
         let is_lit_alike =
             |known: &TablesKey| (&known.lighting, &known.transmission) == (&key.lighting, &key.transmission);
-        let (lighting, colors) = if let Some((_, tables)) = previous.filter(|(known, _)| is_lit_alike(known))
-        {
-            (tables.lighting.clone(), tables.colors.clone())
+        let (lighting, colors) = if let Some(known) = previous.filter(|known| is_lit_alike(known.key())) {
+            (known.product.lighting.clone(), known.product.colors.clone())
         } else {
             baked += 1;
             let lighting = settings.bake_lighting(range, &volume.scene);
@@ -230,7 +236,7 @@ impl TransferTables {
             let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));
             (lighting, colors.unwrap_or_default())
         };
-        if let Some((_, tables)) = previous {
+        if let Some(CacheEntry { product: tables, .. }) = previous {
             let is_same = |a: &TransferTable, b: &TransferTable| Arc::ptr_eq(&a.distances, &b.distances);
             if is_same(&eye, &tables.eye) && is_same(&lighting, &tables.lighting) {
                 let (eye_distances, light_distances) =
@@ -245,7 +251,7 @@ impl TransferTables {
                     occupied_distances: shown,
                     needed_cells: needed,
                 };
-                return Ok((tables, baked));
+                return Ok(TableBakeResult { tables, baked });
             }
         }
         let shown = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
@@ -271,18 +277,16 @@ impl TransferTables {
             wgpu::TextureFormat::Rg8Unorm,
         )?;
         let needed = RefCell::default();
-        Ok((
-            Self {
-                eye,
-                lighting,
-                colors,
-                eye_distances,
-                light_distances,
-                occupied_distances: shown,
-                needed_cells: needed,
-            },
-            baked,
-        ))
+        let tables = Self {
+            eye,
+            lighting,
+            colors,
+            eye_distances,
+            light_distances,
+            occupied_distances: shown,
+            needed_cells: needed,
+        };
+        Ok(TableBakeResult { tables, baked })
     }
 
     /// Returns the table that attenuates light, or one of its colours.

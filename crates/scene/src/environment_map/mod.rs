@@ -44,7 +44,7 @@ impl EnvironmentMap {
     /// Reduces a panorama to environment light; `None` if it is black.
     pub fn from_panorama(name: String, mut panorama: Panorama) -> Option<Self> {
         let light = brightest_light::extract_brightest_light(&mut panorama);
-        let (mean, slope) = linear_part(&panorama);
+        let LinearRadiance { mean, slope } = linear_part(&panorama);
         let light_luminance = light.map_or(0.0, |light| light.intensity * luminance(light.color));
         // Reflection of a surface that faces the maximum of the radiance a + b·ω: ∫ (a + b·ω) cos dω / π = a + ⅔ b.
         let slope_of = |axis: usize| luminance(slope.map(|slope| slope[axis]));
@@ -61,9 +61,15 @@ impl EnvironmentMap {
     }
 }
 
+/// Radiance of each colour as a linear function of the direction.
+struct LinearRadiance {
+    mean: [f64; 3],
+    slope: [DVec3; 3],
+}
+
 /// Returns the mean radiance and the slope of the linear function of the direction closest to it in the least-squares
 /// sense, 3 ⟨L ω⟩, limited so that irradiance is nowhere negative (a + ⅔ b·n ≥ 0).
-fn linear_part(panorama: &Panorama) -> ([f64; 3], [DVec3; 3]) {
+fn linear_part(panorama: &Panorama) -> LinearRadiance {
     let (mut mean, mut slope) = ([0.0; 3], [DVec3::ZERO; 3]);
     for cell in panorama.cells() {
         let share = cell.solid_angle / (4.0 * std::f64::consts::PI);
@@ -75,7 +81,7 @@ fn linear_part(panorama: &Panorama) -> ([f64; 3], [DVec3; 3]) {
     for c in 0..3 {
         slope[c] = slope[c].clamp_length_max(1.5 * mean[c]);
     }
-    (mean, slope)
+    LinearRadiance { mean, slope }
 }
 
 #[cfg(test)]

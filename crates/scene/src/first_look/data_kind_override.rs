@@ -61,7 +61,10 @@ mod tests {
         let labels = treated(Some(KindName::LabelMap), &mine);
         let wishes = FirstLookOptions { data_kind: Some(KindName::LabelMap), up: SceneAxis::PlusY };
         let first = first_settings_with(&volume, &histogram, wishes);
-        assert_eq!((&labels.transfer, labels.range), (&first.transfer, first.range));
+        assert_eq!(
+            (&labels.layer().transfer, labels.layer().range),
+            (&first.layer().transfer, first.layer().range)
+        );
         assert_eq!((&labels.camera, &labels.lights), (&first.camera, &first.lights));
         assert_eq!(labels.floor, FloorSettings { height: first.floor.height, ..mine.floor.clone() });
         assert_eq!(labels.sampling.classification, ClassificationOrder::Pre);
@@ -73,6 +76,6 @@ mod tests {
         // Back to the detected kind.
         let again = treated(None, &labels);
         assert_eq!(again.sampling, mine.sampling);
-        assert_eq!(again.transfer, mine.transfer);
+        assert_eq!(again.layer().transfer, mine.layer().transfer);
     }
 }

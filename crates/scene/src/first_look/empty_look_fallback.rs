@@ -35,7 +35,7 @@ pub(super) fn with_fallback(
     if found == VisibleContent::Object {
         return first;
     }
-    let robust = |transfer: TransferFunction| Settings { transfer, ..first.clone() };
+    let robust = |transfer: TransferFunction| first.clone().with_transfer(transfer);
     let isosurfaces = || IsosurfaceStatistics::measure(volume);
     let beginning_at = |start: f64| {
         let edge = ObjectThreshold { start, slope: isosurfaces().slope(start).unwrap_or_default() };
@@ -47,7 +47,7 @@ pub(super) fn with_fallback(
         &|| {
             let all = volume.with_density_mapping(volume.value_range());
             let transfer = transfer::find_transfer(&all, &Histogram::from_volume(&all), kind).transfer;
-            Settings { range: DensityRange::Full, transfer, ..first.clone() }
+            first.clone().with_range(DensityRange::Full).with_transfer(transfer)
         },
         &|| robust(densest_transfer(volume)),
     ];
@@ -127,11 +127,10 @@ pub fn densest_transfer(volume: &Volume) -> TransferFunction {
 
 /// Returns the settings with a transfer function that certainly shows something: see [`densest_transfer`].
 pub fn with_visible_transfer(settings: &Settings, volume: &Volume) -> Settings {
-    Settings {
-        range: DensityRange::Robust,
-        labels: LabelTable::default(),
-        transfer: densest_transfer(volume),
-        lighting: LightingTransfer::default(),
-        ..settings.clone()
-    }
+    settings
+        .clone()
+        .with_range(DensityRange::Robust)
+        .with_labels(LabelTable::default())
+        .with_transfer(densest_transfer(volume))
+        .with_lighting(LightingTransfer::default())
 }

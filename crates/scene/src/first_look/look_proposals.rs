@@ -80,20 +80,20 @@ pub fn propose_looks(first: &Settings, volume: &Volume, histogram: &Histogram) -
     paper.floor.shadow_only = true;
     all.push(proposal("On paper", "on a white background, as in print", paper));
     let mut thin = first.clone();
-    transfer::scale_opacity(&mut thin.transfer, TRANSLUCENT_OPACITY);
-    thin.labels.modify_all(|_, look| look.opacity *= TRANSLUCENT_OPACITY);
+    transfer::scale_opacity(&mut thin.layer_mut().transfer, TRANSLUCENT_OPACITY);
+    thin.layer_mut().labels.modify_all(|_, look| look.opacity *= TRANSLUCENT_OPACITY);
     all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
-    let has_veil = veil_end(&first.transfer);
-    if let Some(start) = has_veil.or_else(|| inner_start(&first.transfer, volume, histogram)) {
+    let has_veil = veil_end(&first.layer().transfer);
+    if let Some(start) = has_veil.or_else(|| inner_start(&first.layer().transfer, volume, histogram)) {
         let channels = DataDomain::from_channels(volume);
-        let inner = transfer::inner_transfer(&first.transfer, start, channels);
-        let inner = Settings { transfer: inner, ..first.clone() };
+        let inner = transfer::inner_transfer(&first.layer().transfer, start, channels);
+        let inner = first.clone().with_transfer(inner);
         all.push(proposal("Inner structure", "only the densest material", reframed(inner, first, volume)));
         if has_veil.is_some() {
             return sanitise_all(all);
         }
-        let veil = transfer::veiled_transfer(&first.transfer, start, VEIL_OPACITY, channels);
-        let veil = Settings { transfer: veil, ..first.clone() };
+        let veil = transfer::veiled_transfer(&first.layer().transfer, start, VEIL_OPACITY, channels);
+        let veil = first.clone().with_transfer(veil);
         all.push(proposal("Veil", "the outside is a veil around the densest material", veil));
     }
     sanitise_all(all)
@@ -167,10 +167,10 @@ fn soft_light_look(first: &Settings) -> Settings {
 /// Returns the look in one colour, slightly rough, with three-point lighting.
 fn clay_look(first: &Settings) -> Settings {
     let mut clay = Settings { lights: LightingRig::KeyFillBack.lights(&first.camera), ..first.clone() };
-    for point in &mut clay.transfer.points {
+    for point in &mut clay.layer_mut().transfer.points {
         point.color = CLAY_COLOR;
     }
-    clay.labels.modify_all(|_, look| look.color = CLAY_COLOR);
+    clay.layer_mut().labels.modify_all(|_, look| look.color = CLAY_COLOR);
     clay.shading.specular = 0.08;
     clay
 }
@@ -201,7 +201,7 @@ mod tests {
                 let mut sane = one.settings.clone();
                 sane.sanitise();
                 assert_eq!(sane, one.settings, "{}", one.name);
-                let points = &one.settings.transfer.points;
+                let points = &one.settings.layer().transfer.points;
                 assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", one.name);
             }
         }
@@ -236,11 +236,14 @@ mod tests {
         let of = |name: &str| &all.iter().find(|one| one.name == name).expect("a look").settings;
         // The core is hidden: the first look has a veil around it, a skin that is transparent inside.
         let (inner, first) = (of("Inner structure"), &all[0].settings);
-        assert_eq!(inner.transfer.opacity_at(90.0), 0.0);
-        assert!(inner.transfer.opacity_at(220.0) > 0.5 && first.transfer.opacity_at(220.0) > 0.5);
-        let skin = (0..90).map(|value| first.transfer.opacity_at(f64::from(value))).fold(0.0, f64::max);
+        assert_eq!(inner.layer().transfer.opacity_at(90.0), 0.0);
         assert!(
-            (0.001..MAX_VEIL_OPACITY).contains(&skin) && first.transfer.opacity_at(90.0) < 0.5 * skin,
+            inner.layer().transfer.opacity_at(220.0) > 0.5 && first.layer().transfer.opacity_at(220.0) > 0.5
+        );
+        let skin =
+            (0..90).map(|value| first.layer().transfer.opacity_at(f64::from(value))).fold(0.0, f64::max);
+        assert!(
+            (0.001..MAX_VEIL_OPACITY).contains(&skin) && first.layer().transfer.opacity_at(90.0) < 0.5 * skin,
             "{skin}"
         );
         assert!(inner.camera.distance < first.camera.distance, "nearer to what is smaller");
@@ -253,8 +256,9 @@ mod tests {
         let histogram = Histogram::from_volume(&volume);
         let mut first = first_settings(&volume, &histogram);
         // Opaque at both ends, as for signed fields.
-        let opaque = crate::ControlPoint::new(first.transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
-        first.transfer.points.insert(0, opaque);
+        let opaque =
+            crate::ControlPoint::new(first.layer().transfer.points[0].value - 1.0, [0.2, 0.3, 0.9], 0.9);
+        first.layer_mut().transfer.points.insert(0, opaque);
         let all = propose_looks(&first, &volume, &histogram);
         assert!(all.iter().all(|one| one.name != "Veil"));
     }

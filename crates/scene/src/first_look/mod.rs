@@ -81,20 +81,20 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
-        transfer: found.transfer,
-        labels: found.labels,
-        opacity_unit: opacity_unit(volume),
         lights: Vec::new(),
         shading: shading(found.domain),
         // An automatic look stays as bright as without shadows.
         shadows: ShadowSettings { keep_balanced: true, ..ShadowSettings::default() },
         volume: *volume.corrections(),
         ..Settings::default()
-    };
+    }
+    .with_transfer(found.transfer)
+    .with_labels(found.labels)
+    .with_opacity_unit(opacity_unit(volume));
     QualityPreset::Standard.apply(&mut settings);
     if let DataKind::LabelMap { .. } = kind {
         // Numbers between two labels mean nothing, and no label is an outlier.
-        settings.range = transfer::range_of_labels(volume);
+        settings.layer_mut().range = transfer::range_of_labels(volume);
         settings.sampling.classification = ClassificationOrder::Pre;
         // Sharper than the B-spline, which would round off the shapes of voxels.
         (settings.sampling.kernel, settings.shadows.kernel) =
@@ -107,8 +107,8 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     match kind {
         // All labels are shown already; a label that hides the others is framed, too.
         DataKind::LabelMap { .. } => {
-            let unit = settings.opacity_unit;
-            transfer::make_cover_translucent(&mut settings.labels, volume, unit);
+            let unit = settings.layer().opacity_unit;
+            transfer::make_cover_translucent(&mut settings.layer_mut().labels, volume, unit);
             settings
         }
         DataKind::Mask => settings,
@@ -117,9 +117,9 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
             reveal::reveal_inner_material(settings, volume, histogram)
         }
         DataKind::HounsfieldCt { water } => {
-            let bones = (domain == DataDomain::Bone).then(|| settings.transfer.clone());
+            let bones = (domain == DataDomain::Bone).then(|| settings.layer().transfer.clone());
             let settings = empty_look_fallback::with_fallback(settings, volume, histogram, kind);
-            if bones.is_some_and(|bones| bones == settings.transfer) {
+            if bones.is_some_and(|bones| bones == settings.layer().transfer) {
                 reveal::with_skin(settings, volume, water)
             } else {
                 settings
@@ -141,9 +141,10 @@ fn choose_view_and_lights(settings: &mut Settings, volume: &Volume) {
 
 /// Frames a veil as if it were opaque; otherwise it is too transparent to count as visible.
 fn frame_veil(settings: Settings, volume: &Volume) -> Settings {
-    let mut opaque = Settings { transfer: transfer::opaque_transfer(&settings.transfer), ..settings.clone() };
+    let veil = settings.layer().transfer.clone();
+    let mut opaque = settings.with_transfer(transfer::opaque_transfer(&veil));
     choose_view_and_lights(&mut opaque, volume);
-    Settings { transfer: settings.transfer, ..opaque }
+    opaque.with_transfer(veil)
 }
 
 /// Returns the opacity unit of a first look.
@@ -260,10 +261,7 @@ mod tests {
     pub(super) fn threshold_settings() -> Settings {
         let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
         let points = vec![point(100.0, 0.0), point(101.0, 1.0), point(255.0, 1.0)];
-        Settings {
-            transfer: TransferFunction { points, ..TransferFunction::default() },
-            ..Settings::default()
-        }
+        Settings::default().with_transfer(TransferFunction { points, ..TransferFunction::default() })
     }
 
     /// Returns a ball of one value in a margin of another, with a ripple on both.

@@ -58,7 +58,7 @@ impl VisibleObject {
         let shown: Vec<bool> = (0..=HISTOGRAM_BINS)
             .map(|bin| {
                 // Labels lie at least four bins apart, so that no two share a bin.
-                settings.transfer.opacity_at(range.value_at(bin as f64 / HISTOGRAM_BINS as f64))
+                settings.layer().transfer.opacity_at(range.value_at(bin as f64 / HISTOGRAM_BINS as f64))
                     > MIN_VISIBLE_OPACITY
             })
             .collect();

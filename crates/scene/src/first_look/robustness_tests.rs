@@ -35,8 +35,8 @@ fn look(volume: &Volume) -> Settings {
 fn largest_point_change(from: &Settings, volume: &Volume) -> f64 {
     let to = look(volume);
     assert_eq!(visible_content(&to, volume), VisibleContent::Object);
-    assert_eq!(from.transfer.points.len(), to.transfer.points.len());
-    let pairs = from.transfer.points.iter().zip(&to.transfer.points);
+    assert_eq!(from.layer().transfer.points.len(), to.layer().transfer.points.len());
+    let pairs = from.layer().transfer.points.iter().zip(&to.layer().transfer.points);
     let largest = pairs.map(|(a, b)| (a.value - b.value).abs()).fold(0.0, f64::max);
     largest / volume.ranges().robust.span()
 }
@@ -90,14 +90,14 @@ fn a_border_of_the_lowest_value_hardly_matters() {
         let padded = Volume::with_spacing("t", [wide; 3], DVec3::ONE, Samples::F64(padded)).unwrap();
         let robust = padded.ranges().robust;
         assert!(robust.low > lowest - 0.1 * robust.span(), "{robust:?}");
-        let function = look(&padded).transfer;
+        let function = look(&padded).layer().transfer.clone();
         // Noise in the corners is hidden, the ball is visible.
         assert!(
             function.opacity_at(50.0) < 0.01 && function.opacity_at(880.0) > 0.3,
             "{padding}: {function:?}"
         );
         let ends = |look: &TransferFunction| look.points.last().unwrap().value;
-        assert!((ends(&function) - ends(&before.transfer)).abs() <= 0.01 * robust.span());
+        assert!((ends(&function) - ends(&before.layer().transfer)).abs() <= 0.01 * robust.span());
     }
 }
 
@@ -108,7 +108,7 @@ fn scale_and_offset_change_nothing_in_relative_terms() {
     for (scale, offset) in [(3.0, 0.0), (0.001, -5.0), (1e6, 1e9)] {
         let changed = volume(&values.iter().map(|value| value * scale + offset).collect::<Vec<_>>());
         let mut moved = before.clone();
-        for point in &mut moved.transfer.points {
+        for point in &mut moved.layer_mut().transfer.points {
             point.value = point.value * scale + offset;
         }
         // Rounding may move a value to the next bin.
@@ -262,7 +262,7 @@ fn no_picture_is_empty() {
     for (what, values) in [("constant", constant), ("outlier", outlier), ("mask", mask)] {
         let volume = volume(&values);
         assert_ne!(visible_content(&look(&volume), &volume), VisibleContent::Nothing, "{what}");
-        let blind = Settings { transfer: TransferFunction::default(), ..Settings::default() };
+        let blind = Settings::default().with_transfer(TransferFunction::default());
         let mut helped = with_visible_transfer(&blind, &volume);
         choose_view_and_lights(&mut helped, &volume);
         assert_ne!(visible_content(&helped, &volume), VisibleContent::Nothing, "{what}");

@@ -1,7 +1,7 @@
 //! Adapting a look to corrections of its volume: lengths and data values in the settings are converted, so that the
 //! image keeps showing the same part of the object.
 
-use crate::{DensityRange, LabelTable, OpacityLength, Settings};
+use crate::{DensityRange, LabelTable, OpacityLength, Settings, VolumeLayer};
 use chiaroscuro_volume::{Corrections, ValueRange, ValueScale, Volume};
 
 /// Significant digits of a converted length, so that converting there and back gives the original number.
@@ -16,16 +16,22 @@ impl Settings {
     pub fn apply_corrections(&mut self, corrections: Corrections, volume: &Volume) {
         let before = std::mem::replace(&mut self.volume, corrections);
         self.volume.sanitise();
-        if let OpacityLength::Mm(mm) = self.opacity_unit {
-            let [old, new] = [before, self.volume].map(|by| volume.corrected_scene(&by).mm_per_unit);
-            let longer = new / old;
-            if longer != 1.0 && longer.is_finite() && longer > 0.0 {
-                self.opacity_unit = OpacityLength::Mm(round_to_digits(mm * longer));
+        let [old, new] = [before, self.volume].map(|by| volume.corrected_scene(&by).mm_per_unit);
+        let longer = new / old;
+        for layer in self.layers.iter_mut() {
+            if let OpacityLength::Mm(mm) = layer.opacity_unit
+                && longer != 1.0
+                && longer.is_finite()
+                && longer > 0.0
+            {
+                layer.opacity_unit = OpacityLength::Mm(round_to_digits(mm * longer));
             }
+            layer.convert_values(before.value_scale, self.volume.value_scale);
         }
-        self.convert_values(before.value_scale, self.volume.value_scale);
     }
+}
 
+impl VolumeLayer {
     /// Converts data values from one value scale to another.
     fn convert_values(&mut self, before: ValueScale, after: ValueScale) {
         if before == after {
@@ -73,11 +79,11 @@ mod tests {
     }
 
     fn look() -> Settings {
-        let mut look = Settings { opacity_unit: OpacityLength::Mm(1.3), ..Settings::default() };
+        let mut look = Settings::default().with_opacity_unit(OpacityLength::Mm(1.3));
         let point = |value| ControlPoint::new(value, [1.0; 3], value / 255.0);
-        look.transfer.points = [10.0, 10.0, 200.0].map(point).to_vec();
-        look.range = DensityRange::Typed(ValueRange::new(3.0, 230.0));
-        look.labels.entry_mut(7);
+        look.layer_mut().transfer.points = [10.0, 10.0, 200.0].map(point).to_vec();
+        look.layer_mut().range = DensityRange::Typed(ValueRange::new(3.0, 230.0));
+        look.layer_mut().labels.entry_mut(7);
         look
     }
 
@@ -90,14 +96,15 @@ mod tests {
             let wanted = Corrections { spacing: Some(spacing), ..Corrections::default() };
             look.apply_corrections(wanted, &volume);
             let corrected = volume.corrected(&look.volume).unwrap();
-            let share = |look: &Settings, volume: &Volume| look.opacity_unit.scene_units(&volume.scene());
+            let share =
+                |look: &Settings, volume: &Volume| look.layer().opacity_unit.scene_units(&volume.scene());
             assert!((share(&look, &corrected) / share(&before, &volume) - 1.0).abs() < 1e-10);
         }
         look.apply_corrections(
             Corrections { unit: Some(SpacingUnit::Um), ..Corrections::default() },
             &volume,
         );
-        assert_eq!(look.opacity_unit, OpacityLength::Mm(1.3e-3));
+        assert_eq!(look.layer().opacity_unit, OpacityLength::Mm(1.3e-3));
         look.apply_corrections(Corrections::default(), &volume);
         assert_eq!(look, before);
     }
@@ -109,17 +116,23 @@ mod tests {
             let value_scale = ValueScale { slope, intercept };
             let mut look = before.clone();
             look.apply_corrections(Corrections { value_scale, ..Corrections::default() }, &volume);
-            assert!(look.transfer.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
+            assert!(look.layer().transfer.points.windows(2).all(|pair| pair[0].value <= pair[1].value));
             for number in [0.0, 9.0, 11.0, 100.0, 199.0] {
-                let opacity = look.transfer.opacity_at(value_scale.value_from_number(number));
-                assert!((opacity - before.transfer.opacity_at(number)).abs() < 1e-12, "{slope}: {number}");
+                let opacity = look.layer().transfer.opacity_at(value_scale.value_from_number(number));
+                assert!(
+                    (opacity - before.layer().transfer.opacity_at(number)).abs() < 1e-12,
+                    "{slope}: {number}"
+                );
             }
-            let DensityRange::Typed(range) = look.range else { panic!("it was typed") };
+            let DensityRange::Typed(range) = look.layer().range else { panic!("it was typed") };
             assert!(range.low < range.high && range.contains(value_scale.value_from_number(3.0)));
             let number = value_scale.value_from_number(7.0).round() as i64;
-            assert_eq!(look.labels.get(number), Some(&LabelLook::default_for(7)));
+            assert_eq!(look.layer().labels.get(number), Some(&LabelLook::default_for(7)));
             look.apply_corrections(Corrections::default(), &volume);
-            assert_eq!((look.transfer, look.range), (before.transfer.clone(), before.range));
+            assert_eq!(
+                (&look.layer().transfer, look.layer().range),
+                (&before.layer().transfer, before.layer().range)
+            );
         }
     }
 }

@@ -53,13 +53,14 @@ impl Settings {
     /// Returns the values with densities 0 and 1 in images of a volume with these value ranges: the chosen range,
     /// widened by control points outside it, but not beyond the values of the volume.
     pub fn shown_range(&self, ranges: &ValueRanges) -> ValueRange {
-        let chosen = self.range.resolve(ranges);
+        let chosen = self.layer().range.resolve(ranges);
         let span = chosen.span();
         if span <= 0.0 {
             return chosen;
         }
-        let light = (!self.lighting.linked).then_some(&self.lighting.curve);
-        let curves = std::iter::once(&self.transfer).chain(light);
+        let layer = self.layer();
+        let light = (!layer.lighting.linked).then_some(&layer.lighting.curve);
+        let curves = std::iter::once(&layer.transfer).chain(light);
         let values = curves.flat_map(|curve| &curve.points).map(|point| point.value);
         let (lowest, highest) =
             values.fold((chosen.low, chosen.high), |(low, high), value| (low.min(value), high.max(value)));
@@ -80,10 +81,10 @@ impl Settings {
     #[must_use]
     pub fn with_density_range(&self, range: ValueRange, ranges: &ValueRanges) -> Self {
         let own = self.shown_range(ranges);
-        if own == range || !self.labels.is_empty() {
+        if own == range || !self.layer().labels.is_empty() {
             return self.clone();
         }
-        let mut wider = Self { range: DensityRange::Typed(range), ..self.clone() };
+        let mut wider = self.clone().with_range(DensityRange::Typed(range));
         // Density gradients shrink in proportion to the widened range.
         wider.shading.surface_gradient *= own.span() / range.span();
         wider
@@ -101,7 +102,7 @@ mod tests {
     fn shown(range: DensityRange, values: &[f64]) -> ValueRange {
         let points = values.iter().map(|&value| ControlPoint::new(value, [1.0; 3], 0.5)).collect();
         let transfer = TransferFunction { points, ..TransferFunction::default() };
-        Settings { range, transfer, ..Settings::default() }.shown_range(&RANGES)
+        Settings::default().with_range(range).with_transfer(transfer).shown_range(&RANGES)
     }
 
     #[test]
@@ -122,17 +123,17 @@ mod tests {
     #[test]
     fn the_lighting_curve_widens_it_where_it_is_used() {
         let mut settings = Settings::default();
-        settings.transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.5)];
-        settings.lighting.curve.points = vec![ControlPoint::new(3400.0, [1.0; 3], 0.5)];
+        settings.layer_mut().transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.5)];
+        settings.layer_mut().lighting.curve.points = vec![ControlPoint::new(3400.0, [1.0; 3], 0.5)];
         assert_eq!(settings.shown_range(&RANGES), RANGES.robust);
-        settings.lighting.linked = false;
+        settings.layer_mut().lighting.linked = false;
         assert_eq!(settings.shown_range(&RANGES).high, 3500.0);
     }
 
     #[test]
     fn a_wider_range_is_shown_as_it_is() {
         let mut settings = Settings::default();
-        settings.transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.5)];
+        settings.layer_mut().transfer.points = vec![ControlPoint::new(0.0, [1.0; 3], 0.5)];
         assert_eq!(settings.with_density_range(RANGES.robust, &RANGES), settings);
         let range = ValueRange::new(-2000.0, 6000.0);
         let wider = settings.with_density_range(range, &RANGES);

@@ -209,7 +209,7 @@ pub struct LabelMaterial {
 impl Settings {
     /// Returns the meaning of densities in images of a volume with these value ranges: values or label classes.
     pub fn shown_content(&self, ranges: &ValueRanges) -> DensityMapping {
-        if self.labels.is_empty() {
+        if self.layer().labels.is_empty() {
             DensityMapping::Range(self.shown_range(ranges))
         } else {
             DensityMapping::Labels
@@ -219,20 +219,20 @@ impl Settings {
     /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
     /// between two labels mean nothing.
     pub fn classification(&self) -> ClassificationOrder {
-        if self.labels.is_empty() { self.sampling.classification } else { ClassificationOrder::Pre }
+        if self.layer().labels.is_empty() { self.sampling.classification } else { ClassificationOrder::Pre }
     }
 
     /// Returns the settings as used for rendering a volume: if it is shown by labels, the transfer function is made
     /// of their looks over their classes, light uses the same, and voxels are classified before they are spread. Keys
     /// do not change.
     pub fn resolved_for(&self, volume: &Volume) -> Cow<'_, Self> {
-        if self.labels.is_empty() {
+        if self.layer().labels.is_empty() {
             return Cow::Borrowed(self);
         }
         let Some(labels) = volume.labels() else { return Cow::Borrowed(self) };
         let mut drawn = self.clone();
-        drawn.transfer = self.labels.step_function(labels);
-        drawn.lighting.linked = true;
+        drawn.layer_mut().transfer = self.layer().labels.step_function(labels);
+        drawn.layer_mut().lighting.linked = true;
         drawn.sampling.classification = self.classification();
         Cow::Owned(drawn)
     }
@@ -244,7 +244,7 @@ mod tests {
     use half::f16;
 
     use super::*;
-    use crate::{BakedTransfer, OpacityLength, apply_path, load_json, settings_to_json};
+    use crate::{AppliedSettings, BakedTransfer, OpacityLength, apply_path, load_json, settings_to_json};
     use chiaroscuro_volume::{MAX_CLASSES, Samples};
 
     /// Creates a volume with the given labels in a row.
@@ -260,7 +260,7 @@ mod tests {
     }
 
     fn with(labels: LabelTable) -> Settings {
-        Settings { labels, opacity_unit: OpacityLength::Mm(1.0), ..Settings::default() }
+        Settings::default().with_labels(labels).with_opacity_unit(OpacityLength::Mm(1.0))
     }
 
     /// Returns a look that is unique to a number.
@@ -278,9 +278,9 @@ mod tests {
             let looks = numbers.iter().map(|&number| (i64::from(number), unmistakable(number.into())));
             let settings = with(looks.collect());
             let table = baked(&settings, &volume);
-            let wanted = settings.resolved_for(&volume).into_owned().transfer;
+            let wanted = settings.resolved_for(&volume).into_owned().layer().transfer.clone();
             for (rank, density) in volume.slice_densities(0).into_iter().enumerate() {
-                let look = settings.labels.look_or_default(numbers[rank].into());
+                let look = settings.layer().labels.look_or_default(numbers[rank].into());
                 assert_eq!(wanted.opacity_at(rank as f64) as f32, look.opacity as f32);
                 let own = table.entries[(rank as f64 * 1023.0 / (count - 1) as f64).round() as usize];
                 let unorm = (density * 65535.0).round() / 65535.0;
@@ -324,8 +324,8 @@ mod tests {
         let mut settings =
             with([(2, LabelLook { visible: false, ..LabelLook::default_for(2) })].into_iter().collect());
         // A lighting curve makes no sense over labels.
-        settings.lighting.linked = false;
-        settings.lighting.scale = 0.5;
+        settings.layer_mut().lighting.linked = false;
+        settings.layer_mut().lighting.scale = 0.5;
         let drawn = settings.resolved_for(&volume);
         let (range, scene) = (volume.table_range(), volume.scene());
         let (eye, light) = (drawn.bake_eye(range, &scene), drawn.bake_lighting(range, &scene));
@@ -362,16 +362,16 @@ mod tests {
         let settings = with([(17, look), (-3, LabelLook::default_for(-3))].into_iter().collect());
         let text = settings_to_json(&settings);
         assert!(text.contains(r#""17": {"#) && text.contains(r#""-3": {"#), "{text}");
-        let (back, warnings) = load_json(&Settings::default(), &text).unwrap();
-        assert_eq!((back.labels, warnings.len()), (settings.labels.clone(), 0));
+        let AppliedSettings { settings: back, warnings } = load_json(&Settings::default(), &text).unwrap();
+        assert_eq!((&back.layer().labels, warnings.len()), (&settings.layer().labels, 0));
         let part = r#"{"labels": {"17": {"opacity": 0.2}, "4": {"visible": false}}}"#;
-        let (laid_over, warnings) = load_json(&settings, part).unwrap();
-        assert!(warnings.is_empty(), "{warnings:?}");
-        let changed = laid_over.labels.get(17).unwrap();
+        let AppliedSettings { settings: laid_over, warnings } = load_json(&settings, part).unwrap();
+        let labels = &laid_over.layer().labels;
+        assert!(warnings.is_empty() && labels.len() == 3, "{warnings:?}");
+        let changed = labels.get(17).unwrap();
         assert_eq!((changed.opacity, changed.name.as_str(), changed.visible), (0.2, "Left lung", false));
-        assert_eq!(laid_over.labels.get(4), Some(&LabelLook { visible: false, ..LabelLook::default_for(4) }));
-        assert_eq!(laid_over.labels.len(), 3);
-        let set = |path: &str, value: &str| apply_path(&settings, path, value).unwrap().labels;
+        assert_eq!(labels.get(4), Some(&LabelLook { visible: false, ..LabelLook::default_for(4) }));
+        let set = |path: &str, to: &str| apply_path(&settings, path, to).unwrap().layer().labels.clone();
         assert!(set("labels.17.visible", "true").get(17).unwrap().visible);
         assert_eq!(set("labels.5.opacity", "0.25").get(5).unwrap().opacity, 0.25, "made where there is none");
         assert!(set("labels", "{}").is_empty());
@@ -389,8 +389,8 @@ mod tests {
         };
         let mut settings = with((0..MAX_POINTS as i64 + 9).map(|number| (number, wild.clone())).collect());
         settings.sanitise();
-        assert_eq!(settings.labels.len(), MAX_POINTS);
-        let look = settings.labels.get(3).unwrap();
+        assert_eq!(settings.layer().labels.len(), MAX_POINTS);
+        let look = settings.layer().labels.get(3).unwrap();
         assert_eq!((look.color, look.opacity), ([1.0, 1.0, 0.0], 0.0));
         assert!(look.name.chars().count() == MAX_NAME_CHARS && !look.name.contains('\u{1b}'));
         let sane = settings.clone();

@@ -13,20 +13,21 @@ pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod saved_entries;
 pub(super) mod shadows;
+pub(super) mod volume_layer;
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    BakedTransfer, Camera, ClassificationOrder, Clipping, DensityRange, FloorSettings, GradientSource,
-    LabelTable, LightSettings, LightStorage, NearFieldRay, OpacityLength, ReconstructionKernel, RenderEngine,
-    SamplingSettings, SavedEntry, ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder,
-    SkySettings, SlabMode, SlabQuadrature, TransferFunction,
+    BakedTransfer, Camera, ClassificationOrder, Clipping, FloorSettings, GradientSource, LightSettings,
+    LightStorage, NearFieldRay, ReconstructionKernel, RenderEngine, SamplingSettings, SavedEntry,
+    ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder, SkySettings, SlabMode, SlabQuadrature,
+    VolumeLayer, VolumeLayers,
 };
 use chiaroscuro_volume::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange, math::SceneSpace};
 
 /// Version of the JSON format. Files of every version are read: settings that they lack keep their defaults, and
 /// unknown settings are reported.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// Complete look of an image of a volume, and the corrections of its file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,17 +39,8 @@ pub struct Settings {
     pub camera: Camera,
     /// Lights, at most [`super::MAX_LIGHTS`].
     pub lights: Vec<LightSettings>,
-    /// Range of values that is mapped to densities of 0 … 1.
-    pub range: DensityRange,
-    /// Looks of labels, by number. If it has entries, volumes of integers are shown by their labels, and the transfer
-    /// functions are not used.
-    pub labels: LabelTable,
-    /// Transfer function of the eye: colour and opacity of every value.
-    pub transfer: TransferFunction,
-    /// Opacity that attenuates light.
-    pub lighting: LightingTransfer,
-    /// Length to which opacities refer.
-    pub opacity_unit: OpacityLength,
+    /// Layers, one for each field of the volume that is shown: range of values, labels and opacities.
+    pub layers: VolumeLayers,
     /// Illumination of material: Phong coefficients.
     pub shading: PhongShading,
     /// Shadow algorithm and its parameters.
@@ -79,11 +71,7 @@ impl Default for Settings {
             schema: SCHEMA,
             camera: Camera::default(),
             lights: vec![LightSettings::default()],
-            range: DensityRange::Robust,
-            labels: LabelTable::default(),
-            transfer: TransferFunction::default(),
-            lighting: LightingTransfer::default(),
-            opacity_unit: OpacityLength::Voxels(1.0),
+            layers: VolumeLayers::default(),
             shading: PhongShading::default(),
             shadows: ShadowSettings::default(),
             sky: SkySettings::default(),
@@ -95,25 +83,6 @@ impl Default for Settings {
             kept: Vec::new(),
             volume: Corrections::default(),
         }
-    }
-}
-
-/// Opacity that attenuates light: the eye's, scaled, or a curve of its own (P §4: lower opacities here let light
-/// faintly pass thin opaque structures).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct LightingTransfer {
-    /// Uses the eye's opacity instead of the curve.
-    pub linked: bool,
-    /// Factor for the extinction, linked or not.
-    pub scale: f64,
-    /// Opacity curve if not linked; its colours are not used.
-    pub curve: TransferFunction,
-}
-
-impl Default for LightingTransfer {
-    fn default() -> Self {
-        Self { linked: true, scale: 1.0, curve: TransferFunction::default() }
     }
 }
 
@@ -363,21 +332,22 @@ impl Settings {
 
     /// Returns the opacity unit in scene units, safe to divide by.
     fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
-        self.opacity_unit.scene_units(scene).max(1e-9)
+        self.layer().opacity_unit.scene_units(scene).max(1e-9)
     }
 
     /// Returns the eye's transfer function as a table over a value range, that of the shown volume
     /// ([`chiaroscuro_volume::Volume::table_range`]). For labels, call it on the settings [as
     /// drawn](Self::resolved_for).
     pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        self.transfer.bake(range, self.opacity_unit_in_scene(scene), 1.0)
+        self.layer().transfer.bake(range, self.opacity_unit_in_scene(scene), 1.0)
     }
 
     /// Returns the lighting transfer function as a table over a value range, as [`Self::bake_eye`]. With coloured
     /// shadows, the table's colours are the shares of extinction that each colour of light meets.
     pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
-        let baked = function.bake(range, self.opacity_unit_in_scene(scene), self.lighting.scale);
+        let VolumeLayer { transfer, lighting, .. } = self.layer();
+        let function = if lighting.linked { transfer } else { &lighting.curve };
+        let baked = function.bake(range, self.opacity_unit_in_scene(scene), lighting.scale);
         if self.has_colored_shadows() {
             baked.with_extinction_shares(self.shadows.transmission)
         } else {

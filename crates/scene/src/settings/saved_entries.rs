@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Camera, MAX_NAME_CHARS, Settings};
+use crate::{Camera, MAX_NAME_CHARS, SCHEMA, Settings};
 use chiaroscuro_files::sanitised_line;
 use chiaroscuro_volume::Corrections;
 
@@ -14,6 +14,10 @@ pub const MAX_SAVED_ENTRIES: usize = 32;
 /// Largest total size of saved entries in a session, in bytes: a fifth of a session's limit. A look of a few
 /// materials takes four thousand; one of a thousand labels would take all of it.
 pub const MAX_SAVED_BYTES: usize = 1 << 18;
+
+/// Largest size of all entries of a file that is read: entries that had room in a file before schema 3 have it now,
+/// when four more characters stand before each line of a layer, whose lines had 19 or more.
+const MAX_READ_BYTES: usize = MAX_SAVED_BYTES + MAX_SAVED_BYTES / 4;
 
 /// Digit keys that can be assigned to saved views and looks.
 pub const DIGIT_KEYS: std::ops::RangeInclusive<u8> = 1..=9;
@@ -50,7 +54,8 @@ pub struct SavedLook(Arc<Settings>);
 impl SavedLook {
     /// Saves a copy of a look.
     pub fn new(look: &Settings) -> Self {
-        let mut look = Settings { kept: Vec::new(), volume: Corrections::default(), ..look.clone() };
+        let look = look.clone();
+        let mut look = Settings { schema: SCHEMA, kept: Vec::new(), volume: Corrections::default(), ..look };
         look.sanitise();
         Self(Arc::new(look))
     }
@@ -150,12 +155,12 @@ impl Settings {
         has_room
     }
 
-    /// Removes entries that do not fit into [`MAX_SAVED_BYTES`], and returns their number.
+    /// Removes entries of a file that do not fit into [`MAX_READ_BYTES`], and returns their number.
     pub(crate) fn drop_oversized_saved(&mut self) -> usize {
         let (before, mut bytes) = (self.kept.len(), 0_usize);
         self.kept.retain(|kept| {
             let with = bytes.saturating_add(kept.json_bytes());
-            let fits = with <= MAX_SAVED_BYTES;
+            let fits = with <= MAX_READ_BYTES;
             bytes = if fits { with } else { bytes };
             fits
         });
@@ -250,7 +255,7 @@ mod tests {
         assert_eq!(many, MAX_SAVED_ENTRIES);
         let mut wide = Settings::default();
         let point = ControlPoint::new(1.0, [0.5; 3], 0.5);
-        wide.transfer.points = vec![point; crate::MAX_POINTS];
+        wide.layer_mut().transfer.points = vec![point; crate::MAX_POINTS];
         let kept = SavedEntry::look("x", &wide);
         assert!(!wide.save_entry(kept.clone()), "too much for a session");
         let (mut replaced, small) = (settings.clone(), settings.clone());

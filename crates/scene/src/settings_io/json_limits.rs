@@ -16,7 +16,7 @@ use chiaroscuro_files::{MAX_LOOK_BYTES, sanitised};
 // looks come in addition.
 const _: () = assert!(MAX_LOOK_BYTES == (1 << 20) + MAX_SAVED_BYTES);
 
-/// Largest nesting depth of lists and objects: settings have 6 levels.
+/// Largest nesting depth of lists and objects: settings have 8 levels.
 const MAX_NESTING: usize = 64;
 
 /// Largest number of values in a look: two transfer functions have 2 × 4096 points of 8, a label table 4096 of 8, and

@@ -5,6 +5,8 @@
 use serde_json::Value;
 
 use super::json_limits::{self, BoundedTree};
+use super::layer_fields::{full_path, move_into_layer, names_at_top, short_path};
+use super::merge::merge_record;
 use super::preset_error::PresetError;
 use super::renames::{current_path, rename_old_names};
 use super::saved_entries::remove_unreadable_entries;
@@ -16,31 +18,41 @@ use chiaroscuro_files::sanitised;
 const MAX_REPORTED_UNKNOWN: usize = 8;
 
 /// Serialises settings as pretty-printed JSON.
+#[cfg(any(test, feature = "testing"))]
 pub fn settings_to_json(settings: &Settings) -> String {
     serde_json::to_string_pretty(settings).unwrap_or_default()
 }
 
+/// Settings to which something was applied, with warnings about what was not understood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedSettings {
+    /// Settings after the change, sanitised.
+    pub settings: Settings,
+    /// Warnings for the user: about what was cut, unknown, or beyond its range.
+    pub warnings: Vec<String>,
+}
+
 /// Applies a JSON object to settings: objects are merged field by field, everything else is replaced.
 ///
-/// Returns the result, sanitised, and warnings: content beyond a look's limits, which was cut, unknown fields, and a
-/// newer version.
+/// Warnings are about content beyond a look's limits, which was cut, about unknown fields, and a newer version.
 ///
 /// # Errors
 /// Returns an error if the value is not an object, a field has the wrong type, or the limits of a look are exceeded.
-pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec<String>), PresetError> {
+pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<AppliedSettings, PresetError> {
     if !overlay.is_object() {
         return Err(PresetError::NotAnObject);
     }
     let BoundedTree { tree: mut overlay, cuts: mut warnings } = json_limits::cut_tree(overlay)?;
     rename_old_names("", &mut overlay);
+    move_into_layer(&mut overlay);
     fill_in_defaults(&mut overlay);
     warnings.extend(remove_unreadable_entries(&mut overlay));
     keep_explicit_balance(&mut overlay);
     let mut merged = serde_json::to_value(settings).map_err(PresetError::WrongType)?;
     if replaces_labels(&overlay) || is_about_values(&overlay) {
-        merged["labels"] = Value::Object(serde_json::Map::new());
+        merged["layers"][0]["labels"] = Value::Object(serde_json::Map::new());
     }
-    merge(&mut merged, &overlay);
+    merge_record(&mut merged, &overlay);
     let mut result: Settings = serde_json::from_value(merged).map_err(PresetError::WrongType)?;
     if result.schema > SCHEMA {
         warnings.push(format!("written by a newer version (schema {}, known {SCHEMA})", result.schema));
@@ -60,45 +72,47 @@ pub fn apply_json(settings: &Settings, overlay: &Value) -> Result<(Settings, Vec
         (left_out > 0)
             .then(|| format!("{left_out} saved views or looks were left out: together they are too long")),
     );
-    Ok((result, warnings))
+    Ok(AppliedSettings { settings: result, warnings })
 }
 
 /// Parses a preset or session and applies it to settings; see [`apply_json`].
 ///
 /// # Errors
 /// As [`apply_json`], and if the text is not JSON.
-pub fn load_json(settings: &Settings, text: &str) -> Result<(Settings, Vec<String>), PresetError> {
+#[cfg(any(test, feature = "testing"))]
+pub fn load_json(settings: &Settings, text: &str) -> Result<AppliedSettings, PresetError> {
     let BoundedTree { tree, cuts } = json_limits::parse_bounded(text)?;
-    let (result, warnings) = apply_json(settings, &tree)?;
-    Ok((result, [cuts, warnings].concat()))
+    let applied = apply_json(settings, &tree)?;
+    Ok(AppliedSettings { warnings: [cuts, applied.warnings].concat(), ..applied })
 }
 
-/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`). The text is parsed as JSON, or else taken
-/// as a string.
+/// Sets one value as [`set_value`] does, without its warning.
+///
+/// # Errors
+/// As [`set_value`].
+#[cfg(any(test, feature = "testing"))]
+pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
+    set_value(settings, path, text).map(|applied| applied.settings)
+}
+
+/// Sets one value by its path (`shadows.strength`, `lights.0.intensity`), with a warning if the value was clamped to its
+/// range.
+///
+/// Settings of the first layer have a short path, too: `range` for `layers.0.range`. The text is parsed as JSON, or
+/// else taken as a string.
 ///
 /// # Errors
 /// Returns an error if the path does not exist or the value has the wrong type.
-pub fn apply_path(settings: &Settings, path: &str, text: &str) -> Result<Settings, PresetError> {
-    set_value(settings, path, text).map(|(result, _)| result)
-}
-
-/// Sets one value as [`apply_path`] does, and returns a warning if the value was clamped to its range.
-///
-/// # Errors
-/// As [`apply_path`].
-pub fn set_value(
-    settings: &Settings,
-    path: &str,
-    text: &str,
-) -> Result<(Settings, Option<String>), PresetError> {
+pub fn set_value(settings: &Settings, path: &str, text: &str) -> Result<AppliedSettings, PresetError> {
     let mut tree = serde_json::to_value(settings).map_err(PresetError::WrongType)?;
     // The schema says how to read a file, and is not a setting of the image.
     tree.as_object_mut().map(|fields| fields.shift_remove("schema"));
-    let current = current_path(path);
-    let number = current.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
-    if let Some(number) = number.filter(|&number| settings.labels.get(number).is_none()) {
+    let current = full_path(&current_path(path));
+    let short = short_path(&current);
+    let number = short.strip_prefix("labels.").and_then(|rest| rest.split('.').next()?.parse::<i64>().ok());
+    if let Some(number) = number.filter(|&number| settings.layer().labels.get(number).is_none()) {
         let look = serde_json::to_value(LabelLook::default_for(number)).map_err(PresetError::WrongType)?;
-        tree["labels"][number.to_string()] = look;
+        tree["layers"][0]["labels"][number.to_string()] = look;
     }
     if let Some((parent, key)) = current.rsplit_once('.')
         && is_other_variant(&tree, &json_pointer(parent), key)
@@ -110,6 +124,7 @@ pub fn set_value(
     let mut walked: Vec<&str> = Vec::new();
     for key in current.split('.') {
         let known = match &*node {
+            Value::Object(fields) if walked.is_empty() => names_at_top(fields).join(", "),
             Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
             Value::Array(items) => format!("0 … {}", items.len().saturating_sub(1)),
             _ => "no further settings".to_owned(),
@@ -119,10 +134,10 @@ pub fn set_value(
             Value::Array(items) => key.parse::<usize>().ok().and_then(|index| items.get_mut(index)),
             _ => None,
         };
-        node = next.ok_or_else(|| PresetError::UnknownPath {
-            path: path.to_owned(),
-            at: walked.join("."),
-            known,
+        node = next.ok_or_else(|| {
+            let at = walked.join(".");
+            let at = if current == path { at } else { short_path(&at).to_owned() };
+            PresetError::UnknownPath { path: path.to_owned(), at, known }
         })?;
         walked.push(key);
     }
@@ -131,8 +146,8 @@ pub fn set_value(
     let mut result: Settings = serde_json::from_value(tree).map_err(PresetError::WrongType)?;
     // As in a preset: a balance that is set explicitly is kept.
     result.shadows.keep_balanced &= current != "shadows.balance";
-    if current.split('.').next() == Some("transfer") {
-        result.labels = LabelTable::default();
+    if short.split('.').next() == Some("transfer") {
+        result.layer_mut().labels = LabelTable::default();
     }
     let requested = setting_value(&result, &current);
     result.sanitise();
@@ -143,7 +158,7 @@ pub fn set_value(
         let [asked, used] = [asked, used].map(|value| sanitised(&value, MAX_NAME_CHARS));
         format!("`{path}` is out of range: {asked} was requested, {used} is used")
     });
-    Ok((result, warning))
+    Ok(AppliedSettings { settings: result, warnings: warning.into_iter().collect() })
 }
 
 /// Returns true if the setting at a path is an enum, and the key is another of its variants. Detected by
@@ -173,26 +188,6 @@ fn setting_value(settings: &Settings, path: &str) -> Option<Value> {
     tree.pointer(&json_pointer(path)).cloned()
 }
 
-fn merge(base: &mut Value, overlay: &Value) {
-    match (base, overlay) {
-        // An enum variant with data is an object with one key: another key replaces it.
-        (Value::Object(base), Value::Object(overlay)) if !is_variant_swap(base, overlay) => {
-            for (key, value) in overlay {
-                merge(base.entry(key.clone()).or_insert(Value::Null), value);
-            }
-        }
-        (base, overlay) => *base = overlay.clone(),
-    }
-}
-
-/// Returns true for `{"voxels": 1}` over `{"mm": 2}`: two variants of one enum, which must not be merged. Numbers are
-/// not variants, but keys of labels.
-fn is_variant_swap(base: &serde_json::Map<String, Value>, overlay: &serde_json::Map<String, Value>) -> bool {
-    let is_variant = |key: Option<&String>| key.is_some_and(|key| key.parse::<i64>().is_err());
-    let (before, after) = (base.keys().next(), overlay.keys().next());
-    base.len() == 1 && overlay.len() == 1 && before != after && is_variant(before) && is_variant(after)
-}
-
 /// Collects the paths of fields that were given but not understood. Names that begin with an underscore are remarks,
 /// which presets may contain.
 fn collect_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut Vec<String>) {
@@ -202,7 +197,7 @@ fn collect_unknown(given: &Value, understood: &Value, path: &str, unknown: &mut 
             for (key, value) in given.iter().filter(|(key, _)| !key.starts_with('_')) {
                 match understood.get(key) {
                     Some(known) => collect_unknown(value, known, &below(key), unknown),
-                    None => unknown.push(sanitised(&below(key), MAX_NAME_CHARS)),
+                    None => unknown.push(sanitised(short_path(&below(key)), MAX_NAME_CHARS)),
                 }
             }
         }
@@ -227,15 +222,16 @@ mod tests {
     fn round_trip() {
         let mut settings = Settings::default();
         settings.sampling.kernel = ReconstructionKernel::Gaussian { sigma: 0.55 };
-        settings.opacity_unit = OpacityLength::Mm(0.3);
-        let (back, warnings) = load_json(&Settings::default(), &settings_to_json(&settings)).unwrap();
+        settings.layer_mut().opacity_unit = OpacityLength::Mm(0.3);
+        let AppliedSettings { settings: back, warnings } =
+            load_json(&Settings::default(), &settings_to_json(&settings)).unwrap();
         assert_eq!(back, settings);
         assert!(warnings.is_empty(), "{warnings:?}");
     }
 
     #[test]
     fn a_preset_changes_only_what_it_names() {
-        let (settings, warnings) =
+        let AppliedSettings { settings, warnings } =
             load_json(&Settings::default(), r#"{"shadows": {"strength": 0.5, "glow": 1}, "_note": "x"}"#)
                 .unwrap();
         assert_eq!(settings.shadows.strength, 0.5);
@@ -247,7 +243,7 @@ mod tests {
     fn a_balance_that_is_named_stays() {
         let mut kept = Settings::default();
         kept.shadows.keep_balanced = true;
-        let keeps = |text: &str| load_json(&kept, text).unwrap().0.shadows.keep_balanced;
+        let keeps = |text: &str| load_json(&kept, text).unwrap().settings.shadows.keep_balanced;
         assert!(keeps(r#"{"shadows": {"gain": 2.0}}"#));
         assert!(!keeps(r#"{"shadows": {"balance": 1.0}}"#), "even the one that it has");
         assert!(keeps(r#"{"shadows": {"balance": 1.5, "keep_balanced": true}}"#));
@@ -259,10 +255,11 @@ mod tests {
 
     #[test]
     fn enum_values_replace_each_other() {
-        let (settings, _) = load_json(&Settings::default(), r#"{"opacity_unit": {"extent": 0.01}}"#).unwrap();
-        assert_eq!(settings.opacity_unit, OpacityLength::Extent(0.01));
+        let settings =
+            load_json(&Settings::default(), r#"{"opacity_unit": {"extent": 0.01}}"#).unwrap().settings;
+        assert_eq!(settings.layer().opacity_unit, OpacityLength::Extent(0.01));
         let gaussian = r#"{"sampling": {"kernel": {"gaussian": {"sigma": 0.5}}}}"#;
-        let (settings, _) = load_json(&settings, gaussian).unwrap();
+        let settings = load_json(&settings, gaussian).unwrap().settings;
         assert_eq!(settings.sampling.kernel, ReconstructionKernel::Gaussian { sigma: 0.5 });
     }
 
@@ -280,16 +277,16 @@ mod tests {
     fn paths_reach_variants_with_numbers() {
         let set = |path: &str, text: &str| apply_path(&Settings::default(), path, text);
         let typed = DensityRange::Typed(ValueRange::new(-100.0, 300.0));
-        assert_eq!(set("range.typed", "[-100, 300]").unwrap().range, typed);
-        assert_eq!(set("range", r#"{"typed": [-100, 300]}"#).unwrap().range, typed);
-        assert_eq!(set("range", "full").unwrap().range, DensityRange::Full);
-        assert_eq!(set("opacity_unit.mm", "2").unwrap().opacity_unit, OpacityLength::Mm(2.0));
+        assert_eq!(set("range.typed", "[-100, 300]").unwrap().layer().range, typed);
+        assert_eq!(set("range", r#"{"typed": [-100, 300]}"#).unwrap().layer().range, typed);
+        assert_eq!(set("range", "full").unwrap().layer().range, DensityRange::Full);
+        assert_eq!(set("opacity_unit.mm", "2").unwrap().layer().opacity_unit, OpacityLength::Mm(2.0));
         let told = set_value(&Settings::default(), "range.typed", "[300, -100]").unwrap();
-        assert_eq!((told.0.range, told.1.is_some()), (typed, true));
+        assert_eq!((told.settings.layer().range, told.warnings.len()), (typed, 1));
         // From one variant with a number to another.
         let in_mm = set("opacity_unit.mm", "2").unwrap();
         assert_eq!(
-            apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().opacity_unit,
+            apply_path(&in_mm, "opacity_unit.voxels", "3").unwrap().layer().opacity_unit,
             OpacityLength::Voxels(3.0)
         );
         // An object with one entry, or a string, need not be an enum.
@@ -312,7 +309,8 @@ mod tests {
 
     #[test]
     fn what_is_brought_into_range_is_told_and_the_schema_is_no_setting() {
-        let told = |path: &str, text: &str| set_value(&Settings::default(), path, text).unwrap().1;
+        let told =
+            |path: &str, text: &str| set_value(&Settings::default(), path, text).unwrap().warnings.pop();
         assert_eq!(
             told("shadows.strength", "-1e308").unwrap(),
             "`shadows.strength` is out of range: -1e+308 was requested, 0.0 is used"
@@ -326,7 +324,7 @@ mod tests {
 
     #[test]
     fn what_is_unknown_is_named_wherever_it_stands_and_not_without_end() {
-        let warnings = |text: &str| load_json(&Settings::default(), text).unwrap().1;
+        let warnings = |text: &str| load_json(&Settings::default(), text).unwrap().warnings;
         assert_eq!(
             warnings(r#"{"lights": [{"films": 1, "_note": 2}]}"#),
             ["unknown setting `lights.0.films` was ignored"]
@@ -345,19 +343,19 @@ mod tests {
     fn more_than_a_look_has_is_cut_before_anything_is_made_of_it() {
         let light = r#"{"name": "a"}"#;
         let text = format!(r#"{{"lights": [{}{light}]}}"#, format!("{light},").repeat(60_000));
-        let (settings, warnings) = load_json(&Settings::default(), &text).unwrap();
+        let AppliedSettings { settings, warnings } = load_json(&Settings::default(), &text).unwrap();
         assert_eq!((settings.lights.len(), warnings.len()), (MAX_LIGHTS, 1));
         assert_eq!(warnings[0], "60001 entries of `lights` were cut to 8");
         // This holds for an already parsed tree, too.
         let tree = serde_json::from_str(&text).unwrap();
-        assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), (settings, warnings));
+        assert_eq!(apply_json(&Settings::default(), &tree).unwrap(), AppliedSettings { settings, warnings });
     }
 
     #[test]
     fn names_from_before_are_understood() {
         let saved =
             r#"{"ground": {"on": true}, "lights": [{"lock": "world"}], "shadows": {"storage": "collapsed"}}"#;
-        let (settings, warnings) = load_json(&Settings::default(), saved).unwrap();
+        let AppliedSettings { settings, warnings } = load_json(&Settings::default(), saved).unwrap();
         assert!(settings.floor.on && warnings.is_empty(), "{warnings:?}");
         assert_eq!(settings.shadows.storage, LightStorage::Combined);
         let set = |path: &str, value: &str| apply_path(&Settings::default(), path, value).unwrap();

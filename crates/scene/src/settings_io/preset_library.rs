@@ -7,7 +7,8 @@
 
 use serde_json::Value;
 
-use crate::{PresetError, Settings, apply_json};
+use super::layer_fields::{first_layer, move_into_layer};
+use crate::{AppliedSettings, PresetError, Settings, apply_json};
 use chiaroscuro_volume::{DataKind, ValueRanges};
 
 /// Preset of the built-in library.
@@ -103,7 +104,7 @@ impl Preset {
     /// As [`apply_json`]; a test proves that it does not happen.
     pub fn apply(&self, settings: &Settings, ranges: &ValueRanges) -> Result<Settings, PresetError> {
         let overlay: Value = serde_json::from_str(self.text).map_err(PresetError::Syntax)?;
-        apply_relative(settings, &overlay, ranges).map(|(settings, _)| settings)
+        apply_relative(settings, &overlay, ranges).map(|applied| applied.settings)
     }
 
     /// Returns true if applying the preset to the settings would change nothing.
@@ -121,8 +122,8 @@ pub fn apply_relative(
     settings: &Settings,
     overlay: &Value,
     ranges: &ValueRanges,
-) -> Result<(Settings, Vec<String>), PresetError> {
-    let (mut applied, mut warnings) = apply_json(settings, overlay)?;
+) -> Result<AppliedSettings, PresetError> {
+    let AppliedSettings { settings: mut applied, mut warnings } = apply_json(settings, overlay)?;
     // A look applies to any volume; corrections apply only to their file.
     let applied_corrections = std::mem::replace(&mut applied.volume, settings.volume);
     if applied_corrections != settings.volume
@@ -133,12 +134,15 @@ pub fn apply_relative(
             "corrections of a volume (`volume`) were ignored: a preset applies to any volume".to_owned(),
         );
     }
-    let range = applied.range.resolve(ranges);
+    let layer = applied.layer_mut();
+    let range = layer.range.resolve(ranges);
     if overlay.get("_values").and_then(Value::as_str) == Some("relative") {
-        let has = |path: &str| overlay.pointer(path).is_some();
+        let mut given = overlay.clone();
+        move_into_layer(&mut given);
+        let has = |path: &str| first_layer(&given).is_some_and(|layer| layer.pointer(path).is_some());
         let curves = [
-            (has("/transfer/points"), &mut applied.transfer),
-            (has("/lighting/curve/points"), &mut applied.lighting.curve),
+            (has("/transfer/points"), &mut layer.transfer),
+            (has("/lighting/curve/points"), &mut layer.lighting.curve),
         ];
         for (_, function) in curves.into_iter().filter(|(given, _)| *given) {
             for point in &mut function.points {
@@ -146,7 +150,7 @@ pub fn apply_relative(
             }
         }
     }
-    Ok((applied, warnings))
+    Ok(AppliedSettings { settings: applied, warnings })
 }
 
 #[cfg(test)]
@@ -171,10 +175,11 @@ mod tests {
         for preset in PRESETS {
             let overlay: Value = serde_json::from_str(preset.text).unwrap();
             let ranges = ValueRanges::without_outliers(ValueRange::new(-1000.0, 3000.0));
-            let (settings, warnings) = apply_relative(&Settings::default(), &overlay, &ranges).unwrap();
+            let AppliedSettings { settings, warnings } =
+                apply_relative(&Settings::default(), &overlay, &ranges).unwrap();
             assert!(warnings.is_empty(), "{}: {warnings:?}", preset.name);
             assert_eq!(preset.apply(&Settings::default(), &ranges).unwrap(), settings);
-            let points = &settings.transfer.points;
+            let points = &settings.layer().transfer.points;
             assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", preset.name);
             // Light presets work with any curve.
             let is_seen = points.iter().any(|point| point.opacity > 0.05);
@@ -214,7 +219,7 @@ mod tests {
             // A preset without a camera allows it to turn.
             used.camera.azimuth_deg += 20.0;
             assert_eq!(preset.is_in_use(&used, &ranges), preset.domain() != "bench", "{}", preset.name);
-            for point in &mut used.transfer.points {
+            for point in &mut used.layer_mut().transfer.points {
                 point.opacity *= 0.5;
             }
             used.sky.intensity += 0.1;
@@ -251,12 +256,12 @@ mod tests {
             assert_eq!(preset.apply(&over, &ranges).unwrap().volume, over.volume);
         }
         let own = serde_json::json!({"shadows": {"gain": 2.0}, "volume": {"flip": {"x": true}}});
-        let (applied, warnings) = apply_relative(&over, &own, &ranges).unwrap();
+        let AppliedSettings { settings: applied, warnings } = apply_relative(&over, &own, &ranges).unwrap();
         assert_eq!((applied.volume, applied.shadows.gain), (over.volume, 2.0));
         assert!(warnings.len() == 1 && warnings[0].contains("`volume`"), "{warnings:?}");
         // A complete look without corrections does not affect them.
         let whole = serde_json::to_value(Settings::default()).unwrap();
-        let (applied, warnings) = apply_relative(&over, &whole, &ranges).unwrap();
+        let AppliedSettings { settings: applied, warnings } = apply_relative(&over, &whole, &ranges).unwrap();
         assert_eq!((applied.volume, warnings), (over.volume, Vec::<String>::new()));
     }
 
@@ -265,12 +270,12 @@ mod tests {
         let ranges = ValueRanges { all: ValueRange::new(0.0, 1000.0), robust: ValueRange::new(100.0, 300.0) };
         let over = Settings::default();
         let head = Preset::find("mr/head").unwrap().apply(&over, &ranges).unwrap();
-        assert!((head.transfer.points[0].value - 112.0).abs() < 1e-9);
-        let all = Settings { range: DensityRange::Full, ..over.clone() };
+        assert!((head.layer().transfer.points[0].value - 112.0).abs() < 1e-9);
+        let all = over.clone().with_range(DensityRange::Full);
         let head = Preset::find("mr/head").unwrap().apply(&all, &ranges).unwrap();
-        assert!((head.transfer.points[0].value - 60.0).abs() < 1e-9);
+        assert!((head.layer().transfer.points[0].value - 60.0).abs() < 1e-9);
         let bone = Preset::find("ct/bone").unwrap().apply(&over, &ranges).unwrap();
-        assert_eq!(bone.transfer.points[0].value, 150.0);
+        assert_eq!(bone.layer().transfer.points[0].value, 150.0);
         assert_eq!((&bone.lights, &bone.camera, &bone.shadows), (&over.lights, &over.camera, &over.shadows));
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn remove_unreadable_entries(overlay: &mut Value) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Settings, load_json};
+    use crate::{AppliedSettings, Settings, load_json};
 
     #[test]
     fn of_what_is_kept_only_the_unreadable_is_left_out() {
@@ -44,7 +44,8 @@ mod tests {
             list.insert(1, serde_json::from_str(text).unwrap());
         }
         tree["kept"] = Value::Array(list);
-        let (read, warnings) = load_json(&Settings::default(), &tree.to_string()).unwrap();
+        let AppliedSettings { settings: read, warnings } =
+            load_json(&Settings::default(), &tree.to_string()).unwrap();
         assert_eq!(read, kept);
         let told = warnings.iter().filter(|warning| warning.contains("was left out")).count();
         assert_eq!(told, odd.len(), "{warnings:?}");

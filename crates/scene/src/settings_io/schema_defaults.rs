@@ -2,19 +2,32 @@
 
 use serde_json::{Map, Value, json};
 
-/// Settings added by a schema, with the value that was in effect before: (schema, group, setting, value).
-fn added_settings() -> [(u64, &'static str, &'static str, Value); 5] {
+use super::layer_fields::first_layer;
+
+/// Setting that a schema has added.
+struct AddedSetting {
+    /// Schema that has added it.
+    since: u64,
+    group: &'static str,
+    setting: &'static str,
+    /// Value that was in effect before.
+    value: Value,
+}
+
+/// Returns the settings that schemas have added.
+fn added_settings() -> [AddedSetting; 5] {
+    let added = |group, setting, value| AddedSetting { since: 2, group, setting, value };
     [
-        (2, "sampling", "slabs", json!("even")),
-        (2, "shading", "sides", json!("two")),
-        (2, "shadows", "reverse_kernel", json!("forward")),
-        (2, "shadows", "near_field", json!("off")),
-        (2, "shadows", "keep_balanced", json!(false)),
+        added("sampling", "slabs", json!("even")),
+        added("shading", "sides", json!("two")),
+        added("shadows", "reverse_kernel", json!("forward")),
+        added("shadows", "near_field", json!("off")),
+        added("shadows", "keep_balanced", json!(false)),
     ]
 }
 
 /// Adds to a record with a schema number the values that were in effect for settings it does not have. A preset
-/// without a schema number is left unchanged.
+/// without a schema number is left unchanged. Settings of a layer are already in the layer.
 pub(super) fn fill_in_defaults(record: &mut Value) {
     let Some(schema) = record.get("schema").and_then(Value::as_u64) else { return };
     let Value::Object(groups) = record else { return };
@@ -31,8 +44,10 @@ pub(super) fn fill_in_defaults(record: &mut Value) {
     if let Some(camera) = groups.get_mut("camera") {
         fill_in_camera(camera);
     }
-    fill_in_range(groups);
-    for (_, group, setting, value) in added_settings().into_iter().filter(|(since, ..)| schema < *since) {
+    let layers = groups.get_mut("layers").and_then(Value::as_array_mut);
+    layers.into_iter().flatten().filter_map(Value::as_object_mut).for_each(fill_in_range);
+    let missing = added_settings().into_iter().filter(|added| schema < added.since);
+    for AddedSetting { group, setting, value, .. } in missing {
         let group = groups.entry(group).or_insert_with(|| Value::Object(Map::new()));
         if let Value::Object(group) = group {
             group.entry(setting).or_insert(value);
@@ -64,24 +79,25 @@ fn fill_in_scatter_gradients(groups: &mut Map<String, Value>) {
     }
 }
 
-/// Sets the density range to all values of the file for a look that has a transfer function, but no range: all looks
-/// did so before it was a setting. A record with neither is left unchanged.
-fn fill_in_range(groups: &mut Map<String, Value>) {
-    if groups.contains_key("transfer") {
-        groups.entry("range").or_insert_with(|| Value::from("full"));
+/// Sets the density range to all values of the file for a layer that has a transfer function, but no range: all looks
+/// did so before it was a setting. A layer with neither is left unchanged.
+fn fill_in_range(layer: &mut Map<String, Value>) {
+    if layer.contains_key("transfer") {
+        layer.entry("range").or_insert_with(|| Value::from("full"));
     }
 }
 
 /// Returns true if a record replaces the label table instead of merging with it: a session contains every label of
 /// its look.
 pub(super) fn replaces_labels(record: &Value) -> bool {
-    record.get("labels").is_some() && record.get("schema").is_some()
+    first_layer(record).is_some_and(|layer| layer.get("labels").is_some()) && record.get("schema").is_some()
 }
 
 /// Returns true if a record is about values, not labels: it has a transfer function. So had all records before label
 /// tables existed.
 pub(super) fn is_about_values(record: &Value) -> bool {
-    record.get("labels").is_none() && record.pointer("/transfer/points").is_some()
+    first_layer(record)
+        .is_some_and(|layer| layer.get("labels").is_none() && layer.pointer("/transfer/points").is_some())
 }
 
 /// Adds the defaults of earlier versions to a camera. One with a distance refers its field of view to the height: the
@@ -120,15 +136,15 @@ mod tests {
 
     #[test]
     fn what_was_saved_looks_as_it_did() {
-        let load = |text: &str| load_json(&Settings::default(), text).expect("settings").0;
+        let load = |text: &str| load_json(&Settings::default(), text).expect("settings").settings;
         let old = load(r#"{"schema": 1, "shadows": {"gain": 2.0}}"#);
         assert_eq!(old.shading.sides, LitSides::Two);
         assert_eq!(old.shadows.reverse_kernel, ReverseKernel::Forward);
         assert_eq!(old.shadows.near_field, NearFieldRay::Off);
         let mut kept = Settings::default();
         kept.shadows.keep_balanced = true;
-        assert!(!load_json(&kept, r#"{"schema": 1}"#).expect("settings").0.shadows.keep_balanced);
-        assert!(load_json(&kept, r#"{"schema": 2}"#).expect("settings").0.shadows.keep_balanced);
+        assert!(!load_json(&kept, r#"{"schema": 1}"#).expect("settings").settings.shadows.keep_balanced);
+        assert!(load_json(&kept, r#"{"schema": 2}"#).expect("settings").settings.shadows.keep_balanced);
         assert_eq!((old.shadows.gain, old.schema), (2.0, SCHEMA));
         let scattered = load(r#"{"schema": 1, "sampling": {"engine": "scatter", "gradients": "volume"}}"#);
         assert_eq!(scattered.sampling.gradients, GradientSource::Sheets);
@@ -142,7 +158,7 @@ mod tests {
     fn saved_pictures_are_as_bright_as_they_were() {
         let mut now = Settings::default();
         now.output.exposure = 1.7;
-        let exposure = |text: &str| load_json(&now, text).expect("settings").0.output.exposure;
+        let exposure = |text: &str| load_json(&now, text).expect("settings").settings.output.exposure;
         let mut saved = serde_json::to_value(Settings::default()).expect("settings");
         saved["output"].as_object_mut().expect("an object").remove("exposure");
         assert_eq!(exposure(&saved.to_string()), 1.0);
@@ -158,7 +174,7 @@ mod tests {
         let mut now = Settings::default();
         now.camera.fit = FovReference::Frame;
         assert!(now.save_view_for_digit(1, "front"));
-        let load = |text: &str| load_json(&now, text).expect("settings").0;
+        let load = |text: &str| load_json(&now, text).expect("settings").settings;
         let before = load(
             r#"{"schema": 2, "camera": {"distance": 4.0}, "views": {"2":
                 {"projection": "perspective", "azimuth_deg": 0.0, "elevation_deg": 0.0, "roll_deg": 0.0,
@@ -184,7 +200,8 @@ mod tests {
 
     #[test]
     fn saved_looks_show_all_values_as_they_did() {
-        let range = |text: &str| load_json(&Settings::default(), text).expect("settings").0.range;
+        let range =
+            |text: &str| load_json(&Settings::default(), text).expect("settings").settings.layer().range;
         assert_eq!(range(r#"{"schema": 2, "transfer": {"points": []}}"#), DensityRange::Full);
         assert_eq!(range(r#"{"schema": 1, "transfer": {}}"#), DensityRange::Full);
         // Records without values, with an explicit range, or without a schema.
@@ -201,8 +218,8 @@ mod tests {
     fn what_was_saved_of_values_does_not_show_labels() {
         let table: LabelTable =
             [1, 2, 3].map(|number| (number, LabelLook::default_for(number))).into_iter().collect();
-        let first = Settings { labels: table.clone(), ..Settings::default() };
-        let labels = |text: &str| load_json(&first, text).expect("settings").0.labels;
+        let first = Settings::default().with_labels(table.clone());
+        let labels = |text: &str| load_json(&first, text).expect("settings").settings.layer().labels.clone();
         for of_values in [
             r#"{"schema": 2, "transfer": {"points": []}}"#,
             r#"{"transfer": {"points": []}}"#,
@@ -217,12 +234,12 @@ mod tests {
         // A session replaces the label table; a preset merges its entries.
         assert_eq!(labels(r#"{"schema": 2, "labels": {"9": {}}, "transfer": {"points": []}}"#).len(), 1);
         assert_eq!(labels(r#"{"labels": {"9": {}}}"#).len(), 4);
-        let kept = load_json(&Settings::default(), &settings_to_json(&first)).expect("settings").0;
+        let kept = load_json(&Settings::default(), &settings_to_json(&first)).expect("settings").settings;
         assert_eq!(kept, first);
         // Setting the curve explicitly discards labels.
         let curve = apply_path(&first, "transfer.interpolation", "extinction").expect("settings");
-        assert!(curve.labels.is_empty());
-        assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").labels.is_empty());
+        assert!(curve.layer().labels.is_empty());
+        assert!(!apply_path(&first, "shadows.gain", "2").expect("settings").layer().labels.is_empty());
     }
 
     #[test]

@@ -84,7 +84,7 @@ impl BakedTransfer {
         Self::new((0..LUT_SIZE).map(|entry| [1.0, 1.0, 1.0, largest * entry as f32 / last]).collect())
     }
 
-    /// Returns all numbers in the order of the shaders' declaration (`density/table.wgsl`).
+    /// Returns all numbers in the order of the shaders' declaration (`volume/material.wgsl`).
     pub fn to_f32s(&self) -> Vec<f32> {
         let Self { entries, slope_signs: sides, range_maxima: peaks, integrals } = self;
         entries.iter().flatten().chain(sides).chain(peaks).chain(integrals).copied().collect()

@@ -1,6 +1,7 @@
 //! Predefined colour maps, each as nine evenly spaced sRGB colours, and their application to transfer functions.
 
 use crate::{ControlPoint, Easing, TransferFunction};
+use chiaroscuro_volume::ValueRange;
 
 /// Colour map with nine evenly spaced stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,7 +100,7 @@ impl TransferFunction {
     /// Colours the visible values by a map, from the last invisible point to the last point, or in reverse. Opacities
     /// stay unchanged; points are added at the map's stops.
     pub fn apply_color_map(&mut self, map: &ColorMap, reversed: bool) {
-        let Some((low, high)) = self.visible_range() else { return };
+        let Some(ValueRange { low, high }) = self.visible_range() else { return };
         let span = (high - low).max(1e-300);
         for stop in 0..=8 {
             let value = low + span * f64::from(stop) / 8.0;
@@ -115,9 +116,10 @@ impl TransferFunction {
     }
 
     /// Returns the range from the last point before anything is visible to the last point.
-    fn visible_range(&self) -> Option<(f64, f64)> {
+    fn visible_range(&self) -> Option<ValueRange> {
         let first = self.points.iter().position(|point| point.opacity > 0.0)?;
-        Some((self.points[first.saturating_sub(1)].value, self.points.last()?.value))
+        let low = self.points[first.saturating_sub(1)].value;
+        Some(ValueRange { low, high: self.points.last()?.value })
     }
 
     /// Mirrors opacities and colours along the range of values of the points.

@@ -120,22 +120,37 @@ fn optical_depth(opacity: f64) -> f64 {
     -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p()
 }
 
+/// Colour and opacity of a transfer function at a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TransferSample {
+    /// Linear RGB.
+    pub color: [f64; 3],
+    /// Optical depth per opacity unit.
+    pub depth: f64,
+}
+
 impl TransferFunction {
     /// Sorts the points by value; points at the same value keep their order, which makes a jump.
     pub fn sort(&mut self) {
         self.points.sort_by(|a, b| a.value.total_cmp(&b.value));
     }
 
-    /// Returns linear RGB and optical depth per opacity unit at a value.
-    pub fn sample(&self, value: f64) -> ([f64; 3], f64) {
+    /// Evaluates the function at a value.
+    pub fn sample(&self, value: f64) -> TransferSample {
         let color = |point: &ControlPoint| point.color.map(|c| linear_from_srgb(f64::from(c)));
-        let Some(first) = self.points.first() else { return ([1.0; 3], 0.0) };
+        let at_point = |point: &ControlPoint| TransferSample {
+            color: color(point),
+            depth: optical_depth(point.opacity),
+        };
+        let Some(first) = self.points.first() else {
+            return TransferSample { color: [1.0; 3], depth: 0.0 };
+        };
         let upper = self.points.partition_point(|point| point.value <= value);
         if upper == 0 {
-            return (color(first), optical_depth(first.opacity));
+            return at_point(first);
         }
         let a = &self.points[upper - 1];
-        let Some(b) = self.points.get(upper) else { return (color(a), optical_depth(a.opacity)) };
+        let Some(b) = self.points.get(upper) else { return at_point(a) };
         let t = a.easing.weight((value - a.value) / (b.value - a.value));
         let mix = |x: f64, y: f64| x + (y - x) * t;
         let depth = match self.interpolation {
@@ -148,12 +163,12 @@ impl TransferFunction {
             ColorMixing::Light => mixed(ca, cb),
             ColorMixing::Seen => linear_from_oklab(mixed(oklab_from_linear(ca), oklab_from_linear(cb))),
         };
-        (rgb, depth)
+        TransferSample { color: rgb, depth }
     }
 
     /// Returns a point on the curve at a value.
     pub fn point_at(&self, value: f64) -> ControlPoint {
-        let color = self.sample(value).0.map(|c| srgb_from_linear(c) as f32);
+        let color = self.sample(value).color.map(|c| srgb_from_linear(c) as f32);
         ControlPoint::new(value, color, self.opacity_at(value))
     }
 
@@ -205,7 +220,7 @@ impl TransferFunction {
 
     /// Returns the opacity per opacity unit at a value, as an editor shows it.
     pub fn opacity_at(&self, value: f64) -> f64 {
-        1.0 - (-self.sample(value).1).exp()
+        1.0 - (-self.sample(value).depth).exp()
     }
 
     /// Tabulates the function over a volume's value range. `unit` is the opacity unit in scene units, `scale` is a
@@ -214,7 +229,7 @@ impl TransferFunction {
         let entries: Vec<_> = (0..LUT_SIZE)
             .map(|i| {
                 let value = range.low + range.span() * i as f64 / (LUT_SIZE - 1) as f64;
-                let (rgb, depth) = self.sample(value);
+                let TransferSample { color: rgb, depth } = self.sample(value);
                 [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, (depth * scale / unit) as f32]
             })
             .collect();
@@ -238,7 +253,7 @@ mod tests {
     #[test]
     fn opacity_is_linear_or_extinction_is() {
         assert!((ramp(OpacityInterpolation::Opacity).opacity_at(15.0) - 0.4).abs() < 1e-12);
-        let (_, depth) = ramp(OpacityInterpolation::Extinction).sample(15.0);
+        let depth = ramp(OpacityInterpolation::Extinction).sample(15.0).depth;
         assert!((depth - -0.5 * 0.2f64.ln()).abs() < 1e-12);
         assert_eq!(ramp(OpacityInterpolation::Opacity).opacity_at(5.0), 0.0);
         assert!((ramp(OpacityInterpolation::Opacity).opacity_at(99.0) - 0.8).abs() < 1e-12);
@@ -262,7 +277,8 @@ mod tests {
     fn seen_mixtures_have_even_lightness() {
         let mut function = ramp(OpacityInterpolation::Opacity);
         (function.points[0].color, function.points[1].color) = ([0.0, 0.0, 1.0], [1.0, 1.0, 0.0]);
-        let lightness = |function: &TransferFunction, value| oklab_from_linear(function.sample(value).0)[0];
+        let lightness =
+            |function: &TransferFunction, value| oklab_from_linear(function.sample(value).color)[0];
         let even = |function: &TransferFunction| {
             let middle = f64::midpoint(lightness(function, 10.0), lightness(function, 20.0));
             (lightness(function, 15.0) - middle).abs() < 1e-3
@@ -270,7 +286,7 @@ mod tests {
         assert!(!even(&function), "light mixes brighter than it looks");
         function.mixing = ColorMixing::Seen;
         assert!(even(&function));
-        let ends = [function.sample(10.0).0, function.sample(20.0).0];
+        let ends = [function.sample(10.0).color, function.sample(20.0).color];
         assert!(ends.iter().flatten().zip([0.0, 0.0, 1.0, 1.0, 1.0, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 
@@ -284,10 +300,10 @@ mod tests {
                 assert_eq!(function.insert_on_curve(13.0), 1);
                 for i in 0..40 {
                     let value = 9.0 + f64::from(i) * 0.3;
-                    let ((a, x), (b, y)) = (before.sample(value), function.sample(value));
-                    assert!((x - y).abs() < 1e-9, "{mixing:?} {easing:?} {value}");
+                    let (a, b) = (before.sample(value), function.sample(value));
+                    assert!((a.depth - b.depth).abs() < 1e-9, "{mixing:?} {easing:?} {value}");
                     assert!(
-                        a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6),
+                        a.color.iter().zip(b.color).all(|(a, b)| (a - b).abs() < 1e-6),
                         "{mixing:?} {easing:?} {value}"
                     );
                 }

@@ -133,8 +133,9 @@ fn ramp_from_colors(colors: &[[u8; 3]], range: ValueRange) -> TransferFunction {
 /// Writes 256 colours as bytes: all reds, all greens, all blues. The format has no opacities.
 pub(crate) fn to_lut(function: &TransferFunction, range: ValueRange) -> Vec<u8> {
     let last = (TABLE_ENTRIES - 1) as f64;
-    let colors: Vec<[f64; 3]> =
-        (0..TABLE_ENTRIES).map(|at| function.sample(range.low + range.span() * at as f64 / last).0).collect();
+    let colors: Vec<[f64; 3]> = (0..TABLE_ENTRIES)
+        .map(|at| function.sample(range.low + range.span() * at as f64 / last).color)
+        .collect();
     let byte = |linear: f64| (srgb_from_linear(linear) * 255.0).round().clamp(0.0, 255.0) as u8;
     (0..3).flat_map(|channel| colors.iter().map(move |color| byte(color[channel]))).collect()
 }

@@ -122,7 +122,7 @@ fn from_json(text: &str, range: ValueRange) -> Result<TransferFunction, Exchange
         slicer::from_vp_json(&tree)
     } else if tree.get("channels").is_some() {
         agave::from_agave(&tree, range)
-    } else if tree.get("transfer").is_some() {
+    } else if native::transfer_path(&tree).is_some() {
         native::from_preset(&mut tree, range)
     } else {
         paraview::from_paraview(&tree)
@@ -178,13 +178,20 @@ fn linearised(function: &TransferFunction) -> TransferFunction {
     TransferFunction { interpolation: OpacityInterpolation::Opacity, mixing: ColorMixing::Light, ..straight }
 }
 
+/// Colour or opacity at a value.
+#[derive(Clone, Copy)]
+struct ValueStop<T> {
+    value: f64,
+    content: T,
+}
+
 /// Builds a transfer function from colours and opacities at different values; neither list is empty.
 fn merge_colors_and_opacities(
-    mut colors: Vec<(f64, [f32; 3])>,
-    mut opacities: Vec<(f64, f64)>,
+    mut colors: Vec<ValueStop<[f32; 3]>>,
+    mut opacities: Vec<ValueStop<f64>>,
 ) -> TransferFunction {
-    colors.sort_by(|a, b| a.0.total_cmp(&b.0));
-    opacities.sort_by(|a, b| a.0.total_cmp(&b.0));
+    colors.sort_by(|a, b| a.value.total_cmp(&b.value));
+    opacities.sort_by(|a, b| a.value.total_cmp(&b.value));
     let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
     let color = |value: f64| {
         interpolate(&colors, value, |a, b, t| {
@@ -194,15 +201,16 @@ fn merge_colors_and_opacities(
     // A jump has two points at one value: the first opacity there belongs to the first colour there.
     let mut points = Vec::new();
     let mut before = 0;
-    for (at, &(value, opacity)) in opacities.iter().enumerate() {
-        before = if at > 0 && opacities[at - 1].0 == value { before + 1 } else { 0 };
-        let first = colors.partition_point(|other| other.0 < value);
-        let jump = &colors[first..colors.partition_point(|other| other.0 <= value)];
-        let color = jump.get(before).filter(|_| jump.len() > 1).map_or_else(|| color(value), |other| other.1);
+    for (at, &ValueStop { value, content: opacity }) in opacities.iter().enumerate() {
+        before = if at > 0 && opacities[at - 1].value == value { before + 1 } else { 0 };
+        let first = colors.partition_point(|other| other.value < value);
+        let jump = &colors[first..colors.partition_point(|other| other.value <= value)];
+        let color =
+            jump.get(before).filter(|_| jump.len() > 1).map_or_else(|| color(value), |other| other.content);
         points.push(ControlPoint::new(value, color, opacity));
     }
-    for &(value, color) in &colors {
-        if opacities.binary_search_by(|at| at.0.total_cmp(&value)).is_err() {
+    for &ValueStop { value, content: color } in &colors {
+        if opacities.binary_search_by(|at| at.value.total_cmp(&value)).is_err() {
             points.push(ControlPoint::new(
                 value,
                 color,
@@ -216,13 +224,15 @@ fn merge_colors_and_opacities(
 }
 
 /// Interpolates a list sorted by value; outside it, returns the nearest end.
-fn interpolate<T: Copy>(points: &[(f64, T)], value: f64, mix: impl Fn(&T, &T, f64) -> T) -> T {
-    let upper = points.partition_point(|point| point.0 <= value);
+fn interpolate<T: Copy>(points: &[ValueStop<T>], value: f64, mix: impl Fn(&T, &T, f64) -> T) -> T {
+    let upper = points.partition_point(|point| point.value <= value);
     match (upper.checked_sub(1).map(|at| points[at]), points.get(upper)) {
-        (Some((low, a)), Some((high, b))) => mix(&a, b, (value - low) / (high - low)),
-        (Some((_, a)), None) => a,
-        (None, Some((_, b))) => *b,
-        (None, None) => points[0].1,
+        (Some(low), Some(high)) => {
+            mix(&low.content, &high.content, (value - low.value) / (high.value - low.value))
+        }
+        (Some(low), None) => low.content,
+        (None, Some(high)) => high.content,
+        (None, None) => points[0].content,
     }
 }
 

@@ -4,7 +4,9 @@
 
 use serde_json::{Value, json};
 
-use super::{ExchangeError, format_error, merge_colors_and_opacities, number_list, rgb_from_fractions};
+use super::{
+    ExchangeError, ValueStop, format_error, merge_colors_and_opacities, number_list, rgb_from_fractions,
+};
 use crate::TransferFunction;
 
 /// Reads the first colour map of a file.
@@ -16,17 +18,19 @@ pub(crate) fn from_paraview(tree: &Value) -> Result<TransferFunction, ExchangeEr
     if colors.len() < 4 || !colors.len().is_multiple_of(4) {
         return Err(format_error("RGBPoints must hold a value, red, green and blue for each point"));
     }
-    let colors: Vec<_> = colors.chunks_exact(4).map(|at| (at[0], rgb_from_fractions(&at[1..]))).collect();
+    let color = |at: &[f64]| ValueStop { value: at[0], content: rgb_from_fractions(&at[1..]) };
+    let opacity = |value, content| ValueStop { value, content };
+    let colors: Vec<_> = colors.chunks_exact(4).map(color).collect();
     let opacities = match map.get("Points").filter(|points| !points.is_null()) {
         Some(points) => {
             let points = number_list(Some(points), "Points")?;
             if points.is_empty() || !points.len().is_multiple_of(4) {
                 return Err(format_error("Points must hold four numbers for each point"));
             }
-            points.chunks_exact(4).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect()
+            points.chunks_exact(4).map(|at| opacity(at[0], at[1].clamp(0.0, 1.0))).collect()
         }
         // A map of colours alone gets a linear opacity ramp.
-        None => vec![(colors[0].0, 0.0), (colors[colors.len() - 1].0, 1.0)],
+        None => vec![opacity(colors[0].value, 0.0), opacity(colors[colors.len() - 1].value, 1.0)],
     };
     Ok(merge_colors_and_opacities(colors, opacities))
 }

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::{ExchangeError, format_error, merge_colors_and_opacities, number_list, rgb_from_fractions};
+use super::{
+    ExchangeError, ValueStop, format_error, merge_colors_and_opacities, number_list, rgb_from_fractions,
+};
 use crate::TransferFunction;
 use chiaroscuro_volume::ValueRange;
 
@@ -32,9 +34,10 @@ pub(crate) fn from_vp(text: &str) -> Result<TransferFunction, ExchangeError> {
     if opacities.is_empty() || opacities.len() % 2 != 0 || colors.is_empty() || colors.len() % 4 != 0 {
         return Err(format_error("a list of the volume property is cut off"));
     }
-    let opacities: Vec<_> = opacities.chunks_exact(2).map(|at| (at[0], at[1].clamp(0.0, 1.0))).collect();
-    let colors: Vec<_> = colors.chunks_exact(4).map(|at| (at[0], rgb_from_fractions(&at[1..]))).collect();
-    Ok(merge_colors_and_opacities(colors, opacities))
+    let opacity = |at: &[f64]| ValueStop { value: at[0], content: at[1].clamp(0.0, 1.0) };
+    let color = |at: &[f64]| ValueStop { value: at[0], content: rgb_from_fractions(&at[1..]) };
+    let opacities = opacities.chunks_exact(2).map(opacity).collect();
+    Ok(merge_colors_and_opacities(colors.chunks_exact(4).map(color).collect(), opacities))
 }
 
 /// Writes a `.vp` file, with the shading of Slicer's own presets for bone.
@@ -76,12 +79,15 @@ pub(crate) fn from_vp_json(tree: &Value) -> Result<TransferFunction, ExchangeErr
     };
     let opacities: Result<Vec<_>, ExchangeError> = list("scalarOpacity")?
         .iter()
-        .map(|point| Ok((number(point, "x")?, number(point, "y")?.clamp(0.0, 1.0))))
+        .map(|point| {
+            Ok(ValueStop { value: number(point, "x")?, content: number(point, "y")?.clamp(0.0, 1.0) })
+        })
         .collect();
     let colors: Result<Vec<_>, ExchangeError> = list("rgbTransferFunction")?
         .iter()
         .map(|point| {
-            Ok((number(point, "x")?, rgb_from_fractions(&number_list(point.get("color"), "color")?)))
+            let color = rgb_from_fractions(&number_list(point.get("color"), "color")?);
+            Ok(ValueStop { value: number(point, "x")?, content: color })
         })
         .collect();
     Ok(merge_colors_and_opacities(colors?, opacities?))

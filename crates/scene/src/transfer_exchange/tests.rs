@@ -52,7 +52,7 @@ fn what_is_written_is_read_back() {
             }
             let apart = (before.opacity_at(value) - after.opacity_at(value)).abs();
             assert!(apart < opacity_apart, "{name} at {value}: {apart}");
-            for (a, b) in before.sample(value).0.iter().zip(after.sample(value).0) {
+            for (a, b) in before.sample(value).color.iter().zip(after.sample(value).color) {
                 assert!((a - b).abs() < color_apart, "{name} at {value}: {a} and {b}");
             }
         }
@@ -66,9 +66,9 @@ fn imagej_gets_the_colors() {
     assert_eq!(table.len(), 768);
     let after = read("a.lut", &table).unwrap();
     for point in &after.points {
-        let wanted = before.sample(point.value).0;
+        let wanted = before.sample(point.value).color;
         assert!(
-            after.sample(point.value).0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.01),
+            after.sample(point.value).color.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.01),
             "{point:?}"
         );
     }
@@ -221,10 +221,20 @@ fn other_xml_and_json_are_refused_in_words() {
 }
 
 #[test]
+fn curves_are_read_from_presets_and_from_sessions_of_every_schema() {
+    let settings = Preset::find("mr/head").unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
+    let function = serde_json::to_value(&settings.layer().transfer).unwrap();
+    let before = serde_json::json!({"schema": 2, "transfer": function});
+    for text in [before.to_string(), crate::settings_to_json(&settings)] {
+        assert_eq!(read("a.json", text.as_bytes()).unwrap(), settings.layer().transfer);
+    }
+}
+
+#[test]
 fn maps_of_paraview_are_read_back() {
     for name in ["ct/bone", "mr/head", "simulation/signed"] {
         let preset = Preset::find(name).unwrap();
-        let before = preset.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().transfer;
+        let before = preset.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().layer().transfer.clone();
         let after = read("a.json", &export_transfer(Path::new("a.json"), &before, RANGE).unwrap()).unwrap();
         assert_eq!(after.points.len(), before.points.len());
         for (a, b) in after.points.iter().zip(&before.points) {

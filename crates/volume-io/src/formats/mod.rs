@@ -22,8 +22,8 @@ pub use raw::{RawFormat, RawGuess, RawLayout};
 use super::reading::input::InputFile;
 use super::reading::reader::{FileStart, FormatReader};
 use super::reading::{
-    companion_path, content, input, label_tables, number, placement, read_files, reader, rescale, samples,
-    text_numbers, voxel_filter, voxels,
+    companion_path, content, input, label_tables, number, placement, reader, rescale, samples, text_numbers,
+    voxel_filter, voxels,
 };
 use super::unsupported::{self, UnsupportedFormat};
 use super::{Endian, LoadOptions};

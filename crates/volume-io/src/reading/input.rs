@@ -6,7 +6,6 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use super::companion_path::{DANGLING_LINK, DANGLING_LINK_HELP};
-use super::read_files::record_read;
 use super::{LoadControl, LoadError};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::LoadContext;
@@ -108,8 +107,12 @@ fn file_state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
 
 impl FileChangeGuard {
     /// Records the state of an input before anything is read from it.
-    pub(crate) fn new(attempt: LoadContext<'_>, input: &InputFile) -> Result<Self, LoadError> {
-        record_read(attempt.path);
+    pub(crate) fn new(
+        attempt: LoadContext<'_>,
+        input: &InputFile,
+        control: &LoadControl,
+    ) -> Result<Self, LoadError> {
+        control.record_read(attempt.path);
         let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((file_state(&file)?, file)));
         seen.map(|(before, file)| Self { file, initial_state: before })
             .map_err(|error| attempt.io_error(error))

@@ -7,7 +7,6 @@ pub(super) mod label_tables;
 pub(super) mod number;
 mod parallel_read;
 pub(super) mod placement;
-pub(super) mod read_files;
 pub(super) mod reader;
 pub(super) mod rescale;
 pub(super) mod samples;

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::LoadError;
 use super::voxels::ReadVoxels;
+use super::{LoadControl, LoadError};
 use chiaroscuro_volume::{
     GridExtent, LoadContext, Samples, ValueMetadata, ValueRange, Volume, is_usable_affine, is_usable_spacing,
     spacing_ratio_error,
@@ -122,18 +122,23 @@ pub(crate) struct VolumeParts {
 }
 
 impl VolumeParts {
-    /// Assembles the volume from the wanted part of the voxels that were read.
+    /// Assembles the volume from the wanted part of the voxels that were read; notes in `control` how long that took.
     ///
     /// # Errors
     /// `BadInput` where the parts are no valid volume: no value is finite, or the value range overflows.
-    pub(crate) fn into_volume(self, attempt: LoadContext<'_>) -> Result<Volume, LoadError> {
-        self.into_volume_with_help(attempt, "check the header against the data")
+    pub(crate) fn into_volume(
+        self,
+        attempt: LoadContext<'_>,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        self.into_volume_with_help(attempt, control, "check the header against the data")
     }
 
     /// Assembles the volume as [`Self::into_volume`] does, with another help text for errors.
     pub(crate) fn into_volume_with_help(
         self,
         attempt: LoadContext<'_>,
+        control: &LoadControl,
         help: &str,
     ) -> Result<Volume, LoadError> {
         let Self { name, extent, placement, voxels, hints } = self;
@@ -166,7 +171,7 @@ impl VolumeParts {
         let labels = picked.and_then(|picked| of(picked).ok()).filter(Volume::is_label_map);
         let volume =
             labels.map_or_else(|| of(samples), Ok).and_then(|volume| volume.extract_portion(&read, &wanted));
-        let volume = volume.map(|volume| volume.with_analysis_time(start.elapsed()));
+        control.set_analysis_time(start.elapsed());
         volume.map_err(|error| attempt.bad_input_error("data", error.to_string(), help))
     }
 }

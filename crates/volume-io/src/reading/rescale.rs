@@ -3,7 +3,7 @@
 use super::LoadError;
 use super::samples::{ReadFault, alloc_with_capacity};
 use chiaroscuro_volume::{
-    CancelToken, LoadContext, PIECE_VALUES, Samples, VoxelType, human_bytes, with_samples,
+    CancelToken, FiniteRange, LoadContext, PIECE_VALUES, Samples, VoxelType, human_bytes, with_samples,
 };
 
 /// Rescales values. They stay integers where that is exact. Numbers of equal size are converted in place, others into
@@ -55,7 +55,7 @@ fn rescaled_type(samples: &Samples, slope: f64, intercept: f64) -> VoxelType {
     if is_integer
         && slope.fract() == 0.0
         && intercept.fract() == 0.0
-        && let Some((range, _)) = samples.finite_range()
+        && let Some(FiniteRange { range, .. }) = samples.finite_range()
     {
         let ends = [range.low, range.high].map(|value| value.mul_add(slope, intercept));
         let holds = |low: f64, high: f64| ends.iter().all(|end| (low..=high).contains(end));

@@ -184,9 +184,6 @@ pub(crate) fn is_corruption(error: &io::Error) -> bool {
     )
 }
 
-/// Number of blocks read, for fault injection.
-static BLOCKS: fault::FaultCounter = fault::FaultCounter::new();
-
 /// Fills `block` until it is full or the reader ends; returns the number of bytes read.
 pub(crate) fn read_until_full(
     reader: &mut impl Read,
@@ -196,7 +193,7 @@ pub(crate) fn read_until_full(
     let mut filled = 0;
     while filled < block.len() {
         control.check().map_err(ReadFault::Stopped)?;
-        if fault::is_due(&BLOCKS, fault::InjectedFault::ReadError) {
+        if fault::is_due(fault::FaultEvent::BlockRead, fault::InjectedFault::ReadError) {
             return Err(ReadFault::Io(io::Error::other("a fault was injected")));
         }
         // In blocks, so that cancellation is noticed in between.

@@ -68,6 +68,25 @@ fn missing_volumes_cannot_be_chosen_in_any_format() {
 }
 
 #[test]
+fn the_format_of_a_file_is_known() {
+    let folder = TempDir::new().unwrap();
+    let nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n";
+    let nrrd = write(&folder, "v.bin", &[nrrd.as_bytes(), &[1; 8]].concat());
+    let pictures = TempDir::new().unwrap();
+    for name in ["1.png", "2.png"] {
+        image::GrayImage::from_raw(2, 1, vec![1, 2]).unwrap().save(pictures.path().join(name)).unwrap();
+    }
+    for (path, format) in [
+        (nrrd, Some("NRRD")),
+        (pictures.path().join("1.png"), Some("PNG")),
+        (pictures.path().to_owned(), Some("folder of PNG pictures")),
+        (PathBuf::from("builtin:box:16"), None),
+    ] {
+        assert_eq!(load_choice(&path, VolumeChoice::default()).unwrap().contents().format, format);
+    }
+}
+
+#[test]
 fn errors_list_the_available_choices() {
     let folder = TempDir::new().unwrap();
     let nrrd = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\n\n";

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::{LoadOptions, load};
 use chiaroscuro_volume::{
     Downsampling, LoadControl, LoadError, MissingVoxels, Portion, ResolvedPortion, Volume, VolumeChoice,
-    VoxelRegion, VoxelSpan, with_forced_averaging,
+    VoxelRegion, VoxelSpan,
 };
 
 /// Sample files of all formats, written by other programs, of about 5 × 4 × 3 voxels.
@@ -19,10 +19,14 @@ fn samples() -> Vec<PathBuf> {
 }
 
 fn read(path: &Path, portion: Portion) -> Result<Volume, LoadError> {
+    read_under(&LoadControl::new(), path, portion)
+}
+
+fn read_under(control: &LoadControl, path: &Path, portion: Portion) -> Result<Volume, LoadError> {
     let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default().with_first_as_fallback() };
     // Enough for all samples.
     let options = LoadOptions { choice, memory_budget_bytes: 1 << 20, ..LoadOptions::default() };
-    load(path, &options, &LoadControl::new())
+    load(path, &options, control)
 }
 
 /// Region without the first voxel of every axis that has several.
@@ -79,8 +83,8 @@ fn partial_reads_match_portions_of_whole_volumes() {
             };
             let part = read(&path, portion).unwrap_or_else(|err| panic!("{what}: {err}"));
             assert_same(&part, &left, &what);
-            let streamed =
-                with_forced_averaging(|| read(&path, portion)).unwrap_or_else(|err| panic!("{what}: {err}"));
+            let streamed = read_under(&LoadControl::with_scarce_memory(), &path, portion);
+            let streamed = streamed.unwrap_or_else(|err| panic!("{what}: {err}"));
             assert_same(&streamed, &left, &format!("{what} while it was read"));
             assert_eq!((part.contents().portion, part.contents().grid), (portion, Some(dims)), "{what}");
             assert_eq!(part.contents().choice().portion, Some(portion), "{what}");
@@ -104,7 +108,8 @@ fn labels_that_no_file_calls_labels_are_not_averaged() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("labels_12x12x40_uint8.raw");
     fs::write(&path, values).unwrap();
-    let averaged = with_forced_averaging(|| read(&path, Portion::with_block_average(2))).unwrap();
+    let control = LoadControl::with_scarce_memory();
+    let averaged = read_under(&control, &path, Portion::with_block_average(2)).unwrap();
     let whole = read(&path, Portion::default()).unwrap();
     assert!(whole.is_label_map(), "{:?}", whole.kind());
     assert_same(&averaged, &whole.block_averaged([2; 3]).unwrap(), "most frequent labels");

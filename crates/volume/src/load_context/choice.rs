@@ -156,6 +156,14 @@ impl VolumeChoice {
         shown
     }
 
+    /// Records the name of the format that a file turns out to have; a later one, by a more specific reader, replaces
+    /// it.
+    pub fn record_format(&self, format: &'static str) {
+        if let Some(watch) = &self.recorder {
+            watch.record_format(format);
+        }
+    }
+
     /// Returns true if nothing is selected and the whole volume is read.
     pub fn is_empty(&self) -> bool {
         self.selects_nothing() && self.portion.is_none()
@@ -183,11 +191,10 @@ impl VolumeChoice {
         Self { fall_back_to_first: true, ..self }
     }
 
-    /// Returns this choice with a new watch, and the watch; no two loads may share one.
+    /// Returns this choice with a recorder for one load; no two loads may share one.
     #[must_use]
-    pub fn with_recorder(self) -> (Self, ContentsRecorder) {
-        let watch = ContentsRecorder::default();
-        (Self { recorder: Some(watch.clone()), ..self }, watch)
+    pub fn with_recorder(self, recorder: &ContentsRecorder) -> Self {
+        Self { recorder: Some(recorder.clone()), ..self }
     }
 }
 
@@ -247,10 +254,12 @@ mod tests {
     fn fallback_selects_the_first_and_records_alternatives() {
         let offers =
             [VolumeOffer::with_number(0, "DAPI", [4; 3]), VolumeOffer::with_number(1, "GFP", [4; 3])];
-        let (strict, watch) = VolumeChoice::default().with_recorder();
+        let watch = ContentsRecorder::default();
+        let strict = VolumeChoice::default().with_recorder(&watch);
         assert_eq!(strict.resolve(FileDimension::Channel, &offers), Err(ChoiceError::NotSelected));
         assert!(watch.contents().alternatives.is_empty());
-        let (nothing, watch) = VolumeChoice::default().with_first_as_fallback().with_recorder();
+        let watch = ContentsRecorder::default();
+        let nothing = VolumeChoice::default().with_first_as_fallback().with_recorder(&watch);
         assert_eq!(nothing.resolve(FileDimension::Channel, &offers), Ok(0));
         assert_eq!(nothing.resolve(FileDimension::Frame, &offers[..1]), Ok(0));
         let held = watch.contents();
@@ -259,17 +268,19 @@ mod tests {
             (1, Some(0)),
             "one time step is no choice"
         );
-        let (second, watch) = held.choice().with_selected(FileDimension::Channel, "1").with_recorder();
+        let watch = ContentsRecorder::default();
+        let second = held.choice().with_selected(FileDimension::Channel, "1").with_recorder(&watch);
         assert!(watch.contents().choice().is_empty(), "no two loads share what they have found");
         assert_eq!(second.resolve(FileDimension::Channel, &offers), Ok(1));
         assert_eq!(
             watch.contents().alternatives_in(FileDimension::Channel).unwrap().unmatched_selection,
             None
         );
-        let (late, watch) = VolumeChoice::default()
+        let watch = ContentsRecorder::default();
+        let late = VolumeChoice::default()
             .with_selected(FileDimension::Channel, "7")
             .with_first_as_fallback()
-            .with_recorder();
+            .with_recorder(&watch);
         assert_eq!(late.resolve(FileDimension::Channel, &offers), Ok(0), "it is not there");
         assert_eq!(
             watch.contents().alternatives_in(FileDimension::Channel).unwrap().unmatched_selection.as_deref(),
@@ -303,7 +314,8 @@ mod tests {
             (2, true, DefaultComponent::First, None),
             (3, false, DefaultComponent::Magnitude, Some(2)),
         ] {
-            let (choice, watch) = third.clone().with_recorder();
+            let watch = ContentsRecorder::default();
+            let choice = third.clone().with_recorder(&watch);
             assert_eq!(choice.resolve_component(count, is_color), shown);
             assert_eq!(
                 watch.contents().components,
@@ -311,7 +323,8 @@ mod tests {
             );
             assert_eq!(watch.contents().choice().component, shown);
         }
-        let (choice, watch) = third.with_recorder();
+        let watch = ContentsRecorder::default();
+        let choice = third.with_recorder(&watch);
         assert_eq!((choice.resolve_component(1, false), watch.contents().components), (None, None));
         assert_eq!(choice.resolve_layer(4), Some(2));
         assert_eq!(watch.contents().components.unwrap().default_component, DefaultComponent::First);

@@ -1,12 +1,15 @@
 //! Progress and cancellation of a load, shared between threads.
 
+use std::collections::BTreeSet;
 use std::fmt;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use super::error::LoadError;
 use super::memory_estimate::VolumeSize;
-use crate::cancellation::{CancelSignal, CancelToken};
+use crate::cancellation::CancelToken;
 
 /// Progress counter and cancel token of a load, shared by the loading thread and the waiting one.
 ///
@@ -14,12 +17,18 @@ use crate::cancellation::{CancelSignal, CancelToken};
 /// the voxels. Counts are bytes of voxels after decompression.
 #[derive(Debug, Default)]
 pub struct LoadControl {
-    signal: Arc<CancelSignal>,
+    token: CancelToken,
     /// Bytes of voxels read until now.
     pub done_bytes: AtomicU64,
     /// Bytes of voxels in the whole volume; 0 until the header has been read.
     pub total_bytes: AtomicU64,
+    /// Time of the analysis after reading, in nanoseconds.
+    analysis_ns: AtomicU64,
     size_check: SizeCheck,
+    /// Files that were read: a header names others, and a slice brings its series.
+    read_files: Mutex<BTreeSet<PathBuf>>,
+    /// True if blocks are averaged while they are read although all voxels fit into memory; only tests set it.
+    is_memory_scarce: bool,
 }
 
 /// Callback that decides, by the size of a volume, whether its voxels are read.
@@ -41,6 +50,11 @@ impl LoadControl {
         Self::default()
     }
 
+    /// Creates a control of work that is cancelled by the token.
+    pub fn with_token(token: CancelToken) -> Self {
+        Self { token, ..Self::default() }
+    }
+
     /// Creates a control that asks `accepts` once the size of a volume is known, before its voxels take any memory.
     /// Loading fails with [`LoadError::Cancelled`] if it returns false. It is not asked if the user has already
     /// chosen a portion.
@@ -52,14 +66,19 @@ impl LoadControl {
         self.size_check.0.as_ref().is_none_or(|accepts| accepts(size))
     }
 
+    /// Returns the token by which the load is cancelled.
+    pub fn token(&self) -> &CancelToken {
+        &self.token
+    }
+
     /// Requests the load to stop; it then fails with [`LoadError::Cancelled`].
     pub fn cancel(&self) {
-        self.signal.is_cancelled.store(true, Ordering::Relaxed);
+        self.token.cancel();
     }
 
     /// Returns true if cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
-        self.signal.is_cancelled.load(Ordering::Relaxed)
+        self.token.is_cancelled()
     }
 
     /// Returns the completed share, 0 … 1, once the total size is known.
@@ -73,6 +92,30 @@ impl LoadControl {
         (total > 0).then(|| [self.done_bytes.load(Ordering::Relaxed).min(total), total])
     }
 
+    /// Records a file from which voxels or metadata are read.
+    pub fn record_read(&self, path: &Path) {
+        let mut files = self.read_files.lock().unwrap_or_else(PoisonError::into_inner);
+        // Series are recorded once for each slice.
+        if !files.contains(path) {
+            files.insert(path.to_owned());
+        }
+    }
+
+    /// Returns the paths that were read until now, as they were opened.
+    pub fn read_files(&self) -> Vec<PathBuf> {
+        self.read_files.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    pub(super) fn is_memory_scarce(&self) -> bool {
+        self.is_memory_scarce
+    }
+
+    /// Creates a control under which blocks are averaged while they are read, as if memory were scarce.
+    #[cfg(any(test, feature = "testing"))]
+    pub fn with_scarce_memory() -> Self {
+        Self { is_memory_scarce: true, ..Self::default() }
+    }
+
     /// Starts the count of voxels' bytes: none read until now, of `total_bytes` in the whole volume.
     pub fn start(&self, total_bytes: u64) {
         self.done_bytes.store(0, Ordering::Relaxed);
@@ -84,28 +127,55 @@ impl LoadControl {
         self.done_bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 
+    /// Records how long the voxels' ranges and hash took, once they were read.
+    pub fn set_analysis_time(&self, took: Duration) {
+        self.analysis_ns.store(u64::try_from(took.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
+    }
+
+    /// Returns the time taken for the voxels' ranges and hash: the part of loading that was neither reading nor
+    /// decoding. Zero for volumes that come from no file.
+    pub fn analysis_time(&self) -> Duration {
+        Duration::from_nanos(self.analysis_ns.load(Ordering::Relaxed))
+    }
+
     /// Counts a piece of work about to begin, and returns an error if it must not be done.
     ///
     /// # Errors
     /// [`LoadError::Cancelled`] if cancellation was requested.
     pub fn check(&self) -> Result<(), LoadError> {
-        if self.signal.should_stop() { Err(LoadError::Cancelled) } else { Ok(()) }
+        if self.token.should_stop() { Err(LoadError::Cancelled) } else { Ok(()) }
     }
 
     /// Runs work that stops early when this control is cancelled; its result must be discarded in that case.
     pub fn run<T>(&self, work: impl FnOnce() -> T) -> T {
-        CancelToken::new(&self.signal).run(work)
+        self.token.run(work)
     }
 
     /// Number of pieces of work that were begun, such as blocks read or slices counted. No piece takes longer than
     /// one slice.
+    #[cfg(any(test, feature = "testing"))]
     pub fn pieces_begun(&self) -> u64 {
-        self.signal.begun.load(Ordering::Relaxed)
+        self.token.pieces_begun()
     }
 
     /// Cancels the load automatically after the given number of pieces.
     #[cfg(any(test, feature = "testing"))]
     pub fn cancel_after(&self, pieces: u64) {
-        self.signal.cancel_after_pieces.store(pieces.max(1), Ordering::Relaxed);
+        self.token.cancel_after(pieces);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_recorded_once_for_each_load() {
+        let [control, other] = [(); 2].map(|()| LoadControl::new());
+        for name in ["b", "a", "b"] {
+            control.record_read(Path::new(name));
+        }
+        assert_eq!(control.read_files(), [PathBuf::from("a"), PathBuf::from("b")]);
+        assert!(other.read_files().is_empty());
     }
 }

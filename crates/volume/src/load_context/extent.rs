@@ -1,6 +1,5 @@
 //! Extent of a volume's grid, checked against the memory budget before anything is allocated.
 
-use super::averaging_while_reading::is_short_of_room;
 use super::choice::VolumeChoice;
 use super::control::LoadControl;
 use super::error::{LoadContext, LoadError};
@@ -67,7 +66,7 @@ impl GridExtent {
         let Self { wanted, .. } = extent;
         let boxed = Self { read: wanted.full_box(), ..extent };
         let has_room = boxed.needed_bytes(voxel_type) <= u128::from(room.budget_bytes);
-        if wanted.is_averaged && has_room && !is_short_of_room() {
+        if wanted.is_averaged && has_room && !room.control.is_memory_scarce() {
             return Ok(boxed);
         }
         let extent = extent.check_budget(attempt, field, voxel_type, room, false)?;

@@ -92,6 +92,8 @@ pub struct VoxelComponents {
 /// Inventory of a file, to the extent that it was read to open one volume.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FileContents {
+    /// Name of the file's format; `None` without a file.
+    pub format: Option<&'static str>,
     /// One entry for each dimension in which the file's volumes differ.
     pub alternatives: Vec<VolumeAlternatives>,
     /// Components of a voxel, if there are several.
@@ -162,6 +164,10 @@ impl ContentsRecorder {
         // The header of a data file may be read twice; the later record replaces the earlier.
         held.alternatives.retain(|known| known.dimension != several.dimension);
         held.alternatives.push(several);
+    }
+
+    pub(super) fn record_format(&self, format: &'static str) {
+        self.lock().held.format = Some(format);
     }
 
     pub(super) fn record_grid(&self, dims: [usize; 3]) {

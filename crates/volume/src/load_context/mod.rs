@@ -1,7 +1,6 @@
 //! Infrastructure shared by readers and built-in volumes: memory limits, errors with advice, and a control for
 //! progress and cancellation.
 
-mod averaging_while_reading;
 mod choice;
 mod control;
 mod error;
@@ -14,8 +13,6 @@ mod offer;
 mod portion;
 mod resolved_portion;
 
-#[cfg(any(test, feature = "testing"))]
-pub use averaging_while_reading::with_forced_averaging;
 pub use choice::VolumeChoice;
 pub use control::LoadControl;
 pub use error::{ErrorExplanation, LoadError, LoadErrorKind};

@@ -60,6 +60,7 @@ impl Portion {
     }
 
     /// Returns the averages of blocks of the whole grid with the given edge.
+    #[cfg(any(test, feature = "testing"))]
     pub fn with_block_average(block: usize) -> Self {
         Self { region: None, thinning: Downsampling::Average(block) }
     }

@@ -32,6 +32,16 @@ pub struct ClipRegion {
     pub plane: Option<HalfSpace>,
 }
 
+/// Part of a ray inside a region, in multiples of the length of the ray's direction. It is entered behind its end if
+/// the ray misses the region.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RayInterval {
+    /// Parameter of the ray where it enters the region.
+    pub enter: f64,
+    /// Parameter of the ray where it leaves the region.
+    pub leave: f64,
+}
+
 impl ClipRegion {
     /// Unbounded region that clips nothing.
     pub const UNBOUNDED: Self = Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY, plane: None };
@@ -42,9 +52,8 @@ impl ClipRegion {
         Self { low: self.low.max(bounds.min), high: self.high.min(bounds.max), plane: self.plane }
     }
 
-    /// Returns the ray parameters at entry and exit, in multiples of the length of `direction` (slab method). The
-    /// entry exceeds the exit if the ray misses the region.
-    pub fn ray_interval(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
+    /// Returns the part of a ray inside the region (slab method).
+    pub fn ray_interval(&self, origin: DVec3, direction: DVec3) -> RayInterval {
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         // Each boundary: signed depth of the origin inside it, and the rate at which that grows along the ray.
         let mut bound = |depth: f64, speed: f64| {
@@ -63,7 +72,7 @@ impl ClipRegion {
         if let Some(plane) = &self.plane {
             bound(plane.signed_distance(origin), -plane.normal.dot(direction));
         }
-        (enter, leave)
+        RayInterval { enter, leave }
     }
 
     /// Returns true if a point lies inside the region or on its boundary.
@@ -81,12 +90,21 @@ mod tests {
     fn rays_enter_and_leave() {
         let half = HalfSpace { normal: DVec3::new(0.6, 0.8, 0.0), offset: 3.0 };
         let region = ClipRegion { low: DVec3::splat(-1.0), high: DVec3::splat(4.0), plane: Some(half) };
-        assert_eq!(region.ray_interval(DVec3::new(-3.0, 0.0, 0.0), DVec3::X), (2.0, 7.0));
-        assert_eq!(region.ray_interval(DVec3::new(-3.0, 0.0, 0.0), DVec3::X * 2.0), (1.0, 3.5));
-        assert_eq!(region.ray_interval(DVec3::new(0.0, 0.0, 9.0), DVec3::NEG_Z), (5.0, 10.0));
-        let (enter, leave) = region.ray_interval(DVec3::new(4.0, 4.0, 0.0), DVec3::Z);
+        assert_eq!(
+            region.ray_interval(DVec3::new(-3.0, 0.0, 0.0), DVec3::X),
+            RayInterval { enter: 2.0, leave: 7.0 }
+        );
+        assert_eq!(
+            region.ray_interval(DVec3::new(-3.0, 0.0, 0.0), DVec3::X * 2.0),
+            RayInterval { enter: 1.0, leave: 3.5 }
+        );
+        assert_eq!(
+            region.ray_interval(DVec3::new(0.0, 0.0, 9.0), DVec3::NEG_Z),
+            RayInterval { enter: 5.0, leave: 10.0 }
+        );
+        let RayInterval { enter, leave } = region.ray_interval(DVec3::new(4.0, 4.0, 0.0), DVec3::Z);
         assert!(enter > leave, "outside the plane");
-        let (enter, leave) = region.ray_interval(DVec3::new(9.0, 0.0, 0.0), DVec3::Z);
+        let RayInterval { enter, leave } = region.ray_interval(DVec3::new(9.0, 0.0, 0.0), DVec3::Z);
         assert!(enter > leave, "outside the box");
         for at in [0.5, 2.5, 6.5, 7.5] {
             let point = DVec3::new(at - 3.0, 0.0, 0.0);
@@ -106,7 +124,8 @@ mod tests {
 
     #[test]
     fn everything_is_everywhere() {
-        let (enter, leave) = ClipRegion::UNBOUNDED.ray_interval(DVec3::ZERO, DVec3::new(0.3, 0.0, -1.0));
+        let RayInterval { enter, leave } =
+            ClipRegion::UNBOUNDED.ray_interval(DVec3::ZERO, DVec3::new(0.3, 0.0, -1.0));
         assert_eq!((enter, leave), (f64::NEG_INFINITY, f64::INFINITY));
         assert!(ClipRegion::UNBOUNDED.contains(DVec3::splat(1e30)));
     }

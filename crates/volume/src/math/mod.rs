@@ -12,7 +12,7 @@ mod scene;
 mod srgb;
 
 pub use bounds::Aabb;
-pub use clip_region::{ClipRegion, HalfSpace};
+pub use clip_region::{ClipRegion, HalfSpace, RayInterval};
 pub use false_color::false_color;
 pub use luminance::luminance;
 pub use scene::SceneSpace;

@@ -1,5 +1,7 @@
 //! Samples: voxel values as stored in files, in any number type.
 
+use std::ops::RangeInclusive;
+
 use crate::ValueRange;
 use crate::cancellation::{CancelToken, PIECE_VALUES};
 
@@ -33,14 +35,14 @@ impl VoxelType {
     }
 
     /// Returns the smallest and the largest integer of the type; `None` for floating-point types.
-    const fn integer_range(self) -> Option<(i64, i64)> {
+    const fn integer_range(self) -> Option<RangeInclusive<i64>> {
         match self {
-            Self::U8 => Some((0, u8::MAX as i64)),
-            Self::I8 => Some((i8::MIN as i64, i8::MAX as i64)),
-            Self::U16 => Some((0, u16::MAX as i64)),
-            Self::I16 => Some((i16::MIN as i64, i16::MAX as i64)),
-            Self::U32 => Some((0, u32::MAX as i64)),
-            Self::I32 => Some((i32::MIN as i64, i32::MAX as i64)),
+            Self::U8 => Some(0..=u8::MAX as i64),
+            Self::I8 => Some(i8::MIN as i64..=i8::MAX as i64),
+            Self::U16 => Some(0..=u16::MAX as i64),
+            Self::I16 => Some(i16::MIN as i64..=i16::MAX as i64),
+            Self::U32 => Some(0..=u32::MAX as i64),
+            Self::I32 => Some(i32::MIN as i64..=i32::MAX as i64),
             Self::F32 | Self::F64 => None,
         }
     }
@@ -55,8 +57,12 @@ impl VoxelType {
             let is_exact = |of: Self| of == Self::F32 || (of != Self::F64 && of.bytes() <= 2);
             return if is_exact(self) && is_exact(other) { Self::F32 } else { Self::F64 };
         };
-        let (low, high) = (one.0.min(another.0), one.1.max(another.1));
-        let holds = |of: &Self| of.integer_range().is_some_and(|(first, last)| first <= low && high <= last);
+        let holds = |of: &Self| {
+            of.integer_range().is_some_and(|range| {
+                range.start() <= one.start().min(another.start())
+                    && one.end().max(another.end()) <= range.end()
+            })
+        };
         Self::ALL.into_iter().find(holds).unwrap_or(Self::F64)
     }
 
@@ -112,6 +118,15 @@ pub(crate) use with_samples;
 fn chunks_until_cancelled<T>(values: &[T]) -> impl Iterator<Item = &[T]> {
     let interrupt = CancelToken::current();
     values.chunks(PIECE_VALUES).take_while(move |_| !interrupt.should_stop())
+}
+
+/// Range of the finite values among samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FiniteRange {
+    /// Smallest and largest of these values.
+    pub range: ValueRange,
+    /// Number of voxels whose values are not finite.
+    pub non_finite_voxels: usize,
 }
 
 impl Samples {
@@ -189,15 +204,13 @@ impl Samples {
         });
     }
 
-    /// Returns the range of the finite values, and the number of voxels that are not finite; `None` if none is
-    /// finite.
-    pub fn finite_range(&self) -> Option<(ValueRange, usize)> {
+    /// Returns the range of the finite values; `None` if none is finite.
+    pub fn finite_range(&self) -> Option<FiniteRange> {
         self.finite_range_except(f64::NAN)
     }
 
-    /// Returns the range of the finite values other than `left_out`, and the number of voxels that are not finite;
-    /// `None` if there are no such values.
-    pub(crate) fn finite_range_except(&self, left_out: f64) -> Option<(ValueRange, usize)> {
+    /// Returns the range of the finite values other than `left_out`; `None` if there are no such values.
+    pub(crate) fn finite_range_except(&self, left_out: f64) -> Option<FiniteRange> {
         #[expect(
             trivial_numeric_casts,
             clippy::unnecessary_cast,
@@ -216,7 +229,8 @@ impl Samples {
                 }
             },
         ));
-        (low <= high).then_some((ValueRange::new(low, high), non_finite))
+        (low <= high)
+            .then(|| FiniteRange { range: ValueRange::new(low, high), non_finite_voxels: non_finite })
     }
 
     /// Returns a 64-bit fingerprint of the values (FNV-1a over whole values: an identity, not a checksum).

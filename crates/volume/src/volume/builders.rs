@@ -1,9 +1,9 @@
 //! Builders of a volume: each takes it and returns it with one fact set.
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use super::{Volume, VolumeError, VolumeProvenance};
+use super::provenance::VolumeProvenance;
+use super::{Volume, VolumeError};
 use crate::ValueMetadata;
 use crate::load_context::{FileContents, ResolvedPortion};
 
@@ -29,10 +29,10 @@ impl Volume {
     /// # Errors
     /// Fails if no voxel has another value.
     pub fn with_padding(self, padding_value: f64) -> Result<Self, VolumeError> {
+        let padding_value = self.voxels.as_stored(padding_value);
         let voxels = self.voxels.with_padding(self.grid.dims(), padding_value)?;
         // The padding value affects what is shown, like the values themselves.
-        let padding_bits = voxels.padding_value().unwrap_or(padding_value).to_bits();
-        Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_bits, ..self })
+        Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_value.to_bits(), ..self })
     }
 
     /// Sets whether world space is right-anterior-superior, as the file states of a body.
@@ -71,14 +71,8 @@ impl Volume {
         self.with_changed_provenance(|provenance| provenance.contents = Arc::new(held))
     }
 
-    /// Sets the time taken to analyse the voxels after reading.
-    #[must_use]
-    pub fn with_analysis_time(self, looking_took: Duration) -> Self {
-        self.with_changed_provenance(|provenance| provenance.analysis_time = looking_took)
-    }
-
     /// Changes the provenance of this volume, without effect on others that share it.
-    pub(super) fn with_changed_provenance(mut self, change: impl FnOnce(&mut VolumeProvenance)) -> Self {
+    fn with_changed_provenance(mut self, change: impl FnOnce(&mut VolumeProvenance)) -> Self {
         change(Arc::make_mut(&mut self.provenance));
         self
     }
@@ -96,9 +90,8 @@ mod tests {
         let opened = Volume::with_spacing("t", [2, 2, 2], DVec3::ONE, Samples::U8((0..8).collect())).unwrap();
         let clone = opened.clone();
         assert!(Arc::ptr_eq(&clone.provenance, &opened.provenance));
-        let told = clone.with_remarks(vec!["told".to_owned()]).with_analysis_time(Duration::from_secs(1));
+        let told = clone.with_remarks(vec!["told".to_owned()]);
         assert_eq!((told.remarks().len(), opened.remarks().len()), (1, 0));
-        assert_eq!(opened.analysis_time(), Duration::ZERO);
         let by = Corrections { flip: Flips { x: true, ..Flips::default() }, ..Corrections::default() };
         let corrected = told.corrected(&by).unwrap();
         assert_eq!((corrected.corrections(), told.corrections()), (&by, &Corrections::default()));
@@ -106,6 +99,5 @@ mod tests {
         let part = corrected.cropped(&[0..1, 0..2, 0..2]).unwrap();
         assert_eq!((part.name(), part.remarks()), ("t", told.remarks()));
         assert!(part.corrections().is_none() && part.opened_id() == part.content_id());
-        assert_eq!(part.analysis_time(), Duration::ZERO);
     }
 }

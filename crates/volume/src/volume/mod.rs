@@ -1,6 +1,6 @@
 //! Scalar volume on a regular grid, with its transform to world space and its values in data units.
 //!
-//! A [`Volume`] is composed of a [`VoxelGrid`], the [`VoxelData`] at its voxels, and a [`VolumeProvenance`]. The grid
+//! A [`Volume`] is composed of a `VoxelGrid`, the `VoxelData` at its voxels, and a `VolumeProvenance`. The grid
 //! knows no values, the values know no positions, and neither knows the file. The methods of the volume combine them,
 //! or hand on those of a part.
 
@@ -26,18 +26,18 @@ pub use corrections::{
 };
 pub use density_mapping::DensityMapping;
 pub use error::VolumeError;
-pub use grid::VoxelGrid;
 pub use kind::{DataKind, DetectedKind, KindName};
 pub use label_set::{CountedLabel, LabelSet, MAX_CLASSES};
 pub use missing::MissingVoxels;
-pub use provenance::VolumeProvenance;
-pub use voxel_data::VoxelData;
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use self::corrections::AppliedCorrections;
+use self::grid::VoxelGrid;
+use self::provenance::VolumeProvenance;
+use self::voxel_data::VoxelData;
 use super::load_context::FileContents;
 use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
@@ -63,8 +63,8 @@ pub struct Volume {
     provenance: Arc<VolumeProvenance>,
     /// Hash of grid, samples, padding value and corrections: a fact of none of the parts alone.
     content_id: u64,
-    /// Volume as opened, if this one is corrected: later corrections are applied to it.
-    opened: Option<Arc<Self>>,
+    /// Corrections of this volume, if there are any, with the volume as opened.
+    correction: Option<Arc<AppliedCorrections>>,
 }
 
 impl Volume {
@@ -93,7 +93,7 @@ impl Volume {
         let voxels = VoxelData::new(samples, dims)?;
         let content_id = grid.combine_hash(voxels.samples().fingerprint());
         let provenance = Arc::new(VolumeProvenance::new(name));
-        Ok(Self { grid, voxels, provenance, content_id, opened: None })
+        Ok(Self { grid, voxels, provenance, content_id, correction: None })
     }
 
     /// Creates an axis-aligned volume with `spacing_mm` between voxel centres along x, y, z.
@@ -115,46 +115,25 @@ impl Volume {
         Self {
             grid: self.grid.with_file_facts_of(&whole.grid),
             voxels: self.voxels.with_metadata_of(&whole.voxels),
-            provenance: Arc::new(whole.provenance.for_derived_volume()),
+            provenance: Arc::clone(&whole.provenance),
             ..self
         }
     }
 
-    /// Returns the grid: size and position, without values.
-    pub fn grid(&self) -> &VoxelGrid {
-        &self.grid
-    }
-
-    /// Returns the values at the voxels, with their metadata and statistics.
-    pub fn voxels(&self) -> &VoxelData {
-        &self.voxels
-    }
-
-    /// Returns the source of the volume.
-    pub fn provenance(&self) -> &VolumeProvenance {
-        &self.provenance
-    }
-
     /// Returns the name shown to the user: that of the file or the built-in volume.
     pub fn name(&self) -> &str {
-        self.provenance.name()
+        &self.provenance.name
     }
 
     /// Returns remarks for the user about how the file was read: impossible statements in it, and the values used
     /// instead.
     pub fn remarks(&self) -> &[String] {
-        self.provenance.remarks()
+        &self.provenance.remarks
     }
 
     /// Returns the inventory of the file: the other volumes that could be opened of it.
     pub fn contents(&self) -> &FileContents {
-        self.provenance.contents()
-    }
-
-    /// Returns the time taken, when the file was read, for the voxels' ranges and hash: the part of loading that was
-    /// neither reading nor decoding. Zero for volumes that come from no file.
-    pub fn analysis_time(&self) -> Duration {
-        self.provenance.analysis_time
+        &self.provenance.contents
     }
 
     /// Returns the number of voxels along x, y, z.

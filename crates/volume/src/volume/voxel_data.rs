@@ -12,7 +12,7 @@ use crate::{Samples, ValueMetadata, ValueRanges};
 /// Values of one scalar field, one per voxel of a grid, x fastest, in data units. At least one of them is finite and
 /// present. Clones share the samples.
 #[derive(Debug, Clone)]
-pub struct VoxelData {
+pub(super) struct VoxelData {
     samples: Arc<Samples>,
     /// Value of missing voxels, besides those that are not finite.
     padding_value: Option<f64>,
@@ -43,12 +43,16 @@ impl VoxelData {
         })
     }
 
-    /// Sets the padding value: see [`Volume::with_padding`](super::Volume::with_padding).
+    /// Rounds a value to the nearest float where the samples are 32-bit floats.
+    pub(super) fn as_stored(&self, value: f64) -> f64 {
+        match &*self.samples {
+            Samples::F32(_) => f64::from(value as f32),
+            _ => value,
+        }
+    }
+
+    /// Sets the padding value, which is [as stored](Self::as_stored).
     pub(super) fn with_padding(self, dims: [usize; 3], padding_value: f64) -> Result<Self, VolumeError> {
-        let padding_value = match &*self.samples {
-            Samples::F32(_) => f64::from(padding_value as f32),
-            _ => padding_value,
-        };
         let statistics = VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value))?;
         Ok(Self {
             padding_value: Some(padding_value),
@@ -79,7 +83,7 @@ impl VoxelData {
     }
 
     /// Returns the stored values.
-    pub fn samples(&self) -> &Samples {
+    pub(super) fn samples(&self) -> &Samples {
         &self.samples
     }
 
@@ -94,42 +98,42 @@ impl VoxelData {
     }
 
     /// Returns the value of missing voxels, besides those that are not finite.
-    pub fn padding_value(&self) -> Option<f64> {
+    pub(super) fn padding_value(&self) -> Option<f64> {
         self.padding_value
     }
 
     /// Returns the metadata of the values, as the file states it.
-    pub fn metadata(&self) -> &ValueMetadata {
+    pub(super) fn metadata(&self) -> &ValueMetadata {
         &self.metadata
     }
 
     /// Returns the length in mm to which opacities refer, so that the material looks the same at every resolution.
-    pub fn opacity_unit_mm(&self) -> Option<f64> {
+    pub(super) fn opacity_unit_mm(&self) -> Option<f64> {
         self.opacity_unit_mm
     }
 
     /// Returns the quantity that densities represent.
-    pub fn density_mapping(&self) -> DensityMapping {
+    pub(super) fn density_mapping(&self) -> DensityMapping {
         self.density_mapping
     }
 
     /// Returns the range of all values and the robust range.
-    pub fn ranges(&self) -> ValueRanges {
+    pub(super) fn ranges(&self) -> ValueRanges {
         self.statistics.ranges
     }
 
     /// Returns the value below which about this share of the voxels lies.
-    pub fn quantile(&self, share: f64) -> f64 {
+    pub(super) fn quantile(&self, share: f64) -> f64 {
         quantile(&self.samples, self.padding_value.unwrap_or(f64::NAN), share)
     }
 
     /// Returns the missing voxels, if there are any.
-    pub fn missing(&self) -> Option<&MissingVoxels> {
+    pub(super) fn missing(&self) -> Option<&MissingVoxels> {
         self.statistics.missing.as_deref()
     }
 
     /// Returns the number of voxels that hold NaN or an infinity, and so are missing.
-    pub fn non_finite_voxels(&self) -> usize {
+    pub(super) fn non_finite_voxels(&self) -> usize {
         self.statistics.non_finite_voxels
     }
 }

@@ -6,7 +6,7 @@ use super::error::VolumeError;
 use super::kind::{DataKind, DetectedKind};
 use super::label_set::LabelSet;
 use super::missing::MissingVoxels;
-use crate::{Samples, ValueRanges};
+use crate::{FiniteRange, Samples, ValueRanges};
 
 /// Facts that follow from samples, padding value, metadata and the dimensions of the grid: ranges and missing voxels at
 /// once, kind and labels when they are first asked for.
@@ -39,7 +39,7 @@ impl VoxelStatistics {
     ) -> Result<Self, VolumeError> {
         // No value equals NaN, so that none is left out.
         let excluded = padding.unwrap_or(f64::NAN);
-        let (value_range, non_finite_voxels) =
+        let FiniteRange { range: value_range, non_finite_voxels } =
             samples.finite_range_except(excluded).ok_or(VolumeError::NothingFinite)?;
         if !value_range.span().is_finite() {
             let range = format!("from {:e} to {:e}", value_range.low, value_range.high);

@@ -175,11 +175,7 @@ fn brightness_key(settings: &Settings) -> Settings {
         schema,
         camera: _,
         lights,
-        range,
-        labels,
-        transfer,
-        lighting,
-        opacity_unit,
+        layers,
         shading,
         shadows,
         sky,
@@ -195,15 +191,14 @@ fn brightness_key(settings: &Settings) -> Settings {
     for light in &mut lights {
         light.name.clear();
     }
+    let mut layers = layers.clone();
+    let layer = layers.first_mut();
+    // Names of labels have no influence.
+    layer.labels = layer.labels.without_names();
     Settings {
         schema: *schema,
         lights,
-        range: *range,
-        // Names of labels have no influence.
-        labels: labels.without_names(),
-        transfer: transfer.clone(),
-        lighting: lighting.clone(),
-        opacity_unit: *opacity_unit,
+        layers,
         shading: shading.clone(),
         shadows: ShadowSettings { keep_balanced: true, ..shadows.clone() },
         sky: sky.clone(),

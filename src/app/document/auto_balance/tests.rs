@@ -201,11 +201,11 @@ fn what_does_not_make_shadows_darker_is_passed_over() {
     }
     assert_eq!(window.measured, 0);
     let changes: [fn(&mut Settings); 5] = [
-        |look| look.transfer.interpolation = chiaroscuro_scene::OpacityInterpolation::Extinction,
+        |look| look.layer_mut().transfer.interpolation = chiaroscuro_scene::OpacityInterpolation::Extinction,
         |look| look.shading.ambient = 0.4,
         |look| look.shadows.strength = 0.5,
         |look| look.cuts.plane.on = true,
-        |look| look.opacity_unit = chiaroscuro_scene::OpacityLength::Voxels(3.0),
+        |look| look.layer_mut().opacity_unit = chiaroscuro_scene::OpacityLength::Voxels(3.0),
     ];
     for (count, change) in changes.into_iter().enumerate() {
         change(&mut window.settings);

@@ -216,7 +216,7 @@ mod tests {
             2 => settings.shadows.strength = share,
             3 => settings.shading.ambient = share,
             4 => settings.lights[0].on ^= true,
-            5 => settings.transfer.points.push(chiaroscuro_scene::ControlPoint::new(
+            5 => settings.layer_mut().transfer.points.push(chiaroscuro_scene::ControlPoint::new(
                 amount as f64,
                 [share as f32; 3],
                 share,
@@ -228,7 +228,7 @@ mod tests {
                 settings.kept.rotate_left(at);
             }
             9 => drop(settings.kept.pop()),
-            _ => settings.lighting.scale = share + 0.5,
+            _ => settings.layer_mut().lighting.scale = share + 0.5,
         }
     }
 

@@ -137,15 +137,15 @@ fn length_unit_text(length: OpacityLength) -> ControlText {
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {
     let scene = volume.scene;
-    let in_scene = settings.opacity_unit.scene_units(&scene);
+    let in_scene = settings.layer().opacity_unit.scene_units(&scene);
     let conversions = [
         OpacityLength::Mm(in_scene * scene.mm_per_unit),
         OpacityLength::Voxels(in_scene / scene.mean_edge()),
         OpacityLength::Extent(in_scene / 2.0),
     ];
-    let shown = displayed_length(settings.opacity_unit, volume);
-    let first = defaults.opacity_unit;
-    let mut chosen = settings.opacity_unit;
+    let shown = displayed_length(settings.layer().opacity_unit, volume);
+    let first = defaults.layer().opacity_unit;
+    let mut chosen = settings.layer().opacity_unit;
     let named = text::data::OPACITY_UNIT;
     row(ui, named, |ui| {
         let mut number = shown.number();
@@ -178,5 +178,5 @@ fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volum
             chosen = first;
         }
     });
-    settings.opacity_unit = chosen;
+    settings.layer_mut().opacity_unit = chosen;
 }

@@ -18,17 +18,18 @@ const MIN_SPAN_SHARE: f64 = 1.0 / 65_536.0;
 
 /// Shows the rows of the value range: choice, typed ends, and result.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
-    let typed = match settings.range {
+    let chosen = &mut settings.layer_mut().range;
+    let typed = match *chosen {
         DensityRange::Typed(range) => range,
-        DensityRange::Robust | DensityRange::Full => settings.range.resolve(&volume.ranges),
+        DensityRange::Robust | DensityRange::Full => chosen.resolve(&volume.ranges),
     };
     let options = [
         (DensityRange::Robust, text::data::ROBUST),
         (DensityRange::Full, text::data::FULL),
         (DensityRange::Typed(typed), text::data::TYPED_RANGE),
     ];
-    choice_row(ui, text::data::RANGE, &mut settings.range, &options);
-    if let DensityRange::Typed(range) = &mut settings.range {
+    choice_row(ui, text::data::RANGE, chosen, &options);
+    if let DensityRange::Typed(range) = chosen {
         unlabelled_row(ui, |ui| range_end_fields(ui, range, volume));
     }
     let ValueRange { low, high } = settings.shown_range(&volume.ranges);

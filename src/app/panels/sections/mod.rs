@@ -4,7 +4,7 @@ mod icons;
 pub(super) mod tabs;
 
 use crate::app::text::sections::{CAMERA, COMPARE, CUTS, DATA, FLOOR, LIGHTS, SHADING, SHADOWS, SOFT_LIGHT};
-use chiaroscuro_scene::{Settings, ShadowSettings};
+use chiaroscuro_scene::{Settings, ShadowSettings, VolumeLayer};
 
 /// Returns true if something is on in a section that is off by default, so that its header shows a dot.
 pub(super) fn is_section_active(title: &str, settings: &Settings, compares: bool) -> bool {
@@ -27,7 +27,9 @@ pub(super) fn reset_section(title: &str, settings: &mut Settings, first: &Settin
             // The balance is measured rather than set.
             let ShadowSettings { balance, keep_balanced, .. } = settings.shadows;
             settings.shadows = ShadowSettings { balance, keep_balanced, ..first.shadows.clone() };
-            (settings.lighting, settings.opacity_unit) = (first.lighting.clone(), first.opacity_unit);
+            let VolumeLayer { lighting, opacity_unit, .. } = first.layer().clone();
+            let layer = settings.layer_mut();
+            (layer.lighting, layer.opacity_unit) = (lighting, opacity_unit);
         }
         SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky.clone(), first.scattering.clone()),
         SHADING => (settings.shading, settings.output) = (first.shading.clone(), first.output.clone()),

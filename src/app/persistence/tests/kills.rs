@@ -2,6 +2,7 @@
 //!
 //! Nothing that was reported as written may be lost.
 
+use std::cell::Cell;
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
@@ -67,8 +68,10 @@ fn kill_writer(folder: &Path, after: Duration) -> u32 {
     whole.lines().filter_map(number).next_back().unwrap_or(last)
 }
 
-fn kill_repeatedly(count: u32) {
+/// Kills a writer `count` times, and checks its files each time. Returns the number of saved looks that were intact.
+fn kill_repeatedly(count: u32) -> u32 {
     let folder = tempfile::tempdir().unwrap();
+    let intact = Cell::new(0);
     for at in 0..count {
         // At varying times within the milliseconds that one round takes.
         let kept =
@@ -77,6 +80,7 @@ fn kill_repeatedly(count: u32) {
             let found = gain_of(path) * 1000.0;
             // The write in progress may have been completed.
             assert!((-0.5..1.5).contains(&(found - kept)), "{}: {found} not {kept}", path.display());
+            intact.set(intact.get() + 1);
         };
         is_kept(&folder.path().join("session.json"));
         is_kept(&folder.path().join("preset.json"));
@@ -107,18 +111,20 @@ fn kill_repeatedly(count: u32) {
         assert_eq!(left, 0, "{names:?}");
     }
     println!("a window's files: {count} kills, 0 broken or lost");
+    intact.get()
 }
 
 #[test]
 fn killed_windows_lose_nothing() {
     match std::env::var_os(KILLED_FOLDER_VARIABLE) {
         Some(folder) => write_until_killed(Path::new(&folder)),
-        None => kill_repeatedly(8),
+        // The session, the preset and the look of the run.
+        None => assert_eq!(kill_repeatedly(8), 3 * 8),
     }
 }
 
 #[test]
 #[ignore = "five hundred kills: minutes"]
 fn windows_that_are_killed_again_and_again_lose_nothing() {
-    kill_repeatedly(500);
+    assert_eq!(kill_repeatedly(500), 3 * 500);
 }

@@ -23,7 +23,7 @@ pub(super) fn look(gain: f64) -> Settings {
 
 pub(super) fn gain_of(path: &Path) -> f64 {
     let record = LookRecord::parse(&fs::read_to_string(path).unwrap()).unwrap();
-    record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0.shadows.gain
+    record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings.shadows.gain
 }
 
 fn wait_until(what: &str, condition: impl Fn() -> bool) -> Duration {

@@ -131,11 +131,13 @@ impl MessageLog {
     }
 
     /// Latest note, even if it has disappeared.
+    #[cfg(any(test, feature = "testing"))]
     pub(crate) fn latest_note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
     /// Returns true while a note is shown, which disappears automatically.
+    #[cfg(feature = "testing")]
     pub(crate) fn shows_note(&self) -> bool {
         self.current.as_ref().is_some_and(|message| !message.is_error)
     }

@@ -1,94 +1,76 @@
 //! Dropped files and folders, and the next and previous file of a folder.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use eframe::egui;
-
+use super::VolumeOpener;
 use super::plan::PendingLook;
+use crate::app::text;
 use crate::app::windows::file_dialogs;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind};
 use crate::app::worker::loader::ReadChoices;
-use crate::app::{App, text};
 use chiaroscuro_volume::LoadControl;
 use chiaroscuro_volume_io::neighbour_volume;
 
 /// File extensions of possible slices of one volume; DICOM files often have none.
 const SLICE_EXTENSIONS: [&str; 9] = ["dcm", "dicom", "ima", "png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
-/// Running search for the next or previous file.
-#[derive(Debug)]
-pub(crate) struct NeighbourSearch {
-    control: Arc<LoadControl>,
-    work: BackgroundTask<Option<PathBuf>>,
-    is_forward: bool,
-}
-
-impl Drop for NeighbourSearch {
-    fn drop(&mut self) {
-        self.control.cancel();
-    }
-}
-
-impl App {
+impl VolumeOpener<'_> {
     /// Opens files that were dropped on the window. Several files of one type in one folder are slices of a volume;
     /// of other files the first is opened.
-    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf], ctx: &egui::Context) {
+    pub(crate) fn open_dropped(&mut self, paths: &[PathBuf]) {
         let Some(first) = paths.first() else { return };
         if let Some(folder) = slice_folder(paths) {
             if is_complete_folder(folder, paths) {
-                self.open(folder, ctx);
-                self.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
+                self.open(folder);
+                self.editor.messages.note(text::opening::folder_of_dropped(paths.len(), folder));
                 return;
             }
             // The message was about another file.
-            self.messages.dismiss();
+            self.editor.messages.dismiss();
             let reading = ReadChoices { subset: Some(paths.into()), ..ReadChoices::default() };
-            if self.start_loading(folder, reading, ctx) {
-                self.opening.requests.pending_look = None;
-                self.messages.note(text::opening::part_of_folder(paths.len(), folder));
+            if self.start_loading(folder, reading) {
+                self.state.requests.pending_look = None;
+                self.editor.messages.note(text::opening::part_of_folder(paths.len(), folder));
             }
             return;
         }
-        self.open(first, ctx);
+        self.open(first);
         if paths.len() > 1 {
-            self.messages.note(text::opening::first_of_dropped(paths.len(), first));
+            self.editor.messages.note(text::opening::first_of_dropped(paths.len(), first));
         }
     }
 
     /// Searches the folder for the file after or before the open one.
-    pub(crate) fn seek_neighbour(&mut self, is_forward: bool, ctx: &egui::Context) {
+    pub(crate) fn seek_neighbour(&mut self, is_forward: bool) {
         // Pressing the key again goes on from the file that is being opened.
-        let opening = self.loader.progress().map(|progress| progress.source.to_owned());
-        let from = opening.or_else(|| self.document.volume.as_ref().map(|volume| volume.source.clone()));
+        let opening = self.state.loader.progress().map(|progress| progress.source.to_owned());
+        let from =
+            opening.or_else(|| self.editor.document.volume.as_ref().map(|volume| volume.source.clone()));
         let Some(from) = from.filter(|from| from.exists()) else {
-            return self.messages.note(text::opening::NO_FOLDER);
+            return self.editor.messages.note(text::opening::NO_FOLDER);
         };
-        let control = Arc::new(LoadControl::new());
-        let watched = Arc::clone(&control);
-        // Pictures with an embedded look are no volumes.
-        let task =
-            move || neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &watched);
-        match BackgroundTask::start("next-file", ctx, task) {
-            Ok(work) => self.opening.next_file_search = Some(NeighbourSearch { control, work, is_forward }),
-            Err(err) => self.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err)),
+        let task = move |job: &JobControl| {
+            let control = LoadControl::with_token(job.token().clone());
+            // Pictures with an embedded look are no volumes.
+            neighbour_volume(&from, is_forward, |path| !file_dialogs::carries_look(path), &control)
+        };
+        let search = &mut self.state.next_file_search;
+        if let Err(err) = search.start(JobKind::NextFile, self.ctx, is_forward, task) {
+            self.editor.messages.error(text::opening::NOT_OPENED, text::opening::no_thread(err));
         }
     }
 
     /// Opens the file that the search has found.
-    pub(crate) fn take_neighbour(&mut self, ctx: &egui::Context) {
-        let Some(neighbour) = &self.opening.next_file_search else { return };
-        let Some(found) = neighbour.work.take_result() else { return };
-        let is_forward = neighbour.is_forward;
-        self.opening.next_file_search = None;
+    pub(crate) fn take_neighbour(&mut self) {
+        let Some((is_forward, found)) = self.state.next_file_search.take_ended() else { return };
         match found {
             Ok(Some(path)) => {
-                if self.start_loading(&path, ReadChoices::default(), ctx) {
-                    self.opening.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
+                if self.start_loading(&path, ReadChoices::default()) {
+                    self.state.requests.pending_look = Some(PendingLook::CurrentIfSimilar);
                 }
             }
-            Ok(None) => self.messages.note(text::opening::no_neighbour(is_forward)),
-            Err(panic) => self.messages.error(text::opening::NOT_OPENED, panic),
+            Ok(None) => self.editor.messages.note(text::opening::no_neighbour(is_forward)),
+            Err(panic) => self.editor.messages.error(text::opening::NOT_OPENED, panic),
         }
     }
 }

@@ -2,208 +2,176 @@
 
 mod alternatives;
 mod dropped_and_neighbours;
+pub(crate) mod file_tasks;
 mod look_files;
 mod opened;
+mod other_files;
 mod plan;
 mod similarity;
-mod state;
+mod volumes;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use eframe::egui;
 
-use crate::app::shell::file_tasks::ReadPurpose;
-use crate::app::windows::file_dialogs;
-use crate::app::windows::raw_dialog::RawDialogResult;
-use crate::app::worker::loader::{ReadChoices, RememberedFileSettings};
-use crate::app::{App, text};
-use chiaroscuro_files::provenance_mark;
-use chiaroscuro_scene::{OpacityLength, VolumeLocation};
-use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
-
+use self::file_tasks::{FileTasks, ReadPurpose};
 use self::plan::PendingLook;
-pub use self::state::SettingsAdjustment;
-pub(crate) use self::state::{OpenRequests, OpeningState};
+use crate::app::shell::look_editor::LookEditor;
+use crate::app::text;
+use crate::app::windows::large_volume::{LargeVolumeAnswer, LargeVolumeDialog};
+use crate::app::windows::raw_dialog::RawDialog;
+use crate::app::windows::untrusted_path::UntrustedPathDialog;
+use crate::app::worker::jobs::JobSlot;
+use crate::app::worker::loader::{LoadOutcome, Loader, ReadChoices, RememberedFileSettings};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::Dataset;
 
 /// Volume that is opened when none is named.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
-impl App {
-    /// Opens a file or a built-in volume, or the volume of a session or exported picture with the look stored there.
-    /// The open volume stays until the new one is ready.
-    pub fn open(&mut self, source: impl AsRef<Path>, ctx: &egui::Context) {
-        let source = source.as_ref();
-        // The message was about another file.
-        self.messages.dismiss();
-        if file_dialogs::may_be_look_file(source) {
-            self.open_volume_or_look(source, ctx);
-        } else {
-            self.open_volume(source, ctx);
+/// Function that changes settings once.
+pub type SettingsAdjustment = Box<dyn FnOnce(Settings) -> Settings + Send>;
+
+/// Requests for the next volumes, which a successor window takes over.
+#[derive(Debug, Default)]
+pub(crate) struct OpenRequests {
+    /// True if the next volume keeps the current look instead of getting its own first look.
+    pub keeps_look: bool,
+    /// Look for the volume that is being opened, applied when the volume arrives.
+    pub pending_look: Option<PendingLook>,
+    /// True until the session's look has been applied over the first look.
+    pub session_is_due: bool,
+    /// True if volumes named by looks from outside are opened without asking the user.
+    pub trusts_paths: bool,
+}
+
+/// State of opening volumes and looks.
+pub(crate) struct OpeningState {
+    /// Requests for the next volumes.
+    pub requests: OpenRequests,
+    /// Change of the first volume's settings, from the command line or by a safe start.
+    pub adjust_first_look: Option<SettingsAdjustment>,
+    /// True while the default volume waits for the user's answer about reopening the last session.
+    pub default_open_waits: bool,
+    /// Reader of volumes, on threads of its own.
+    pub loader: Loader,
+    /// Search for the next file in the folder (true) or the one before (false).
+    next_file_search: JobSlot<Option<PathBuf>, bool>,
+    /// Files other than volumes that are being read.
+    pub file_tasks: FileTasks,
+    /// Layout of a file of bare voxels.
+    raw: RawDialog,
+    /// Portion of a volume that does not fit into memory.
+    large_volume: LargeVolumeDialog,
+    /// Question before a look opens its volume.
+    untrusted_path: UntrustedPathDialog,
+    /// True once a volume has replaced the one before, until [`Self::take_opened`].
+    has_opened: bool,
+}
+
+impl OpeningState {
+    /// Creates the state of a window without a volume.
+    pub(crate) fn new(loader: Loader) -> Self {
+        Self {
+            requests: OpenRequests::default(),
+            adjust_first_look: None,
+            default_open_waits: false,
+            loader,
+            next_file_search: JobSlot::default(),
+            file_tasks: FileTasks::default(),
+            raw: RawDialog::default(),
+            large_volume: LargeVolumeDialog::default(),
+            untrusted_path: UntrustedPathDialog::default(),
+            has_opened: false,
         }
     }
 
-    /// Opens a volume with its own first look.
-    pub(super) fn open_volume(&mut self, source: &Path, ctx: &egui::Context) {
-        if self.start_loading(source, ReadChoices::default(), ctx) {
-            self.opening.requests.pending_look = None;
-        }
+    /// Returns true while a volume is being opened, or another file is being read.
+    pub(crate) fn is_opening(&self) -> bool {
+        self.loader.progress().is_some() || self.file_tasks.path().is_some()
     }
 
-    /// Opens one of several volumes of a file; a choice on the command line has precedence over a remembered one.
-    pub(crate) fn open_chosen(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
-        if self.start_loading(source, self.reading_options(choice), ctx) {
-            self.opening.requests.pending_look = None;
-        }
+    /// Returns true, once, if a volume has replaced the one before.
+    pub(crate) fn take_opened(&mut self) -> bool {
+        std::mem::take(&mut self.has_opened)
     }
+}
 
-    /// Opens a file that was open before, with the volume chosen then.
-    pub(crate) fn open_again(&mut self, source: &Path, choice: &VolumeChoice, ctx: &egui::Context) {
-        if choice.is_empty() {
-            self.open(source, ctx);
-        } else {
-            self.open_chosen(source, choice, ctx);
-        }
-    }
+/// Opening of volumes and looks into an editor, at the request of the user.
+pub(crate) struct VolumeOpener<'a> {
+    /// Requests, and files that are being read.
+    pub state: &'a mut OpeningState,
+    /// Editor that gets the volumes and looks.
+    pub editor: &'a mut LookEditor,
+    /// Window that is woken when a file has been read.
+    pub ctx: &'a egui::Context,
+}
 
-    /// Returns the options for reading a volume that was chosen before.
-    fn reading_options(&self, choice: &VolumeChoice) -> ReadChoices {
-        let said = self.loader.options().choice.clone();
-        ReadChoices { choice: Some(said.with_fallback(choice)), ..ReadChoices::default() }
-    }
-
-    /// Opens the file, look or session named at the start. If a look cannot be used, the default volume is opened.
-    pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>, ctx: &egui::Context) {
-        match (source, volume) {
-            (Some(look), Some(volume)) => self.open_look_with(look, volume, ctx),
-            (Some(source), None) | (None, Some(source)) => self.open(source, ctx),
-            (None, None) => self.open_volume_of_session(ctx),
-        }
-        self.open_default_if_empty(ReadPurpose::Open, ctx);
-    }
-
-    /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
-    pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose, ctx: &egui::Context) {
-        let is_empty = self.document.volume.is_none() && self.viewport.dataset().is_none();
-        let is_busy =
-            self.loader.progress().is_some() || self.opening.file_tasks.is_reading(ReadPurpose::Open);
-        if reason == ReadPurpose::Open && is_empty && !is_busy {
-            self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default(), ctx);
-        }
-    }
-
-    /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
-    /// or being opened.
-    pub(crate) fn open_deferred(&mut self, ctx: &egui::Context) {
-        let is_free = self.document.volume.is_none()
-            && self.loader.progress().is_none()
-            && !self.dialogs.untrusted_path.is_open();
-        if std::mem::take(&mut self.opening.default_open_waits) && is_free {
-            self.open_first(None, None, ctx);
-        }
-    }
-
-    /// Opens the volume that the session names. The look of the session is applied to the first volume in any case.
-    fn open_volume_of_session(&mut self, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().map(|session| session.path().to_owned());
-        let Some(session) = session.filter(|path| path.exists()) else { return };
-        let path = session.clone();
-        self.read_file(ReadPurpose::Open, &path, ctx, file_dialogs::load_record, move |app, read, ctx| {
-            // An unreadable session is reported when it is applied.
-            let Ok(record) = read else { return };
-            let Some(volume) = record.volume.clone() else { return };
-            match app.locate_volume(&volume, &session) {
-                VolumeLocation::Builtin(name) => app.open_chosen(Path::new(&name), &volume.choice, ctx),
-                VolumeLocation::InRecordFolder(path) => app.open_chosen(&path, &volume.choice, ctx),
-                VolumeLocation::OtherFolder(path) => app.dialogs.untrusted_path.open(path, record),
-                VolumeLocation::Refused(why) => {
-                    app.dialogs.untrusted_path.open_refused(&volume.source, why, record);
-                }
-            }
-        });
-    }
-
-    /// Opens a raw volume with the layout that the user has entered.
-    pub(crate) fn open_raw(&mut self, described: &RawDialogResult, ctx: &egui::Context) {
-        // A look that is pending for this volume stays pending.
-        let RawDialogResult { path, layout, header, is_gzip } = described;
-        if let Some(header) = header {
-            let data_file = path.file_name().unwrap_or_default().to_string_lossy();
-            // Comments of a NRRD header follow its first line.
-            let content = layout.nrrd_header(&data_file, *is_gzip);
-            let content = content.replacen('\n', &format!("\n# {}\n", provenance_mark()), 1);
-            match chiaroscuro_files::write_atomically(header, content.as_bytes()) {
-                Ok(()) => {
-                    self.start_loading(header, ReadChoices::default(), ctx);
-                    return;
-                }
-                // The volume is shown nevertheless.
-                Err(err) => self.messages.error(text::opening::HEADER_NOT_WRITTEN, err.to_string()),
-            }
-        }
-        let reading = ReadChoices { raw: Some(layout.to_format()), ..ReadChoices::default() };
-        self.start_loading(path, reading, ctx);
-    }
-
-    /// Reads the open volume again with another subsampling; the look stays.
-    pub(crate) fn reload_subsampled(&mut self, thinning: Downsampling, ctx: &egui::Context) {
-        let Some(volume) = &self.document.volume else { return };
-        let mut settings = self.document.settings.clone();
-        // The opacity unit keeps its thickness, whatever the number of voxels.
-        if let OpacityLength::Voxels(_) = settings.opacity_unit {
-            let unit = settings.opacity_unit.scene_units(&volume.scene) * volume.scene.mm_per_unit;
-            settings.opacity_unit = OpacityLength::Mm(unit);
-        }
-        // The memory estimate is checked again.
-        let portion = Some(Portion { thinning, ..volume.held.portion }).filter(|portion| !portion.is_whole());
-        let choice = Some(VolumeChoice { portion, ..volume.held.choice() });
-        let reading = ReadChoices { choice, takes_all_memory: false, ..volume.reading.clone() };
-        let source = volume.source.clone();
-        if self.start_loading(&source, reading, ctx) {
-            self.opening.requests.pending_look = Some(PendingLook::Settings(Box::new(settings)));
-        }
-    }
-
-    pub(crate) fn start_loading(&mut self, source: &Path, reading: ReadChoices, ctx: &egui::Context) -> bool {
+impl VolumeOpener<'_> {
+    /// Starts to read a volume on a thread and returns true if that was possible. Requests for the previous file end.
+    pub(crate) fn start_loading(&mut self, source: &Path, reading: ReadChoices) -> bool {
         // Requests and dialogs for the previous file are obsolete, and so is a file to open.
-        self.opening.file_tasks.drop_purpose(ReadPurpose::Open);
-        self.opening.file_tasks.drop_purpose(ReadPurpose::Session);
-        self.dialogs.raw.close();
-        self.dialogs.large_volume.close();
+        self.state.file_tasks.drop_purpose(ReadPurpose::Open);
+        self.state.file_tasks.drop_purpose(ReadPurpose::Session);
+        self.state.raw.close();
+        self.state.large_volume.close();
         let known = RememberedFileSettings {
-            up: self.memory.up_of(source),
-            corrections: self.memory.corrections_of(source),
+            up: self.editor.memory.up_of(source),
+            corrections: self.editor.memory.corrections_of(source),
         };
-        let started = self.loader.open_on_thread(source, reading, known, ctx);
+        let started = self.state.loader.open_on_thread(source, reading, known, self.ctx);
         if let Err(err) = &started {
-            self.messages.error(text::opening::NOT_OPENED, err.clone());
+            self.editor.messages.error(text::opening::NOT_OPENED, err.clone());
         }
         started.is_ok()
     }
 
-    /// Identifier of the open file's volume.
-    pub(super) fn opened_id(&self) -> Option<u64> {
-        self.viewport.dataset().map(|dataset| dataset.volume().opened_id())
-    }
-
-    /// Records a notice from before there was a window to show it.
-    pub(crate) fn add_notice(&mut self, found: Option<String>) {
-        if let Some(notice) = found {
-            self.memory.add_notice(notice);
+    /// Takes the volume that has been read, or the reason why it was not.
+    pub(crate) fn take_outcome(&mut self) {
+        match self.state.loader.take_outcome() {
+            None => {}
+            Some(LoadOutcome::Opened(opened)) => self.show_opened_with_session(*opened),
+            Some(LoadOutcome::Uploaded { renderer, dataset }) => {
+                self.editor.viewport.set_scene(*renderer, dataset);
+            }
+            Some(LoadOutcome::Cancelled) => {
+                self.state.requests.pending_look = None;
+                self.editor.messages.note(text::messages::OPENING_CANCELLED);
+            }
+            Some(LoadOutcome::UnknownRawFormat { path, why, guess }) => {
+                self.state.raw.open(&path, why, guess, self.ctx);
+            }
+            // A look that is pending for this volume stays pending.
+            Some(LoadOutcome::NeedsMemoryDecision { source, reading, weighed }) => {
+                self.state.large_volume.open(source, *reading, weighed);
+            }
+            Some(LoadOutcome::Failed { short, details }) => {
+                self.state.requests.pending_look = None;
+                self.editor.messages.error(short, details);
+            }
         }
     }
 
-    /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
-    pub(crate) fn autosave_look(&mut self) {
-        if let Some((volume, opened_id)) = self.document.volume.as_ref().zip(self.opened_id()) {
-            self.memory.autosave(&self.document.settings, &volume.source, opened_id, &volume.held.choice());
-            if let Some(picture) = self.viewport.take_finished() {
-                self.memory.autosave_thumbnail(picture);
+    /// Shows the questions about a volume that is to be read, and reads it as the user answers.
+    pub(crate) fn show_questions(&mut self) {
+        if let Some(raw_description) = self.state.raw.ui(self.ctx) {
+            self.open_raw(&raw_description);
+        }
+        match self.state.large_volume.ui(self.ctx) {
+            None => {}
+            Some(LargeVolumeAnswer::Cancel) => self.state.requests.pending_look = None,
+            Some(LargeVolumeAnswer::Read { source, reading }) => {
+                self.start_loading(&source, *reading);
             }
-            // Not before there is a volume, which clears the messages.
-            let notices = self.memory.take_notices();
-            if !notices.is_empty() {
-                self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
-            }
+        }
+    }
+
+    /// Shows a volume again that an earlier window had open.
+    pub(crate) fn restore(&mut self, dataset: Option<Dataset>) {
+        if let Some(dataset) = dataset
+            && let Err(err) = self.state.loader.upload(dataset, self.ctx)
+        {
+            self.editor.messages.error(text::messages::NOT_RENDERED, err);
         }
     }
 }

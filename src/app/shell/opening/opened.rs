@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::VolumeOpener;
+use super::file_tasks::{FileReadFailure, ReadPurpose};
 use super::plan::{CorrectionsOrigin, LookChange, OpenPlan, OpenRequest, StartingLook};
 use super::similarity::VolumeSimilarity;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -11,10 +13,9 @@ use crate::app::document::auto_balance::AutoBalance;
 use crate::app::document::corrections::CorrectionState;
 use crate::app::document::data_kind::KindOverride;
 use crate::app::document::light_placement::LightPlacement;
-use crate::app::shell::file_tasks::{FileReadFailure, ReadPurpose};
+use crate::app::text;
 use crate::app::windows::file_dialogs;
 use crate::app::worker::loader::OpenedVolume;
-use crate::app::{App, text};
 use chiaroscuro_scene::{LookRecord, ObjectRotation, Settings};
 use chiaroscuro_volume::Volume;
 
@@ -30,45 +31,42 @@ fn kept_look(mut look: Settings, first: &Settings) -> Settings {
     look
 }
 
-impl App {
+impl VolumeOpener<'_> {
     /// Replaces the open volume by one that is ready; the first one waits until the session has been read.
-    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume, ctx: &egui::Context) {
-        let session = self.document.session.as_ref().filter(|_| self.opening.requests.session_is_due);
+    pub(crate) fn show_opened_with_session(&mut self, opened: OpenedVolume) {
+        let session = self.editor.document.session.as_ref().filter(|_| self.state.requests.session_is_due);
         match session.map(|session| session.path().to_owned()).filter(|path| path.exists()) {
             Some(path) => {
                 let read = file_dialogs::load_record;
-                self.read_file(ReadPurpose::Session, &path, ctx, read, |app, read, ctx| {
-                    app.show_opened(opened, Some(read), ctx);
+                self.read_file(ReadPurpose::Session, &path, read, |opener, read| {
+                    opener.show_opened(opened, Some(read));
                 });
             }
-            None => self.show_opened(opened, None, ctx),
+            None => self.show_opened(opened, None),
         }
     }
 
     /// Replaces the open volume by one that is ready, with the session that was read for it.
-    fn show_opened(&mut self, opened: OpenedVolume, session: Option<SessionRead>, ctx: &egui::Context) {
+    fn show_opened(&mut self, opened: OpenedVolume, session: Option<SessionRead>) {
         let OpenedVolume { source, reading, dataset, original_dims, renderer, settings, stamp } = opened;
         let volume = Arc::clone(dataset.volume());
         self.report_opened(&volume, original_dims);
-        let open = self.document.volume.as_ref();
+        let open = self.editor.document.volume.as_ref();
         let plan = OpenPlan::new(OpenRequest {
-            requested: self.opening.requests.pending_look.take(),
-            keeps_look: self.opening.requests.keeps_look,
+            requested: self.state.requests.pending_look.take(),
+            keeps_look: self.state.requests.keeps_look,
             similarity: open.map(|open| VolumeSimilarity::between(open, &volume)),
             has_session: session.is_some(),
-            has_adjustment: self.opening.adjust_first_look.is_some(),
+            has_adjustment: self.state.adjust_first_look.is_some(),
         });
         // Session and adjustment apply to the first volume only.
-        self.opening.requests.session_is_due = false;
+        self.state.requests.session_is_due = false;
         self.apply_plan(plan, settings, session, &volume);
-        self.memory.add_recent(&source, &volume.contents().choice());
-        self.panels.recent_pictures.clear();
-        self.look_tasks.light_search = None;
-        self.windows.contact_sheet.discard();
-        self.panels.kept_strip.reset();
+        self.editor.memory.add_recent(&source, &volume.contents().choice());
+        self.editor.look_tasks.light_search.discard();
         let facts = VolumeFacts::new(source, reading, &dataset);
-        self.viewport.set_scene(renderer, dataset);
-        let document = &mut self.document;
+        self.editor.viewport.set_scene(renderer, dataset);
+        let document = &mut self.editor.document;
         document.volume = Some(facts);
         // Treated as its own kind of data, with its own up axis.
         document.kind_override = KindOverride::default();
@@ -76,20 +74,21 @@ impl App {
         document.start_history(&volume);
         document.corrections = CorrectionState::new(stamp, document.settings.volume);
         let title = text::opening::title(document.volume_name());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        self.state.has_opened = true;
+        self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
     }
 
     /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.
     fn report_opened(&mut self, volume: &Volume, original_dims: Option<[usize; 3]>) {
-        self.messages.clear();
+        self.editor.messages.clear();
         if let Some(before) = original_dims {
-            self.messages.note(text::opening::downsampled(before, volume.dims()));
+            self.editor.messages.note(text::opening::downsampled(before, volume.dims()));
         }
         for remark in volume.remarks() {
-            self.messages.note(remark.clone());
+            self.editor.messages.note(remark.clone());
         }
         if !volume.corrections().is_none() {
-            self.messages.note(text::corrections::restored(&volume.corrections().in_words()));
+            self.editor.messages.note(text::corrections::restored(&volume.corrections().in_words()));
         }
     }
 
@@ -102,14 +101,14 @@ impl App {
         volume: &Volume,
     ) {
         let OpenPlan { start, changes, keeps_selection, places_lights } = plan;
-        let before = std::mem::take(&mut self.document.settings);
-        self.document.settings = match start {
+        let before = std::mem::take(&mut self.editor.document.settings);
+        self.editor.document.settings = match start {
             StartingLook::FirstLook => first.clone(),
             StartingLook::KeptLook => kept_look(before.clone(), &first),
         };
         // Measurements belong to the volume before; a first look is balanced, a kept look is not.
         let is_balanced = start == StartingLook::FirstLook;
-        self.document.keep_balanced = AutoBalance::new(&self.document.settings, is_balanced);
+        self.editor.document.keep_balanced = AutoBalance::new(&self.editor.document.settings, is_balanced);
         for change in changes {
             match change {
                 LookChange::Session => {
@@ -120,27 +119,28 @@ impl App {
                 LookChange::Record(record) => {
                     let of = record.volume.as_ref();
                     if of.is_some_and(|of| !of.matches_content(volume.opened_id())) {
-                        self.messages.note(text::opening::OTHER_VALUES);
+                        self.editor.messages.note(text::opening::OTHER_VALUES);
                     }
-                    self.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
+                    self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
                 }
-                LookChange::Settings(settings) => self.document.replace_settings(*settings),
+                LookChange::Settings(settings) => self.editor.document.replace_settings(*settings),
                 LookChange::Current(corrections) => {
                     let volume = match corrections {
                         CorrectionsOrigin::OpenedFile => first.volume,
                         CorrectionsOrigin::CurrentLook => before.volume,
                     };
-                    self.document.replace_settings(Settings { volume, ..before.clone() });
+                    self.editor.document.replace_settings(Settings { volume, ..before.clone() });
                 }
                 LookChange::Adjustment => {
-                    if let Some(adjust) = self.opening.adjust_first_look.take() {
-                        self.document.settings = adjust(std::mem::take(&mut self.document.settings));
-                        self.document.settings.sanitise();
+                    if let Some(adjust) = self.state.adjust_first_look.take() {
+                        self.editor.document.settings =
+                            adjust(std::mem::take(&mut self.editor.document.settings));
+                        self.editor.document.settings.sanitise();
                     }
                 }
             }
         }
-        let document = &mut self.document;
+        let document = &mut self.editor.document;
         // Saved views are useful on other volumes, too.
         if document.settings.kept.is_empty() {
             document.settings.kept = before.kept;
@@ -155,16 +155,16 @@ impl App {
 
     /// Applies the session that was read for a volume, or reports why it was not read.
     fn apply_session(&mut self, read: SessionRead, volume: &Volume) {
-        let Some(mut session) = self.document.session.take() else { return };
+        let Some(mut session) = self.editor.document.session.take() else { return };
         session.set_record(read.as_ref().ok());
         match read {
             Ok(record) => {
-                if !self.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                if !self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
                     session.protect_invalid();
                 }
             }
-            Err(why) => self.report_read_failure(text::opening::SESSION_NOT_LOADED, why),
+            Err(why) => why.report(text::opening::SESSION_NOT_LOADED, &mut self.editor.messages),
         }
-        self.document.session = Some(session);
+        self.editor.document.session = Some(session);
     }
 }

@@ -5,10 +5,10 @@ mod tools;
 use eframe::egui::{self, Rect, Response, Role, Sense, Shape, WidgetInfo, pos2};
 
 pub(crate) use self::tools::PictureTools;
-use crate::app::App;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::theme;
 use crate::app::document::Document;
+use crate::app::shell::look_editor::LookEditor;
 use crate::app::text;
 use crate::app::viewport::canvas::Canvas;
 use crate::app::viewport::light_probe::ProbePointer;
@@ -21,7 +21,7 @@ use chiaroscuro_render::GpuError;
 use chiaroscuro_scene::{ImageSpec, Settings, first_look::ObjectOutline};
 
 /// Inputs of the picture: the state that it shows, and the values that the mouse changes.
-pub(crate) struct PictureInputs<'a> {
+struct PictureInputs<'a> {
     /// Look and volume; the mouse may change camera and lights.
     pub document: &'a mut Document,
     /// Render worker with its pictures.
@@ -44,7 +44,7 @@ pub(crate) struct PictureInputs<'a> {
 const BORDER: f32 = 4.0;
 
 /// Shows the picture with its overlays, and handles the mouse on it.
-pub(crate) fn show(ui: &mut egui::Ui, mut inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
+fn show(ui: &mut egui::Ui, mut inputs: PictureInputs<'_>) -> (Canvas, Result<(), GpuError>) {
     let canvas = allocate_canvas(ui, inputs.export_preview.as_ref());
     // The resize handles of panels extend into the picture.
     let inside = canvas.rect.shrink(BORDER);
@@ -65,8 +65,9 @@ pub(crate) fn show(ui: &mut egui::Ui, mut inputs: PictureInputs<'_>) -> (Canvas,
     let result = inputs.request_picture(ui, canvas);
     inputs.tools.first_run_hints.show(ui, canvas.rect, &response);
     let pictures = inputs.viewport.pictures();
-    inputs.tools.compare.show(ui, canvas.rect, &pictures);
-    for (place, (part, shape)) in places.into_iter().zip(inputs.tools.compare.shapes(canvas.rect, &pictures))
+    inputs.viewport.compare.show(ui, canvas.rect, &pictures);
+    for (place, (part, shape)) in
+        places.into_iter().zip(inputs.viewport.compare.shapes(canvas.rect, &pictures))
     {
         ui.painter_at(part).set(place, shape);
     }
@@ -89,14 +90,14 @@ fn allocate_canvas(ui: &mut egui::Ui, export_preview: Option<&ImageSpec>) -> Can
 impl PictureInputs<'_> {
     /// Returns true if the whole picture shows one view, which the mouse can change.
     fn is_one_view(&self) -> bool {
-        !self.tools.compare.shows_two_views()
+        !self.viewport.compare.shows_two_views()
     }
 
     /// Navigates with the mouse; double clicks move the orbit centre, and clicks the cursor of the slices.
     fn handle_mouse(&mut self, ui: &egui::Ui, response: &Response) {
         let is_one_view = self.is_one_view();
         let Self { document, viewport, tools, .. } = self;
-        let is_by_value = document.settings.labels.is_empty();
+        let is_by_value = document.settings.layer().labels.is_empty();
         mouse_navigation::navigate(
             ui,
             response,
@@ -153,7 +154,7 @@ impl PictureInputs<'_> {
         let Some(volume) = volume else { return };
         let (tools, commands) = (&mut *self.tools, &mut *self.commands);
         // A comparison has captions at the top and at the bottom.
-        let body = volume.is_anatomical.then(|| tools.compare.area_without_labels(ui, area));
+        let body = volume.is_anatomical.then(|| self.viewport.compare.area_without_labels(ui, area));
         let chips = tools
             .overlay
             .visible
@@ -208,9 +209,9 @@ impl PictureInputs<'_> {
         let looks = match self.tools.camera_animation.current_view(&settings.camera, now_s) {
             Some(camera) => {
                 ui.ctx().request_repaint();
-                self.tools.compare.looks(&Settings { camera, ..settings.clone() })
+                self.viewport.compare.looks(&Settings { camera, ..settings.clone() })
             }
-            None => self.tools.compare.looks(settings),
+            None => self.viewport.compare.looks(settings),
         };
         self.viewport.update(looks, canvas.size, ui.ctx())
     }
@@ -230,35 +231,36 @@ fn area_below_chips(body: Rect, chips: Option<Rect>) -> Rect {
     }
 }
 
-impl App {
-    /// Shows the picture in the middle of the window.
+impl PictureTools {
+    /// Shows the picture in the middle of the window, with the messages over it. `slices` is the window that shares
+    /// its cursor, and `export_preview` the picture to export, while its dialog is open.
     pub(crate) fn show_picture(
         &mut self,
         ui: &mut egui::Ui,
+        editor: &mut LookEditor,
+        slices: &mut SlicesWindow,
+        export_preview: Option<ImageSpec>,
         facts: &RendererStatus,
         commands: &mut Vec<AppCommand>,
-    ) {
-        let outline = self.document.outline(self.viewport.dataset().as_ref());
+    ) -> Result<(), GpuError> {
+        let outline = editor.document.outline(editor.viewport.dataset().as_ref());
         let inputs = PictureInputs {
-            document: &mut self.document,
-            viewport: &mut self.viewport,
-            tools: &mut self.picture,
-            slices: &mut self.windows.slices,
+            document: &mut editor.document,
+            viewport: &mut editor.viewport,
+            tools: self,
+            slices,
             outline: outline.as_deref(),
-            export_preview: self.windows.export.requested_image().filter(|_| !self.layout.picture_only),
+            export_preview,
             facts,
             commands,
         };
         let shown = egui::CentralPanel::no_frame().show(ui, |ui| show(ui, inputs));
         let (canvas, result) = shown.inner;
-        self.picture.canvas = Some(canvas);
+        self.canvas = Some(canvas);
         // At the top of the whole central area, clear of a dialog beside a smaller picture.
-        self.messages.notice(ui.ctx(), shown.response.rect);
-        self.messages.list(ui.ctx());
-        if let Err(err) = result {
-            self.handle_render_error(&err, ui.ctx());
-        }
-        self.document.update_shown_range(self.viewport.dataset().as_ref());
+        editor.messages.notice(ui.ctx(), shown.response.rect);
+        editor.messages.list(ui.ctx());
+        result
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::app::viewport::camera_transition::CameraTransition;
 use crate::app::viewport::canvas::Canvas;
-use crate::app::viewport::compare::Compare;
 use crate::app::viewport::cut_handles::CutHandles;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::viewport::light_handles::LightHandles;
@@ -21,8 +20,6 @@ pub(crate) struct PictureTools {
     pub handles: LightHandles,
     /// Handles of the crop box and the clip plane.
     pub cut_handles: CutHandles,
-    /// Comparison of two looks in one picture.
-    pub compare: Compare,
     /// Overlay of light chips, bounding box, scale bar and orientation cube.
     pub overlay: ViewportOverlay,
     /// Preview of the marks that would be drawn over an exported picture.
@@ -37,4 +34,12 @@ pub(crate) struct PictureTools {
     pub first_run_hints: FirstUseHints,
     /// Row of common CT presets.
     pub ct_looks: CtPresetRow,
+}
+
+impl PictureTools {
+    /// Returns the size in physical pixels of a picture that fills the area.
+    pub(crate) fn available_size(&self) -> [u32; 2] {
+        // Before there is a picture: the resolution of the smallest common screens.
+        self.canvas.map_or([1280, 720], |canvas| canvas.available_size.map(|n| n.max(1)))
+    }
 }

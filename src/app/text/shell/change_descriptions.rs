@@ -3,7 +3,7 @@
 use crate::app::text;
 use chiaroscuro_scene::{
     Camera, Clipping, LightSettings, OutputSettings, QualityPreset, SavedEntry, Settings, ShadowSettings,
-    TransferFunction,
+    TransferFunction, VolumeLayer,
 };
 
 /// Description of a step that only changes the kind of data for which the look was made.
@@ -15,11 +15,7 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         schema: _,
         camera,
         lights,
-        range,
-        labels,
-        transfer,
-        lighting,
-        opacity_unit,
+        layers,
         shading,
         shadows,
         sky,
@@ -31,15 +27,17 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         kept,
         volume,
     } = before;
+    let VolumeLayer { range, labels, transfer, lighting, opacity_unit } = layers.first();
+    let layer_after = after.layer();
     let with = |differs: bool, words: &str| differs.then(|| words.to_owned());
     let parts = [
         (*lights != after.lights).then(|| describe_lights(lights, &after.lights)),
         with(*camera != after.camera, describe_camera(camera, &after.camera)),
-        with(*transfer != after.transfer, describe_transfer(transfer, &after.transfer)),
-        with(*lighting != after.lighting, "change opacity for light"),
-        with(*labels != after.labels, "change labels"),
-        with(*range != after.range, "change range of values"),
-        with(*opacity_unit != after.opacity_unit, "change opacity unit"),
+        with(*transfer != layer_after.transfer, describe_transfer(transfer, &layer_after.transfer)),
+        with(*lighting != layer_after.lighting, "change opacity for light"),
+        with(*labels != layer_after.labels, "change labels"),
+        with(*range != layer_after.range, "change range of values"),
+        with(*opacity_unit != layer_after.opacity_unit, "change opacity unit"),
         with(*shading != after.shading, "change shading"),
         with(with_balance(&after.shadows, shadows.balance) != *shadows, "change shadows"),
         with(*sky != after.sky, "change sky"),
@@ -230,7 +228,10 @@ mod tests {
         assert_eq!(change(|settings| settings.output.exposure = 2.0), "change exposure");
         assert_eq!(change(|settings| settings.shadows.balance = 2.0), "balance lights");
         let point = ControlPoint::new(1.0, [1.0; 3], 0.5);
-        assert_eq!(change(|look| look.transfer.points.push(point)), "add point of transfer function");
+        assert_eq!(
+            change(|look| look.layer_mut().transfer.points.push(point)),
+            "add point of transfer function"
+        );
     }
 
     #[test]

@@ -174,9 +174,9 @@ impl BrightnessRemedy {
 
     /// Applies the remedy to the settings.
     pub(super) fn apply(self, settings: &mut Settings) {
-        let Settings { lights, shadows, shading, lighting, camera, .. } = settings;
+        let Settings { lights, shadows, shading, layers, camera, .. } = settings;
         match self {
-            Self::LetThrough => lighting.scale *= 0.5,
+            Self::LetThrough => layers.first_mut().lighting.scale *= 0.5,
             Self::LiftShadows => shadows.ambient_offset += 0.15,
             Self::MoreAmbient => shading.ambient += 0.1,
             Self::BothSides => shading.sides = LitSides::Two,

@@ -172,7 +172,7 @@ pub(crate) fn probe_at(volume: &Volume, settings: &Settings, picture: Rect, at: 
 
 /// Returns the visible label as number and name; `None` if the values are not labels.
 fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
-    let is_by_curve = settings.labels.is_empty();
+    let is_by_curve = settings.layer().labels.is_empty();
     // Other data would be counted first, which takes seconds.
     if is_by_curve && !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
         return None;
@@ -186,7 +186,8 @@ fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<Str
     } else {
         found.value
     } as i64;
-    let named = settings.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
+    let named =
+        settings.layer().labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
     let in_file = volume.metadata().labels.get(number).map(|label| label.name.as_str());
     Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
 }
@@ -196,7 +197,7 @@ fn result_text(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     let unit = length_unit(volume);
     let place =
         text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit, volume.is_anatomical());
-    let mut words = if settings.labels.is_empty() || volume.labels().is_none() {
+    let mut words = if settings.layer().labels.is_empty() || volume.labels().is_none() {
         text::probe::sample(found.value, range_decimals(volume.table_range()), found.opacity, &place)
     } else {
         text::probe::label_sample(found.opacity, &place)
@@ -308,7 +309,7 @@ mod tests {
         let named = |number, name: &str| {
             (number, LabelLook { name: name.to_owned(), ..LabelLook::default_for(number) })
         };
-        settings.labels = [named(3, "Liver"), named(9, "")].into_iter().collect();
+        settings.layer_mut().labels = [named(3, "Liver"), named(9, "")].into_iter().collect();
         // Probed from the side of the low numbers, and from the opposite one.
         let said = |settings: &Settings, from: f64| {
             let found =

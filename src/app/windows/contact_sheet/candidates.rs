@@ -1,7 +1,5 @@
 //! Candidates of contact sheets, and their rendering as small pictures.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use eframe::egui::ColorImage;
 use glam::DVec3;
 
@@ -13,7 +11,7 @@ use chiaroscuro_scene::{
     Camera, ImageSpec, LightSettings, LightVolumeResolution, LightingRig, PRESETS, Preset,
     ReconstructionKernel, Settings, SlabMode, first_look,
 };
-use chiaroscuro_volume::Volume;
+use chiaroscuro_volume::{CancelToken, Volume};
 
 /// Size of a picture in pixels: 4:3, as first looks are framed, and four of them with their gaps are no wider than
 /// the space that a window of 1280 points has beside its panel.
@@ -69,10 +67,9 @@ impl ContactSheetKind {
     pub(super) fn render_candidates(
         self,
         subject: &ExportScene,
-        is_unwanted: &AtomicBool,
+        cancel: &CancelToken,
         send: &dyn Fn(usize, RenderedCandidate),
     ) -> Result<(), String> {
-        let is_wanted = || !is_unwanted.load(Ordering::Relaxed);
         let mut worker = ExportWorker::new(subject)?;
         let mut shown = 0;
         if self == Self::Suggestions && subject.settings.lights.get(subject.selected_light).is_some() {
@@ -86,11 +83,11 @@ impl ContactSheetKind {
         let candidates = match self {
             Self::Lights => light_candidates(&subject.settings, subject.selected_light),
             Self::Presets => preset_candidates(&subject.settings, subject.dataset.volume()),
-            Self::Suggestions => suggested_lights(subject, &worker, &is_wanted)?,
-            Self::Looks => return render_whole_looks(subject, &mut worker, &is_wanted, send),
+            Self::Suggestions => suggested_lights(subject, &worker, cancel)?,
+            Self::Looks => return render_whole_looks(subject, &mut worker, cancel, send),
         };
         let count = shown + candidates.len();
-        for candidate in candidates.into_iter().take_while(|_| is_wanted()) {
+        for candidate in candidates.into_iter().take_while(|_| !cancel.is_cancelled()) {
             let picture = render_small(&mut worker, subject, &move_closer(&candidate.settings, subject))?;
             send(count, (candidate, picture));
         }
@@ -167,7 +164,7 @@ fn light_candidates(settings: &Settings, selected: usize) -> Vec<LookCandidate> 
 fn suggested_lights(
     subject: &ExportScene,
     worker: &ExportWorker,
-    is_wanted: &dyn Fn() -> bool,
+    cancel: &CancelToken,
 ) -> Result<Vec<LookCandidate>, String> {
     let ExportScene { dataset, settings, selected_light, .. } = subject;
     let Some(light) = settings.lights.get(*selected_light) else {
@@ -175,7 +172,7 @@ fn suggested_lights(
     };
     let search = LightSearch::new(worker.shaders(), dataset, settings, SearchedLight::Light(*selected_light));
     let mut search = search.map_err(|err| err.to_string())?;
-    while is_wanted() && search.step().map_err(|err| err.to_string())? {}
+    while !cancel.is_cancelled() && search.step().map_err(|err| err.to_string())? {}
     let found = search.finish();
     let best = found.map(|found| found.best).unwrap_or_default().into_iter().enumerate();
     Ok(best
@@ -196,7 +193,7 @@ fn suggested_lights(
 fn render_whole_looks(
     subject: &ExportScene,
     worker: &mut ExportWorker,
-    is_wanted: &dyn Fn() -> bool,
+    cancel: &CancelToken,
     hand_on: &dyn Fn(usize, RenderedCandidate),
 ) -> Result<(), String> {
     let whole = subject.dataset.volume();
@@ -204,7 +201,7 @@ fn render_whole_looks(
     let proposals = first_look::propose_looks(&subject.first_look, small.volume(), small.histogram());
     let on_small = ExportScene { dataset: small, ..subject.clone() };
     let count = proposals.len();
-    for (at, proposal) in proposals.into_iter().enumerate().take_while(|_| is_wanted()) {
+    for (at, proposal) in proposals.into_iter().enumerate().take_while(|_| !cancel.is_cancelled()) {
         // The brightness of the first look has been measured already.
         let look = if at == 0 {
             MeasuredSettings::new(whole, &on_small.dataset, proposal.settings)
@@ -307,7 +304,9 @@ mod tests {
         let usual = Settings::default();
         // Presets of light leave the curve as it is.
         let differs = |look: &Settings| {
-            look.transfer != usual.transfer || look.sky != usual.sky || look.scattering != usual.scattering
+            look.layer().transfer != usual.layer().transfer
+                || look.sky != usual.sky
+                || look.scattering != usual.scattering
         };
         assert!(presets.iter().all(|look| differs(&look.settings)));
     }

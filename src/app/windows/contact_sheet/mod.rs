@@ -3,8 +3,6 @@
 
 mod candidates;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions, vec2};
@@ -15,7 +13,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_scene::Settings;
 
 pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
@@ -75,9 +73,8 @@ struct ContactPrint {
     suits_data: bool,
 }
 
-/// Contact sheet in progress on a background thread.
+/// Contact sheet in progress on a background thread, as far as its pictures have arrived.
 struct SheetTask {
-    work: BackgroundTask<Result<(), String>>,
     /// Finished candidates, each with the total number of candidates.
     results: mpsc::Receiver<(usize, RenderedCandidate)>,
     /// True while the pictures of the previous sheet are still shown.
@@ -86,24 +83,6 @@ struct SheetTask {
     sheet: ContactSheetKind,
     /// Look and selected light that the candidates are derived from.
     base: (Settings, usize),
-    is_cancelled: Arc<AtomicBool>,
-}
-
-impl SheetTask {
-    /// Requests the task to end at its next picture; its further results are discarded.
-    fn cancel(&self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
-    }
-}
-
-impl Drop for SheetTask {
-    fn drop(&mut self) {
-        self.cancel();
-    }
 }
 
 /// State of the contact sheet window.
@@ -116,7 +95,7 @@ pub(crate) struct ContactSheetWindow {
     /// True if pictures are to be made as soon as possible.
     is_due: bool,
     /// Sheet in progress; one at a time, because each opens a device of its own.
-    task: Option<SheetTask>,
+    task: JobSlot<Result<(), String>, SheetTask>,
     prints: Vec<ContactPrint>,
     /// Name of the candidate that was chosen last.
     chosen: Option<String>,
@@ -142,19 +121,12 @@ impl ContactSheetWindow {
     pub(crate) fn discard(&mut self) {
         self.prints.clear();
         (self.open, self.is_due) = (false, false);
-        self.cancel();
+        self.task.cancel();
     }
 
     /// Returns true if pictures are to be made.
     pub(crate) fn needs_start(&self) -> bool {
         self.is_due
-    }
-
-    /// Cancels the sheet in progress, if any.
-    fn cancel(&self) {
-        if let Some(trying) = &self.task {
-            trying.cancel();
-        }
     }
 
     /// Starts to render the pictures, or continues if the same ones are in progress. Another sheet in progress ends
@@ -165,59 +137,45 @@ impl ContactSheetWindow {
             return Ok(());
         };
         let (sheet, of) = (self.sheet, (subject.settings.clone(), subject.selected_light));
-        if let Some(trying) = &self.task {
-            if trying.sheet == sheet && trying.base == of && !trying.is_cancelled() {
+        if let Some(trying) = self.task.inputs() {
+            if trying.sheet == sheet && trying.base == of && !self.task.is_cancelled() {
                 self.is_due = false;
             } else {
-                trying.cancel();
+                self.task.cancel();
             }
             return Ok(());
         }
         self.is_due = false;
-        let is_unwanted = Arc::new(AtomicBool::new(false));
-        let cancel_flag = Arc::clone(&is_unwanted);
         let (sender, tried) = mpsc::channel();
         let wake = ctx.clone();
-        let task = move || {
+        let task = move |job: &JobControl| {
             let hand_on = |count: usize, of: RenderedCandidate| {
                 // The receiver may be gone; the result is then dropped.
                 drop(sender.send((count, of)));
                 wake.request_repaint();
             };
-            sheet.render_candidates(&subject, &cancel_flag, &hand_on)
+            sheet.render_candidates(&subject, job.token(), &hand_on)
         };
-        let work =
-            BackgroundTask::start("contact-sheet", ctx, task).map_err(text::contact_sheet::no_thread)?;
-        self.task = Some(SheetTask {
-            work,
-            results: tried,
-            shows_previous: true,
-            count: 0,
-            sheet,
-            base: of,
-            is_cancelled: is_unwanted,
-        });
-        Ok(())
+        let trying = SheetTask { results: tried, shows_previous: true, count: 0, sheet, base: of };
+        let started = self.task.start(JobKind::ContactSheet, ctx, trying, task);
+        started.map_err(text::contact_sheet::no_thread)
     }
 
     /// Collects the finished pictures, unless the sheet was cancelled.
     fn collect(&mut self, ctx: &egui::Context) -> Result<(), String> {
-        let Some(trying) = &mut self.task else { return Ok(()) };
-        // Queried before the channel is drained: nothing is sent after the end of the task.
-        let result = trying.work.take_result();
+        let is_cancelled = self.task.is_cancelled();
+        // Taken before the channel is drained: nothing is sent after the end of the task.
+        let mut ended = self.task.take_ended();
+        let trying = ended.as_mut().map(|(trying, _)| trying).or(self.task.inputs_mut());
+        let Some(trying) = trying.filter(|_| !is_cancelled) else { return Ok(()) };
         for (count, (look, picture)) in trying.results.try_iter() {
-            if trying.is_cancelled.load(Ordering::Relaxed) {
-                continue;
-            }
             if std::mem::take(&mut trying.shows_previous) {
                 self.prints.clear();
             }
             trying.count = count;
             self.prints.push(upload_candidate(ctx, look, picture));
         }
-        let Some(result) = result else { return Ok(()) };
-        let is_unwanted = self.task.take().is_none_or(|trying| trying.is_cancelled());
-        if is_unwanted { Ok(()) } else { result.and_then(|result| result) }
+        ended.map_or(Ok(()), |(_, result)| result.and_then(|result| result))
     }
 
     /// Shows the window, and adds the command of the chosen look. An error says why there are no pictures.
@@ -228,11 +186,11 @@ impl ContactSheetWindow {
         let tool = ToolWindow { title: self.sheet.title(), default_pos: [60.0, 60.0], default_width };
         tool.show(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
-                if self.task.is_some() || self.is_due {
+                if self.task.is_running() || self.is_due {
                     ui.spinner();
                     let (done, count) = self
                         .task
-                        .as_ref()
+                        .inputs()
                         .filter(|trying| !trying.shows_previous)
                         .map_or((0, 0), |trying| (self.prints.len(), trying.count));
                     ui.label(text::contact_sheet::progress(done, count));
@@ -246,7 +204,7 @@ impl ContactSheetWindow {
             let most = (ctx.content_rect().height() - CHROME_HEIGHT).max(MIN_HEIGHT);
             let area = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
             area.show(ui, |ui| {
-                let count = self.task.as_ref().map_or(0, |trying| trying.count).max(self.prints.len());
+                let count = self.task.inputs().map_or(0, |trying| trying.count).max(self.prints.len());
                 let TileLayout { columns, width } = TileLayout::fit(ui.available_width(), count);
                 let size = vec2(width, width * PICTURE_SIZE[1] as f32 / PICTURE_SIZE[0] as f32);
                 egui::Grid::new("contact sheet").spacing([TILE_GAP, TILE_GAP]).show(ui, |ui| {
@@ -282,7 +240,7 @@ impl ContactSheetWindow {
         });
         if self.open && !open {
             self.is_due = false;
-            self.cancel();
+            self.task.cancel();
         }
         self.open = open;
         outcome
@@ -299,11 +257,11 @@ fn upload_candidate(ctx: &egui::Context, look: LookCandidate, picture: ColorImag
 mod tests {
     use super::*;
     use chiaroscuro_render::GpuContext;
-    use chiaroscuro_volume::{Dataset, synthetic::builtin};
+    use chiaroscuro_volume::{CancelToken, Dataset, synthetic::builtin};
 
-    /// Cancel flag of the running thread, if there is one.
-    fn cancel_flag(sheet: &ContactSheetWindow) -> Option<Arc<AtomicBool>> {
-        sheet.task.as_ref().map(|trying| Arc::clone(&trying.is_cancelled))
+    /// Cancel token of the running thread, if there is one.
+    fn cancel_token(sheet: &ContactSheetWindow) -> Option<CancelToken> {
+        sheet.task.token().cloned()
     }
 
     #[test]
@@ -339,29 +297,29 @@ mod tests {
         let ask = |sheet: &mut ContactSheetWindow, subject: Option<&ExportScene>| {
             sheet.open(ContactSheetKind::Lights);
             sheet.start(subject.cloned(), &ctx).expect("a thread");
-            cancel_flag(sheet)
+            cancel_token(sheet)
         };
         assert!(ask(&mut sheet, None).is_none() && !sheet.needs_start(), "nothing to try on");
         let first = ask(&mut sheet, Some(&subject)).expect("a thread");
         for _ in 0..5 {
             let again = ask(&mut sheet, Some(&subject)).expect("a thread");
-            assert!(Arc::ptr_eq(&first, &again) && !sheet.needs_start(), "it is on its way");
+            assert!(!again.is_cancelled() && !sheet.needs_start(), "it is on its way");
         }
-        assert!(!first.load(Ordering::Relaxed));
+        assert!(!first.is_cancelled());
         // For another subject the first task ends before the second starts.
         let other = ExportScene { selected_light: 1, ..subject };
         let still = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(Arc::ptr_eq(&first, &still) && first.load(Ordering::Relaxed) && sheet.needs_start());
-        while sheet.task.is_some() {
+        assert!(still.is_cancelled() && first.is_cancelled() && sheet.needs_start());
+        while sheet.task.is_running() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
         assert!(sheet.prints.is_empty(), "of what nobody wants");
         let second = ask(&mut sheet, Some(&other)).expect("a thread");
-        assert!(!second.load(Ordering::Relaxed) && !sheet.needs_start());
+        assert!(!second.is_cancelled() && !sheet.needs_start());
         sheet.discard();
-        assert!(second.load(Ordering::Relaxed) && !sheet.open);
-        while sheet.task.is_some() {
+        assert!(second.is_cancelled() && !sheet.open);
+        while sheet.task.is_running() {
             sheet.collect(&ctx).expect("no error");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }

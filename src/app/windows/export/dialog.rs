@@ -1,14 +1,16 @@
 //! Export window: kind of export, size, samples, format, marks and file.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 use eframe::egui::{self, Ui};
 
-use super::{ExportKind, ExportRequest, ExportWindow, destination};
+use super::{ExportKind, ExportWindow, destination};
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::shortcuts;
 use crate::app::text::{self, ControlText};
+use crate::app::windows::file_dialogs::FileDialogPurpose;
+use crate::app::windows::{SceneTool, ToolRequest, ToolScene};
+use crate::app::worker::jobs::JobProgress;
 use chiaroscuro_media::{AnimationFormat, PictureFormat, frame_names};
 use chiaroscuro_scene::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
@@ -36,16 +38,9 @@ const ANIMATION_FORMATS: [(AnimationFormat, ControlText, &str); 4] = [
 /// Extensions of all files that can be written.
 const EXTENSIONS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
 
-impl ExportWindow {
-    /// Shows the window if it is open, and returns the user's request.
-    ///
-    /// `is_anatomical`: the volume has anatomical directions.
-    pub(crate) fn ui(
-        &mut self,
-        ctx: &egui::Context,
-        viewport: [u32; 2],
-        is_anatomical: bool,
-    ) -> Option<ExportRequest> {
+impl SceneTool for ExportWindow {
+    fn show(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Option<ToolRequest> {
+        let is_anatomical = scene.volume.is_some_and(|volume| volume.is_anatomical);
         let mut request = None;
         let mut open = self.open;
         let tool =
@@ -61,7 +56,7 @@ impl ExportWindow {
                     }
                 }
             });
-            self.size_ui(ui, viewport);
+            self.size_ui(ui, scene.picture_size);
             if self.kind == ExportKind::Still {
                 self.still_ui(ui);
             } else {
@@ -83,7 +78,7 @@ impl ExportWindow {
                     self.adapt_depth_to_name();
                 }
                 if ui.button(text::export::CHOOSE).clicked() {
-                    request = Some(ExportRequest::ChooseFile);
+                    request = Some(ToolRequest::AskFile(FileDialogPurpose::ExportPicture));
                 }
             });
             self.destination_ui(ui);
@@ -94,14 +89,14 @@ impl ExportWindow {
                     .clicked()
                 {
                     self.asks_to_replace = self.would_replace();
-                    request = (!self.asks_to_replace).then_some(ExportRequest::Export);
+                    request = (!self.asks_to_replace).then_some(ToolRequest::Export);
                 }
                 if self.is_busy() {
                     self.progress_ui(ui);
                 }
             });
             if self.asks_to_replace && self.replace_question_ui(ui) {
-                request = Some(ExportRequest::Export);
+                request = Some(ToolRequest::Export);
             }
             if let Some(asked) = self.last_file_ui(ui) {
                 request = Some(asked);
@@ -110,7 +105,9 @@ impl ExportWindow {
         self.open = open;
         request
     }
+}
 
+impl ExportWindow {
     /// Row of switches for the marks drawn over the picture.
     fn marks_ui(&mut self, ui: &mut Ui, is_anatomical: bool) {
         ui.horizontal_wrapped(|ui| {
@@ -138,7 +135,7 @@ impl ExportWindow {
     }
 
     /// Shows the file that was written last, with buttons to open its folder and copy its path.
-    fn last_file_ui(&self, ui: &mut Ui) -> Option<ExportRequest> {
+    fn last_file_ui(&self, ui: &mut Ui) -> Option<ToolRequest> {
         let last = self.last_file.as_ref().filter(|_| !self.is_busy())?;
         let mut request = None;
         ui.separator();
@@ -146,7 +143,7 @@ impl ExportWindow {
             if ui.button(text::export::SHOW_IN_FOLDER).clicked()
                 && let Err(err) = destination::show_in_folder(last)
             {
-                request = Some(ExportRequest::FileManagerFailed(err.to_string()));
+                request = Some(ToolRequest::Report(text::export::NO_FOLDER, err.to_string()));
             }
             if ui.button(text::export::COPY_PATH).clicked() {
                 ui.ctx().copy_text(destination::absolute_path(&last.to_string_lossy()).display().to_string());
@@ -274,8 +271,7 @@ impl ExportWindow {
         if ui.button(text::common::CANCEL).clicked() {
             self.cancel();
         }
-        let (done, total) =
-            (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
+        let JobProgress { done, total } = self.work.progress().unwrap_or_default();
         if total > 1 {
             let bar = egui::ProgressBar::new(done as f32 / total as f32).desired_width(120.0);
             let count = if self.kind == ExportKind::Still {

@@ -5,16 +5,13 @@ mod dialog;
 mod worker;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use eframe::egui;
 
-use self::worker::SharedExportProgress;
 pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, settings_for_kept};
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobProgress, JobSlot};
 use chiaroscuro_media::{AnimationFormat, AnimationSpec};
 use chiaroscuro_scene::ImageSpec;
 
@@ -30,17 +27,6 @@ enum ExportKind {
     Turntable,
     /// A turntable of the selected light.
     LightTurntable,
-}
-
-/// Request of the user to the export window.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum ExportRequest {
-    /// Choose a file with the file dialog.
-    ChooseFile,
-    /// Render the picture and write it.
-    Export,
-    /// Reports that no file manager could be started, and why.
-    FileManagerFailed(String),
 }
 
 /// Progress of an export whose window is closed.
@@ -67,9 +53,8 @@ pub(crate) struct ExportWindow {
     replaceable: Option<PathBuf>,
     /// True while the user is asked whether the file may be replaced.
     asks_to_replace: bool,
-    progress: Arc<SharedExportProgress>,
     started: Instant,
-    work: Option<BackgroundTask<Result<ExportOutcome, String>>>,
+    work: JobSlot<Result<ExportOutcome, String>>,
     /// True if the user has chosen or typed the file name.
     has_user_name: bool,
     /// File that was written last.
@@ -87,9 +72,8 @@ impl Default for ExportWindow {
             rate: 24,
             replaceable: None,
             asks_to_replace: false,
-            progress: Arc::default(),
             started: Instant::now(),
-            work: None,
+            work: JobSlot::default(),
             has_user_name: false,
             last_file: None,
         }
@@ -133,22 +117,18 @@ impl ExportWindow {
 
     /// Returns true while an export is in progress.
     pub(crate) fn is_busy(&self) -> bool {
-        self.work.is_some()
+        self.work.is_running()
     }
 
     /// Progress of an export in progress, if its window is closed.
     pub(crate) fn background_progress(&self) -> Option<ExportProgress> {
-        let SharedExportProgress { done, total, cancelled: _ } = &*self.progress;
-        (self.is_busy() && !self.open).then(|| ExportProgress {
-            done: done.load(Ordering::Relaxed),
-            total: total.load(Ordering::Relaxed),
-            remaining: self.remaining_time(),
-        })
+        let JobProgress { done, total } = self.work.progress().filter(|_| !self.open)?;
+        Some(ExportProgress { done, total, remaining: self.remaining_time() })
     }
 
     /// Estimated remaining time of the export, once one part is done.
     pub(crate) fn remaining_time(&self) -> Option<Duration> {
-        let [done, total] = [&self.progress.done, &self.progress.total].map(|n| n.load(Ordering::Relaxed));
+        let JobProgress { done, total } = self.work.progress()?;
         // The first part gives no estimate yet.
         (total > 1 && done > 0).then(|| self.started.elapsed() * total.saturating_sub(done) / done)
     }
@@ -160,22 +140,18 @@ impl ExportWindow {
 
     /// Cancels the export in progress.
     pub(crate) fn cancel(&self) {
-        self.progress.cancelled.store(true, Ordering::Relaxed);
+        self.work.cancel();
     }
 
     /// Cancels the export because the window closes, and waits for its end, so that no temporary file remains.
     pub(crate) fn cancel_and_wait(&mut self) {
         self.cancel();
-        let begin = Instant::now();
-        while self.is_busy() && self.take_result().is_none() && begin.elapsed() < CANCEL_TIMEOUT {
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        self.work.wait(CANCEL_TIMEOUT);
     }
 
     /// Returns the result of the last export, once.
     pub(crate) fn take_result(&mut self) -> Option<Result<ExportOutcome, String>> {
-        let result = self.work.as_ref()?.take_result()?;
-        self.work = None;
+        let result = self.work.take_result()?;
         let result = result.and_then(|result| result);
         if let Ok(ExportOutcome::File(path)) = &result {
             self.last_file = Some(path.clone());
@@ -187,11 +163,9 @@ impl ExportWindow {
     pub(crate) fn start(&mut self, subject: ExportScene, ctx: &egui::Context) -> Result<(), String> {
         self.replaceable = None;
         let (image_spec, path) = (self.image_spec.clamped(), PathBuf::from(self.path.trim()));
-        self.progress = Arc::default();
-        let progress = Arc::clone(&self.progress);
         let light = match self.kind {
             ExportKind::Still => {
-                return self.run(ctx, move || worker::export_still(&subject, &image_spec, path, &progress));
+                return self.run(ctx, move |job| worker::export_still(&subject, &image_spec, path, job));
             }
             ExportKind::Turntable => None,
             ExportKind::LightTurntable => Some(subject.selected_light),
@@ -200,8 +174,8 @@ impl ExportWindow {
         let animation_spec =
             AnimationSpec { size: image_spec.size, frames: self.frames, rate: self.rate, transparent };
         let marks = image_spec.marks;
-        self.run(ctx, move || {
-            worker::export_turntable(&subject, light, (&animation_spec, marks), path, &progress)
+        self.run(ctx, move |job| {
+            worker::export_turntable(&subject, light, (&animation_spec, marks), path, job)
         })
     }
 
@@ -214,8 +188,7 @@ impl ExportWindow {
     ) -> Result<(), String> {
         let Self { image_spec: ImageSpec { transparent, marks, .. }, .. } = *self;
         let image_spec = ImageSpec { transparent, marks, ..ImageSpec::new(size) };
-        self.progress = Arc::default();
-        self.run(ctx, move || worker::render_for_clipboard(&subject, &image_spec))
+        self.run(ctx, move |_| worker::render_for_clipboard(&subject, &image_spec))
     }
 
     /// Starts to render all kept views and looks into one picture.
@@ -229,19 +202,15 @@ impl ExportWindow {
             return Err(text::messages::EXPORT_RUNS.to_owned());
         }
         let path = path.to_owned();
-        self.progress = Arc::default();
-        let progress = Arc::clone(&self.progress);
-        self.run(ctx, move || worker::export_kept_sheet(&subject, path, &progress))
+        self.run(ctx, move |job| worker::export_kept_sheet(&subject, path, job))
     }
 
     fn run(
         &mut self,
         ctx: &egui::Context,
-        task: impl FnOnce() -> Result<ExportOutcome, String> + Send + 'static,
+        task: impl FnOnce(&JobControl) -> Result<ExportOutcome, String> + Send + 'static,
     ) -> Result<(), String> {
         self.started = Instant::now();
-        let work = BackgroundTask::start("export", ctx, task);
-        self.work = Some(work.map_err(text::export::no_thread)?);
-        Ok(())
+        self.work.start(JobKind::Export, ctx, (), task).map_err(text::export::no_thread)
     }
 }

@@ -3,17 +3,19 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use eframe::egui;
 
 use crate::app::text;
+use crate::app::worker::jobs::JobControl;
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_media::{
     Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
     marks_layer, write_picture,
 };
-use chiaroscuro_render::{GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary};
+use chiaroscuro_render::{
+    BandProgress, GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary,
+};
 use chiaroscuro_scene::{
     Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
@@ -54,17 +56,6 @@ pub(crate) enum ExportOutcome {
     Cancelled,
 }
 
-/// Progress of an export, shared by the window and its worker.
-#[derive(Debug, Default)]
-pub(crate) struct SharedExportProgress {
-    /// Number of pictures or parts of one that are done.
-    pub done: AtomicU32,
-    /// Number of pictures or parts in total; 0 while unknown.
-    pub total: AtomicU32,
-    /// True once the user has cancelled.
-    pub cancelled: AtomicBool,
-}
-
 /// Reason for which an export ended early.
 #[derive(Debug)]
 enum ExportEnd {
@@ -94,12 +85,10 @@ impl ExportEnd {
     }
 }
 
-impl SharedExportProgress {
-    fn update(&self, done: u32, total: u32) -> Result<(), ExportEnd> {
-        self.done.store(done, Ordering::Relaxed);
-        self.total.store(total, Ordering::Relaxed);
-        if self.cancelled.load(Ordering::Relaxed) { Err(ExportEnd::Cancelled) } else { Ok(()) }
-    }
+/// Reports the number of pictures, or parts of one, that are done; an error if the user has cancelled the export.
+fn report_progress(job: &JobControl, done: u32, total: u32) -> Result<(), ExportEnd> {
+    job.set_progress(done, total);
+    if job.token().is_cancelled() { Err(ExportEnd::Cancelled) } else { Ok(()) }
 }
 
 /// Renderer on a device beside the window's, so that the window stays responsive.
@@ -170,7 +159,7 @@ pub(crate) fn export_still(
     subject: &ExportScene,
     image_spec: &ImageSpec,
     path: PathBuf,
-    progress: &SharedExportProgress,
+    job: &JobControl,
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
     let record = worker.picture_record(subject, &subject.settings, image_spec, path.parent());
@@ -178,8 +167,8 @@ pub(crate) fn export_still(
     let mut bands = worker.renderer.bands(dataset, settings, image_spec);
     let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
-        let (done, total) = bands.progress();
-        progress.update(done as u32, total as u32)?;
+        let BandProgress { drawn, total } = bands.progress();
+        report_progress(job, drawn as u32, total as u32)?;
         let mut rows = bands.next_rows()?;
         if let Some(rows) = &mut rows {
             layer.composite_over(image_spec, first, rows);
@@ -197,7 +186,7 @@ pub(crate) fn export_turntable(
     light: Option<usize>,
     (animation_spec, marks): (&AnimationSpec, Annotations),
     path: PathBuf,
-    progress: &SharedExportProgress,
+    job: &JobControl,
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
     let folder = AnimationFormat::record_folder(&path);
@@ -206,7 +195,7 @@ pub(crate) fn export_turntable(
     let mut write = || {
         let mut file = Animation::create(&path, animation_spec)?;
         for frame in 0..animation_spec.frames {
-            progress.update(frame, animation_spec.frames)?;
+            report_progress(job, frame, animation_spec.frames)?;
             let settings = subject
                 .settings
                 .at_turntable_angle(light, f64::from(frame) / f64::from(animation_spec.frames));
@@ -223,7 +212,7 @@ pub(crate) fn export_turntable(
 pub(crate) fn export_kept_sheet(
     subject: &ExportScene,
     path: PathBuf,
-    progress: &SharedExportProgress,
+    job: &JobControl,
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
     let image_spec = ImageSpec::new(KEPT_TILE_SIZE);
@@ -231,7 +220,7 @@ pub(crate) fn export_kept_sheet(
     let mut sheet = ContactSheetImage::new(kept.len() as u32, KEPT_TILE_SIZE);
     let mut write = || -> Result<(), ExportEnd> {
         for (at, kept) in (0..).zip(kept) {
-            progress.update(at, subject.settings.kept.len() as u32)?;
+            report_progress(job, at, subject.settings.kept.len() as u32)?;
             let settings = settings_for_kept(&kept.what, &subject.settings);
             let shown = worker.render(subject, &settings, &image_spec).map_err(ExportEnd::Failed)?;
             sheet.add(&kept.name, &shown);
@@ -241,7 +230,7 @@ pub(crate) fn export_kept_sheet(
     if let Err(ended) = write() {
         return ended.into_result();
     }
-    let (size, shown) = sheet.finish();
+    let (size, shown) = (sheet.size(), sheet.finish());
     // The record contains the current look with all kept items.
     let record = worker.picture_record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
     export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;

@@ -11,7 +11,7 @@ use eframe::egui;
 use super::{FileDialogPurpose, desktop};
 use crate::app::common::shortcuts;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobHandle, JobKind};
 use chiaroscuro_scene::{EXPORT_EXTENSIONS, IMPORT_EXTENSIONS};
 use chiaroscuro_volume_io::supported_extensions;
 
@@ -39,7 +39,7 @@ pub(super) struct FileDialog {
     requested: Instant,
     /// True once the window has lost the keyboard focus: to the dialog, unless the user went elsewhere.
     lost_focus: bool,
-    work: BackgroundTask<FileDialogOutcome>,
+    work: JobHandle<FileDialogOutcome>,
 }
 
 impl FileDialog {
@@ -53,7 +53,7 @@ impl FileDialog {
         ctx: &egui::Context,
     ) -> io::Result<Self> {
         let choosing = dialog_future(purpose, frame);
-        let task = move || {
+        let task = move |_: &JobControl| {
             if !desktop::has_file_dialog() {
                 return FileDialogOutcome::NoDialog;
             }
@@ -65,7 +65,7 @@ impl FileDialog {
                 None => FileDialogOutcome::Cancelled,
             }
         };
-        let work = BackgroundTask::start("file-dialog", ctx, task)?;
+        let work = JobHandle::start(JobKind::FileDialog, ctx, task)?;
         Ok(Self { purpose, requested: Instant::now(), lost_focus: false, work })
     }
 
@@ -158,7 +158,7 @@ mod tests {
     fn outcome_with_focus(answer: &FileDialogOutcome, has_keyboard: bool) -> FileDialogOutcome {
         let ctx = egui::Context::default();
         let given = answer.clone();
-        let work = BackgroundTask::start("dialog", &ctx, move || given).unwrap();
+        let work = JobHandle::start(JobKind::FileDialog, &ctx, move |_| given).unwrap();
         let mut dialog = FileDialog {
             purpose: FileDialogPurpose::OpenVolume,
             requested: Instant::now(),

@@ -254,7 +254,7 @@ pub(crate) fn export_transfer_file(
     ranges: &ValueRanges,
 ) -> Result<(), String> {
     let range = transfer_exchange_range(settings, ranges);
-    let bytes = export_transfer(path, &settings.transfer, range).map_err(|err| err.to_string())?;
+    let bytes = export_transfer(path, &settings.layer().transfer, range).map_err(|err| err.to_string())?;
     chiaroscuro_files::write_atomically(path, &bytes).map_err(|err| err.to_string())
 }
 
@@ -273,7 +273,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.json");
         std::fs::write(&path, "{\"shadows\": {\"gain\": 2.0}}").unwrap();
-        let settings = load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0;
+        let settings =
+            load_record(&path).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings;
         assert_eq!(settings.shadows.gain, 2.0);
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(load_record(&path).unwrap_err().contains("not UTF-8 text"));
@@ -294,13 +295,13 @@ mod tests {
             interpolation: OpacityInterpolation::Opacity,
             ..TransferFunction::default()
         };
-        let settings = Settings { transfer, ..Settings::default() };
+        let settings = Settings::default().with_transfer(transfer);
         for ending in ["itf", "vp", "json"] {
             let path = folder.path().join(format!("a.{ending}"));
             export_transfer_file(&path, &settings, &ranges).unwrap();
             let back = import_transfer_file(&path, transfer_exchange_range(&settings, &ranges)).unwrap();
             for value in [-20.0, 0.0, 60.0, 100.0, 140.0] {
-                let (found, meant) = (back.opacity_at(value), settings.transfer.opacity_at(value));
+                let (found, meant) = (back.opacity_at(value), settings.layer().transfer.opacity_at(value));
                 assert!((found - meant).abs() < 1e-3, "{ending} at {value}: {found} and not {meant}");
             }
         }

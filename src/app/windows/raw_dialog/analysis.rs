@@ -2,14 +2,13 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
 
 use crate::app::text;
 use crate::app::text::raw::RawLengthText;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_volume_io::raw::{LayoutProposal, RawBytes, RawNameHints, propose_layouts};
 
 /// Bytes of the file, shared by tasks that read in turn; the first one opens it.
@@ -32,16 +31,6 @@ impl SharedBytes {
     }
 }
 
-/// Cancel flag that is set when this is dropped.
-#[derive(Debug, Default)]
-pub(super) struct CancelOnDrop(pub(super) Arc<AtomicBool>);
-
-impl Drop for CancelOnDrop {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
 /// Result of the analysis: length and layout proposals.
 #[derive(Debug)]
 struct RawAnalysisResult {
@@ -53,34 +42,30 @@ struct RawAnalysisResult {
 #[derive(Debug)]
 pub(super) struct RawAnalysis {
     bytes: SharedBytes,
-    task: Option<BackgroundTask<io::Result<RawAnalysisResult>>>,
+    task: JobSlot<io::Result<RawAnalysisResult>>,
     result: Option<RawAnalysisResult>,
     failure: Option<String>,
-    _stopper: CancelOnDrop,
 }
 
 impl RawAnalysis {
     pub(super) fn start(path: &Path, file_hints: RawNameHints, ctx: &egui::Context) -> Self {
         let bytes = SharedBytes { path: path.to_owned(), bytes: Arc::default() };
-        let stopper = CancelOnDrop::default();
-        let task = {
-            let (bytes, stop) = (bytes.clone(), Arc::clone(&stopper.0));
-            move || {
-                bytes.with_bytes(|bytes| {
-                    let length = RawLengthText { bytes: bytes.length(), is_exact: bytes.is_exact() };
-                    Ok(RawAnalysisResult { length, proposals: propose_layouts(bytes, file_hints, &stop)? })
-                })
-            }
+        let shared = bytes.clone();
+        let analyse = move |job: &JobControl| {
+            shared.with_bytes(|bytes| {
+                let length = RawLengthText { bytes: bytes.length(), is_exact: bytes.is_exact() };
+                Ok(RawAnalysisResult { length, proposals: propose_layouts(bytes, file_hints, job.token())? })
+            })
         };
-        let work = BackgroundTask::start("raw-proposals", ctx, task);
-        let failure = work.as_ref().err().map(text::raw::not_read);
-        Self { bytes, task: work.ok(), result: None, failure, _stopper: stopper }
+        let mut task = JobSlot::default();
+        let started = task.start(JobKind::RawProposals, ctx, (), analyse);
+        let failure = started.err().map(|err| text::raw::not_read(&err));
+        Self { bytes, task, result: None, failure }
     }
 
     /// Takes the result of the analysis; returns true if it is new.
     pub(super) fn collect(&mut self) -> bool {
-        let Some(result) = self.task.as_ref().and_then(BackgroundTask::take_result) else { return false };
-        self.task = None;
+        let Some(result) = self.task.take_result() else { return false };
         match result {
             Ok(Ok(found)) => self.result = Some(found),
             Ok(Err(error)) => self.failure = Some(text::raw::not_read(&error)),
@@ -90,7 +75,7 @@ impl RawAnalysis {
     }
 
     pub(super) fn is_busy(&self) -> bool {
-        self.task.is_some()
+        self.task.is_running()
     }
 
     pub(super) fn failure(&self) -> Option<&str> {

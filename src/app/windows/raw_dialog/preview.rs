@@ -2,16 +2,15 @@
 //! change.
 
 use std::io;
-use std::sync::Arc;
 
 use eframe::egui::{
     self, Color32, ColorImage, Rect, Role, Sense, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
     vec2,
 };
 
-use super::analysis::{CancelOnDrop, RawAnalysis};
+use super::analysis::RawAnalysis;
 use crate::app::text;
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_volume_io::{
     RawLayout,
     raw::{MiddleSlices, PreviewSlice, read_middle_slices},
@@ -30,17 +29,11 @@ struct RawSliceTexture {
     size: Vec2,
 }
 
-/// Slices being read on a background thread.
-struct RawSliceTask {
-    layout: RawLayout,
-    work: BackgroundTask<io::Result<Option<MiddleSlices>>>,
-    _stopper: CancelOnDrop,
-}
-
 /// State of the preview between frames.
 #[derive(Default)]
 pub(super) struct RawPreview {
-    task: Option<RawSliceTask>,
+    /// Slices of a layout that are being read.
+    task: JobSlot<io::Result<Option<MiddleSlices>>, RawLayout>,
     /// Layout of the shown slices, and their textures.
     shown_slices: Option<(RawLayout, [RawSliceTexture; 3])>,
     failure: Option<String>,
@@ -103,8 +96,7 @@ impl RawPreview {
 
     /// Takes slices that have been read.
     fn collect(&mut self, ctx: &egui::Context) {
-        let Some(result) = self.task.as_ref().and_then(|reading| reading.work.take_result()) else { return };
-        let Some(RawSliceTask { layout, .. }) = self.task.take() else { return };
+        let Some((layout, result)) = self.task.take_ended() else { return };
         match result {
             Ok(Ok(Some(found))) => {
                 self.failure = None;
@@ -126,23 +118,20 @@ impl RawPreview {
     /// Starts to read slices that are not shown yet; a read for other numbers is cancelled.
     fn request(&mut self, ctx: &egui::Context, looking: &RawAnalysis, layout: &RawLayout) {
         if self.shown_slices.as_ref().is_some_and(|(shown, _)| has_same_voxels(shown, layout)) {
-            self.task = None;
+            self.task.discard();
             return;
         }
         // A read that failed is not retried.
         if self.failure.is_some()
-            || self.task.as_ref().is_some_and(|reading| has_same_voxels(&reading.layout, layout))
+            || self.task.inputs().is_some_and(|reading| has_same_voxels(reading, layout))
         {
             return;
         }
-        let stopper = CancelOnDrop::default();
-        let task = {
-            let (bytes, layout, stop) = (looking.bytes().clone(), *layout, Arc::clone(&stopper.0));
-            move || bytes.with_bytes(|bytes| read_middle_slices(bytes, &layout, &stop))
-        };
-        match BackgroundTask::start("raw-slices", ctx, task) {
-            Ok(work) => self.task = Some(RawSliceTask { layout: *layout, work, _stopper: stopper }),
-            Err(error) => self.failure = Some(text::raw::not_read(&error)),
+        let (bytes, layout) = (looking.bytes().clone(), *layout);
+        let read =
+            move |job: &JobControl| bytes.with_bytes(|bytes| read_middle_slices(bytes, &layout, job.token()));
+        if let Err(error) = self.task.start(JobKind::RawSlices, ctx, layout, read) {
+            self.failure = Some(text::raw::not_read(&error));
         }
     }
 }

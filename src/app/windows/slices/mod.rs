@@ -13,6 +13,7 @@ use glam::DVec3;
 use self::cut::{CutGeometry, SliceCut};
 use self::plane::{SlicePlane, ViewingConvention};
 use self::slice_image::GreyWindow;
+use super::{SceneTool, ToolRequest, ToolScene};
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
@@ -36,11 +37,11 @@ const MIN_WINDOW_SHARE: f64 = 1e-3;
 
 /// Part of the look that slices share with the picture.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SliceLook<'a> {
+struct SliceLook<'a> {
     /// Transfer function of the settings as they are drawn.
-    pub transfer: &'a TransferFunction,
+    transfer: &'a TransferFunction,
     /// Names and looks of labels.
-    pub labels: &'a LabelTable,
+    labels: &'a LabelTable,
 }
 
 /// State of the window "Slices".
@@ -73,6 +74,20 @@ impl std::fmt::Debug for SlicesWindow {
     }
 }
 
+impl SceneTool for SlicesWindow {
+    fn show(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Option<ToolRequest> {
+        if self.open
+            && let (Some(dataset), Some(facts)) = (&scene.dataset, scene.volume)
+        {
+            let as_drawn = scene.settings.resolved_for(dataset.volume());
+            let look =
+                SliceLook { transfer: &as_drawn.layer().transfer, labels: &scene.settings.layer().labels };
+            self.show_volume(ctx, dataset.volume(), facts, look);
+        }
+        None
+    }
+}
+
 impl SlicesWindow {
     /// Moves the cursor to the voxel nearest to a point of index space.
     pub(crate) fn move_cursor_to(&mut self, index: DVec3, dims: [usize; 3]) {
@@ -81,15 +96,14 @@ impl SlicesWindow {
         }
     }
 
-    /// Shows the window if it is open.
-    pub(crate) fn ui(
+    /// Shows the window of a volume.
+    fn show_volume(
         &mut self,
         ctx: &egui::Context,
-        volume: Option<&Arc<Volume>>,
-        facts: Option<&VolumeFacts>,
+        volume: &Arc<Volume>,
+        facts: &VolumeFacts,
         look: SliceLook<'_>,
     ) {
-        let (Some(volume), Some(facts), true) = (volume, facts, self.open) else { return };
         let mut grey = match self.window_of_volume {
             Some((of, grey)) if of == volume.content_id() => grey,
             _ => {
@@ -268,7 +282,7 @@ mod tests {
         let look = SliceLook { transfer: &transfer, labels: &labels };
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
-                slices.ui(ui.ctx(), Some(dataset.volume()), Some(&facts), look);
+                slices.show_volume(ui.ctx(), dataset.volume(), &facts, look);
             });
             output.textures_delta.clear();
         }

@@ -65,7 +65,7 @@ pub(crate) fn color_table(
         let Some(transfer) = transfer else { return Color32::from_gray((level * 255.0).round() as u8) };
         let place = volume.table_range().value_at(density);
         let opacity = transfer.opacity_at(place) as f32;
-        let shown = transfer.sample(place).0.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
+        let shown = transfer.sample(place).color.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
         let [r, g, b] = shown.map(|c| (level * 255.0 + (c - level * 255.0) * opacity).round() as u8);
         Color32::from_rgb(r, g, b)
     };

@@ -10,7 +10,7 @@ use image::imageops::{self, FilterType};
 
 use crate::app::windows::slices::plane::SlicePlane;
 use crate::app::windows::slices::slice_image::{GreyWindow, color_table, render_slice};
-use crate::app::worker::background_task::BackgroundTask;
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_volume::{LoadControl, Portion, Volume, VolumeChoice, VoxelRegion, VoxelSpan};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
@@ -33,7 +33,8 @@ pub(super) struct VolumeThumbnails {
     open_files: Option<Arc<[PathBuf]>>,
     /// Finished thumbnails, the latest last; `None` where it could not be made.
     finished: Vec<(VolumeChoice, Option<TextureHandle>)>,
-    task: Option<ThumbnailTask>,
+    /// Thumbnail of a volume in progress.
+    task: JobSlot<Option<ColorImage>, VolumeChoice>,
 }
 
 /// State of one volume's thumbnail.
@@ -47,19 +48,6 @@ pub(super) enum ThumbnailState<'a> {
     Ready(&'a TextureHandle),
 }
 
-/// Thumbnail in progress; dropping this cancels it.
-struct ThumbnailTask {
-    choice: VolumeChoice,
-    control: Arc<LoadControl>,
-    work: BackgroundTask<Option<ColorImage>>,
-}
-
-impl Drop for ThumbnailTask {
-    fn drop(&mut self) {
-        self.control.cancel();
-    }
-}
-
 impl VolumeThumbnails {
     /// Forgets the thumbnails if the file is another.
     pub(super) fn set_source(&mut self, source: &Path, among: Option<&Arc<[PathBuf]>>) {
@@ -70,7 +58,7 @@ impl VolumeThumbnails {
 
     /// Stops making thumbnails; the finished ones stay.
     pub(super) fn stop(&mut self) {
-        self.task = None;
+        self.task.discard();
     }
 
     /// Returns the thumbnail of a volume, or its state.
@@ -94,45 +82,40 @@ impl VolumeThumbnails {
         options: &LoadOptions,
         ctx: &egui::Context,
     ) {
-        if let Some(made) = self.task.as_ref().and_then(|making| making.work.take_result())
-            && let Some(making) = self.task.take()
-        {
+        if let Some((choice, made)) = self.task.take_ended() {
             let picture = made.ok().flatten();
             let texture = picture.map(|picture| ctx.load_texture("preview", picture, TextureOptions::LINEAR));
             if self.finished.len() == MAX_THUMBNAILS {
                 self.finished.remove(0);
             }
-            self.finished.push((making.choice.clone(), texture));
+            self.finished.push((choice, texture));
         }
         // A thumbnail that has scrolled out of view is cancelled.
-        let is_wanted = |making: &ThumbnailTask| wanted.iter().any(|(choice, _)| *choice == making.choice);
-        if self.task.as_ref().is_some_and(|making| !is_wanted(making)) {
-            self.task = None;
+        if self.task.inputs().is_some_and(|making| wanted.iter().all(|(choice, _)| choice != making)) {
+            self.task.discard();
         }
         let Some((choice, grid)) = wanted.iter().find(|(choice, _)| !self.is_known(choice)) else { return };
-        if self.task.is_some() {
+        if self.task.is_running() {
             return;
         }
-        let control = Arc::new(LoadControl::new());
         let memory_budget_bytes = options.memory_budget_bytes.min(MAX_VOLUME_BYTES);
         let (choice_of, among) = (choice.clone(), self.open_files.clone());
         let options =
             LoadOptions { choice: choice_of, only_files: among, memory_budget_bytes, ..options.clone() };
-        let (source, watched) = (self.source.clone(), Arc::clone(&control));
+        let source = self.source.clone();
         // A choice that is a portion already stays as it is.
         let slice = grid.filter(|_| options.choice.portion.is_none()).map(middle_slice_portion);
-        let task = move || {
+        let task = move |job: &JobControl| {
+            let control = LoadControl::with_token(job.token().clone());
             let of_slice = slice.and_then(|portion| {
                 let choice = VolumeChoice { portion: Some(portion), ..options.choice.clone() };
-                open(&source, &LoadOptions { choice, ..options.clone() }, &watched).ok()
+                open(&source, &LoadOptions { choice, ..options.clone() }, &control).ok()
             });
-            let volume = of_slice.or_else(|| open(&source, &options, &watched).ok())?;
+            let volume = of_slice.or_else(|| open(&source, &options, &control).ok())?;
             render_middle_slice(&volume)
         };
         // Without a thread there is no thumbnail.
-        if let Ok(work) = BackgroundTask::start("preview", ctx, task) {
-            self.task = Some(ThumbnailTask { choice: choice.clone(), control, work });
-        }
+        self.task.start(JobKind::VolumeThumbnail, ctx, choice.clone(), task).ok();
     }
 }
 
@@ -222,9 +205,9 @@ mod tests {
         assert!(matches!(get(1), ThumbnailState::Ready(_)) && matches!(get(2), ThumbnailState::Ready(_)));
         assert!(matches!(get(3), ThumbnailState::Failed), "there is no such time step");
         previews.update(&[(VolumeChoice::default(), None)], &LoadOptions::default(), &ctx);
-        let control = Arc::clone(&previews.task.as_ref().unwrap().control);
+        let token = previews.task.token().unwrap().clone();
         previews.stop();
-        assert!(control.is_cancelled() && previews.is_known(&steps[0].0), "what there is stays");
+        assert!(token.is_cancelled() && previews.is_known(&steps[0].0), "what there is stays");
         previews.set_source(Path::new("other"), None);
         assert!(!previews.is_known(&steps[0].0));
     }

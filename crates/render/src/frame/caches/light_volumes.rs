@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::lookup_reach::{lookup_reach_of_picture, max_stretch_reach, needed_cells, required_reach};
+use crate::GpuError;
 use crate::frame::light_fill::LightFill;
 use crate::frame::loaded_volume::{LoadedVolume, ProductRequest};
 use crate::light::combined_light::CombinedLight;
@@ -12,8 +13,7 @@ use crate::resources::cache_entry::CacheEntry;
 use crate::resources::product_cache::ProductCache;
 use crate::volume::GpuVolume;
 use crate::volume::transfer_tables::{CellRequirement, TransferTables};
-use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{NearFieldRay, SceneLight, Settings, ShadowAlgorithm};
+use chiaroscuro_scene::{NearFieldRay, ShadowAlgorithm};
 
 /// Minimum number of cached light volumes beyond those of the current picture: undoing a drag finds them again, and
 /// compared settings do not evict each other's.
@@ -30,50 +30,6 @@ pub(crate) struct LightEntries {
     pub builds: Vec<LightFill>,
     /// Number of bricks of the combined volume, if it has to be filled.
     pub bricks_to_combine: Option<usize>,
-}
-
-/// Returns the offset of light look-ups from their samples, for a volume with `divisor` data voxels per voxel.
-fn lookup_offset(
-    volume: &GpuVolume,
-    settings: &Settings,
-    light: &SceneLight,
-    divisor: usize,
-) -> NearFieldOffset {
-    let near = settings.effective_near_field();
-    if near == NearFieldRay::Off {
-        return NearFieldOffset::default();
-    }
-    let way = (NearFieldRay::length_voxels(light.near_field_steps(near)) + 0.5 * divisor as f64)
-        * volume.scene.smallest_edge();
-    NearFieldOffset::towards_light(light, &volume.scene, way)
-}
-
-/// Returns the extent of the floor if this light gets a shadow map. The map takes the transmittance behind the whole
-/// volume, so nothing visible may lie below the floor.
-fn floor_with_shadow_map(
-    volume: &GpuVolume,
-    tables: &TransferTables,
-    settings: &Settings,
-    points: u32,
-) -> Option<FloorPlane> {
-    let place = FloorPlane::from_settings(settings)?;
-    // With a single point, other algorithms or coloured shadows, the floor pass casts rays.
-    if points < 2 || settings.shadows.algorithm != ShadowAlgorithm::Splat || settings.has_colored_shadows() {
-        return None;
-    }
-    let table = &tables.lighting;
-    let has_below = place.has_below(&volume.scene, &table.occupied_bricks, |cell| table.occupies(cell));
-    (!has_below).then_some(place)
-}
-
-/// Returns the distance from visible cells, in data cells, up to which a light volume is read.
-fn read_reach(options: &RenderOptions, divisor: usize, reach: u8, aheads: &[NearFieldOffset]) -> u8 {
-    if options.work.fill_all_light_voxels {
-        return MAX_CELL_DISTANCE;
-    }
-    let farthest = aheads.iter().map(NearFieldOffset::max_distance).max().unwrap_or(0);
-    let around = if farthest == 0 { lookup_reach(divisor) } else { NearFieldOffset::lookup_margin(divisor) };
-    reach.saturating_add(around).saturating_add(farthest)
 }
 
 fn covers(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
@@ -164,7 +120,7 @@ impl LoadedVolume {
                 recyclable.extend(lights.evict_oldest(max_cached, is_needed));
                 let extent = needs.extent(&key, aheads);
                 let fresh = LightVolume::new(context, volume, &key, extent, recyclable)?;
-                builds.push(LightFill::new(wanted, volume, index, (&key, &fresh))?);
+                builds.push(LightFill::new(wanted, volume, index, &key, &fresh)?);
                 lights.insert(key, fresh, now)
             };
             *claimed = Some(lights.claim(slot, now));
@@ -204,8 +160,15 @@ impl<'a> LightNeeds<'a> {
     /// Returns the offset of look-ups from samples, for light `index` of the settings.
     fn lookup_offset(&self, index: usize, key: &LightKey) -> NearFieldOffset {
         let settings = &self.wanted.request.settings;
+        let near = settings.effective_near_field();
+        if near == NearFieldRay::Off {
+            return NearFieldOffset::default();
+        }
+        let (scene, divisor) = (&self.volume.scene, key.resolution().divisor());
         let light = settings.lights[index].resolve(&settings.camera);
-        lookup_offset(self.volume, settings, &light, key.resolution().divisor())
+        let way = (NearFieldRay::length_voxels(light.near_field_steps(near)) + 0.5 * divisor as f64)
+            * scene.smallest_edge();
+        NearFieldOffset::towards_light(&light, scene, way)
     }
 
     /// Returns the offsets of look-ups that a new volume covers. Compared settings may differ in them, so one volume
@@ -224,8 +187,33 @@ impl<'a> LightNeeds<'a> {
         aheads
     }
 
+    /// Returns the extent of the floor if this light gets a shadow map. The map takes the transmittance behind the
+    /// whole volume, so nothing visible may lie below the floor.
     fn floor(&self, key: &LightKey) -> Option<FloorPlane> {
-        floor_with_shadow_map(self.volume, self.tables, &self.wanted.request.settings, key.samples())
+        let settings = &self.wanted.request.settings;
+        let place = FloorPlane::from_settings(settings)?;
+        // With a single point, other algorithms or coloured shadows, the floor pass casts rays.
+        if key.samples() < 2
+            || settings.shadows.algorithm != ShadowAlgorithm::Splat
+            || settings.has_colored_shadows()
+        {
+            return None;
+        }
+        let table = &self.tables.lighting;
+        let has_below =
+            place.has_below(&self.volume.scene, &table.occupied_bricks, |cell| table.occupies(cell));
+        (!has_below).then_some(place)
+    }
+
+    /// Returns the distance from visible cells, in data cells, up to which a volume is read.
+    fn read_reach(&self, divisor: usize, aheads: &[NearFieldOffset]) -> u8 {
+        if self.wanted.options.work.fill_all_light_voxels {
+            return MAX_CELL_DISTANCE;
+        }
+        let farthest = aheads.iter().map(NearFieldOffset::max_distance).max().unwrap_or(0);
+        let around =
+            if farthest == 0 { lookup_reach(divisor) } else { NearFieldOffset::lookup_margin(divisor) };
+        self.reach.saturating_add(around).saturating_add(farthest)
     }
 
     /// Returns true if a cached volume holds all that the picture looks up of light `index`.
@@ -246,7 +234,7 @@ impl<'a> LightNeeds<'a> {
         };
         let filled = all(self.reach);
         let margin = all(self.reach.max(max_stretch_reach())).difference(&filled);
-        let reach = read_reach(self.wanted.options, key.resolution().divisor(), self.reach, &aheads);
+        let reach = self.read_reach(key.resolution().divisor(), &aheads);
         LightVolumeExtent { filled, margin, reach, floor: self.floor(key), aheads }
     }
 }

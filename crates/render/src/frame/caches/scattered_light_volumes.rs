@@ -49,7 +49,7 @@ impl LoadedVolume {
         let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         let least_reach = required_reach(wanted, reach);
         let has_cells = |_: &BouncesKey, known: &ScatteredLightVolume| {
-            cells(known.divisor, least_reach).is_subset(&known.filled_cells)
+            cells(known.blocks.divisor, least_reach).is_subset(&known.filled_cells)
         };
         if let Some(slot) = self.bounces.find([Some(full), coarse.as_ref()], has_cells) {
             return Ok(ScatteredLightPlace::with_complete(self.bounces.claim(slot, now), slot));
@@ -66,16 +66,15 @@ impl LoadedVolume {
         self.bounces.make_room(&key, MAX_AMBIENT_VOLUMES);
         tools.pool.drop_bind_groups();
         let fresh = ScatteredLightVolume::new(context, self.volume.volume.dims(), divisor, filled)?;
-        let settings = &request.settings;
-        let light = (settings.sky.is_on(), settings.lights.iter().filter(|light| light.on).count());
         let gpu = VolumeContext::new(tools, &self.volume);
-        let build = ScatteredLightFill::new(gpu, (&self.tables.product, options), &key, light, &fresh)?;
+        let (tables, settings) = (&self.tables.product, &request.settings);
+        let build = ScatteredLightFill::new(gpu, tables, options, &key, settings, &fresh)?;
         let slot = self.bounces.insert(key.clone(), fresh, now);
         Ok(ScatteredLightPlace::with_build(key, slot, build))
     }
 
     /// Returns the size of all volumes of scattered light, in bytes.
     pub(crate) fn bounces_bytes(&self) -> u64 {
-        self.bounces.iter().map(|known| known.product.bytes()).sum()
+        self.bounces.iter().map(|known| known.product.blocks.bytes()).sum()
     }
 }

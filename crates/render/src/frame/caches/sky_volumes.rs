@@ -55,7 +55,8 @@ impl LoadedVolume {
         let reach = view_sample_reach(&self.volume, request, options.picture.samples);
         // Cells of the margin see the whole sky, which suffices for previews.
         let least_reach = required_reach(wanted, reach);
-        let has_cells = |known: &SkyVolume| cells(known.divisor, least_reach).is_subset(&known.filled_cells);
+        let has_cells =
+            |known: &SkyVolume| cells(known.blocks.divisor, least_reach).is_subset(&known.filled_cells);
         let is_usable = |_: &SkyKey, known: &SkyVolume| has_floor(known) && has_cells(known);
         if let Some(slot) = self.skies.find([Some(full), coarse.as_ref()], is_usable) {
             return Ok(SkyPlace::with_complete(self.skies.claim(slot, now), slot));
@@ -75,7 +76,7 @@ impl LoadedVolume {
         let extent = SkyVolumeExtent { filled, margin, floor };
         let fresh = SkyVolume::new(context, &self.volume.scene, divisor, extent)?;
         let gpu = VolumeContext::new(tools, &self.volume);
-        let build = SkyFill::new(gpu, (&self.tables.product, options), &key, &fresh)?;
+        let build = SkyFill::new(gpu, &self.tables.product, options, &key, &fresh)?;
         let slot = self.skies.insert(key.clone(), fresh, now);
         Ok(SkyPlace::with_build(key, slot, build))
     }

@@ -5,10 +5,11 @@ use crate::frame::light_fill::{LightFill, LightFillView, MarchState};
 use crate::frame::render_job::RenderJob;
 use crate::frame::step::{LightStep, RaycastStep};
 use crate::light::backproject::{ChunkSchedule, backproject};
+use crate::light::fill_inputs::{LightTables, LightWithSettings};
 use crate::light::floor_shadow::PointView;
 use crate::light::march::{LightSheets, march, march_uniform};
 use crate::light::raycast::raycast;
-use crate::scatter::light::LightScatterer;
+use crate::scatter::light::{LightScatterer, ScatterTarget};
 use crate::volume::VolumeContext;
 use crate::volume::transfer_tables::UNLIMITED_REACH;
 
@@ -35,13 +36,13 @@ impl RenderJob<'_> {
         let scatter = match &self.scattering {
             Some(scattering) if build.scatters => {
                 let read = build.back_projected_bricks.as_ref().filter(|_| skips);
-                let of_light = (settings, light);
+                let target = ScatterTarget { settings, light_volume: light };
                 let fresh = LightScatterer::new(
                     gpu,
                     scattering,
-                    (tables, color),
+                    LightTables { tables, color },
                     geometry,
-                    of_light,
+                    target,
                     read,
                     &self.options,
                 )?;
@@ -58,7 +59,7 @@ impl RenderJob<'_> {
             i32::from(build.reverse_reach)
         };
         let has_floor = loaded.lights[build.cache_index].product.floor.is_some();
-        let schedule = ChunkSchedule::new(scene, geometry, light, sheets.chunk, (read_reach, has_floor));
+        let schedule = ChunkSchedule::new(scene, geometry, light, sheets.chunk, read_reach, has_floor);
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
         Ok(MarchState { sheets, schedule, scatter })
     }
@@ -113,13 +114,13 @@ impl RenderJob<'_> {
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
         let loaded = &self.loaded.product;
         let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
-        let light_and_settings = (&build.points[*point], &self.request.settings);
+        let source = LightWithSettings { light: &build.points[*point], settings: &self.request.settings };
         if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
             let table = &tables.lighting_of_color(color).buffer;
-            scatter.march(gpu, scattering, table, light_and_settings, geometry, sheets, slabs, encoder)
+            scatter.march(gpu, scattering, table, source, geometry, sheets, slabs, encoder)
         } else {
             let tiles = schedule.tiles((slabs.start / sheets.chunk) as usize, part);
-            march(gpu, (tables, color), light_and_settings, geometry, sheets, slabs, tiles, encoder)
+            march(gpu, LightTables { tables, color }, source, geometry, sheets, slabs, tiles, encoder)
         }
     }
 
@@ -149,7 +150,7 @@ impl RenderJob<'_> {
                     scatter.normalise(gpu, light, &build.bricks, encoder)?;
                 }
             }
-            _ => backproject(gpu, shadows, geometry, (sheets, schedule), light, slabs, part, encoder)?,
+            _ => backproject(gpu, shadows, geometry, sheets, schedule, light, slabs, part, encoder)?,
         }
         if let Some(floor) = light_volume.floor.as_ref().filter(|_| ends_view) {
             let point_view = PointView {
@@ -162,7 +163,7 @@ impl RenderJob<'_> {
             let cut = self.request.settings.cuts.shadowing_part().region(&gpu.volume.scene);
             let marched =
                 march_uniform(point_view.point, &cut, geometry, sheets, 0..geometry.frame.slab_count);
-            floor.add_view(gpu, point_view, (marched, sheets), encoder)?;
+            floor.add_view(gpu, point_view, marched, sheets, encoder)?;
         }
         if ends_view {
             self.tools.pool.put_ring(current.sheets.ring);
@@ -186,12 +187,12 @@ impl RenderJob<'_> {
         if is_first {
             whole.clear_margin(gpu, &build.margin, encoder)?;
         }
-        let scene_light = (&build.points[*point], &self.request.settings);
+        let source = LightWithSettings { light: &build.points[*point], settings: &self.request.settings };
         let target = build.target_volume(*point, *color, whole);
         raycast(
             gpu,
-            (tables, *color),
-            scene_light,
+            LightTables { tables, color: *color },
+            source,
             &self.options,
             target,
             &build.bricks[bricks.clone()],

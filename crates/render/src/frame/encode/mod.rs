@@ -11,6 +11,7 @@ use super::step::{FrameProduct, RenderStep};
 use crate::GpuError;
 use crate::eye::floor;
 use crate::eye::light_lookup::{AmbientVolumes, LightLookup};
+use crate::light::combined_light::CombinedLightShading;
 use crate::output::display::record_display;
 use crate::scatter::eye::EyeScatter;
 use crate::scattered_light::fill::ScatteringInputs;
@@ -166,7 +167,7 @@ impl RenderJob<'_> {
         let lights = light_inputs(&self.lights, &self.light_indices, loaded);
         let list: Vec<_> = target.product.filled.bricks().map(brick_entry).collect();
         let gpu = VolumeContext::new(self.tools, &loaded.volume);
-        let shading = (pass.uniform(), pass.shading_variant());
+        let shading = CombinedLightShading { eye: pass.uniform(), shading: pass.shading_variant() };
         target.product.fill(gpu, &loaded.tables.product, shading, &lights, &list[bricks.clone()], encoder)
     }
 

@@ -66,9 +66,10 @@ impl<'r> FramePlanner<'r> {
                 picture_number: self.picture_number,
             };
             placement = VolumePlacement::new(self.tools, &mut self.loaded.product, wanted)?;
-            let ambient = (placement.sky.key.as_ref(), placement.bounces.key.as_ref());
+            let (sky, bounces) = (placement.sky.key.as_ref(), placement.bounces.key.as_ref());
             let combined = self.keys.combined.as_ref();
-            let eye = EyeKey::new(&self.request, &self.options, &placement.lights.keys, combined, ambient);
+            let eye =
+                EyeKey::new(&self.request, &self.options, &placement.lights.keys, combined, sky, bounces);
             self.keys.floor = FloorKey::new(&self.request, &eye);
             self.keys.eye = eye;
             // A preview may find its light volumes at full resolution, and so a picture that is already drawn.

@@ -82,8 +82,8 @@ const LIGHTS_AND_AMBIENT: &[BindingSlot] = &[
 
 /// Bindings of the passes that resample a pyramid level.
 const RESAMPLE: &[BindingSlot] = &[
-    BindingSlot::sampled_texture(0, "source", TextureShape::D3),
-    BindingSlot::bind_sampler(1, "clamped"),
+    BindingSlot::sampled_texture(20, "source_texture", TextureShape::D3),
+    BindingSlot::bind_sampler(21, "source_sampler"),
     BindingSlot::storage_texture(2, "level", TextureShape::D3, StorageFormat::Target),
     BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
     BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
@@ -93,8 +93,14 @@ const RESAMPLE: &[BindingSlot] = &[
 const EYE: BindingSlot = BindingSlot::uniform::<uniforms::EyeUniform>(0, "bound_eye");
 const TABLE: BindingSlot = BindingSlot::storage(1, "table", TABLE_BYTES, BufferAccess::Read);
 const LIGHTING_TABLE: BindingSlot =
-    BindingSlot::storage(4, "lighting_table", TABLE_BYTES, BufferAccess::Read);
-const GRADIENTS: BindingSlot = BindingSlot::sampled_texture(6, "gradients", TextureShape::D3);
+    BindingSlot::storage(26, "lighting_table", TABLE_BYTES, BufferAccess::Read);
+const GRADIENTS: BindingSlot = BindingSlot::sampled_texture(24, "gradients", TextureShape::D3);
+/// Texture from whose texels a level of a pyramid is made, without filtering.
+const SOURCE_TEXELS: BindingSlot = BindingSlot::loaded_texture(20, "source_texture", TextureShape::D3);
+/// Presence at the texels of a level that is made.
+const PRESENCE_LEVEL: BindingSlot = BindingSlot::loaded_texture(22, "presence_level", TextureShape::D3);
+/// Voxels of the scattering engine.
+const VOXELS: BindingSlot = BindingSlot::storage(25, "voxels", 4, BufferAccess::Read);
 const SCATTER: BindingSlot = BindingSlot::uniform::<uniforms::ScatterSlabUniform>(5, "bound_scatter");
 const SHEETS: BindingSlot = BindingSlot::storage(6, "sheets", 4, BufferAccess::ReadWrite);
 const FOOTPRINT_TABLE: BindingSlot =
@@ -193,7 +199,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage(3, "first_words", 4, BufferAccess::Read),
                 BindingSlot::storage(4, "bricks", 8, BufferAccess::Read),
                 BindingSlot::storage(5, "splats", 4, BufferAccess::ReadWrite),
-                BindingSlot::storage(6, "voxels", 4, BufferAccess::Read),
+                VOXELS,
             ],
             &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE],
             LIGHTS_AND_AMBIENT,
@@ -260,7 +266,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage(0, "bricks", 8, BufferAccess::Read),
                 TABLE,
                 BindingSlot::storage(2, "splats", 4, BufferAccess::ReadWrite),
-                BindingSlot::storage(6, "voxels", 4, BufferAccess::Read),
+                VOXELS,
             ],
             &[SCATTER, SHEETS, FOOTPRINT_TABLE],
         ],
@@ -269,11 +275,11 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
     (
         "volume/gradients.wgsl",
         &[&[
-            BindingSlot::loaded_texture(0, "source", TextureShape::D3),
+            SOURCE_TEXELS,
             BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
             BindingSlot::storage_texture(
                 4,
-                "gradients",
+                "gradient_level",
                 TextureShape::D3,
                 StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
             ),
@@ -283,7 +289,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
     (
         "volume/preclassified.wgsl",
         &[&[
-            BindingSlot::loaded_texture(0, "source", TextureShape::D3),
+            SOURCE_TEXELS,
             TABLE,
             BindingSlot::storage_texture(
                 2,
@@ -292,20 +298,13 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
             ),
             BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
-            BindingSlot::loaded_texture(4, "presence_level", TextureShape::D3),
+            PRESENCE_LEVEL,
             BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
     ),
     (
         "volume/prefilter.wgsl",
-        &[&[
-            RESAMPLE[0],
-            RESAMPLE[1],
-            RESAMPLE[2],
-            RESAMPLE[3],
-            BindingSlot::loaded_texture(4, "presence_level", TextureShape::D3),
-            RESAMPLE[4],
-        ]],
+        &[&[RESAMPLE[0], RESAMPLE[1], RESAMPLE[2], RESAMPLE[3], PRESENCE_LEVEL, RESAMPLE[4]]],
     ),
 ];
 

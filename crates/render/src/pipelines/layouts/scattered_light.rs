@@ -1,6 +1,6 @@
 //! Bind-group layouts of the shaders for scattered light.
 
-use super::sky::{CELLS, SWEEP, TILES};
+use super::sky::{BLOCK_SAMPLER, CELLS, SWEEP, TILES};
 use super::{CLAMPED, GRID, PYRAMID_TEXTURE, ShaderLayouts, TABLE, TABLE_BYTES};
 use crate::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::pipelines::uniforms;
@@ -20,8 +20,8 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
                 TABLE,
                 CELLS,
-                BindingSlot::storage(4, "look_table", TABLE_BYTES, BufferAccess::Read),
-                BindingSlot::sampled_texture(5, "look_pyramid", TextureShape::D3),
+                BindingSlot::storage(27, "look_table", TABLE_BYTES, BufferAccess::Read),
+                BindingSlot::sampled_texture(23, "look_pyramid", TextureShape::D3),
                 BindingSlot::storage(6, "scattering", 16, BufferAccess::ReadWrite),
                 BindingSlot::storage_texture(7, "medium", TextureShape::D3, StorageFormat::Target),
             ],
@@ -33,7 +33,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "sheets", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
+            BLOCK_SAMPLER,
             BOUNCE,
             SCATTERING,
             BindingSlot::storage(5, "sums", 16, BufferAccess::ReadWrite),
@@ -65,7 +65,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             BindingSlot::uniform::<uniforms::SingleScatteringUniform>(0, "bound_scene"),
             BindingSlot::sampled_texture(1, "medium", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
+            BLOCK_SAMPLER,
             BOUNCE,
             SCATTERING,
             SUMS,
@@ -90,7 +90,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "medium", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
+            BLOCK_SAMPLER,
             BindingSlot::storage_texture(3, "sheets", TextureShape::D3, StorageFormat::Target),
             TILES,
         ]],

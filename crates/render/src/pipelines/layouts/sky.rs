@@ -13,22 +13,23 @@ pub(super) const TILES: BindingSlot = BindingSlot::storage(4, "tiles", 4, Buffer
 /// List of the cells of blocks in which something may attenuate light.
 pub(super) const CELLS: BindingSlot = BindingSlot::storage(2, "cells", 4, BufferAccess::Read);
 
+/// Sampler of blocks, and of the sheets through them.
+pub(super) const BLOCK_SAMPLER: BindingSlot = BindingSlot::bind_sampler(2, "clamped");
+
+/// Sums of the moments over the batches of directions.
+const SUMS: BindingSlot = BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite);
+
 const FLOOR_PLACE: BindingSlot = BindingSlot::uniform::<uniforms::FloorSkyMapUniform>(5, "bound_map");
+
+/// Declares the texture of moments that is written.
+const fn moments_slot(number: u32) -> BindingSlot {
+    let format = StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float);
+    BindingSlot::storage_texture(number, "moments", TextureShape::D3, format)
+}
 
 /// Layouts of the shaders in `shaders/sky`.
 pub(super) const LAYOUTS: ShaderLayouts = &[
-    (
-        "sky/clear_margin.wgsl",
-        &[&[
-            BindingSlot::storage(0, "cells", 4, BufferAccess::Read),
-            BindingSlot::storage_texture(
-                1,
-                "moments",
-                TextureShape::D3,
-                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-            ),
-        ]],
-    ),
+    ("sky/clear_margin.wgsl", &[&[BindingSlot::storage(0, "cells", 4, BufferAccess::Read), moments_slot(1)]]),
     (
         "sky/extinction_blocks.wgsl",
         &[
@@ -46,14 +47,9 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "transmittance", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
-            BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite),
-            BindingSlot::storage_texture(
-                4,
-                "moments",
-                TextureShape::D3,
-                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-            ),
+            BLOCK_SAMPLER,
+            SUMS,
+            moments_slot(4),
             FLOOR_PLACE,
         ]],
     ),
@@ -62,7 +58,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
+            BLOCK_SAMPLER,
             BindingSlot::storage_texture(3, "transmittance", TextureShape::D3, StorageFormat::Storage),
             TILES,
             FLOOR_PLACE,
@@ -73,14 +69,9 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "sheets", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
-            BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite),
-            BindingSlot::storage_texture(
-                4,
-                "moments",
-                TextureShape::D3,
-                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-            ),
+            BLOCK_SAMPLER,
+            SUMS,
+            moments_slot(4),
             BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
         ]],
     ),
@@ -89,7 +80,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             SWEEP,
             BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
-            BindingSlot::bind_sampler(2, "clamped"),
+            BLOCK_SAMPLER,
             BindingSlot::storage_texture(3, "sheets", TextureShape::D3, StorageFormat::Storage),
             TILES,
         ]],

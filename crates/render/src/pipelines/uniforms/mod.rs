@@ -119,7 +119,7 @@ impl CutUniform {
     }
 }
 
-/// Voxel grid and texture scales, as declared in `density/volume.wgsl`.
+/// Voxel grid and texture scales, as declared in `volume/field.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct GridUniform {

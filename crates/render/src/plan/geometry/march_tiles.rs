@@ -55,15 +55,15 @@ impl MarchTiles {
     ) -> Self {
         let mut marked = TileMarks::new(view, chunk);
         if begins_everywhere {
-            marked.mark([DVec2::NEG_INFINITY, DVec2::INFINITY], [0.0; 2]);
+            marked.mark(BoxExtent { pixels: [DVec2::NEG_INFINITY, DVec2::INFINITY], slabs: [0.0; 2] });
         }
         let turned = DAffine3::from_mat3(view.axes.transpose());
         let local_from_index = turned * DAffine3::from_translation(-view.anchor) * scene.scene_from_index;
         for [low, high] in boxes {
             let corner = local_from_index.transform_point3(low);
             let edges = local_from_index.matrix3 * DMat3::from_diagonal(high - low);
-            if let Some((pixels, slabs)) = box_extent(view, corner, edges) {
-                marked.mark(pixels, slabs);
+            if let Some(extent) = box_extent(view, corner, edges) {
+                marked.mark(extent);
             }
         }
         marked.into_tiles()
@@ -75,9 +75,15 @@ impl MarchTiles {
     }
 }
 
+/// Ranges of pixels and slabs, each from its lower to its upper end.
+struct BoxExtent {
+    pixels: [DVec2; 2],
+    slabs: [f64; 2],
+}
+
 /// Returns the ranges of pixels and slabs that contain a box, given by a corner and three edges in the light's axes;
 /// `None` if it is completely behind the light.
-fn box_extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<([DVec2; 2], [f64; 2])> {
+fn box_extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<BoxExtent> {
     let frame = &view.frame;
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut nearest = f64::INFINITY;
@@ -92,11 +98,12 @@ fn box_extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<([DVec2; 
     }
     let slabs = [low.z - ROUNDING_MARGIN, high.z + ROUNDING_MARGIN];
     if nearest > MIN_SPREAD {
-        return Some(([low.truncate() - ROUNDING_MARGIN, high.truncate() + ROUNDING_MARGIN], slabs));
+        let pixels = [low.truncate() - ROUNDING_MARGIN, high.truncate() + ROUNDING_MARGIN];
+        return Some(BoxExtent { pixels, slabs });
     }
     let behind = frame.inverse_distance > 0.0
         && frame.first_depth + (slabs[1] + 0.5) * frame.slab < -1.0 / frame.inverse_distance;
-    (!behind).then_some(([DVec2::NEG_INFINITY, DVec2::INFINITY], slabs))
+    (!behind).then_some(BoxExtent { pixels: [DVec2::NEG_INFINITY, DVec2::INFINITY], slabs })
 }
 
 /// Tile marks under construction.
@@ -118,7 +125,7 @@ impl TileMarks {
         Self { size, chunk, chunks, full: vec![false; count] }
     }
 
-    fn mark(&mut self, [low, high]: [DVec2; 2], [first, last]: [f64; 2]) {
+    fn mark(&mut self, BoxExtent { pixels: [low, high], slabs: [first, last] }: BoxExtent) {
         let Some(chunks) = pieces_covering(first, last, f64::from(self.chunk), self.chunks.len()) else {
             return;
         };

@@ -85,6 +85,15 @@ pub(crate) struct ProjectionPlacement {
     pub near: f64,
 }
 
+/// Distances to either side over which gradients from sheets are differenced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GradientSteps {
+    /// Number of pixels within a sheet.
+    pub pixels: u32,
+    /// Number of slabs across the sheets.
+    pub slabs: u32,
+}
+
 impl SheetFrame {
     /// Computes the rays, and covers all material of the scene with slabs. Slab faces lie at whole multiples of the
     /// thickness from the anchor, so that moving the eye does not shift their phase.
@@ -159,9 +168,9 @@ impl SheetFrame {
 
     /// Returns the number of pixels and of slabs to either side over which gradients from sheets are differenced:
     /// about a voxel, as for gradients from the volume.
-    pub fn gradient_steps(&self) -> (u32, u32) {
+    pub fn gradient_steps(&self) -> GradientSteps {
         let steps = |step: f64| (self.voxel_edge / step).round().max(1.0) as u32;
-        (steps(self.pitch), steps(self.slab))
+        GradientSteps { pixels: steps(self.pitch), slabs: steps(self.slab) }
     }
 
     /// Returns the factor by which kernels at slab `k` are wider than in index space.

@@ -69,6 +69,15 @@ pub struct SweepFrame {
     pub step: f64,
 }
 
+/// Position in the slices of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlicePosition {
+    /// Slice coordinate, which may lie between slices and outside the grid.
+    pub slice: f64,
+    /// Position along the two axes that follow the axis of the slices.
+    pub across: DVec2,
+}
+
 impl SweepFrame {
     /// Creates the rays from a direction through blocks of `divisor`³ voxels.
     pub fn new(scene: &SceneSpace, divisor: usize, towards: DVec3) -> Self {
@@ -109,17 +118,18 @@ impl SweepFrame {
 
     /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
     /// its position across.
-    pub fn slice_position(&self, block: DVec3) -> (f64, DVec2) {
+    pub fn slice_position(&self, block: DVec3) -> SlicePosition {
         let along = block[self.axis];
         let slice = if self.is_ascending { along } else { self.slices() as f64 - 1.0 - along };
-        (slice, DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]))
+        SlicePosition { slice, across: DVec2::new(block[(self.axis + 1) % 3], block[(self.axis + 2) % 3]) }
     }
 
     /// Returns the slice coordinate of a position in blocks, which may lie between slices and outside the grid, and
     /// its ray coordinates in that slice.
-    pub fn ray_position(&self, block: DVec3) -> (f64, DVec2) {
-        let (slice, across) = self.slice_position(block);
-        (slice, across - self.drift * slice - DVec2::new(self.first[0].into(), self.first[1].into()))
+    pub fn ray_position(&self, block: DVec3) -> SlicePosition {
+        let SlicePosition { slice, across } = self.slice_position(block);
+        let first = DVec2::new(self.first[0].into(), self.first[1].into());
+        SlicePosition { slice, across: across - self.drift * slice - first }
     }
 
     /// Returns the position at which a ray crosses a slice, along the two axes that follow `axis`.
@@ -181,7 +191,7 @@ mod tests {
                 let [nx, ny, nz] = frame.dims;
                 for block in (0..nx * ny * nz).map(|at| [at % nx, at / nx % ny, at / (nx * ny)]) {
                     let wanted = DVec3::from(block.map(|at| at as f64));
-                    let (slice, ray) = frame.ray_position(wanted);
+                    let SlicePosition { slice, across: ray } = frame.ray_position(wanted);
                     assert!(ray.min_element() >= -1e-9, "{ray}");
                     let next = ray.floor() + 1.0;
                     assert!(next.x < f64::from(frame.size[0]) && next.y < f64::from(frame.size[1]), "{ray}");

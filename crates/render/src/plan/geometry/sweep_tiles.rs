@@ -49,9 +49,8 @@ impl SweepTiles {
         let first_ray = DVec2::new(frame.first[0].into(), frame.first[1].into());
         let edge = f64::from(TILE_EDGE);
         for [low, high] in boxes {
-            let [(near, across_low), (far, across_high)] =
-                [low, high].map(|corner| frame.slice_position(*corner));
-            let (near, far) = if near < far { (near, far) } else { (far, near) };
+            let [low, high] = [low, high].map(|corner| frame.slice_position(*corner));
+            let (near, far) = (low.slice.min(high.slice), low.slice.max(high.slice));
             let [first, last] =
                 [(near - ROUNDING_MARGIN).ceil().max(0.0), (far + ROUNDING_MARGIN).floor().min(last_slice)];
             if first > last {
@@ -59,8 +58,8 @@ impl SweepTiles {
             }
             let drifts = [frame.drift * first, frame.drift * last];
             let ends = [
-                across_low - drifts[0].max(drifts[1]) - first_ray - ROUNDING_MARGIN,
-                across_high - drifts[0].min(drifts[1]) - first_ray + ROUNDING_MARGIN,
+                low.across - drifts[0].max(drifts[1]) - first_ray - ROUNDING_MARGIN,
+                high.across - drifts[0].min(drifts[1]) - first_ray + ROUNDING_MARGIN,
             ];
             let tile = |at: f64, count: usize| (at / edge).floor().clamp(0.0, count as f64 - 1.0) as usize;
             for row in tile(ends[0].y, rows)..=tile(ends[1].y, rows) {
@@ -80,7 +79,7 @@ mod tests {
     use glam::DAffine3;
 
     use super::*;
-    use crate::plan::sweep_directions;
+    use crate::plan::{SlicePosition, sweep_directions};
     use chiaroscuro_volume::math::SceneSpace;
 
     fn frames(dims: [usize; 3]) -> Vec<SweepFrame> {
@@ -129,7 +128,7 @@ mod tests {
         for frame in frames([48; 3]) {
             let tiles = SweepTiles::covering(&frame, &boxes);
             for block in [DVec3::ZERO, DVec3::splat(47.0), DVec3::new(3.0, 40.0, 21.0)] {
-                let (slice, ray) = frame.ray_position(block);
+                let SlicePosition { slice, across: ray } = frame.ray_position(block);
                 let ray = [ray.x as u32, ray.y as u32];
                 assert!(is_followed(&frame, &tiles, ray, slice as u32), "{frame:?}: {block}");
             }

@@ -36,7 +36,7 @@ impl CombinedKey {
                 .collect(),
             received: LightLookupKey::new(settings),
             surface_gradient: settings.shading.surface_gradient,
-            unit: settings.opacity_unit,
+            unit: settings.layer().opacity_unit,
             sides: (settings.shading.sides == LitSides::One).then(|| EyeTableKey::new(settings)),
             seen: settings.cuts.visible_part(),
             min_transmittance: options.switches.min_transmittance,

@@ -12,7 +12,7 @@ use crate::plan::{
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
     PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
-    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature,
+    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature, VolumeLayer,
 };
 
 /// Inputs of the linear picture of the eye pass.
@@ -104,20 +104,15 @@ impl EyeKey {
         options: &RenderOptions,
         volumes: &[Option<LightKey>],
         combined: Option<&CombinedKey>,
-        (sky_volume, bounces): (Option<&SkyKey>, Option<&BouncesKey>),
+        sky_volume: Option<&SkyKey>,
+        bounces: Option<&BouncesKey>,
     ) -> Self {
         let RenderRequest { volume: _, settings, size: _, preview_resolution: _ } = request;
         let Settings {
             schema: _,
             camera,
             lights: _,
-            // Part of the volume's key.
-            range: _,
-            // Parts of the keys of the volume and of the tables.
-            labels: _,
-            transfer: _,
-            lighting: _,
-            opacity_unit,
+            layers,
             shading,
             shadows,
             sky: _,
@@ -130,6 +125,15 @@ impl EyeKey {
             // Part of the identity of the corrected volume.
             volume: _,
         } = settings;
+        let VolumeLayer {
+            // Part of the volume's key.
+            range: _,
+            // Parts of the keys of the volume and of the tables.
+            labels: _,
+            transfer: _,
+            lighting: _,
+            opacity_unit,
+        } = layers.first();
         let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };
         let lights = own.iter().map(|lit| EyeLightKey {

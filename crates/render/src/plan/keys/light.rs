@@ -6,6 +6,7 @@ use chiaroscuro_scene::{
     AreaLightSampling, ClassificationOrder, ClippedPart, DepositMode, LightArea, LightGeometry,
     LightVolumePrecision, LightVolumeResolution, ReconstructionKernel, RenderEngine, ReverseKernel,
     SamplingSettings, SceneLight, Settings, ShadowAlgorithm, ShadowSettings, SlabQuadrature, Spotlight,
+    VolumeLayer,
 };
 
 /// Inputs of the attenuation volume of one light.
@@ -87,14 +88,7 @@ impl LightKey {
             schema: _,
             camera,
             lights,
-            // Part of the volume's key.
-            range: _,
-            // Parts of the keys of the volume and of opacities.
-            labels: _,
-            // Parts of the key of opacities.
-            transfer: _,
-            lighting: _,
-            opacity_unit: _,
+            layers,
             shading: _,
             shadows,
             sky: _,
@@ -117,6 +111,16 @@ impl LightKey {
             // Part of the identity of the corrected volume.
             volume: _,
         } = &request.settings;
+        let VolumeLayer {
+            // Part of the volume's key.
+            range: _,
+            // Parts of the keys of the volume and of opacities.
+            labels: _,
+            // Parts of the key of opacities.
+            transfer: _,
+            lighting: _,
+            opacity_unit: _,
+        } = layers.first();
         let light = lights.get(index)?.resolve(camera);
         let wanted = shadows.algorithm.has_volume() && light.needs_volume();
         wanted.then(|| Self {

@@ -60,7 +60,7 @@ impl FrameKeys {
         let combined = CombinedKey::new(request, options);
         let sky = SkyKey::new(request);
         let bounces = BouncesKey::new(request);
-        let eye = EyeKey::new(request, options, &lights, combined.as_ref(), (sky.as_ref(), bounces.as_ref()));
+        let eye = EyeKey::new(request, options, &lights, combined.as_ref(), sky.as_ref(), bounces.as_ref());
         Self {
             volume: request.volume_key(),
             tables: TablesKey::new(request),

@@ -78,31 +78,31 @@ impl TablesKey {
 impl EyeTableKey {
     /// Creates the key of the eye's table in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        let looks = if settings.labels.is_empty() {
-            EyeTableLooks::Values(settings.transfer.clone())
+        let looks = if settings.layer().labels.is_empty() {
+            EyeTableLooks::Values(settings.layer().transfer.clone())
         } else {
-            EyeTableLooks::Labels(settings.labels.materials())
+            EyeTableLooks::Labels(settings.layer().labels.materials())
         };
-        Self { looks, unit: settings.opacity_unit }
+        Self { looks, unit: settings.layer().opacity_unit }
     }
 }
 
 impl OpacityKey {
     /// Creates the key of the opacities that attenuate light in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        let LightingTransfer { linked, scale, curve } = &settings.lighting;
-        let opacities = if settings.labels.is_empty() {
-            let curve = if *linked { &settings.transfer } else { curve };
+        let LightingTransfer { linked, scale, curve } = &settings.layer().lighting;
+        let opacities = if settings.layer().labels.is_empty() {
+            let curve = if *linked { &settings.layer().transfer } else { curve };
             let TransferFunction { points, interpolation, mixing: _ } = curve;
             LightingOpacities::Values {
                 points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
                 interpolation: *interpolation,
             }
         } else {
-            let materials = settings.labels.materials().into_iter();
+            let materials = settings.layer().labels.materials().into_iter();
             LightingOpacities::Labels(materials.map(|material| (material.number, material.opacity)).collect())
         };
-        Self { opacities, scale: *scale, unit: settings.opacity_unit }
+        Self { opacities, scale: *scale, unit: settings.layer().opacity_unit }
     }
 }
 
@@ -110,12 +110,12 @@ impl TransmissionKey {
     /// Creates the key of the colour channels' extinction in a look; `None` if shadows are grey.
     pub(super) fn new(settings: &Settings) -> Option<Self> {
         let colors = || {
-            if !settings.labels.is_empty() {
-                let materials = settings.labels.materials().into_iter();
+            if !settings.layer().labels.is_empty() {
+                let materials = settings.layer().labels.materials().into_iter();
                 return TransmissionColors::Labels(materials.map(|material| material.color).collect());
             }
-            let LightingTransfer { linked, scale: _, curve } = &settings.lighting;
-            let curve = if *linked { &settings.transfer } else { curve };
+            let LightingTransfer { linked, scale: _, curve } = &settings.layer().lighting;
+            let curve = if *linked { &settings.layer().transfer } else { curve };
             TransmissionColors::Values(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
         };
         settings

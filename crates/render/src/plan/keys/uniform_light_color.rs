@@ -22,10 +22,10 @@ impl UniformLightColor {
     /// Finds the single colour of all light in a look; `None` if there are several, or the material has colours.
     pub fn detect(settings: &Settings) -> Option<Self> {
         let is_grey = |color: [f32; 3]| color[0] == color[1] && color[1] == color[2];
-        let matter_is_grey = if settings.labels.is_empty() {
-            settings.transfer.points.iter().all(|point| is_grey(point.color))
+        let matter_is_grey = if settings.layer().labels.is_empty() {
+            settings.layer().transfer.points.iter().all(|point| is_grey(point.color))
         } else {
-            settings.labels.materials().iter().all(|material| is_grey(material.color))
+            settings.layer().labels.materials().iter().all(|material| is_grey(material.color))
         };
         if !matter_is_grey {
             return None;
@@ -68,7 +68,8 @@ mod tests {
 
     fn grey() -> Settings {
         let mut settings = Settings::default();
-        settings.transfer.points = [0.0, 1.0].map(|value| ControlPoint::new(value, [0.7; 3], value)).to_vec();
+        settings.layer_mut().transfer.points =
+            [0.0, 1.0].map(|value| ControlPoint::new(value, [0.7; 3], value)).to_vec();
         settings.lights = vec![LightSettings { color: [1.0, 0.5, 0.25], ..LightSettings::default() }; 2];
         settings.lights[1].intensity = 0.3;
         settings
@@ -91,7 +92,7 @@ mod tests {
             UniformLightColor::detect(&settings)
         };
         assert!(with(&|_| ()).is_some());
-        assert!(with(&|settings| settings.transfer.points[0].color[1] += 0.01).is_none());
+        assert!(with(&|settings| settings.layer_mut().transfer.points[0].color[1] += 0.01).is_none());
         assert!(with(&|settings| settings.lights[1].color[2] += 0.01).is_none());
         assert!(with(&|settings| settings.sky.mode = SkyMode::White).is_none());
         assert!(with(&|settings| settings.shading.emission = 0.5).is_none());

@@ -67,7 +67,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.for_light_color(color)));
     let is_one_sided = settings.shading.sides == LitSides::One;
     // True if opacity falls towards high densities; never for solid labels, in which it rises.
-    let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).0) < 0.0;
+    let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).value) < 0.0;
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
     let shading_cut = settings.cuts.shadowing_part().region(scene);
@@ -136,7 +136,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         index,
         world_mm: volume.world_from_index().transform_point3(index),
         value,
-        opacity: settings.transfer.opacity_at(range.value_at(volume.density_of(value))),
+        opacity: settings.layer().transfer.opacity_at(range.value_at(volume.density_of(value))),
         lights,
         sky,
     })
@@ -176,14 +176,14 @@ mod tests {
             ..TransferFunction::default()
         };
         let settings = Settings {
-            transfer,
-            opacity_unit: OpacityLength::Voxels(1.0),
             lights: vec![
                 LightSettings { position: [0.0, 0.0, 3.0], ..LightSettings::default() },
                 LightSettings { position: [3.0, 0.0, 0.0], casts_shadows: false, ..LightSettings::default() },
             ],
             ..Settings::default()
-        };
+        }
+        .with_transfer(transfer)
+        .with_opacity_unit(OpacityLength::Voxels(1.0));
         (volume, settings)
     }
 
@@ -200,7 +200,7 @@ mod tests {
         let aside = DVec3::new(-3.0, 0.0, 0.4);
         let below = open(&settings, aside).unwrap();
         let mut bare = settings.clone();
-        bare.transfer.points[1].opacity = 0.0;
+        bare.layer_mut().transfer.points[1].opacity = 0.0;
         let free = open(&bare, aside).unwrap();
         assert!(below > 0.1 && below < free - 0.15 && free <= 1.0, "{below} {free}");
         settings.shadows.algorithm = ShadowAlgorithm::Off;
@@ -228,7 +228,7 @@ mod tests {
     fn missing_voxels_are_invisible() {
         let (volume, mut settings) = slab_over_block();
         // Opaque, so that the probe hits a face and not the middle of the layer.
-        settings.transfer.points[1].opacity = 0.99;
+        settings.layer_mut().transfer.points[1].opacity = 0.99;
         let look = |volume: &Volume| probe(volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
         let without_slab = volume.clone().with_padding(0.5).expect("the block");
         let [whole, block] = [&volume, &without_slab].map(|volume| look(volume).expect("something"));
@@ -276,7 +276,7 @@ mod tests {
     fn surfaces_face_where_opacity_falls() {
         let (volume, mut settings) = slab_over_block();
         // Opaque, so that the probe hits the slab's face and not its middle.
-        settings.transfer.points[1].opacity = 0.99;
+        settings.layer_mut().transfer.points[1].opacity = 0.99;
         let from_above = |volume: &Volume, settings: &Settings| {
             let seen = probe(volume, settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z);
             seen.expect("the slab").lights[0].facing.expect("a surface")
@@ -287,8 +287,8 @@ mod tests {
         let values = (0..n * n * n).map(|at| 1.0 - volume.value(at % n, at / n % n, at / (n * n)) as f32);
         let samples = Samples::F32(values.collect());
         let turned = Volume::with_spacing("turned", volume.dims(), DVec3::ONE, samples).unwrap();
-        settings.transfer.points.reverse();
-        for point in &mut settings.transfer.points {
+        settings.layer_mut().transfer.points.reverse();
+        for point in &mut settings.layer_mut().transfer.points {
             point.value = 1.0 - point.value;
         }
         assert!((from_above(&turned, &settings) - rising).abs() < 1e-6);
@@ -316,7 +316,7 @@ mod tests {
         let volume = Volume::with_spacing("boxes", [n; 3], DVec3::ONE, samples).unwrap();
         let mut settings = Settings { lights: vec![LightSettings::default()], ..Settings::default() };
         let look = |visible| LabelLook { opacity: 0.95, visible, ..LabelLook::default_for(9) };
-        settings.labels = [(3, look(true)), (9, look(true))].into_iter().collect();
+        settings.layer_mut().labels = [(3, look(true)), (9, look(true))].into_iter().collect();
         let found = |settings: &Settings| {
             let rows = (0..20).flat_map(|x| (0..20).map(move |y| [x, y].map(|c| f64::from(c) / 12.0 - 0.8)));
             rows.filter_map(|[x, y]| probe(&volume, settings, DVec3::new(x, y, 3.0), DVec3::NEG_Z))
@@ -325,7 +325,7 @@ mod tests {
         };
         let values = found(&settings);
         assert!(values.len() > 100 && values.iter().all(|&value| value == 3.0), "{values:?}");
-        settings.labels.entry_mut(3).visible = false;
+        settings.layer_mut().labels.entry_mut(3).visible = false;
         let values = found(&settings);
         assert!(values.len() > 30 && values.iter().all(|&value| value == 9.0), "{values:?}");
         let seen = probe(&volume, &settings, DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z).unwrap();
@@ -343,7 +343,7 @@ mod tests {
         let [near, far] = seen.lights[0].blocked.expect("the slab");
         assert!((0.4..0.8).contains(&near) && (0.7..1.2).contains(&far) && near < far, "{near} … {far}");
         let mut bare = settings;
-        bare.transfer.points[1].opacity = 0.0;
+        bare.layer_mut().transfer.points[1].opacity = 0.0;
         let seen = probe(&volume, &bare, from, towards).expect("the block's top");
         assert!(seen.lights[0].blocked.is_none_or(|[near, _]| near < 0.3), "nothing is above it");
     }

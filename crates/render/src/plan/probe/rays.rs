@@ -5,7 +5,7 @@ use glam::DVec3;
 use chiaroscuro_scene::BakedTransfer;
 use chiaroscuro_volume::{
     MissingVoxels, Volume,
-    math::{Aabb, ClipRegion, SceneSpace},
+    math::{Aabb, ClipRegion, RayInterval, SceneSpace},
 };
 
 /// Share of the ray's total opacity at which a position counts as visible: half.
@@ -42,6 +42,23 @@ pub(super) struct VolumeRays<'a> {
     pub(super) is_by_label: bool,
 }
 
+/// Step of a ray towards a light.
+struct RayStep {
+    /// Distance from the ray's origin to the middle of the step.
+    distance: f64,
+    /// Optical depth of the step.
+    depth: f64,
+}
+
+/// Value at a point between voxels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct InterpolatedValue {
+    /// Weighted mean of the present voxels nearby, or 0 if there are none.
+    pub(super) value: f64,
+    /// Sum of the weights of these voxels, from 0 to 1.
+    pub(super) presence: f64,
+}
+
 impl VolumeRays<'_> {
     /// Returns the box of voxel centres, in index space: there is nothing outside.
     fn grid(&self) -> Aabb {
@@ -53,12 +70,12 @@ impl VolumeRays<'_> {
     }
 
     /// Returns the distances at which a ray enters and leaves the uncut part of the grid, not before its origin.
-    fn span(&self, remains: &ClipRegion, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+    fn span(&self, remains: &ClipRegion, origin: DVec3, direction: DVec3) -> Option<RayInterval> {
         let origin = self.scene.index_from_scene.transform_point3(origin);
         let direction = self.scene.index_from_scene.transform_vector3(direction);
-        let (enter, leave) = remains.intersection(&self.grid()).ray_interval(origin, direction);
+        let RayInterval { enter, leave } = remains.intersection(&self.grid()).ray_interval(origin, direction);
         let enter = enter.max(0.0);
-        (enter < leave).then_some((enter, leave))
+        (enter < leave).then_some(RayInterval { enter, leave })
     }
 
     /// Returns the position at which a ray has reached half of its total opacity.
@@ -69,7 +86,7 @@ impl VolumeRays<'_> {
         origin: DVec3,
         direction: DVec3,
     ) -> Option<DVec3> {
-        let (enter, leave) = self.span(seen, origin, direction)?;
+        let RayInterval { enter, leave } = self.span(seen, origin, direction)?;
         let step = self.step();
         let mut accumulated = Vec::new();
         let mut transmittance = 1.0;
@@ -95,16 +112,16 @@ impl VolumeRays<'_> {
         table: &BakedTransfer,
         remains: &ClipRegion,
         way: LightSegment,
-    ) -> impl Iterator<Item = (f64, f64)> {
+    ) -> impl Iterator<Item = RayStep> {
         let LightSegment { point, towards, distance } = way;
         let step = self.step();
         // A ray that misses the grid has no steps.
-        let (enter, leave) = self.span(remains, point, towards).unwrap_or_default();
+        let RayInterval { enter, leave } = self.span(remains, point, towards).unwrap_or_default();
         let first = (enter / step).ceil().max(1.0) as usize;
         let last = (leave.min(distance) / step).floor().max(1.0) as usize;
         (first..last).map(move |k| {
             let at = (k as f64 + 0.5) * step;
-            (at, self.extinction(table, point + towards * at) * step)
+            RayStep { distance: at, depth: self.extinction(table, point + towards * at) * step }
         })
     }
 
@@ -115,7 +132,7 @@ impl VolumeRays<'_> {
         remains: &ClipRegion,
         way: LightSegment,
     ) -> f64 {
-        self.steps(table, remains, way).map(|(_, depth)| depth).sum()
+        self.steps(table, remains, way).map(|step| step.depth).sum()
     }
 
     /// Returns the range of distances from a point towards a light that contains all of the loss except a quarter at
@@ -129,9 +146,9 @@ impl VolumeRays<'_> {
         let mut sum = 0.0;
         let met: Vec<(f64, f64)> = self
             .steps(table, remains, way)
-            .map(|(at, depth)| {
+            .map(|RayStep { distance, depth }| {
                 sum += depth;
-                (at, sum)
+                (distance, sum)
             })
             .collect();
         let reaches = |share: f64| met.iter().find(|(_, met)| *met >= share * sum).map(|(at, _)| *at);
@@ -143,11 +160,11 @@ impl VolumeRays<'_> {
     fn extinction(&self, table: &BakedTransfer, point: DVec3) -> f64 {
         let index = self.scene.index_from_scene.transform_point3(point);
         if self.is_by_label {
-            let (extinction, presence) = self.interpolate(index, |value| self.voxel_extinction(table, value));
-            return extinction * presence;
+            let found = self.interpolate(index, |value| self.voxel_extinction(table, value));
+            return found.value * found.presence;
         }
-        let (density, there) = self.field(index, table);
-        table.sample(density)[3] * there
+        let found = self.field(index, table);
+        table.sample(found.value)[3] * found.presence
     }
 
     /// Returns the extinction of a voxel with the given value.
@@ -158,7 +175,7 @@ impl VolumeRays<'_> {
     /// Returns the field in which surfaces are found, and the presence: the density, interpolated linearly, clamped
     /// at the border, and 0 where no voxel nearby is present. For labels, 1 in material and 0 outside is interpolated
     /// instead.
-    pub(super) fn field(&self, index: DVec3, table: &BakedTransfer) -> (f64, f64) {
+    pub(super) fn field(&self, index: DVec3, table: &BakedTransfer) -> InterpolatedValue {
         self.interpolate(index, |value| {
             if self.is_by_label {
                 f64::from(u8::from(self.voxel_extinction(table, value) > 0.0))
@@ -172,7 +189,7 @@ impl VolumeRays<'_> {
     /// is present.
     pub(super) fn value(&self, index: DVec3, table: &BakedTransfer) -> f64 {
         if !self.is_by_label {
-            return self.interpolate(index, |value| value).0;
+            return self.interpolate(index, |value| value).value;
         }
         let dims = self.volume.dims();
         // An invisible voxel counts only if all around it are invisible, too.
@@ -213,7 +230,7 @@ impl VolumeRays<'_> {
     }
 
     /// Returns the weighted mean of `of` over the present voxels around a point, and the sum of their weights.
-    fn interpolate(&self, index: DVec3, of: impl Fn(f64) -> f64) -> (f64, f64) {
+    fn interpolate(&self, index: DVec3, of: impl Fn(f64) -> f64) -> InterpolatedValue {
         let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
         for ([x, y, z], weight) in self.nearest_voxels(index) {
@@ -223,7 +240,8 @@ impl VolumeRays<'_> {
             sum += weight * of(self.volume.value(x, y, z));
             there += weight;
         }
-        if there > 0.0 { (sum / there, there) } else { (0.0, 0.0) }
+        let value = if there > 0.0 { sum / there } else { 0.0 };
+        InterpolatedValue { value, presence: there }
     }
 
     /// Returns ∇ of the field in scene space, by central differences over a voxel, plus `turned` times that of a
@@ -238,11 +256,11 @@ impl VolumeRays<'_> {
         let edge = self.scene.smallest_edge();
         let seen = seen.intersection(&self.grid());
         let index_of = |point| self.scene.index_from_scene.transform_point3(point);
-        let here = self.field(index_of(point), table).0;
+        let here = self.field(index_of(point), table).value;
         let at = |offset: DVec3| {
             let index = index_of(point + offset * edge);
-            let (density, there) = self.field(index, table);
-            if there > 0.0 && seen.contains(index) { density + turned * there } else { here }
+            let InterpolatedValue { value, presence } = self.field(index, table);
+            if presence > 0.0 && seen.contains(index) { value + turned * presence } else { here }
         };
         DVec3::from(DVec3::AXES.map(|axis| at(axis) - at(-axis))) / (2.0 * edge)
     }

@@ -42,21 +42,21 @@ const SMOOTHING: usize = 12;
 /// Returns the settings with a veil around a hidden material; unchanged if none is hidden.
 pub(super) fn reveal_inner_material(settings: Settings, volume: &Volume, histogram: &Histogram) -> Settings {
     let Some(density) = inner_material(&settings, volume, histogram) else { return settings };
-    let Some(cells) = AveragedCells::average(volume, settings.opacity_unit) else { return settings };
+    let Some(cells) = AveragedCells::average(volume, settings.layer().opacity_unit) else { return settings };
     let start = volume.value_of(density);
     let share = |function: &TransferFunction| {
         let seen = cells.visibility_by_bin(function, &settings.camera);
         let all: f64 = seen.iter().sum();
         seen.iter().skip(cells.value_bin(start)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
     };
-    if share(&settings.transfer) >= HIDDEN_SHARE {
+    if share(&settings.layer().transfer) >= HIDDEN_SHARE {
         return settings;
     }
     let channels = DataDomain::from_channels(volume);
-    let veiled =
-        VEIL_OPACITIES.map(|veil| transfer::veiled_transfer(&settings.transfer, start, veil, channels));
+    let veiled = VEIL_OPACITIES
+        .map(|veil| transfer::veiled_transfer(&settings.layer().transfer, start, veil, channels));
     match veiled.into_iter().find(|function| share(function) >= REVEALED_SHARE) {
-        Some(transfer) => Settings { transfer, ..settings },
+        Some(transfer) => settings.with_transfer(transfer),
         None => settings,
     }
 }
@@ -65,7 +65,7 @@ pub(super) fn reveal_inner_material(settings: Settings, volume: &Volume, histogr
 /// material.
 fn inner_material(settings: &Settings, volume: &Volume, histogram: &Histogram) -> Option<f64> {
     let bins = histogram.counts.len();
-    let first = volume.density_of(settings.transfer.points.first()?.value);
+    let first = volume.density_of(settings.layer().transfer.points.first()?.value);
     let object = histogram_above(histogram, first);
     let cut = otsu_threshold(&object);
     let bin = |density: f64| ((density * bins as f64) as usize).min(bins - 1);
@@ -116,7 +116,7 @@ mod tests {
 
     fn opacities(volume: &Volume) -> [f64; 2] {
         let settings = first_settings(volume, &Histogram::from_volume(volume));
-        [82.0, 220.0].map(|value| settings.transfer.opacity_at(value))
+        [82.0, 220.0].map(|value| settings.layer().transfer.opacity_at(value))
     }
 
     #[test]
@@ -125,7 +125,10 @@ mod tests {
         let [outer, inner] = opacities(&volume);
         assert!(outer < 0.1 && inner > 0.5, "{outer} {inner}");
         let first = first_settings(&volume, &Histogram::from_volume(&volume));
-        assert!((0..80).any(|value| first.transfer.opacity_at(f64::from(value)) > 0.01), "there is a skin");
+        assert!(
+            (0..80).any(|value| first.layer().transfer.opacity_at(f64::from(value)) > 0.01),
+            "there is a skin"
+        );
     }
 
     #[test]

@@ -11,9 +11,9 @@ const MIN_BONE_VISIBILITY: f64 = 0.75;
 
 /// Returns the settings with skin around the visible bones, framed with it, unless that would hide the bones.
 pub(crate) fn add_skin(settings: Settings, volume: &Volume, water: f64) -> Settings {
-    let Some(first_bone) = settings.transfer.points.first() else { return settings };
-    let Some(cells) = AveragedCells::average(volume, settings.opacity_unit) else { return settings };
-    let with_skin = transfer::add_skin(&settings.transfer, water);
+    let Some(first_bone) = settings.layer().transfer.points.first() else { return settings };
+    let Some(cells) = AveragedCells::average(volume, settings.layer().opacity_unit) else { return settings };
+    let with_skin = transfer::add_skin(&settings.layer().transfer, water);
     let bones = |function| -> f64 {
         cells
             .visibility_by_bin(function, &settings.camera)
@@ -21,13 +21,13 @@ pub(crate) fn add_skin(settings: Settings, volume: &Volume, water: f64) -> Setti
             .skip(cells.value_bin(first_bone.value))
             .sum()
     };
-    if bones(&with_skin) < MIN_BONE_VISIBILITY * bones(&settings.transfer) {
+    if bones(&with_skin) < MIN_BONE_VISIBILITY * bones(&settings.layer().transfer) {
         return settings;
     }
-    let mut body = Settings { transfer: transfer::opaque_transfer(&with_skin), ..settings };
+    let mut body = settings.with_transfer(transfer::opaque_transfer(&with_skin));
     frame_object(&mut body, volume);
     body.lights = LightingRig::KeyAndFill.lights(&body.camera);
-    Settings { transfer: with_skin, ..body }
+    body.with_transfer(with_skin)
 }
 
 #[cfg(test)]
@@ -53,7 +53,7 @@ mod tests {
         let wishes =
             FirstLookOptions { data_kind: Some(KindName::HounsfieldCt), ..FirstLookOptions::default() };
         let first = first_settings_with(&volume, &Histogram::from_volume(&volume), wishes);
-        [-300.0, 900.0].map(|value| first.transfer.opacity_at(value))
+        [-300.0, 900.0].map(|value| first.layer().transfer.opacity_at(value))
     }
 
     #[test]

@@ -23,9 +23,7 @@ pub(super) fn find_dark_on_bright(volume: &Volume, histogram: &Histogram) -> Fir
     let start = threshold_above_margin(margin, split).min(1.0 - MIN_ABOVE_BACKGROUND);
     let domain = DataDomain::from_channels(volume).unwrap_or(DataDomain::Unknown);
     let slope = IsosurfaceStatistics::measure(volume).slope(1.0 - start).unwrap_or_default();
-    let stops =
-        opacity_ramp(&darkness, ObjectThreshold { start, slope }).map(|(darkness, place, opacity)| {
-            PaletteStop { value: volume.value_of((1.0 - darkness).max(0.0)), place, opacity }
-        });
+    let stops = opacity_ramp(&darkness, ObjectThreshold { start, slope })
+        .map(|stop| PaletteStop { value: volume.value_of((1.0 - stop.value).max(0.0)), ..stop });
     FirstTransfer::from_values(transfer_through_stops(stops, DomainPalette::for_domain(domain)), domain)
 }

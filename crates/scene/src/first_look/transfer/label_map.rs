@@ -73,7 +73,7 @@ fn label_look(volume: &Volume, number: i64) -> LabelLook {
 pub(crate) fn count_lost_labels(settings: &Settings, volume: &Volume) -> usize {
     let drawn = settings.resolved_for(volume);
     let volume = volume.with_density_mapping(settings.shown_content(&volume.ranges()));
-    let function = &drawn.transfer;
+    let function = &drawn.layer().transfer;
     let table = function.bake(volume.table_range(), 1.0, 1.0);
     // Accumulated over the whole label, because a veil is not lost.
     let thickness = |number: i64| {
@@ -88,7 +88,7 @@ pub(crate) fn count_lost_labels(settings: &Settings, volume: &Volume) -> usize {
             volume.shown_labels().map_or(*number as f64, |labels| labels.class_range().value_at(density));
         let [red, green, blue, depth] = table.sample(density);
         let opacity = 1.0 - (-depth * thickness(*number)).exp();
-        let [found, own] = [[red, green, blue], function.sample(place).0].map(oklab_from_linear);
+        let [found, own] = [[red, green, blue], function.sample(place).color].map(oklab_from_linear);
         let apart = found.iter().zip(own).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         opacity < MIN_VISIBLE_OPACITY || apart > SAME_COLOR_DISTANCE
     };

@@ -75,12 +75,12 @@ struct PaletteStop {
 /// Length of the first opacity ramp as a share of the way to the bulk: minimum and maximum.
 const FIRST_RAMP_SHARE: (f64, f64) = (0.15, 0.8);
 
-/// Returns the opacity ramp of an object that begins at `start`, on a scale of 0 … 1 whose values `histogram` counts:
-/// (position on the scale, position in the palette, opacity per unit).
+/// Returns the opacity ramp of an object that begins at `start`, with values on a scale of 0 … 1 that `histogram`
+/// counts.
 fn opacity_ramp(
     histogram: &Histogram,
     ObjectThreshold { start, slope }: ObjectThreshold,
-) -> [(f64, f64, f64); 5] {
+) -> [PaletteStop; 5] {
     let object = histogram_above(histogram, start);
     // The bulk of the object lies below `bulk`; its densest part gets a colour of its own. Each takes a twenty-fifth
     // of the scale at least, ten steps of 8-bit data, so that surfaces do not end as abruptly as voxels.
@@ -92,11 +92,11 @@ fn opacity_ramp(
     let (least, most) = FIRST_RAMP_SHARE;
     let rise = slope.clamp(least * (bulk - start), most * (bulk - start));
     [
-        (start, 0.0, 0.0),
-        (start + rise, 0.2, 0.3),
-        (bulk, 0.5, 0.65),
-        (dense, 0.85, 0.88),
-        (1.0f64.max(dense + 0.01), 1.0, 0.96),
+        PaletteStop { value: start, place: 0.0, opacity: 0.0 },
+        PaletteStop { value: start + rise, place: 0.2, opacity: 0.3 },
+        PaletteStop { value: bulk, place: 0.5, opacity: 0.65 },
+        PaletteStop { value: dense, place: 0.85, opacity: 0.88 },
+        PaletteStop { value: 1.0f64.max(dense + 0.01), place: 1.0, opacity: 0.96 },
     ]
 }
 

@@ -30,11 +30,10 @@ fn transfer_in_domain_colors(
     histogram: &Histogram,
     edge: ObjectThreshold,
 ) -> TransferFunction {
-    let stops = opacity_ramp(histogram, edge).map(|(density, place, opacity)| PaletteStop {
+    let stops = opacity_ramp(histogram, edge).map(|stop| PaletteStop {
         // There are no values beyond the range.
-        value: volume.value_of(density.min(1.0)),
-        place,
-        opacity,
+        value: volume.value_of(stop.value.min(1.0)),
+        ..stop
     });
     transfer_through_stops(stops, DomainPalette::for_domain(domain))
 }

@@ -45,7 +45,7 @@ fn signed_fields_show_both_sides_and_not_zero() {
     for value in [2.5, -2.5, 3.0, -3.0] {
         assert!(function.opacity_at(value) > 0.5, "{value}");
         // Red above zero, blue below.
-        let [red, _, blue] = function.sample(value).0;
+        let [red, _, blue] = function.sample(value).color;
         assert_eq!(red > blue, value > 0.0, "{value}");
     }
     for value in [0.5, 1.0, 2.0, 2.9] {
@@ -148,25 +148,29 @@ fn every_label_is_shown_alike_in_a_color_of_its_own() {
     for (index, &number) in numbers.iter().enumerate() {
         assert_eq!(function.opacity_at(number), function.opacity_at(numbers[0]));
         assert!(function.opacity_at(number) > 0.8);
-        assert!(numbers[..index].iter().all(|&other| function.sample(other).0 != function.sample(number).0));
+        assert!(
+            numbers[..index]
+                .iter()
+                .all(|&other| function.sample(other).color != function.sample(number).color)
+        );
     }
-    let [red, ..] = function.sample(38.0).0;
+    let [red, ..] = function.sample(38.0).color;
     assert!((red - crate::linear_from_srgb(f64::from(0.1f32))).abs() < 1e-9, "the file's own colour");
-    let settings = Settings { transfer: function, ..Settings::default() };
+    let settings = Settings::default().with_transfer(function);
     assert_eq!(count_lost_labels(&settings, &labels), 0);
     // The first look has a table with the same colours.
     let wishes = FirstLookOptions { data_kind: Some(KindName::LabelMap), ..FirstLookOptions::default() };
     let first = first_settings_with(&labels, &Histogram::from_volume(&labels), wishes);
-    assert_eq!((first.labels.len(), count_lost_labels(&first, &labels)), (11, 0));
-    let named = first.labels.get(38).expect("an entry");
+    assert_eq!((first.layer().labels.len(), count_lost_labels(&first, &labels)), (11, 0));
+    let named = first.layer().labels.get(38).expect("an entry");
     assert_eq!((named.name.as_str(), named.color), ("named", [0.1, 0.2, 0.3]));
-    assert!(!first.labels.look_or_default(0).visible && named.visible);
+    assert!(!first.layer().labels.look_or_default(0).visible && named.visible);
     let mut hidden = first.clone();
-    hidden.labels.entry_mut(38).visible = false;
+    hidden.layer_mut().labels.entry_mut(38).visible = false;
     assert_eq!(count_lost_labels(&hidden, &labels), 1);
     let other = FirstLookOptions { data_kind: Some(KindName::Scalar), ..wishes };
-    assert!(first_settings_with(&labels, &Histogram::from_volume(&labels), other).labels.is_empty());
-    let ramp = Settings { transfer: shown(&labels, KindName::Scalar), ..Settings::default() };
+    assert!(first_settings_with(&labels, &Histogram::from_volume(&labels), other).layer().labels.is_empty());
+    let ramp = Settings::default().with_transfer(shown(&labels, KindName::Scalar));
     assert!(count_lost_labels(&ramp, &labels) > 0, "what it is for");
 }
 
@@ -185,14 +189,14 @@ fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
         let wishes = FirstLookOptions { data_kind: Some(KindName::LabelMap), ..FirstLookOptions::default() };
         // As if the label table were removed.
         let labels = LabelTable::default();
-        Settings { labels, ..first_settings_with(volume, &Histogram::from_volume(volume), wishes) }
+        first_settings_with(volume, &Histogram::from_volume(volume), wishes).with_labels(labels)
     };
     for (first, count) in [(1, 40), (1, 500), (1, 600), (1, 900), (1, 1022), (5000, 800)] {
         let volume = regions(first, count);
         let settings = look(&volume);
         assert_eq!(count_lost_labels(&settings, &volume), 0, "{count} from {first}");
         // Over all values there are not enough entries, so it is the range that matters.
-        let all = Settings { range: DensityRange::Full, ..settings };
+        let all = settings.with_range(DensityRange::Full);
         let is_enough = first + count <= 512;
         assert_eq!(count_lost_labels(&all, &volume) == 0, is_enough, "{count} from {first}");
     }
@@ -200,7 +204,7 @@ fn labels_are_told_apart_in_the_table_where_it_has_an_entry_for_each() {
     let many = regions(5000, 3000);
     let settings = look(&many);
     let range = settings.shown_range(&many.ranges());
-    let table = settings.transfer.bake(range, 1.0, 1.0);
+    let table = settings.layer().transfer.bake(range, 1.0, 1.0);
     assert!(table.sample(many.with_density_mapping(range).density_of(5000.0))[3] > 0.5);
     assert_eq!(table.sample(many.with_density_mapping(range).density_of(0.0))[3], 0.0);
     // No range has an entry for each number of these.
@@ -246,7 +250,7 @@ fn every_volume_can_be_treated_as_every_kind() {
             sane.sanitise();
             assert_eq!(sane, settings, "{kind:?}");
             assert!(
-                settings.transfer.points.windows(2).all(|pair| pair[0].value <= pair[1].value),
+                settings.layer().transfer.points.windows(2).all(|pair| pair[0].value <= pair[1].value),
                 "{kind:?}"
             );
         }

@@ -12,16 +12,20 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::json_limits::{self, BoundedTree};
+use super::layer_fields::{full_path, move_into_layer};
 use super::path_encoding::{decode_path, encode_path};
 use super::renames::rename_old_names;
 use super::schema_defaults::fill_in_defaults;
 use super::unknown_content;
-use crate::{ImageSpec, PresetError, SCHEMA, Settings, VolumeLocation, apply_relative};
+use crate::{AppliedSettings, ImageSpec, PresetError, Settings, VolumeLocation, apply_relative};
 use chiaroscuro_files::{MAX_LOOK_BYTES, with_provenance_mark};
 use chiaroscuro_volume::{Corrections, ValueRanges, VolumeChoice};
 
 /// Name of the setting that belongs to a record's volume, and not to its look.
 const CORRECTIONS: &str = "volume";
+
+/// Latest schema that changed images: later ones only move settings.
+const PICTURE_SCHEMA: u64 = 2;
 
 /// Reference to the volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -179,9 +183,10 @@ impl LookRecord {
 
     /// Returns true if all of the record is understood: nothing was cut, no setting is unknown or of a wrong type,
     /// and the version is not newer. Other content is lost when the record is saved again.
-    pub fn is_fully_understood(&self) -> bool {
+    #[cfg(test)]
+    fn is_fully_understood(&self) -> bool {
         let applied = self.apply(&Settings::default(), &ValueRanges::UNIT);
-        applied.is_ok_and(|(_, warnings)| warnings.is_empty())
+        applied.is_ok_and(|applied| applied.warnings.is_empty())
     }
 
     /// Returns true if content beyond a look's limits was cut, which is lost when the record is saved again.
@@ -196,18 +201,19 @@ impl LookRecord {
 
     /// Returns the unknown settings and the remarks of other programs; null if there are none.
     pub fn unknown_content(&self) -> Value {
-        let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|(settings, _)| settings);
+        let understood = self.apply(&Settings::default(), &ValueRanges::UNIT).map(|applied| applied.settings);
         let Ok(tree) = understood.map(|settings| serde_json::to_value(settings).unwrap_or_default()) else {
             return Value::Null;
         };
         let mut given = self.overlay.clone();
         rename_old_names("", &mut given);
+        move_into_layer(&mut given);
         unknown_content::unknown_content(&given, &tree)
     }
 
     /// Returns true if the record has an earlier schema, whose images this version may render a little differently.
     pub fn has_earlier_schema(&self) -> bool {
-        self.schema().is_some_and(|schema| schema < SCHEMA.into())
+        self.schema().is_some_and(|schema| schema < PICTURE_SCHEMA)
     }
 
     /// Returns true if the record sets the balance of the lights.
@@ -219,8 +225,9 @@ impl LookRecord {
     pub fn has_setting(&self, path: &str) -> bool {
         let mut given = self.overlay.clone();
         rename_old_names("", &mut given);
+        move_into_layer(&mut given);
         fill_in_defaults(&mut given);
-        given.pointer(&format!("/{}", path.replace('.', "/"))).is_some()
+        given.pointer(&format!("/{}", full_path(path).replace('.', "/"))).is_some()
     }
 
     /// Returns the recorded corrections, if `opened_id` identifies the record's volume as opened from the file.
@@ -238,13 +245,9 @@ impl LookRecord {
     ///
     /// # Errors
     /// As [`apply_relative`].
-    pub fn apply(
-        &self,
-        over: &Settings,
-        ranges: &ValueRanges,
-    ) -> Result<(Settings, Vec<String>), PresetError> {
-        let (settings, warnings) = apply_relative(over, &self.overlay, ranges)?;
-        Ok((settings, [self.cuts.clone(), warnings].concat()))
+    pub fn apply(&self, over: &Settings, ranges: &ValueRanges) -> Result<AppliedSettings, PresetError> {
+        let applied = apply_relative(over, &self.overlay, ranges)?;
+        Ok(AppliedSettings { warnings: [self.cuts.clone(), applied.warnings].concat(), ..applied })
     }
 }
 

@@ -24,7 +24,8 @@ fn records_are_read_as_they_were_written() {
     let text = LookRecord::to_json(&settings, Some(&volume), Some(&picture));
     let record = LookRecord::parse(&text).unwrap();
     assert_eq!((record.volume.as_ref(), record.image.as_ref()), (Some(&volume), Some(&picture)));
-    let (read, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
+    let AppliedSettings { settings: read, warnings } =
+        record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
     assert_eq!((read, warnings), (settings, vec![]));
     assert!(volume.matches_content(0x1234) && !volume.matches_content(0x1235));
 }
@@ -52,7 +53,8 @@ fn corrections_go_with_the_volume_of_a_record_and_with_no_other() {
     let record = LookRecord::parse(&LookRecord::to_json(&settings, Some(&volume), None)).unwrap();
     assert_eq!(record.corrections_for(7), Some(settings.volume));
     assert_eq!(record.corrections_for(8), None);
-    let (applied, warnings) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
+    let AppliedSettings { settings: applied, warnings } =
+        record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
     assert!(applied.volume.is_none() && warnings.is_empty() && record.is_fully_understood(), "{warnings:?}");
     // A record from before corrections existed, and one without a volume.
     let before = r#"{"schema": 2, "_volume": {"source": "a.nrrd", "content_id": "0000000000000007"}}"#;
@@ -72,7 +74,7 @@ fn pictures_of_earlier_versions_have_eight_bits_and_a_sample_per_pixel() {
 fn presets_are_records_of_nothing_and_nonsense_is_refused() {
     let record = LookRecord::parse(r#"{"shadows": {"gain": 2.0}}"#).unwrap();
     assert_eq!((&record.volume, &record.image), (&None, &None));
-    assert_eq!(record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0.shadows.gain, 2.0);
+    assert_eq!(record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings.shadows.gain, 2.0);
     assert!(LookRecord::parse("[1]").is_err() && LookRecord::parse("{").is_err());
     assert!(LookRecord::parse(r#"{"_volume": {"source": 3}}"#).is_err());
 }
@@ -82,12 +84,12 @@ fn what_others_have_written_is_written_again() {
     let text =
         r#"{"schema": 2, "_notes": "mine", "shadows": {"gain": 2.0, "glow": 3}, "ground": {"on": true}}"#;
     let record = LookRecord::parse(text).unwrap();
-    let (settings, _) = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap();
+    let settings = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings;
     let again = LookRecord::to_json_with_unknown(&settings, None, None, &record.unknown_content());
     let read = LookRecord::parse(&again).unwrap();
     assert_eq!(read.overlay["_notes"], "mine");
     assert_eq!((&read.overlay["shadows"]["glow"], read.overlay.get("ground")), (&Value::from(3), None));
-    assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().0, settings);
+    assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings, settings);
     assert_eq!(record.schema(), Some(2));
 }
 
@@ -100,7 +102,8 @@ fn whether_a_record_is_understood_is_known() {
     for text in [r#"{"schema": 999}"#, r#"{"later": 1}"#, r#"{"shadows": {"gain": "much"}}"#, &nine] {
         assert!(!is_understood(text), "{text}");
     }
-    let told = LookRecord::parse(&nine).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().1;
+    let told =
+        LookRecord::parse(&nine).unwrap().apply(&Settings::default(), &ValueRanges::UNIT).unwrap().warnings;
     assert_eq!(told, ["9 entries of `lights` were cut to 8"]);
 }
 
@@ -108,10 +111,13 @@ fn whether_a_record_is_understood_is_known() {
 fn the_longest_transfer_function_is_read_again() {
     let mut settings = Settings::default();
     let point = |at| ControlPoint::new(f64::from(at) / 7.0 - 1e3, [1.0 / 3.0; 3], f64::from(at) / 4321.0);
-    settings.transfer.points = (0..4096).map(point).collect();
-    settings.lighting.curve.points = settings.transfer.points[..2048].to_vec();
+    settings.layer_mut().transfer.points = (0..4096).map(point).collect();
+    settings.layer_mut().lighting.curve.points = settings.layer().transfer.points[..2048].to_vec();
     let read = LookRecord::parse(&LookRecord::to_json(&settings, None, None)).unwrap();
-    assert_eq!(read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap(), (settings, vec![]));
+    assert_eq!(
+        read.apply(&Settings::default(), &ValueRanges::UNIT).unwrap(),
+        AppliedSettings { settings, warnings: vec![] }
+    );
 }
 
 #[test]

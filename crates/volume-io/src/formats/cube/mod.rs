@@ -74,7 +74,7 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let mut hints = ValueMetadata::default();
     hints.set_acquisition(&header.title);
     VolumeParts { name, extent, placement: header.placement, voxels: samples.into(), hints }
-        .into_volume(attempt)
+        .into_volume(attempt, control)
 }
 
 /// Reads one value of each voxel, transposing the grid: x is slowest in the file, and fastest in memory.

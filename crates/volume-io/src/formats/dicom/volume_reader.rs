@@ -99,7 +99,7 @@ pub(super) fn load_volume(
         ));
     }
     let parts = VolumeParts { name: request.name.clone(), extent, placement, voxels, hints };
-    parts.into_volume(attempt).map_err(VolumeReadError::from)
+    parts.into_volume(attempt, control).map_err(VolumeReadError::from)
 }
 
 impl VolumeRequest<'_> {

@@ -89,7 +89,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         "" => stem(source.path),
         array => sanitised(&format!("{} {array}", stem(source.path)), 120),
     };
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
 }
 
 /// Collects the hints that a header gives on values: unit, instrument and object.

@@ -30,7 +30,7 @@ pub(super) struct DataDescription<'a> {
 }
 
 /// Reader that concatenates the voxels of all data files.
-pub(super) struct DataStream {
+pub(super) struct DataStream<'a> {
     storage: MetaImageStorage,
     /// Size of the voxels in each file, in bytes, before compression or conversion to text.
     piece_bytes: u64,
@@ -39,6 +39,7 @@ pub(super) struct DataStream {
     open: Option<OpenDataFile>,
     /// Reason why a data file could not be used.
     failure: Option<LoadError>,
+    control: &'a LoadControl,
 }
 
 /// Data file that is open for reading.
@@ -51,14 +52,14 @@ struct OpenDataFile {
     remaining_bytes: u64,
 }
 
-impl DataStream {
+impl<'a> DataStream<'a> {
     /// Finds the data files of a time step, and skips to the first of its voxels.
     pub(super) fn open(
         attempt: LoadContext<'_>,
         input: InputFile,
         description: DataDescription<'_>,
         frame: usize,
-        control: &LoadControl,
+        control: &'a LoadControl,
     ) -> Result<Self, LoadError> {
         let DataDescription { grid, storage, files, data_start } = description;
         let too_large = || {
@@ -87,6 +88,7 @@ impl DataStream {
             remaining_paths: Vec::new().into_iter(),
             open: None,
             failure: None,
+            control,
         };
         match files {
             DataFiles::Attached => {
@@ -193,12 +195,13 @@ impl DataStream {
     fn open_file(&self, path: &Path) -> Result<OpenDataFile, LoadError> {
         let attempt = LoadContext { operation: READ_DATA, path };
         let input = InputFile::open(attempt)?;
-        let witness = FileChangeGuard::new(attempt, &input)?;
+        let witness = FileChangeGuard::new(attempt, &input, self.control)?;
         self.open_at(attempt, input, self.storage.header_bytes, Some(witness))
     }
 
     /// Reads on to the checksum behind the last voxel, and verifies that the last file has not changed.
-    pub(super) fn finish(&mut self, control: &LoadControl) -> Result<(), ReadFault> {
+    pub(super) fn finish(&mut self) -> Result<(), ReadFault> {
+        let control = self.control;
         read_until_full(self, &mut [0], control).map(drop).map_err(ReadFault::into_decoder_fault)
     }
 
@@ -252,7 +255,7 @@ enum MetaImageReadFailure {
     Failed(LoadError),
 }
 
-impl Read for DataStream {
+impl Read for DataStream<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.read_some(buffer).map_err(|stop| match stop {
             MetaImageReadFailure::Io(error) => error,

@@ -64,7 +64,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let meant = ValueMapping { padding: hints.padding, map: &values };
     let voxels =
         stored.read_values(&mut pieces, None, extent, &meant, control).map_err(ReadFault::into_decoder_fault);
-    let voxels = voxels.and_then(|voxels| pieces.finish(control).map(|()| voxels));
+    let voxels = voxels.and_then(|voxels| pieces.finish().map(|()| voxels));
     let voxels = voxels.map_err(|fault| match (pieces.failure(), fault) {
         (Some(error), _) => error,
         (None, ReadFault::Corrupt(error)) if storage.is_text => attempt.bad_input_error(
@@ -94,5 +94,5 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     let name = header.get("Name").filter(|name| !name.is_empty());
     let name = sanitised(&name.map_or_else(|| name_without_extension(path, ENDINGS), str::to_owned), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
 }

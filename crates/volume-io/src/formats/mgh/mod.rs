@@ -72,7 +72,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         (hints.labels, hints.meaning) = (labels, ValueMeaning::Labels);
     }
     let name = sanitised(&name_without_extension(attempt.path, ENDINGS), 120);
-    VolumeParts { name, extent, placement: header.placement(), voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement: header.placement(), voxels, hints }.into_volume(attempt, control)
 }
 
 /// Reads the labels from the tags behind all voxels. A file may end there, or right after the voxels that were

@@ -78,7 +78,8 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         hints.meaning = ValueMeaning::PositiveDensity;
     }
     hints.set_acquisition(&header.label());
-    VolumeParts { name: stem(source.path), extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name: stem(source.path), extent, placement, voxels, hints }
+        .into_volume(attempt, source.control)
 }
 
 /// Storage of the voxels of a mode.

@@ -44,7 +44,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let attempt = LoadContext { operation: "read the NIfTI volume", path };
     let Some(form) = NiftiVersion::detect(start.bytes()) else {
         // The file holds voxels alone; the header lies in the file beside it.
-        let header = pair::read_header_beside(attempt)?;
+        let header = pair::read_header_beside(attempt, control)?;
         return read(attempt, &header, FileContent::new(input, start.is_gzip()), options, control);
     };
     let header = NiftiHeader::parse(attempt, form, start.bytes())?;
@@ -54,7 +54,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let data_path = pair::data_path_beside(attempt)?;
     let data_attempt = LoadContext { operation: "read the NIfTI volume's data file", path: &data_path };
     let mut input = InputFile::open(data_attempt)?;
-    let witness = FileChangeGuard::new(data_attempt, &input)?;
+    let witness = FileChangeGuard::new(data_attempt, &input, control)?;
     let is_gzip = pair::starts_as_gzip(data_attempt, &mut input)?;
     witness.check_unchanged(
         data_attempt,
@@ -134,7 +134,7 @@ fn read(
         label_tables::add_label_table(attempt, ENDINGS, voxels.stored_numbers(), &mut hints);
     }
     let name = sanitised(&name_without_extension(attempt.path, ENDINGS), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
 }
 
 /// Returns the slope and intercept to apply to the values shown. Colours are not scaled (`nifti1.h`, "data scaling").

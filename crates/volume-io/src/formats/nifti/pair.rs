@@ -4,15 +4,17 @@ use std::io::{Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
 use super::super::input::{InputFile, is_gzip, name_without_extension};
-use super::super::read_files::record_read;
 use super::super::reader::FileStart;
 use super::super::{LoadError, companion_path};
 use super::ENDINGS;
 use super::header::{NiftiHeader, NiftiVersion};
-use chiaroscuro_volume::LoadContext;
+use chiaroscuro_volume::{LoadContext, LoadControl};
 
 /// Reads the header file beside a file of voxels.
-pub(super) fn read_header_beside(attempt: LoadContext<'_>) -> Result<NiftiHeader, LoadError> {
+pub(super) fn read_header_beside(
+    attempt: LoadContext<'_>,
+    control: &LoadControl,
+) -> Result<NiftiHeader, LoadError> {
     let Some(path) = paired_file(attempt, "hdr")? else {
         return Err(attempt.bad_input_error(
             "header",
@@ -22,7 +24,7 @@ pub(super) fn read_header_beside(attempt: LoadContext<'_>) -> Result<NiftiHeader
     };
     let of_header = LoadContext { operation: "read the NIfTI volume's header", path: &path };
     let mut input = InputFile::open(of_header)?;
-    record_read(&path);
+    control.record_read(&path);
     let start = FileStart::read(&mut input).map_err(|error| of_header.io_error(error))?;
     let Some(form) = NiftiVersion::detect(start.bytes()) else {
         return Err(of_header.bad_input_error(

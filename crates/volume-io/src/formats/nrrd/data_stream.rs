@@ -124,7 +124,7 @@ impl<'a> NrrdDataStream<'a> {
         let Some(place) = self.locations.pop() else { return Ok(false) };
         let attempt = attempt_for(&place);
         let input = InputFile::open(attempt)?;
-        let witness = FileChangeGuard::new(attempt, &input)?;
+        let witness = FileChangeGuard::new(attempt, &input, self.control)?;
         let reader = open_decoder(attempt, input, &place, self.storage, self.bytes_of_file, self.control)?;
         let path = place.path().to_owned();
         self.current = Some(CurrentFile { path, witness, reader, remaining_bytes: self.bytes_of_file });

@@ -125,7 +125,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     placement.remarks.extend(part.remark().map(str::to_owned));
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| sanitised(content, 120));
-    VolumeParts { name, extent, placement: geometry.placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name, extent, placement: geometry.placement, voxels, hints }.into_volume(attempt, control)
 }
 
 /// Determines the time step to read, from 0 for consecutive volumes, and the part of interleaved numbers that is

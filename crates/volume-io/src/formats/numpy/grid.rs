@@ -5,6 +5,13 @@ use super::super::{Endian, FileDimension, LoadError};
 use super::header::NumpyHeader;
 use chiaroscuro_volume::{LoadContext, quoted};
 
+/// Axis of an array: its index in the shape, and its length.
+#[derive(Debug, Clone, Copy)]
+struct NumpyAxis {
+    index: usize,
+    length: u64,
+}
+
 /// Array as one or several volumes.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct NumpyGrid {
@@ -12,6 +19,8 @@ pub(super) struct NumpyGrid {
     pub(super) outer: Vec<(FileDimension, u64)>,
     /// Voxels along x, y and z.
     pub(super) dims: [u64; 3],
+    /// Index of the array's axis along x, y and z; `None` for the depth of a picture.
+    pub(super) array_axes: [Option<usize>; 3],
     pub(super) number: FileNumberType,
     pub(super) endian: Endian,
     pub(super) components: usize,
@@ -29,20 +38,24 @@ impl NumpyGrid {
             )
         })?;
         // Slowest first, as in the file.
-        let mut axes = header.shape.clone();
+        let mut axes: Vec<NumpyAxis> =
+            header.shape.iter().enumerate().map(|(index, &length)| NumpyAxis { index, length }).collect();
         if header.is_fortran {
             axes.reverse();
         }
-        let is_color = number == FileNumberType::U8 && axes.len() > 3 && matches!(axes.last(), Some(3 | 4));
+        let is_color = number == FileNumberType::U8
+            && axes.len() > 3
+            && matches!(axes.last(), Some(NumpyAxis { length: 3 | 4, .. }));
         if is_color {
-            components = axes.pop().unwrap_or(1) as usize;
+            components = axes.pop().map_or(1, |axis| axis.length) as usize;
         }
         while axes.len() > 3 {
-            let Some(single) = axes.iter().position(|&n| n == 1) else { break };
+            let Some(single) = axes.iter().position(|axis| axis.length == 1) else { break };
             axes.remove(single);
         }
         let count = axes.len();
-        let (outer, dims) = match axes[..] {
+        let lengths: Vec<u64> = axes.iter().map(|axis| axis.length).collect();
+        let (outer, dims) = match lengths[..] {
             [y, x] => (vec![], [x, y, 1]),
             [z, y, x] => (vec![], [x, y, z]),
             [frames, z, y, x] => (vec![(FileDimension::Frame, frames)], [x, y, z]),
@@ -64,7 +77,9 @@ impl NumpyGrid {
                 "every axis must have at least one element",
             ));
         }
-        Ok(Self { outer, dims, number, endian, components, is_color })
+        let mut indices = axes.iter().rev().map(|axis| axis.index);
+        let array_axes = std::array::from_fn(|_| indices.next());
+        Ok(Self { outer, dims, array_axes, number, endian, components, is_color })
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! After the definition at <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>, versions 1 to 3.
 
+mod affine;
 mod dictionary;
 mod grid;
 mod header;
@@ -20,11 +21,12 @@ use super::reader::{FormatReader, TrailingData, VolumeSource};
 use super::samples::{ReadFault, VoxelLayout, is_corruption, skip_bytes};
 use super::voxels::ReadVoxels;
 use super::{FileDimension, LoadError, VolumeOffer};
+use affine::ArchiveAffine;
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{GridExtent, LoadContext, ValueMetadata, Volume, quoted};
 use grid::NumpyGrid;
 use header::{MAGIC, NumpyHeader};
-use zip::ZipEntry;
+use zip::{ZipDirectory, ZipEntry};
 
 pub(super) const NPY: FormatReader = FormatReader {
     name: "NumPy",
@@ -100,65 +102,115 @@ fn load_array(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let ChosenNumpyArray { stored, extent, at, placement } = choose_volume(&source, attempt, &header, &grid)?;
     let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
     let name = stem(source.path);
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+        .into_volume(attempt, source.control)
+}
+
+/// Array in an archive that may be a volume.
+struct ArchivedArray {
+    entry: ZipEntry,
+    header: NumpyHeader,
+    grid: NumpyGrid,
+}
+
+impl ArchivedArray {
+    /// Key by which it is chosen: its name.
+    fn key(&self) -> String {
+        sanitised(self.entry.name.trim_end_matches(ENDING), 80)
+    }
+
+    /// Returns true if it is likely no image: a matrix, a table or a list of points.
+    fn is_table(&self) -> bool {
+        self.grid.is_likely_table(self.header.shape.len())
+    }
 }
 
 /// Loads an array of an archive.
 fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let attempt = LoadContext { operation: "read the NumPy archive", path: source.path };
-    let entries = zip::read_central_directory(attempt, &mut source.input)?;
-    let mut arrays: Vec<(ZipEntry, NumpyHeader, NumpyGrid)> = Vec::new();
+    let mut directory = zip::read_central_directory(attempt, &mut source.input)?;
+    let mut arrays: Vec<ArchivedArray> = Vec::new();
     let mut refused = Vec::new();
-    for entry in
-        entries.into_iter().filter(|entry| entry.name.strip_suffix(ENDING).is_some()).take(MAX_ARRAYS)
-    {
+    let entries = std::mem::take(&mut directory.entries);
+    for entry in entries.into_iter().filter(|entry| entry.name.ends_with(ENDING)).take(MAX_ARRAYS) {
         source.control.check()?;
         let header = zip::open_entry(attempt, &mut source.input, &entry)
             .and_then(|mut content| NumpyHeader::read(attempt, &mut content));
         match header.and_then(|header| NumpyGrid::from_header(attempt, &header).map(|grid| (header, grid))) {
-            Ok((header, grid)) => arrays.push((entry, header, grid)),
+            Ok((header, grid)) => arrays.push(ArchivedArray { entry, header, grid }),
             Err(error @ LoadError::Io { .. }) => return Err(error),
             Err(error) => refused.push(error),
         }
     }
+    let affine = arrays.iter().find(|array| ArchiveAffine::is_held_by(&array.key(), &array.header));
+    let affine = affine.map(|ArchivedArray { entry, header, grid }| {
+        let read = ArchiveAffine::read(attempt, &mut source.input, entry, header, grid);
+        (entry.name.clone(), read)
+    });
     // Beside a volume, matrices and tables (an affine, directions, a list of points) are no images. One that the user
     // has named is still read.
     let named = source.options.choice.array.as_deref();
-    let is_table = |header: &NumpyHeader, grid: &NumpyGrid| grid.is_likely_table(header.shape.len());
-    if arrays.iter().any(|(_, header, grid)| !is_table(header, grid)) {
-        arrays.retain(|(entry, header, grid)| {
-            !is_table(header, grid) || named == Some(array_key(entry).as_str())
-        });
+    if arrays.iter().any(|array| !array.is_table()) {
+        arrays.retain(|array| !array.is_table() || named == Some(array.key().as_str()));
     }
     // Nor are one-dimensional arrays offered beside a volume; without any volume, the errors of the arrays are
     // reported.
     if arrays.is_empty() {
-        let count = refused.len();
-        return Err(match refused.pop() {
-            Some(only) if count == 1 => only,
-            _ => attempt.bad_input_error(
-                "arrays",
-                format!("none of its {count} arrays is a volume"),
-                "save an array of numbers with three axes: z, y, x",
-            ),
-        });
+        return Err(no_array_error(attempt, &directory, refused));
     }
-    let offers = arrays.iter().map(|(entry, _, grid)| {
-        let key = array_key(entry);
-        VolumeOffer { name: key.clone(), key, dims: Some(grid.dims) }
+    let offers = arrays.iter().map(|array| {
+        let key = array.key();
+        VolumeOffer { name: key.clone(), key, dims: Some(array.grid.dims) }
     });
     let chosen = attempt.resolve_choice(&source.options.choice, FileDimension::Array, offers.collect())?;
-    let (entry, header, grid) = arrays.swap_remove(chosen);
+    let ArchivedArray { entry, header, grid } = arrays.swap_remove(chosen);
     let wanted = choose_volume(&source, attempt, &header, &grid)?;
     let voxels = read_entry(&mut source, attempt, &entry, &wanted)?;
-    let ChosenNumpyArray { extent, placement, .. } = wanted;
+    let ChosenNumpyArray { extent, mut placement, .. } = wanted;
+    if let Some((_, affine)) = affine.filter(|(name, _)| *name != entry.name) {
+        let mut placed = affine.placement(grid.array_axes);
+        placed.remarks.append(&mut placement.remarks);
+        placement = placed;
+    }
     let name = sanitised(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+        .into_volume(attempt, source.control)
 }
 
-/// Key by which an array is chosen: its name.
-fn array_key(entry: &ZipEntry) -> String {
-    sanitised(entry.name.trim_end_matches(ENDING), 80)
+/// Error for an archive without a single array that is a volume: `refused` holds the errors of its arrays.
+fn no_array_error(
+    attempt: LoadContext<'_>,
+    directory: &ZipDirectory,
+    mut refused: Vec<LoadError>,
+) -> LoadError {
+    let count = refused.len();
+    let arrays_among = |names: &[String]| names.iter().filter(|name| name.ends_with(ENDING)).count();
+    let are = |count: usize| if count == 1 { "1 array is".to_owned() } else { format!("{count} arrays are") };
+    let [encrypted, unsupported] =
+        [&directory.encrypted, &directory.unsupported].map(|names| arrays_among(names));
+    match refused.pop() {
+        Some(only) if count == 1 => only,
+        Some(_) => attempt.bad_input_error(
+            "arrays",
+            format!("none of its {count} arrays is a volume"),
+            "save an array of numbers with three axes: z, y, x",
+        ),
+        None if encrypted > 0 => attempt.bad_input_error(
+            "arrays",
+            format!("{} encrypted, and cannot be read without a password", are(encrypted)),
+            "unpack it with its password (`7z x FILE`), and open the array",
+        ),
+        None if unsupported > 0 => attempt.bad_input_error(
+            "arrays",
+            format!("{} compressed in a way that is not supported", are(unsupported)),
+            "unpack it (`7z x FILE`) and open the array, or save it with numpy.savez_compressed",
+        ),
+        None => attempt.bad_input_error(
+            "arrays",
+            "it holds no arrays: no file in it ends in .npy",
+            "save an array of numbers with three axes (z, y, x) with numpy.savez",
+        ),
+    }
 }
 
 /// Reads the selected volume of an archive entry.

@@ -249,6 +249,49 @@ fn matrices_and_tables_are_not_offered() {
 }
 
 #[test]
+fn an_affine_beside_a_volume_places_it() {
+    let numbers = [2.0, 0.0, 0.0, -7.0, 0.0, 3.0, 0.5, -8.0, 0.0, 0.0, 4.0, 9.0, 0.0, 0.0, 0.0, 1.0f64];
+    let bytes = |numbers: &[f64]| -> Vec<u8> { numbers.iter().flat_map(|n| n.to_le_bytes()).collect() };
+    let transposed: Vec<f64> = (0..16).map(|at| numbers[at % 4 * 4 + at / 4]).collect();
+    let singles: Vec<u8> = numbers.iter().flat_map(|&n| (n as f32).to_be_bytes()).collect();
+    let affines = [
+        array("<f8", "False", "(4, 4)", &bytes(&numbers)),
+        array("<f8", "True", "(4, 4)", &bytes(&transposed)),
+        array(">f4", "False", "(4, 4)", &singles),
+    ];
+    let data: Vec<u8> = (0..240).collect();
+    let load = |affine: &[u8], order: &str, shape: &str| {
+        let volume = array("|u1", order, shape, &data);
+        let archive = archive(&[("data.npy", &volume), ("affine.npy", affine)], [true, false, false]);
+        loaded_as("a.npz", &archive, VolumeChoice { frame: Some(0), ..VolumeChoice::default() }).unwrap()
+    };
+    let columns = |volume: &Volume| volume.world_from_index().to_cols_array();
+    for affine in &affines {
+        let volume = load(affine, "True", "(6, 5, 8)");
+        assert_eq!(volume.dims(), [6, 5, 8]);
+        assert_eq!(columns(&volume), [2.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.5, 4.0, -7.0, -8.0, 9.0]);
+        assert!(volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
+        // The same place of the array, whatever its order in memory.
+        let volume = load(affine, "False", "(6, 5, 8)");
+        assert_eq!(volume.dims(), [8, 5, 6]);
+        assert_eq!(columns(&volume), [0.0, 0.5, 4.0, 0.0, 3.0, 0.0, 2.0, 0.0, 0.0, -7.0, -8.0, 9.0]);
+        // Time is the last axis of nibabel's arrays.
+        let volume = load(affine, "True", "(6, 5, 4, 2)");
+        assert_eq!((volume.dims(), volume.is_anatomical()), ([6, 5, 4], true));
+        let volume = load(affine, "False", "(2, 4, 6, 5)");
+        assert!(volume.has_unknown_scale() && volume.remarks()[0].contains("are not those of the volume"));
+    }
+    for (at, value, words) in [(0, 0.0, "singular"), (5, f64::NAN, "not finite"), (12, 2.0, "last row")] {
+        let mut wrong = numbers;
+        wrong[at] = value;
+        let volume = load(&array("<f8", "False", "(4, 4)", &bytes(&wrong)), "True", "(6, 5, 8)");
+        assert!(volume.has_unknown_scale() && volume.remarks()[0].contains(words), "{:?}", volume.remarks());
+    }
+    let short = load(&array("<f8", "False", "(4, 4)", &[0; 100]), "True", "(6, 5, 8)");
+    assert!(short.remarks()[0].contains("it cannot be read"), "{:?}", short.remarks());
+}
+
+#[test]
 fn inconsistent_archives_are_refused() {
     let volume = array("|u1", "False", "(6, 5, 8)", &[7; 240]);
     let table = array("<f8", "False", "(3,)", &[0; 24]);
@@ -273,12 +316,12 @@ fn inconsistent_archives_are_refused() {
         (changed(&stored, line, 42, &[0xff, 0xff, 0xff, 0x7f]), "not where"),
         (changed(&stored, line, 28, &[0xff, 0x7f]), "truncated"),
         (changed(&stored, end, 12, &[0xff, 0xff]), "directory of the archive is too long"),
-        (changed(&stored, line, 8, &[1]), "none of its 0 arrays"),
-        (changed(&stored, line, 10, &[12]), "none of its 0 arrays"),
+        (changed(&stored, line, 8, &[1]), "1 array is encrypted, and cannot be read"),
+        (changed(&stored, line, 10, &[12]), "1 array is compressed in a way that is not supported"),
         (archive(&[("ct.npy", &short)], [true, false, false]), "truncated"),
         (archive(&[("a.npy", &table)], [true, false, false]), "1 axes"),
         (archive(&[("a.npy", &table), ("b.npy", &table)], [true, false, false]), "none of its 2 arrays"),
-        (archive(&[], [true, false, false]), "none of its 0 arrays"),
+        (archive(&[], [true, false, false]), "it holds no arrays"),
         (b"PK".to_vec(), "no directory"),
     ] {
         let error = loaded_as("a.npz", &bytes, VolumeChoice::default()).unwrap_err();

@@ -56,21 +56,31 @@ pub(super) fn begins_with_entry(start: &[u8], ending: &str) -> bool {
     start.starts_with(LOCAL_HEADER) && name.is_some_and(|name| name.ends_with(ending.as_bytes()))
 }
 
-/// Reads the central directory; returns all entries that are supported.
+/// Files in an archive, by its central directory.
+#[derive(Debug, Default)]
+pub(super) struct ZipDirectory {
+    pub(super) entries: Vec<ZipEntry>,
+    /// Names of entries that are encrypted.
+    pub(super) encrypted: Vec<String>,
+    /// Names of entries whose compression is not supported.
+    pub(super) unsupported: Vec<String>,
+}
+
+/// Reads the central directory.
 ///
 /// # Errors
 /// `BadInput` where the directory is missing, or inconsistent.
 pub(super) fn read_central_directory(
     attempt: LoadContext<'_>,
     input: &mut InputFile,
-) -> Result<Vec<ZipEntry>, LoadError> {
+) -> Result<ZipDirectory, LoadError> {
     let bad = |why: &str| attempt.bad_input_error("directory", why, HELP);
     let (at, length) = find_central_directory(attempt, input)?;
     if length > MAX_DIRECTORY || at.saturating_add(length) > input.len {
         return Err(bad("the directory of the archive is too long, or reaches beyond the file"));
     }
     let bytes = read_at(input, at, length).map_err(|error| attempt.io_error(error))?;
-    let mut entries = Vec::new();
+    let mut directory = ZipDirectory::default();
     let mut rest = &bytes[..];
     while rest.starts_with(CENTRAL_HEADER) && rest.len() >= 46 {
         let [name, extra, comment] = [28, 30, 32].map(|at| read_le(rest, at, 2) as usize);
@@ -87,23 +97,27 @@ pub(super) fn read_central_directory(
         }
         let (flags, method) = (read_le(line, 8, 2), read_le(line, 10, 2));
         let name = String::from_utf8_lossy(&line[46..46 + name]).into_owned();
+        // Bit 0: encrypted.
+        if flags & 1 != 0 {
+            directory.encrypted.push(name);
+            continue;
+        }
         let most = match method {
             0 => stored_bytes,
             8 => stored_bytes.saturating_add(64).saturating_mul(MAX_INFLATION),
-            // Unsupported compression method.
-            _ => continue,
+            _ => {
+                directory.unsupported.push(name);
+                continue;
+            }
         };
-        // Bit 0: encrypted.
-        if flags & 1 != 0 {
-            continue;
-        }
         if stored_bytes > input.len || bytes > most {
             return Err(bad(&format!("{bytes} bytes cannot be the size of {}", quoted(&name))));
         }
         let checksum = read_le(line, 16, 4) as u32;
-        entries.push(ZipEntry { name, bytes, checksum, is_deflated: method == 8, stored_bytes, at });
+        let is_deflated = method == 8;
+        directory.entries.push(ZipEntry { name, bytes, checksum, is_deflated, stored_bytes, at });
     }
-    Ok(entries)
+    Ok(directory)
 }
 
 /// Opens an entry for reading, inflated; it yields at most its announced length.

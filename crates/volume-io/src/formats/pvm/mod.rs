@@ -71,5 +71,5 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         }
     };
     let (placement, hints) = (header.placement(part), header.hints(&after));
-    VolumeParts { name: stem(source.path), extent, placement, voxels, hints }.into_volume(attempt)
+    VolumeParts { name: stem(source.path), extent, placement, voxels, hints }.into_volume(attempt, control)
 }

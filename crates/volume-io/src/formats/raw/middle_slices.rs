@@ -2,12 +2,11 @@
 //! preview follows changes of the numbers, whatever the size of the file.
 
 use std::io;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::bytes::RawBytes;
 use super::layout::RawLayout;
 use super::layout_detection::for_each_value;
-use chiaroscuro_volume::ValueRange;
+use chiaroscuro_volume::{CancelToken, ValueRange};
 
 /// Maximum number of voxels along the edge of a slice: more than the preview shows.
 const MAX_EDGE: usize = 256;
@@ -38,7 +37,7 @@ pub struct MiddleSlices {
     pub range: ValueRange,
 }
 
-/// Reads the middle slices; `None` if `stop` was set meanwhile.
+/// Reads the middle slices; `None` if `cancel` was cancelled meanwhile.
 ///
 /// Where only the beginning of a compressed file is known, the slices are in the middle of that.
 ///
@@ -47,7 +46,7 @@ pub struct MiddleSlices {
 pub fn read_middle_slices(
     bytes: &mut RawBytes,
     layout: &RawLayout,
-    stop: &AtomicBool,
+    cancel: &CancelToken,
 ) -> io::Result<Option<MiddleSlices>> {
     let dims = layout.dims.map(|n| n.max(1));
     let mut at = dims.map(|n| n / 2);
@@ -64,7 +63,7 @@ pub fn read_middle_slices(
         let (across, up) = (evenly_spaced(dims[u]), evenly_spaced(dims[v]));
         let mut values = Vec::with_capacity(across.len() * up.len());
         for &second in &up {
-            if stop.load(Ordering::Relaxed) {
+            if cancel.is_cancelled() {
                 return Ok(None);
             }
             let mut first = at;
@@ -169,7 +168,7 @@ mod tests {
     fn slices_go_through_the_middle_in_three_directions() {
         let dims = [5, 4, 3];
         let mut bytes = RawBytes::from(file(dims));
-        let found = read_middle_slices(&mut bytes, &layout(dims), &AtomicBool::new(false)).unwrap().unwrap();
+        let found = read_middle_slices(&mut bytes, &layout(dims), &CancelToken::new()).unwrap().unwrap();
         assert_eq!(found.at, [2, 2, 1]);
         let value = |slice: usize, at: usize| found.slices[slice].values[at];
         assert_eq!(found.slices.clone().map(|slice| slice.size), [[5, 4], [5, 3], [4, 3]]);
@@ -182,13 +181,14 @@ mod tests {
     fn what_is_not_in_the_file_is_missing() {
         let mut bytes = RawBytes::from(file([5, 4, 3]));
         let long = layout([5, 4, 100]);
-        let found = read_middle_slices(&mut bytes, &long, &AtomicBool::new(false)).unwrap().unwrap();
+        let found = read_middle_slices(&mut bytes, &long, &CancelToken::new()).unwrap().unwrap();
         assert!(found.slices[0].values.iter().all(Option::is_none), "the middle lies behind the end");
         assert_eq!(found.slices[1].values.iter().flatten().count(), 5 * 3);
         let endless = layout([usize::MAX; 3]);
-        let found = read_middle_slices(&mut bytes, &endless, &AtomicBool::new(false)).unwrap().unwrap();
+        let found = read_middle_slices(&mut bytes, &endless, &CancelToken::new()).unwrap().unwrap();
         assert!(found.slices.iter().all(|slice| slice.values.len() == MAX_EDGE * MAX_EDGE));
-        let stopped = read_middle_slices(&mut bytes, &long, &AtomicBool::new(true)).unwrap();
-        assert_eq!(stopped, None);
+        let cancel = CancelToken::new();
+        cancel.cancel();
+        assert_eq!(read_middle_slices(&mut bytes, &long, &cancel).unwrap(), None);
     }
 }

@@ -84,7 +84,7 @@ impl RawStorage {
         };
         let placement = self.placement.with_remark(part.remark());
         let parts = VolumeParts { name, extent, placement, voxels, hints: self.hints };
-        parts.into_volume_with_help(attempt, help)
+        parts.into_volume_with_help(attempt, source.control, help)
     }
 
     /// Checks that a file of `len` bytes holds exactly the offset and the voxels.

@@ -144,6 +144,7 @@ impl<P> ChosenVtkArray<P> {
         grid: &VtkGrid,
         voxels: ReadVoxels,
         title: &str,
+        control: &LoadControl,
     ) -> Result<Volume, LoadError> {
         let mut placement = grid.placement(self.array.is_cell_data);
         placement.remarks.extend(self.stored.reduction.remark().map(str::to_owned));
@@ -151,7 +152,7 @@ impl<P> ChosenVtkArray<P> {
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
         let mut hints = ValueMetadata::default();
         hints.modality = Modality::from_description(title);
-        VolumeParts { name, extent: self.extent, placement, voxels, hints }.into_volume(attempt)
+        VolumeParts { name, extent: self.extent, placement, voxels, hints }.into_volume(attempt, control)
     }
 }
 

@@ -8,15 +8,22 @@ use crate::load_context::memory_budget_bytes;
 use crate::math::SceneSpace;
 use crate::volume::{Volume, VolumeError};
 
+/// Corrections of a volume, together with the volume as opened: later corrections are applied to that one.
+#[derive(Debug)]
+pub(crate) struct AppliedCorrections {
+    corrections: Corrections,
+    opened: Volume,
+}
+
 impl Volume {
     /// Returns the volume as opened, without any corrections.
     pub fn as_opened(&self) -> &Self {
-        self.opened.as_deref().unwrap_or(self)
+        self.correction.as_ref().map_or(self, |applied| &applied.opened)
     }
 
     /// Returns the corrections that were applied to the opened volume.
     pub fn corrections(&self) -> &Corrections {
-        self.provenance.corrections()
+        self.correction.as_ref().map_or(&Corrections::NONE, |applied| &applied.corrections)
     }
 
     /// Returns the content id of the opened volume: see [`Self::content_id`].
@@ -42,7 +49,7 @@ impl Volume {
         let grid = opened.grid.corrected(by)?;
         let mut volume = if by.keeps_values() {
             opened.clone()
-        } else if self.opened.is_some() && self.corrections().corrects_values_like(by) {
+        } else if self.correction.is_some() && self.corrections().corrects_values_like(by) {
             self.with_density_mapping(self.ranges().robust)
         } else {
             opened.with_corrected_values(by)?
@@ -56,8 +63,8 @@ impl Volume {
         volume.content_id = words.bytes().fold(opened.content_id, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         });
-        volume.opened = Some(Arc::new(opened.clone()));
-        Ok(volume.with_changed_provenance(|provenance| provenance.corrections = *by))
+        volume.correction = Some(Arc::new(AppliedCorrections { corrections: *by, opened: opened.clone() }));
+        Ok(volume)
     }
 
     /// Returns the scene space that the grid would have with these corrections.
@@ -87,7 +94,7 @@ impl Volume {
         };
         let metadata = self.metadata();
         let metadata = if scale.is_none() { metadata.clone() } else { rescaled_metadata(metadata, scale) };
-        let provenance = Arc::new(self.provenance.for_derived_volume());
+        let provenance = Arc::clone(&self.provenance);
         Ok(Self { provenance, ..volume.with_metadata(metadata) })
     }
 }

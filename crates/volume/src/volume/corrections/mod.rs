@@ -8,6 +8,7 @@ mod spacing;
 #[cfg(test)]
 mod tests;
 
+pub(super) use apply::AppliedCorrections;
 pub use axes::{AnatomicalAxes, AxisOrder, Flips, Orientation};
 pub use spacing::SpacingUnit;
 
@@ -105,14 +106,17 @@ pub struct ValueScale {
 
 impl Default for ValueScale {
     fn default() -> Self {
-        Self { slope: 1.0, intercept: 0.0 }
+        Self::IDENTITY
     }
 }
 
 impl ValueScale {
+    /// Scale in which values are the numbers of the file, the default.
+    const IDENTITY: Self = Self { slope: 1.0, intercept: 0.0 };
+
     /// Returns true if values are the numbers of the file, unscaled.
     pub fn is_none(self) -> bool {
-        self == Self::default()
+        self == Self::IDENTITY
     }
 
     /// Converts a number of the file to a value.
@@ -132,9 +136,20 @@ impl ValueScale {
 }
 
 impl Corrections {
+    /// Corrections of nothing, the default.
+    pub(crate) const NONE: Self = Self {
+        spacing: None,
+        unit: None,
+        flip: Flips { x: false, y: false, z: false },
+        axis_order: AxisOrder::Xyz,
+        orientation: None,
+        padding_value: PaddingValue::InFile,
+        value_scale: ValueScale::IDENTITY,
+    };
+
     /// Returns true if nothing is corrected.
     pub fn is_none(&self) -> bool {
-        *self == Self::default()
+        *self == Self::NONE
     }
 
     /// Returns true if voxels keep their values and only their positions may change.

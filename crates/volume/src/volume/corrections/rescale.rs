@@ -54,7 +54,7 @@ pub(super) fn rescaled(
     scale: ValueScale,
     budget_bytes: u64,
 ) -> Result<Samples, VolumeError> {
-    let (numbers, _) = samples.finite_range().ok_or(VolumeError::NothingFinite)?;
+    let numbers = samples.finite_range().ok_or(VolumeError::NothingFinite)?.range;
     let ends = [numbers.low, numbers.high].map(|number| scale.value_from_number(number));
     let range = ValueRange::new(ends[0].min(ends[1]), ends[0].max(ends[1]));
     let has_point = matches!(samples, Samples::F32(_) | Samples::F64(_));

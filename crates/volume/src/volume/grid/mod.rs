@@ -20,7 +20,7 @@ const MIN_RELATIVE_VOLUME: f64 = 1e-6;
 
 /// Regular grid of voxels, without their values. Invariants: at least one voxel, an invertible affine transform.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VoxelGrid {
+pub(super) struct VoxelGrid {
     /// Number of voxels along x, y, z.
     dims: [usize; 3],
     /// Transform from index space (voxel centres at integers) to world space in mm.
@@ -41,7 +41,7 @@ impl VoxelGrid {
     ///
     /// # Errors
     /// Fails if a dimension is zero, their product is another number, or the transform is not finite and invertible.
-    pub fn new(
+    pub(super) fn new(
         dims: [usize; 3],
         world_from_index: DAffine3,
         sample_count: usize,
@@ -73,43 +73,43 @@ impl VoxelGrid {
     }
 
     /// Returns the number of voxels along x, y, z.
-    pub fn dims(&self) -> [usize; 3] {
+    pub(super) fn dims(&self) -> [usize; 3] {
         self.dims
     }
 
     /// Returns the index of a voxel among all samples, x fastest.
-    pub fn voxel_index(&self, [x, y, z]: [usize; 3]) -> usize {
+    pub(super) fn voxel_index(&self, [x, y, z]: [usize; 3]) -> usize {
         x + self.dims[0] * (y + self.dims[1] * z)
     }
 
     /// Returns the transform from voxel indices (centres at integers) to millimetres.
-    pub fn world_from_index(&self) -> DAffine3 {
+    pub(super) fn world_from_index(&self) -> DAffine3 {
         self.world_from_index
     }
 
     /// Returns the distance in mm between voxel centres along the three index axes.
-    pub fn spacing_mm(&self) -> DVec3 {
+    pub(super) fn spacing_mm(&self) -> DVec3 {
         let axes = self.world_from_index.matrix3;
         DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
     }
 
     /// Returns the scene space of the grid.
-    pub fn scene(&self) -> SceneSpace {
+    pub(super) fn scene(&self) -> SceneSpace {
         SceneSpace::new(self.dims, self.world_from_index)
     }
 
     /// Returns true if +x, +y and +z are known to be a body's right, anterior and superior directions.
-    pub fn is_anatomical(&self) -> bool {
+    pub(super) fn is_anatomical(&self) -> bool {
         self.is_anatomical
     }
 
     /// Returns true if lengths are in voxels because the voxels' size is unknown.
-    pub fn has_unknown_scale(&self) -> bool {
+    pub(super) fn has_unknown_scale(&self) -> bool {
         self.length_unit == SpacingUnit::Voxels
     }
 
     /// Returns the unit in which lengths of the object's size are shown: that of the file, if it suits them.
-    pub fn length_unit(&self) -> SpacingUnit {
+    pub(super) fn length_unit(&self) -> SpacingUnit {
         let length_mm = self.scene().mm_per_unit;
         match self.length_unit {
             SpacingUnit::Voxels => SpacingUnit::Voxels,
@@ -120,12 +120,12 @@ impl VoxelGrid {
 
     /// Returns the dimensions of the grid that was reduced to this one by block averages or subsampling;
     /// [`Self::dims`] if it was not reduced.
-    pub fn file_dims(&self) -> [usize; 3] {
+    pub(super) fn file_dims(&self) -> [usize; 3] {
         self.file_dims
     }
 
     /// Returns the spacings of the file's voxels in mm; a voxel of the grid may be the mean of several of them.
-    pub fn file_spacing_mm(&self) -> DVec3 {
+    pub(super) fn file_spacing_mm(&self) -> DVec3 {
         self.spacing_mm() / self.file_grid.steps()
     }
 

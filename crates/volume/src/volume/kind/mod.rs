@@ -13,7 +13,7 @@ mod tests;
 use self::dark_on_bright::MAX_OBJECT_SHARE;
 use self::sampled::{SampledValues, quantile};
 use super::Volume;
-use crate::{Modality, ValueMeaning};
+use crate::{Modality, ValueMeaning, ValueRange};
 
 /// Kind of data in a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -202,7 +202,7 @@ const MIN_PEAK_RATIO: f64 = 2.0;
 
 /// Detects signed fields: they reach about as far below zero as above, in lobes rather than single voxels.
 fn detect_signed(sampled: &SampledValues<'_>) -> Option<DetectedKind> {
-    let (below, above) = sampled.nonzero_quantiles(SIGNED_OUTLIER_SHARE)?;
+    let ValueRange { low: below, high: above } = sampled.nonzero_quantiles(SIGNED_OUTLIER_SHARE)?;
     let balance = below.abs().min(above) / below.abs().max(above);
     if below >= 0.0 || above <= 0.0 || balance < MIN_SIGNED_BALANCE {
         return None;

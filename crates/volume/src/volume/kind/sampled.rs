@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::Volume;
+use crate::{ValueRange, Volume};
 
 /// Approximate maximum number of sampled voxels; larger volumes are subsampled along each axis.
 const MAX_SAMPLES: f64 = (1u64 << 21) as f64;
@@ -72,7 +72,7 @@ impl<'a> SampledValues<'a> {
     }
 
     /// Returns the two quantiles of the nonzero values at `share` from either end; `None` if all values are zero.
-    pub(super) fn nonzero_quantiles(&self, share: f64) -> Option<(f64, f64)> {
+    pub(super) fn nonzero_quantiles(&self, share: f64) -> Option<ValueRange> {
         let below = self.values.partition_point(|&value| value < 0.0);
         let above = self.values.len() - self.values.partition_point(|&value| value <= 0.0);
         let count = below + above;
@@ -85,7 +85,8 @@ impl<'a> SampledValues<'a> {
             self.values[if index < below { index } else { index + zeros }]
         };
         let index = (share * count as f64) as usize;
-        Some((at(index.min(count - 1)), at(count - 1 - index.min(count - 1))))
+        let index = index.min(count - 1);
+        Some(ValueRange { low: at(index), high: at(count - 1 - index) })
     }
 
     /// Returns, among the neighbours of voxels whose values are beyond `value` (seen from zero), the share beyond

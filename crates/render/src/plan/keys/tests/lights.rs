@@ -88,8 +88,9 @@ fn colours_of_what_light_meets_count_where_shadows_are_coloured() {
     assert_eq!(effect_of(&before, "transfer.points.0.color", "[1,0,0]"), ChangeEffect::AllLights);
     assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), ChangeEffect::AllLights);
     assert_eq!(effect_of(&before, "lighting.curve.points", "[]"), ChangeEffect::Nothing);
-    before.settings.lighting.linked = false;
-    before.settings.lighting.curve = before.settings.transfer.clone();
+    let layer = before.settings.layer_mut();
+    layer.lighting.linked = false;
+    layer.lighting.curve = layer.transfer.clone();
     // The eye's colours no longer apply to light.
     assert_eq!(effect_of(&before, "lighting.curve.points.0.color", "[1,0,0]"), ChangeEffect::AllLights);
     // Shadow rays use the colours in the eye pass itself.

@@ -20,10 +20,10 @@ fn request() -> RenderRequest {
             LightSettings { position: [0.0, 3.0, 0.0], ..LightSettings::default() },
             LightSettings { kind: LightGeometry::Perspective, ..LightSettings::default() },
         ],
-        transfer: TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() },
         sky: SkySettings { mode: SkyMode::Gradient, ..SkySettings::default() },
         ..Settings::default()
-    };
+    }
+    .with_transfer(TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() });
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
     RenderRequest {
         volume: VolumeId { content_id: 1, ranges, dims: [256; 3] },
@@ -43,8 +43,8 @@ fn request_with_bounces() -> RenderRequest {
 /// Makes a request with a table of labels.
 fn request_with_labels() -> RenderRequest {
     let mut request = request_with_bounces();
-    request.settings.labels.entry_mut(1);
-    *request.settings.labels.entry_mut(2) = LabelLook { visible: false, ..LabelLook::default_for(2) };
+    let look = |number, visible| (number, LabelLook { visible, ..LabelLook::default_for(number) });
+    request.settings.layer_mut().labels = [look(1, true), look(2, false)].into_iter().collect();
     request
 }
 
@@ -250,14 +250,13 @@ fn every_setting_causes_what_the_design_says() {
     let mut leaves = Vec::new();
     collect(&tree, String::new(), &mut leaves);
     for leaf in leaves {
-        let general = leaf.replace("lights.0", "lights.1").replace("lights.2", "lights.1");
+        let short = leaf.strip_prefix("layers.0.").unwrap_or(&leaf);
+        let general = short.replace("lights.0", "lights.1").replace("lights.2", "lights.1");
         let covered = |path: &str| general == path || general.starts_with(&format!("{path}."));
         let listed =
             table.iter().any(|(path, ..)| covered(path) || covered(&path.replace("points.1", "points.0")));
-        let exempt = ["schema", "kept", "labels", "lighting.curve.points", "transfer.points"]
-            .iter()
-            .any(|path| covered(path));
-        assert!(listed || exempt, "{leaf} is not classified");
+        let unlisted = ["schema", "kept", "labels", "lighting.curve.points", "transfer.points"];
+        assert!(listed || unlisted.into_iter().any(covered), "{leaf} is not classified");
     }
 }
 
@@ -299,7 +298,7 @@ fn options_that_only_display_reads_change_the_display_alone() {
 #[test]
 fn an_unlinked_lighting_curve_frees_the_eye() {
     let mut before = request();
-    before.settings.lighting.linked = false;
+    before.settings.layer_mut().lighting.linked = false;
     before.settings.sky.mode = SkyMode::Off;
     assert_eq!(effect_of(&before, "transfer.points.1.opacity", "0.4"), ChangeEffect::Eye);
     // Shadow rays use the lighting curve in the eye pass itself.

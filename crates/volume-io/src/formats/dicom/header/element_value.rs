@@ -111,6 +111,11 @@ impl ElementValue<'_> {
         self.first_bytes().map(f64::from_le_bytes).filter(|number| number.is_finite())
     }
 
+    /// Returns the first 32-bit float, if it is finite.
+    pub(super) fn f32(&self) -> Option<f32> {
+        self.first_bytes().map(f32::from_le_bytes).filter(|number| number.is_finite())
+    }
+
     /// Returns 64-bit integers, at most `most`.
     pub(super) fn u64s(&self, most: usize) -> Vec<u64> {
         let each = self.bytes.chunks_exact(8).take(most);

@@ -7,6 +7,7 @@ mod element_value;
 pub(super) mod image_plane;
 pub(super) mod parser;
 mod plane_elements;
+mod private_elements;
 pub(super) mod reader;
 pub(super) mod segments;
 pub(super) mod tags;

@@ -102,110 +102,163 @@ pub(crate) fn parse_data_set(
     found: &mut DicomValues,
     control: &LoadControl,
 ) -> Result<Option<PixelElement>, DataSetError> {
-    let endian = form.endian;
-    let mut levels: Vec<OpenSequence> = Vec::new();
+    let mut parser = DataSetParser { bytes, endian: form.endian, found, levels: Vec::new() };
     for count in 0..MAX_ELEMENTS {
         if count % ELEMENTS_PER_CHECK == 0 {
             control.check().map_err(DataSetError::Cancelled)?;
         }
-        if bytes.is_deflated() && bytes.position > MAX_INFLATED_BYTES {
+        if parser.bytes.is_deflated() && parser.bytes.position > MAX_INFLATED_BYTES {
             return Err(DataSetError::Malformed(format!(
                 "its header has more than {MAX_INFLATED_BYTES} bytes"
             )));
         }
-        while levels.last().is_some_and(|level| level.end == Some(bytes.position)) {
-            levels.pop();
-        }
-        let Some(tag) = bytes.tag(endian)? else { return Ok(None) };
-        let (place, is_explicit, limit) =
-            levels.last().map_or((ElementContext::TopLevel, form.is_explicit, bytes.len), |level| {
-                (level.context, level.is_explicit, level.limit)
-            });
+        parser.close_ended_levels();
+        let Some(tag) = parser.bytes.tag(form.endian)? else { return Ok(None) };
+        let level = parser.current_level(form.is_explicit);
         match tag {
             // Zeros that pad a file.
-            0 if levels.is_empty() => return Ok(None),
-            ITEM => {
-                let length = bytes.u32(endian)?;
-                let end = end_offset(bytes.position, length, limit, tag)?;
-                let item = levels.last_mut().and_then(|level| {
-                    let sequence = level.sequence?;
-                    level.items += 1;
-                    Some(place.in_item(sequence, level.items - 1))
-                });
-                let place = item.ok_or_else(|| {
-                    DataSetError::Malformed("an item lies outside of a sequence".to_owned())
-                })?;
-                levels.push(OpenSequence {
-                    sequence: None,
-                    items: 0,
-                    context: place,
-                    is_explicit,
-                    end,
-                    limit: end.unwrap_or(limit),
-                });
-            }
-            ITEM_END | SEQUENCE_END => {
-                bytes.u32(endian)?;
-                // Some programs write delimiters after defined lengths as well; they are harmless.
-                if levels.last().is_some_and(|level| level.sequence.is_some() == (tag == SEQUENCE_END)) {
-                    levels.pop();
-                }
-            }
+            0 if parser.levels.is_empty() => return Ok(None),
+            ITEM => parser.open_item(level)?,
+            ITEM_END | SEQUENCE_END => parser.close_delimited(tag)?,
             _ => {
-                if levels.last().is_some_and(|level| level.sequence.is_some()) {
-                    return Err(DataSetError::Malformed(format!(
-                        "{} lies between the items of a sequence",
-                        format_tag(tag)
-                    )));
-                }
-                let head = read_element_head(bytes, is_explicit, endian)?;
-                let end = value_end_offset(bytes.position, &head, limit, tag, levels.is_empty())?;
-                if levels.is_empty() && matches!(tag, PIXELS | FLOATS | DOUBLES) {
-                    let is_words = head.vr != Some(*b"OB");
-                    let length = end.map(|end| end - bytes.position);
-                    return Ok(Some(PixelElement { tag, is_words, offset: bytes.position, length }));
-                }
-                let inner_context = place.in_sequence(tag);
-                let has_unknown_vr = head.vr.is_none() || head.vr == Some(*b"UN");
-                let is_sequence =
-                    head.vr == Some(*b"SQ") || has_unknown_vr && (end.is_none() || inner_context.is_some());
-                match end {
-                    None if is_pixels(tag) || !is_sequence => skip_fragments(bytes, endian, limit)?,
-                    Some(end) if !is_sequence => {
-                        let length = end - bytes.position;
-                        if length <= MAX_VALUE_BYTES && DicomValues::uses(place, tag) {
-                            let value = bytes.value(length)?;
-                            found.store(place, tag, &value, endian);
-                        } else {
-                            bytes.skip(length)?;
-                        }
-                    }
-                    Some(end) if inner_context.is_none() => {
-                        found.note_sequence(place, tag);
-                        bytes.skip(end - bytes.position)?;
-                    }
-                    _ => {
-                        found.note_sequence(place, tag);
-                        if levels.len() >= 2 * MAX_NESTING {
-                            return Err(DataSetError::Malformed(format!(
-                                "more than {MAX_NESTING} sequences are nested"
-                            )));
-                        }
-                        levels.push(OpenSequence {
-                            sequence: Some(tag),
-                            items: 0,
-                            context: inner_context.unwrap_or(ElementContext::Unused),
-                            // Content of unknown representation (UN) is copied as received, in implicit encoding.
-                            is_explicit: is_explicit && head.vr == Some(*b"SQ"),
-                            end,
-                            limit: end.unwrap_or(limit),
-                        });
-                    }
+                if let Some(pixels) = parser.parse_element(tag, level)? {
+                    return Ok(Some(pixels));
                 }
             }
         }
     }
     Err(DataSetError::Malformed(format!("it has more than {MAX_ELEMENTS} elements")))
+}
+
+/// Properties of the level in which an element lies.
+#[derive(Debug, Clone, Copy)]
+struct CurrentLevel {
+    context: ElementContext,
+    is_explicit: bool,
+    /// Offset that no element within may pass.
+    limit: u64,
+}
+
+/// State of parsing a data set.
+struct DataSetParser<'a> {
+    bytes: &'a mut DicomReader,
+    endian: Endian,
+    found: &'a mut DicomValues,
+    /// Open sequences and items, innermost last.
+    levels: Vec<OpenSequence>,
+}
+
+impl DataSetParser<'_> {
+    /// Closes the levels of defined length that end here.
+    fn close_ended_levels(&mut self) {
+        while self.levels.last().is_some_and(|level| level.end == Some(self.bytes.position)) {
+            self.levels.pop();
+        }
+    }
+
+    /// Returns the innermost level; `is_explicit` is the encoding of the top level.
+    fn current_level(&self, is_explicit: bool) -> CurrentLevel {
+        let top = CurrentLevel { context: ElementContext::TopLevel, is_explicit, limit: self.bytes.len };
+        self.levels.last().map_or(top, |level| CurrentLevel {
+            context: level.context,
+            is_explicit: level.is_explicit,
+            limit: level.limit,
+        })
+    }
+
+    /// Opens an item, whose tag has been read.
+    fn open_item(&mut self, level: CurrentLevel) -> Result<(), DataSetError> {
+        let length = self.bytes.u32(self.endian)?;
+        let end = end_offset(self.bytes.position, length, level.limit, ITEM)?;
+        let item = self.levels.last_mut().and_then(|sequence| {
+            let tag = sequence.sequence?;
+            sequence.items += 1;
+            Some(level.context.in_item(tag, sequence.items - 1))
+        });
+        let context =
+            item.ok_or_else(|| DataSetError::Malformed("an item lies outside of a sequence".to_owned()))?;
+        self.levels.push(OpenSequence {
+            sequence: None,
+            items: 0,
+            context,
+            is_explicit: level.is_explicit,
+            end,
+            limit: end.unwrap_or(level.limit),
+        });
+        Ok(())
+    }
+
+    /// Closes the level that a delimiter ends.
+    fn close_delimited(&mut self, tag: DicomTag) -> Result<(), DataSetError> {
+        self.bytes.u32(self.endian)?;
+        // Some programs write delimiters after defined lengths as well; they are harmless.
+        if self.levels.last().is_some_and(|level| level.sequence.is_some() == (tag == SEQUENCE_END)) {
+            self.levels.pop();
+        }
+        Ok(())
+    }
+
+    /// Parses an element whose tag has been read: stores or skips its value, or opens its sequence. Returns the
+    /// location of the pixels where it holds them.
+    fn parse_element(
+        &mut self,
+        tag: DicomTag,
+        level: CurrentLevel,
+    ) -> Result<Option<PixelElement>, DataSetError> {
+        let CurrentLevel { context, is_explicit, limit } = level;
+        let is_top = self.levels.is_empty();
+        if self.levels.last().is_some_and(|level| level.sequence.is_some()) {
+            return Err(DataSetError::Malformed(format!(
+                "{} lies between the items of a sequence",
+                format_tag(tag)
+            )));
+        }
+        let head = read_element_head(self.bytes, is_explicit, self.endian)?;
+        let start = self.bytes.position;
+        let end = value_end_offset(start, &head, limit, tag, is_top)?;
+        if is_top && is_pixels(tag) {
+            let (is_words, length) = (head.vr != Some(*b"OB"), end.map(|end| end - start));
+            return Ok(Some(PixelElement { tag, is_words, offset: start, length }));
+        }
+        let inner_context = context.in_sequence(tag);
+        let has_unknown_vr = head.vr.is_none() || head.vr == Some(*b"UN");
+        let is_sequence =
+            head.vr == Some(*b"SQ") || has_unknown_vr && (end.is_none() || inner_context.is_some());
+        match end {
+            None if is_pixels(tag) || !is_sequence => skip_fragments(self.bytes, self.endian, limit)?,
+            Some(end) if !is_sequence => {
+                let length = end - start;
+                if length <= MAX_VALUE_BYTES && DicomValues::uses(context, tag) {
+                    let value = self.bytes.value(length)?;
+                    self.found.store(context, tag, &value, self.endian);
+                } else {
+                    self.bytes.skip(length)?;
+                }
+            }
+            Some(end) if inner_context.is_none() => {
+                self.found.note_sequence(context, tag);
+                self.bytes.skip(end - start)?;
+            }
+            _ => {
+                self.found.note_sequence(context, tag);
+                if self.levels.len() >= 2 * MAX_NESTING {
+                    return Err(DataSetError::Malformed(format!(
+                        "more than {MAX_NESTING} sequences are nested"
+                    )));
+                }
+                self.levels.push(OpenSequence {
+                    sequence: Some(tag),
+                    items: 0,
+                    context: inner_context.unwrap_or(ElementContext::Unused),
+                    // Content of unknown representation (UN) is copied as received, in implicit encoding.
+                    is_explicit: is_explicit && head.vr == Some(*b"SQ"),
+                    end,
+                    limit: end.unwrap_or(limit),
+                });
+            }
+        }
+        Ok(None)
+    }
 }
 
 fn is_pixels(tag: DicomTag) -> bool {

@@ -34,6 +34,8 @@ impl ElementEncoding {
 pub(crate) enum PixelCodec {
     /// Native encoding: pixels without compression.
     Native,
+    /// Each frame deflated by itself.
+    Deflated,
     Rle,
     Jpeg,
     JpegLs,
@@ -142,6 +144,7 @@ impl TransferSyntax {
             ".1.99" => Self { is_deflated: true, ..native(ElementEncoding::EXPLICIT) },
             ".2" => native(ElementEncoding::BIG),
             ".5" => encapsulated(PixelCodec::Rle),
+            ".8.1" => encapsulated(PixelCodec::Deflated),
             ".4.50" | ".4.51" | ".4.57" | ".4.70" => encapsulated(PixelCodec::Jpeg),
             ".4.80" | ".4.81" => encapsulated(PixelCodec::JpegLs),
             ".4.90" | ".4.91" => encapsulated(PixelCodec::Jpeg2000),
@@ -228,6 +231,7 @@ mod tests {
             ("1.2.840.10008.1.2", PixelCodec::Native),
             ("1.2.840.10008.1.2.1", PixelCodec::Native),
             ("1.2.840.10008.1.2.5", PixelCodec::Rle),
+            ("1.2.840.10008.1.2.8.1", PixelCodec::Deflated),
             ("1.2.840.10008.1.2.4.70", PixelCodec::Jpeg),
             ("1.2.840.10008.1.2.4.91", PixelCodec::Jpeg2000),
             ("1.2.840.10008.1.2.4.80", PixelCodec::JpegLs),

@@ -8,15 +8,13 @@ use super::element_context::{ElementContext, MAX_FRAMES};
 use super::element_value::ElementValue;
 use super::image_plane::ImagePlane;
 use super::plane_elements::store_plane_element;
+use super::private_elements::{PrivateBlocks, PrivateElement, b_value};
 use super::segments::{DicomSegment, MAX_SEGMENTS, SegmentationType};
 use super::tags::{self, DicomTag};
 use crate::Endian;
 
 /// Maximum number of distinct frame types in a file.
 const MAX_FRAME_TYPES: usize = 256;
-
-/// Private creator of Siemens' elements in an image header.
-const SIEMENS_CREATOR_NAME: &str = "SIEMENS MR HEADER";
 
 /// Values of a DICOM header that the reader uses, by element.
 #[derive(Debug, Clone, Default)]
@@ -65,8 +63,8 @@ pub(crate) struct DicomValues {
     pub(crate) max_fraction: Option<u16>,
     /// Distinct frame types other than the file's image type.
     pub(crate) frame_types: Vec<String>,
-    /// True if the private creator is Siemens, so that private elements have their known meaning.
-    has_siemens_header: bool,
+    /// Blocks of private elements, by their creators.
+    private_blocks: PrivateBlocks,
     /// Calibrated region of an ultrasound image: units (3 is centimetres) and spacing of columns and rows.
     region: UltrasoundRegion,
     pub(crate) file_plane: ImagePlane,
@@ -98,8 +96,9 @@ impl DicomValues {
         match place {
             ElementContext::Unused => false,
             ElementContext::TopLevel => {
-                matches!(tag >> 16, 0x0008 | 0x0018 | 0x0019 | 0x0020 | 0x0028 | 0x0054 | 0x0062 | 0x3004)
+                matches!(tag >> 16, 0x0008 | 0x0018 | 0x0020 | 0x0028 | 0x0054 | 0x0062 | 0x3004)
                     || matches!(tag, tags::FRAME_STARTS | tags::SIEMENS_HEADER)
+                    || PrivateBlocks::uses(tag)
             }
             _ => matches!(tag >> 16, 0x0008 | 0x0018 | 0x0020 | 0x0028 | 0x0062),
         }
@@ -183,24 +182,26 @@ impl DicomValues {
         }
     }
 
-    /// Stores the values of Siemens' private elements: mosaic and b-value.
-    fn store_siemens(&mut self, tag: DicomTag, value: ElementValue<'_>) {
-        match tag {
-            tags::SIEMENS_CREATOR => self.has_siemens_header = value.text() == SIEMENS_CREATOR_NAME,
-            tags::MOSAIC_COUNT if self.has_siemens_header => {
-                self.mosaic_count = value.u16().map(f64::from);
+    /// Stores the values of manufacturers' private elements: mosaics and b-values.
+    fn store_private(&mut self, tag: DicomTag, value: ElementValue<'_>) {
+        if tag == tags::SIEMENS_HEADER {
+            let count =
+                csa::csa_numbers(value.bytes, "NumberOfImagesInMosaic").map(|[count]: [f64; 1]| count);
+            self.mosaic_count = self.mosaic_count.or(count);
+            self.mosaic_normal = csa::csa_numbers(value.bytes, "SliceNormalVector").map(DVec3::from_array);
+            return;
+        }
+        self.private_blocks.record_creator(tag, value);
+        match self.private_blocks.element(tag) {
+            None => {}
+            Some(PrivateElement::SiemensMosaicCount) => self.mosaic_count = value.u16().map(f64::from),
+            Some(element) => {
+                let attributes = &mut self.file_plane.attributes;
+                // The standard's element comes first in the file, and counts.
+                if attributes.get(AcquisitionAttribute::BValue).is_none() {
+                    attributes.set(AcquisitionAttribute::BValue, b_value(element, value));
+                }
             }
-            tags::SIEMENS_B_VALUE if self.has_siemens_header => {
-                self.file_plane.attributes.set(AcquisitionAttribute::BValue, value.decimal());
-            }
-            tags::SIEMENS_HEADER => {
-                let count =
-                    csa::csa_numbers(value.bytes, "NumberOfImagesInMosaic").map(|[count]: [f64; 1]| count);
-                self.mosaic_count = self.mosaic_count.or(count);
-                self.mosaic_normal =
-                    csa::csa_numbers(value.bytes, "SliceNormalVector").map(DVec3::from_array);
-            }
-            _ => {}
         }
     }
 
@@ -235,7 +236,7 @@ impl DicomValues {
             }
             tags::SEGMENTATION_TYPE => self.segmentation = SegmentationType::parse(&value.text()),
             tags::MAX_FRACTION => self.max_fraction = value.u16(),
-            _ => self.store_siemens(tag, value),
+            _ => self.store_private(tag, value),
         }
     }
 

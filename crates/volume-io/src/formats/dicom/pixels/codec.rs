@@ -3,8 +3,10 @@
 //! The decoders accept images from untrusted sources; still, nothing is decoded before the size that an image itself
 //! states is compared with that of the header.
 
+use std::io::Read as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use flate2::bufread::DeflateDecoder;
 use hayro_jpeg2000::{DecodeSettings, DecoderContext, Image};
 use jpeg_decoder::{CodingProcess, ColorTransform, Decoder, Error, PixelFormat, UnsupportedFeature};
 
@@ -43,6 +45,10 @@ pub(super) fn decode_image(
     };
     match codec {
         PixelCodec::Native => Ok(DecodedImage { bytes: compressed, shape }),
+        PixelCodec::Deflated => {
+            let size = usize::try_from(shape.bytes_per_frame()).unwrap_or(usize::MAX);
+            inflate(&compressed, size).map(|bytes| DecodedImage { bytes, shape })
+        }
         PixelCodec::Rle => {
             rle::decode(&compressed, shape.pixel_count(), shape.samples, shape.bytes_per_number())
                 .map(|bytes| DecodedImage { bytes, shape: interleaved })
@@ -50,6 +56,17 @@ pub(super) fn decode_image(
         PixelCodec::Jpeg => catching_panics(&mut || decode_jpeg(&compressed, interleaved)),
         PixelCodec::JpegLs => catching_panics(&mut || decode_jpeg_ls(&compressed, interleaved)),
         PixelCodec::Jpeg2000 => catching_panics(&mut || decode_jpeg_2000(&compressed, interleaved)),
+    }
+}
+
+/// Inflates an image of `size` bytes; more are not read.
+pub(super) fn inflate(compressed: &[u8], size: usize) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let read = DeflateDecoder::new(compressed).take(size as u64).read_to_end(&mut bytes);
+    match read {
+        Ok(found) if found == size => Ok(bytes),
+        Ok(found) => Err(format!("an image is truncated: it has {found} of {size} bytes")),
+        Err(error) => Err(decoder_error(error)),
     }
 }
 

@@ -1,5 +1,6 @@
 //! DICOM pixels: storage layout, location, decompression, and conversion to voxels.
 
+mod bits;
 mod codec;
 pub(super) mod conversion;
 pub(super) mod layout;

@@ -13,7 +13,6 @@ use super::layout::{PixelLayout, PixelNumber};
 use super::size_check::{COPY_ADVICE, check_file_size, supported_codec, truncated_error};
 use crate::Endian;
 use crate::reading::input::InputFile;
-use crate::reading::read_files::record_read;
 use chiaroscuro_volume::{LoadContext, LoadControl, LoadError, human_bytes};
 
 /// Maximum number of fragments: 16 for each of the maximum number of frames.
@@ -24,7 +23,7 @@ const PIXELS_AT_ONCE: usize = 1 << 18;
 
 /// Fragment of compressed pixels: position in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct PixelFragment {
+pub(super) struct PixelFragment {
     offset: u64,
     length: u32,
 }
@@ -33,11 +32,12 @@ struct PixelFragment {
 #[derive(Debug)]
 pub(crate) struct PixelStore {
     layout: PixelLayout,
-    location: PixelLocation,
+    pub(super) location: PixelLocation,
 }
 
+/// Location of the frames of a file.
 #[derive(Debug)]
-enum PixelLocation {
+pub(super) enum PixelLocation {
     /// Native frames in the file, one after the other.
     Native { offset: u64, endian: Endian, is_swapped: bool },
     /// Inflated frames in memory, one after the other.
@@ -210,7 +210,7 @@ impl PixelStore {
         voxels: &mut [T],
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        record_read(attempt.path);
+        control.record_read(attempt.path);
         let size = self.layout.bytes_per_frame();
         let missing_frame_error =
             || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
@@ -247,13 +247,7 @@ impl PixelStore {
             PixelLocation::Compressed { codec, frames } => {
                 let fragments = frames.get(frame).ok_or_else(missing_frame_error)?;
                 let packed = read_fragments(attempt, fragments)?;
-                let wrong = |why| {
-                    attempt.bad_input_error(
-                        &format!("Pixel Data, frame {frame}"),
-                        why,
-                        "convert it with `gdcmconv --raw in.dcm out.dcm`, or copy it again",
-                    )
-                };
+                let wrong = |why| frame_error(attempt, frame, why);
                 let DecodedImage { bytes, shape } =
                     decode_image(*codec, packed, self.layout).map_err(wrong)?;
                 if (bytes.len() as u64) < shape.bytes_per_frame() {
@@ -266,59 +260,20 @@ impl PixelStore {
     }
 }
 
-impl PixelStore {
-    /// Reads the voxels of a frame of one-bit pixels.
-    fn read_bits<T: VoxelNumber>(
-        &self,
-        attempt: LoadContext<'_>,
-        frame: usize,
-        raster: PixelConversion,
-        voxels: &mut [T],
-    ) -> Result<(), LoadError> {
-        let beyond =
-            || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
-        let pixels = self.layout.pixel_count() as u64;
-        let first = pixels.checked_mul(frame as u64).ok_or_else(beyond)?;
-        // Begins at the 16-bit word that contains the frame's first bit, as bytes may be swapped within words.
-        let start = first / 16 * 2;
-        let skipped = (first - start * 8) as usize;
-        let length = (skipped as u64 + pixels).div_ceil(16) * 2;
-        let mut packed = Vec::new();
-        match &self.location {
-            PixelLocation::Native { offset, is_swapped, .. } => {
-                let mut input = InputFile::open(attempt)?;
-                input.seek(offset.saturating_add(start)).map_err(|error| attempt.io_error(error))?;
-                let read = input.reader.by_ref().take(length).read_to_end(&mut packed);
-                read.map_err(|error| attempt.io_error(error))?;
-                if *is_swapped {
-                    packed.as_chunks_mut::<2>().0.iter_mut().for_each(|pair| pair.swap(0, 1));
-                }
-            }
-            PixelLocation::Inflated(bytes) => {
-                let from = usize::try_from(start).ok().and_then(|start| bytes.get(start..));
-                let from = from.ok_or_else(beyond)?;
-                packed.extend_from_slice(&from[..from.len().min(length as usize)]);
-            }
-            PixelLocation::Compressed { .. } => {
-                return Err(attempt.bad_input_error(
-                    "Pixel Data",
-                    "compressed pixels of one bit are not supported",
-                    "convert it with `gdcmconv --raw in.dcm out.dcm`",
-                ));
-            }
-        }
-        if ((packed.len() * 8) as u64) < skipped as u64 + pixels {
-            return Err(beyond());
-        }
-        let bit = |at: usize| packed[at / 8] >> (at % 8) & 1;
-        let bits: Vec<u8> = (skipped..skipped + voxels.len()).map(bit).collect();
-        raster.write(&bits, voxels);
-        Ok(())
-    }
+/// Makes the error for a frame that cannot be decompressed.
+pub(super) fn frame_error(attempt: LoadContext<'_>, frame: usize, why: String) -> LoadError {
+    attempt.bad_input_error(
+        &format!("Pixel Data, frame {frame}"),
+        why,
+        "convert it with `gdcmconv --raw in.dcm out.dcm`, or copy it again",
+    )
 }
 
 /// Reads and concatenates the bytes of fragments, whose positions have been checked.
-fn read_fragments(attempt: LoadContext<'_>, fragments: &[PixelFragment]) -> Result<Vec<u8>, LoadError> {
+pub(super) fn read_fragments(
+    attempt: LoadContext<'_>,
+    fragments: &[PixelFragment],
+) -> Result<Vec<u8>, LoadError> {
     let mut packed = Vec::new();
     let mut input = InputFile::open(attempt)?;
     for fragment in fragments {

@@ -13,10 +13,14 @@ impl PixelCodec {
     /// memory for all announced pixels, whatever the data hold.
     fn max_decoded_bytes(self, packed: u64, frames: u64, shape: &PixelLayout) -> u64 {
         let of_number = shape.bytes_per_number() as u64;
+        // Codecs of bytes hold eight pixels of one bit in each, which are a byte each once they are unpacked.
+        let of_byte = if shape.number == PixelNumber::Bit { 8 } else { 1 };
         match self {
+            Self::Native if shape.number == PixelNumber::Bit => packed.saturating_mul(of_byte),
             Self::Native => u64::MAX,
+            Self::Deflated => packed.saturating_mul(MAX_DEFLATE_RATIO * of_byte),
             // Two bytes repeat a byte at most 128 times (PS3.5, G.3.1).
-            Self::Rle => packed.saturating_mul(64),
+            Self::Rle => packed.saturating_mul(64 * of_byte),
             // At least one bit per block of 8 x 8 numbers, some of which stand for four pixels each.
             Self::Jpeg => packed.saturating_mul(8 * 64 * 2 * of_number),
             // Runs and empty packets have no bound; uniform images take a few hundred bytes.

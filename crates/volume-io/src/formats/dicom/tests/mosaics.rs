@@ -3,6 +3,10 @@
 use super::*;
 use crate::formats::dicom::header::csa::tests::header as siemens_header;
 
+/// Private elements of Siemens: their creator, and the number of slices.
+const SIEMENS_CREATOR: DicomTag = 0x0019_0010;
+const MOSAIC_COUNT: DicomTag = 0x0019_100a;
+
 /// A mosaic of 2 x 2 tiles of 2 x 3 pixels, three of them used: v = x + 10 y + 100 z.
 fn mosaic(set: impl FnOnce(DataSetBuilder) -> DataSetBuilder) -> DicomFileBuilder {
     let pixel = |column: u16, row: u16| {
@@ -24,11 +28,7 @@ fn expected() -> Samples {
 
 /// Adds the number of slices in a private element.
 fn counted(set: DataSetBuilder) -> DataSetBuilder {
-    set.text(tags::SIEMENS_CREATOR, *b"LO", "SIEMENS MR HEADER").value(
-        tags::MOSAIC_COUNT,
-        *b"US",
-        &3u16.to_le_bytes(),
-    )
+    set.text(SIEMENS_CREATOR, *b"LO", "SIEMENS MR HEADER").value(MOSAIC_COUNT, *b"US", &3u16.to_le_bytes())
 }
 
 #[test]
@@ -74,10 +74,10 @@ fn a_mosaic_that_does_not_say_how_many_slices_it_has_stays_a_picture() {
     assert_eq!(volume.dims(), [4, 6, 1]);
     assert_remark(&volume, "their number is not stated");
     for count in [0u16, 5000, 65535, 17] {
-        let file = mosaic(|set| counted(set).value(tags::MOSAIC_COUNT, *b"US", &count.to_le_bytes()));
+        let file = mosaic(|set| counted(set).value(MOSAIC_COUNT, *b"US", &count.to_le_bytes()));
         assert_eq!(file.load().unwrap().dims(), [4, 6, 1], "{count}");
     }
     // The private element of another manufacturer.
-    let other = mosaic(|set| counted(set).text(tags::SIEMENS_CREATOR, *b"LO", "GEMS_ACQU_01"));
+    let other = mosaic(|set| counted(set).text(SIEMENS_CREATOR, *b"LO", "GEMS_ACQU_01"));
     assert_eq!(other.load().unwrap().dims(), [4, 6, 1]);
 }

@@ -59,11 +59,26 @@ fn phases_that_were_taken_in_turns_are_one_volume() {
 #[test]
 fn every_attribute_that_varies_is_offered() {
     type Attribute = fn(DataSetBuilder, f64) -> DataSetBuilder;
-    let cases: [(Attribute, &str); 8] = [
+    let cases: [(Attribute, &str); 10] = [
         (|set, n| set.text(tags::TEMPORAL_POSITION, *b"IS", &n.to_string()), "temporal position 2"),
         (|set, n| set.text(tags::ECHO_NUMBER, *b"IS", &n.to_string()), "echo 2"),
         (|set, n| set.decimal(tags::TRIGGER_TIME, &(n * 40.0).to_string()), "trigger time 80 ms"),
         (|set, n| set.value(tags::B_VALUE, *b"FD", &(n * 500.0).to_le_bytes()), "b-value 1000"),
+        (
+            |set, n| {
+                let b = if n == 1.0 { "0\\8\\0\\0" } else { "1000001000\\8\\0\\0" };
+                set.text(0x0043_0010, *b"LO", "GEMS_PARM_01").text(0x0043_1039, *b"IS", b)
+            },
+            "b-value 1000",
+        ),
+        (
+            |set, n| {
+                let b = (n * 500.0) as f32;
+                let set = set.text(0x2001_0011, *b"LO", "Philips Imaging DD 001");
+                set.value(0x2001_1103, *b"FL", &b.to_le_bytes())
+            },
+            "b-value 1000",
+        ),
         (|set, n| set.text(tags::CONTENT_TIME, *b"TM", &format!("12000{n}.5")), "created at 12:00:02.500"),
         (|set, n| set.text(tags::ACQUISITION_TIME, *b"TM", &format!("12000{n}")), "acquired at 12:00:02.000"),
         (|set, n| set.decimal(tags::REFERENCE_TIME, &n.to_string()), "reference time 2 ms"),
@@ -165,4 +180,32 @@ fn a_file_says_which_phase_is_meant() {
     let choice = VolumeChoice { frame: Some(0), ..VolumeChoice::default() };
     let volume = load_path(&at.path().join("5"), choice).unwrap();
     assert_eq!(volume.samples().value(0), 0.0, "unless another is asked for");
+}
+
+#[test]
+fn private_b_values_are_those_of_their_creators_only() {
+    let other = |z: u16, b: u16| {
+        slice(f64::from(z), 100 * z + b, |set| {
+            set.text(0x0043_0010, *b"LO", "SOMEBODY ELSE").text(0x0043_1039, *b"IS", &b.to_string())
+        })
+    };
+    let files = [other(0, 0), other(1, 1), other(0, 2), other(1, 3)];
+    let message = load_path(folder(&files).path(), VolumeChoice::default());
+    let message = message.map(|volume| volume.remarks().join("; ")).unwrap_or_else(|error| error.to_string());
+    assert!(!message.contains("b-value"), "{message}");
+    // The standard's element counts where both are there.
+    let both = |z: u16, b: u16| {
+        slice(f64::from(z), 100 * z + b, |set| {
+            set.value(tags::B_VALUE, *b"FD", &f64::from(b).to_le_bytes())
+                .text(0x0043_0010, *b"LO", "GEMS_PARM_01")
+                .text(0x0043_1039, *b"IS", "7\\0")
+        })
+    };
+    let files = [both(0, 0), both(1, 0), both(0, 900), both(1, 900)];
+    let words = ["2 time steps", "1 \"b-value 900\""];
+    assert_refused(
+        load_path(folder(&files).path(), VolumeChoice::default()),
+        LoadErrorKind::BadInput,
+        &words,
+    );
 }

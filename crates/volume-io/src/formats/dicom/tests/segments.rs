@@ -94,6 +94,63 @@ fn masks_of_one_bit_are_a_label_map() {
     }
 }
 
+/// Encodes bytes in runs of one, as DICOM's RLE has them.
+fn run_lengths(bytes: &[u8]) -> Vec<u8> {
+    let mut encoded: Vec<u8> = [1u32, 64].into_iter().flat_map(u32::to_le_bytes).collect();
+    encoded.resize(64, 0);
+    encoded.extend(bytes.iter().flat_map(|&byte| [0, byte]));
+    encoded
+}
+
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    let mut bytes = encoder.finish().unwrap();
+    if !bytes.len().is_multiple_of(2) {
+        bytes.push(0);
+    }
+    bytes
+}
+
+#[test]
+fn masks_are_unpacked_from_every_kind_of_compression() {
+    const ENCAPSULATED: &str = "1.2.840.10008.1.2.1.98";
+    const DEFLATED_FRAMES: &str = "1.2.840.10008.1.2.8.1";
+    let masks = [mask(&[0, 14]), mask(&[1, 2, 7])];
+    let file = segmentation("BINARY", &[(1, "0"), (3, "2")]).bits(1, 1, false);
+    let whole = file.clone().pixels(&bits(&masks)).load().unwrap();
+    let packed = masks.map(|mask| bits(&[mask]));
+    // With a byte for each pixel, as some write run lengths, and with packed bits.
+    let cases: [(&str, [Vec<u8>; 2]); 4] = [
+        (ENCAPSULATED, packed.clone()),
+        (DEFLATED_FRAMES, packed.each_ref().map(|bytes| deflated(bytes))),
+        (RLE, packed.each_ref().map(|bytes| run_lengths(bytes))),
+        (RLE, masks.each_ref().map(|mask| run_lengths(mask))),
+    ];
+    for (syntax, [first, second]) in &cases {
+        let packed = |fragments: &[&[u8]]| DicomFileBuilder { syntax, ..file.clone() }.fragments(fragments);
+        let volume = packed(&[&[], first, second]).load().unwrap();
+        assert_eq!(volume.samples(), whole.samples(), "{syntax}");
+        assert_labels(&volume);
+        for length in 0..first.len() {
+            // A truncated frame is left out, or refused; but for the padding, and where so few bytes are left of a
+            // mask of bytes that they could be packed bits.
+            let is_unnoticed = length + 2 > first.len() || (68..72).contains(&length) && first.len() > 72;
+            let cut = packed(&[&[], &first[..length], second]).load();
+            assert!(is_unnoticed || cut.is_err() || !cut.unwrap().remarks().is_empty(), "{length}");
+        }
+        let huge = packed(&[&[], first, second]).size(65535, 65535).load();
+        assert!(huge.is_err(), "{syntax}");
+    }
+    // Frames of whole numbers, too.
+    let bytes = [10u16, 20, 30, 40, 50, 60].map(u16::to_le_bytes).concat();
+    let file = DicomFileBuilder { syntax: DEFLATED_FRAMES, ..DicomFileBuilder::new(EXPLICIT) };
+    let volume = file.clone().fragments(&[&[], &deflated(&bytes)]).load().unwrap();
+    assert_eq!(*volume.samples(), Samples::U16(vec![10, 20, 30, 40, 50, 60]));
+    let short = file.fragments(&[&[], &deflated(&bytes[..8])]);
+    assert_refused(short.load(), LoadErrorKind::BadInput, &["truncated: it has 8 of 12 bytes", "gdcmconv"]);
+}
+
 #[test]
 fn segments_that_overlap_are_said() {
     let file = segmentation("BINARY", &[(3, "0"), (1, "0"), (1, "2")]).bits(1, 1, false);

@@ -69,6 +69,11 @@ pub(super) fn name_counters<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec
     words.iter().map(counter).collect()
 }
 
+/// Number with the word before it, as a name for the user: `ch01`.
+pub(super) fn counter_label(text: &str, digits: &str) -> String {
+    counter_word(text).unwrap_or_default() + digits
+}
+
 fn counter_of_word(word: &str) -> Option<NameCounter> {
     if SLICES.contains(&word) {
         Some(NameCounter::Slice)
@@ -142,6 +147,13 @@ mod tests {
         }
         assert_eq!(name_counters(["exp_w", "_s", "_t"]), [Channel, Place, Time]);
         assert_eq!(name_counters(["r", "c", "f", "p", "-ch"]), [Place, Place, Place, Number, Channel]);
+    }
+
+    #[test]
+    fn numbers_are_named_with_their_words() {
+        for (text, label) in [("exp_ch", "ch01"), ("(wv ", "wv01"), ("brainT", "t01"), ("", "01")] {
+            assert_eq!(counter_label(text, "01"), label, "{text:?}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::counters::{NameCounter, name_counters, slice_column};
+use super::counters::{NameCounter, counter_label, name_counters, slice_column};
 use super::picture::SliceFormat;
 
 /// Files that are slices of one volume, as indices into the list of all.
@@ -15,6 +15,27 @@ pub(super) struct SliceGroup {
     pub(super) files: Vec<usize>,
     /// Remark about gaps in the numbering.
     pub(super) gap: Option<String>,
+    /// Time and channel; `None` where the names count neither.
+    pub(super) recorded: Option<RecordedStack>,
+}
+
+/// Stack of slices that were recorded at one time and in one channel, as the names of its files tell.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct RecordedStack {
+    /// Name with `#` for slice, time and channel, which all stacks of a recording have in common.
+    pub(super) recording: String,
+    pub(super) time: CounterValue,
+    pub(super) channel: CounterValue,
+    /// Number of each slice, in digits without leading zeros.
+    pub(super) numbers: Vec<String>,
+}
+
+/// Value of a counter in a name; empty where the name has no such counter.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct CounterValue {
+    pub(super) digits: String,
+    /// Text for the user: the digits with the word before them.
+    pub(super) label: String,
 }
 
 /// File name split into texts and the digits between them.
@@ -23,6 +44,8 @@ struct NamePieces {
     digits: Vec<String>,
     /// Meaning of each of the numbers.
     counters: Vec<NameCounter>,
+    /// Each number with the word before it.
+    labels: Vec<String>,
 }
 
 impl NamePieces {
@@ -44,8 +67,18 @@ impl NamePieces {
             was_digit = is_digit;
         }
         let counters = name_counters(texts.iter().take(digits.len()).map(String::as_str));
+        let labels = texts.iter().zip(&digits).map(|(text, digits)| counter_label(text, digits)).collect();
         let texts = texts.iter().map(|text| text.to_lowercase()).collect();
-        Self { texts, digits, counters }
+        Self { texts, digits, counters, labels }
+    }
+
+    /// Value of those columns that count the same, together.
+    fn value(&self, columns: &[usize]) -> CounterValue {
+        let join = |pieces: &[String]| {
+            let pieces: Vec<&str> = columns.iter().map(|&column| pieces[column].as_str()).collect();
+            pieces.join("_")
+        };
+        CounterValue { digits: join(&self.digits), label: join(&self.labels) }
     }
 
     /// Returns the name with `#` in place of those digits that count.
@@ -99,7 +132,7 @@ pub(super) fn group_slices<'a>(files: impl IntoIterator<Item = (&'a Path, SliceF
         let counters = members.first().map_or(&[][..], |&member| &files[member].0.counters);
         let Some(counted) = slice_column(&varying, counters) else {
             let name = members.first().map_or(String::new(), |&member| files[member].0.name(|_| false));
-            groups.push(SliceGroup { name, kind, files: members, gap: None });
+            groups.push(SliceGroup { name, kind, files: members, gap: None, recorded: None });
             continue;
         };
         let parts = group_by_key(members.iter().map(|&member| {
@@ -121,18 +154,35 @@ pub(super) fn group_slices<'a>(files: impl IntoIterator<Item = (&'a Path, SliceF
         } else {
             vec![(varying.clone(), members)]
         };
+        // Times and channels beside the slices; what counts the slices is neither.
+        let columns_of = |kind: NameCounter| -> Vec<usize> {
+            let is_of_kind = |column: &usize| is_split && counters[*column] == kind;
+            let other = varying.iter().copied().filter(is_of_kind);
+            if counters[counted] == kind { Vec::new() } else { other.collect() }
+        };
+        let [times, channels] = [NameCounter::Time, NameCounter::Channel].map(columns_of);
         for (counts, part) in parts {
-            let name = files[part[0]].0.name(|column| counts.contains(&column));
-            let numbers = part.iter().map(|&member| digits(member)[counted].parse().ok());
-            let gap = if counts.len() == 1 { gap_remark(&numbers.collect::<Vec<_>>()) } else { None };
-            groups.push(SliceGroup { name, kind, files: part, gap });
+            let pieces = &files[part[0]].0;
+            let name = pieces.name(|column| counts.contains(&column));
+            let of_part = |member: &usize| digits(*member)[counted].as_str();
+            let numbers: Vec<&str> = part.iter().map(of_part).collect();
+            let gap = if counts.len() == 1 { gap_remark(&numbers) } else { None };
+            let recorded = (!times.is_empty() || !channels.is_empty()).then(|| RecordedStack {
+                recording: pieces.name(|column| {
+                    column == counted || times.contains(&column) || channels.contains(&column)
+                }),
+                time: pieces.value(&times),
+                channel: pieces.value(&channels),
+                numbers: numbers.iter().map(|digits| digits.trim_start_matches('0').to_owned()).collect(),
+            });
+            groups.push(SliceGroup { name, kind, files: part, gap, recorded });
         }
     }
     groups
 }
 
 /// Groups items by key, in the order in which the keys first occur.
-fn group_by_key<K: Clone + Eq + std::hash::Hash>(
+pub(super) fn group_by_key<K: Clone + Eq + std::hash::Hash>(
     things: impl IntoIterator<Item = (K, usize)>,
 ) -> Vec<(K, Vec<usize>)> {
     let mut places: HashMap<K, usize> = HashMap::new();
@@ -148,9 +198,11 @@ fn group_by_key<K: Clone + Eq + std::hash::Hash>(
 }
 
 /// Remark about missing numbers in a sequence of equal steps.
-fn gap_remark(numbers: &[Option<u64>]) -> Option<String> {
+pub(super) fn gap_remark(numbers: &[&str]) -> Option<String> {
+    // Without digits it is 0, whose zeros were taken off; some numbers are too long for a count.
+    let number = |digits: &str| if digits.is_empty() { Some(0) } else { digits.parse::<u64>().ok() };
     let steps = numbers.windows(2).filter_map(|pair| {
-        let (before, after) = (pair[0]?, pair[1]?);
+        let (before, after) = (number(pair[0])?, number(pair[1])?);
         Some((before, after, after.checked_sub(before)?))
     });
     let usual = steps.clone().map(|(_, _, step)| step).filter(|&step| step > 0).min()?;
@@ -283,12 +335,11 @@ mod tests {
 
     #[test]
     fn gaps_are_found_and_equal_steps_are_none() {
-        let numbers =
-            |numbers: &[u64]| gap_remark(&numbers.iter().map(|&number| Some(number)).collect::<Vec<_>>());
-        assert_eq!(numbers(&[1, 2, 3]), None);
-        assert_eq!(numbers(&[10, 20, 30]), None);
-        assert_eq!(numbers(&[7]), None);
-        assert!(numbers(&[1, 2, 5, 6, 9]).unwrap().contains("2 and 5, and at 1 more places"));
-        assert_eq!(gap_remark(&[Some(1), None, Some(9)]), None, "a number that is too long for a count");
+        assert_eq!(gap_remark(&["1", "2", "3"]), None);
+        assert_eq!(gap_remark(&["010", "020", "030"]), None);
+        assert_eq!(gap_remark(&["", "1"]), None);
+        assert_eq!(gap_remark(&["7"]), None);
+        assert!(gap_remark(&["1", "2", "5", "6", "9"]).unwrap().contains("2 and 5, and at 1 more places"));
+        assert_eq!(gap_remark(&["1", &"9".repeat(40), "9"]), None, "a number that is too long for a count");
     }
 }

@@ -5,6 +5,7 @@
 mod counters;
 mod groups;
 mod picture;
+mod recordings;
 #[cfg(test)]
 mod tests;
 
@@ -19,14 +20,16 @@ use crate::LoadOptions;
 use crate::reading::input::{InputFile, stem};
 use crate::reading::placement::{GridPlacement, VolumeParts};
 use crate::reading::reader::{FileStart, FormatReader, VolumeSource};
+use crate::reading::samples::alloc_zeroed;
 use crate::reading::voxels::ValueMapping;
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{
-    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume, VolumeOffer,
-    quoted,
+    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume, VolumeChoice,
+    VolumeOffer, quoted,
 };
 use groups::{SliceGroup, group_slices, name_pattern};
 use picture::{PictureHeader, SliceFormat, read_picture};
+use recordings::{SliceSeries, join_recordings};
 
 /// Maximum number of series whose sizes are looked up for the list: as many as a screen has lines for.
 const MAX_LOOKED_UP: usize = 24;
@@ -49,7 +52,14 @@ fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
             "copy the file again",
         ));
     };
-    read_stack(attempt, kind, &[path.to_owned()], stem(path), Vec::new(), options, control)
+    options.choice.record_format(kind.name(false));
+    let stack = PictureStack {
+        kind,
+        files: vec![Some(path.to_owned())],
+        name: stem(path),
+        placement: GridPlacement::unknown(),
+    };
+    stack.read(attempt, options, control)
 }
 
 /// Loads the volume whose slices are among the files of a folder, in natural order; `None` where none is a picture.
@@ -76,31 +86,53 @@ pub(crate) fn load(
     {
         return load_tiff(set, options, control).map(Some);
     }
-    let mut groups = group_slices(pictures.iter().copied());
+    // Without the recorder: what is looked at here is not what is opened.
+    let for_sizes = LoadOptions { choice: VolumeChoice::default(), ..options.clone() };
+    let size_of = |file: usize| {
+        let (path, kind) = pictures[file];
+        let header = read_picture(slice_attempt(path), kind, &for_sizes, control, false);
+        header.ok().map(|(header, _)| header.size)
+    };
+    let mut series = join_recordings(group_slices(pictures.iter().copied()), size_of);
+    control.check()?;
     let mut remarks = Vec::new();
     if options.choice.series.is_none() {
-        drop_stray_pictures(&mut groups, &mut remarks);
+        drop_stray_pictures(&mut series, &mut remarks);
     }
-    if groups.is_empty() {
+    if series.is_empty() {
         return Ok(None);
     }
-    let is_one = groups.len() == 1;
-    let offers = offers(&groups, &pictures, options, control);
-    let group = groups.swap_remove(attempt.resolve_choice(&options.choice, FileDimension::Series, offers)?);
+    let is_one = series.len() == 1;
+    let offers = offers(&series, size_of);
+    let chosen = attempt.resolve_choice(&options.choice, FileDimension::Series, offers)?;
+    let SliceSeries { group, recording } = series.swap_remove(chosen);
     remarks.extend(damaged_slices_remark(&others, &group, &pictures));
-    let members: Vec<PathBuf> = group.files.iter().map(|&file| pictures[file].0.to_owned()).collect();
     if group.kind == SliceFormat::Tiff
-        && let [one] = members.as_slice()
+        && let [one] = group.files.as_slice()
     {
-        let volume = load_tiff(one, options, control)?;
+        let volume = load_tiff(pictures[*one].0, options, control)?;
         let remarks = volume.remarks().iter().cloned().chain(remarks).collect();
         return Ok(Some(volume.with_remarks(remarks)));
     }
+    options.choice.record_format(group.kind.name(true));
     remarks.extend(group.gap);
+    let mut placement = GridPlacement::unknown();
+    let files = match recording {
+        Some(recording) => {
+            let stack = recording.choose(attempt, &options.choice)?;
+            remarks.extend(stack.remarks);
+            stack.choice.add_time_remark(&mut placement);
+            stack.files
+        }
+        None => group.files.into_iter().map(Some).collect(),
+    };
+    placement.remarks.splice(0..0, remarks);
     let folder = attempt.path.file_name().unwrap_or_default().to_string_lossy();
     let name =
         if is_one && !folder.is_empty() { sanitised(&folder, 120) } else { sanitised(&group.name, 120) };
-    read_stack(attempt, group.kind, &members, name, remarks, options, control).map(Some)
+    let path_of = |file: Option<usize>| file.map(|file| pictures[file].0.to_owned());
+    let files = files.into_iter().map(path_of).collect();
+    PictureStack { kind: group.kind, files, name, placement }.read(attempt, options, control).map(Some)
 }
 
 fn slice_attempt(path: &Path) -> LoadContext<'_> {
@@ -146,42 +178,34 @@ fn has_picture_extension(path: &Path) -> bool {
 }
 
 /// Leaves out single pictures beside the slices of one volume: previews and the like.
-fn drop_stray_pictures(groups: &mut Vec<SliceGroup>, remarks: &mut Vec<String>) {
+fn drop_stray_pictures(series: &mut Vec<SliceSeries>, remarks: &mut Vec<String>) {
     // With fewer slices, strays cannot be distinguished from them.
     const MIN_SLICES: usize = 3;
-    let is_stray = |group: &SliceGroup| group.files.len() == 1;
-    let stacks = groups.iter().filter(|group| !is_stray(group)).count();
-    let is_clear = stacks == 1 && groups.iter().any(|group| group.files.len() >= MIN_SLICES);
-    if is_clear && groups.len() > 1 {
-        remarks.push(format!("{} single pictures beside the slices are left out", groups.len() - 1));
-        groups.retain(|group| !is_stray(group));
+    let is_stray = |series: &SliceSeries| series.group.files.len() == 1;
+    let stacks = series.iter().filter(|series| !is_stray(series)).count();
+    let is_clear = stacks == 1 && series.iter().any(|series| series.group.files.len() >= MIN_SLICES);
+    if is_clear && series.len() > 1 {
+        remarks.push(format!("{} single pictures beside the slices are left out", series.len() - 1));
+        series.retain(|series| !is_stray(series));
     }
 }
 
 /// List of the volumes to choose from, where there are several.
-fn offers(
-    groups: &[SliceGroup],
-    pictures: &[(&Path, SliceFormat)],
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Vec<VolumeOffer> {
-    let dims = |group: &SliceGroup| {
-        let &first = group.files.first()?;
-        let (path, kind) = *pictures.get(first)?;
-        let (PictureHeader { size: [width, height], .. }, _) =
-            read_picture(slice_attempt(path), kind, options, control, false).ok()?;
+fn offers(series: &[SliceSeries], size_of: impl Fn(usize) -> Option<[u64; 2]>) -> Vec<VolumeOffer> {
+    let dims = |SliceSeries { group, recording }: &SliceSeries| {
+        if let Some(recording) = recording {
+            return Some(recording.dims());
+        }
+        let [width, height] = size_of(*group.files.first()?)?;
         Some([width, height, group.files.len() as u64])
     };
-    let is_long = groups.len() > MAX_LOOKED_UP || groups.len() == 1;
-    groups
-        .iter()
-        .enumerate()
-        .map(|(at, group)| VolumeOffer {
-            key: at.to_string(),
-            name: sanitised(&group.name, 80),
-            dims: if is_long { None } else { dims(group) },
-        })
-        .collect()
+    let is_long = series.len() > MAX_LOOKED_UP || series.len() == 1;
+    let offer = |(at, series): (usize, &SliceSeries)| VolumeOffer {
+        key: at.to_string(),
+        name: sanitised(&series.group.name, 80),
+        dims: if is_long { None } else { dims(series) },
+    };
+    series.iter().enumerate().map(offer).collect()
 }
 
 /// Returns the first file if its metadata describe the whole set of files: it is read in place of all.
@@ -197,50 +221,72 @@ fn tiff_set_file<'a>(
 
 fn load_tiff(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let attempt = slice_attempt(path);
+    options.choice.record_format(tiff::READER.name);
     let mut input = InputFile::open(attempt)?;
     let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
     (tiff::READER.load)(VolumeSource { path, input, start, options, control })
 }
 
-/// Reads the volume from slices of one format.
-fn read_stack(
-    attempt: LoadContext<'_>,
+/// Stack of slices of one format, each in a file of its own.
+struct PictureStack {
     kind: SliceFormat,
-    files: &[PathBuf],
+    /// Files in the order of slices, at least one; a slice without a file is empty.
+    files: Vec<Option<PathBuf>>,
     name: String,
-    remarks: Vec<String>,
-    options: &LoadOptions,
-    control: &LoadControl,
-) -> Result<Volume, LoadError> {
-    let look_at =
-        |path: &PathBuf, is_decoded| read_picture(slice_attempt(path), kind, options, control, is_decoded);
-    let headers: Vec<PictureHeader> = files
-        .par_iter()
-        .map(|path| look_at(path, false).map(|(header, _)| header))
-        .collect::<Result<_, _>>()?;
-    let (Some(&model), Some(first)) = (headers.first(), files.first()) else {
-        return Err(attempt.bad_input_error("files", "there is no slice", "open a single file"));
-    };
-    for (header, path) in headers.iter().zip(files) {
-        check_slices_match(attempt, [(&model, first), (header, path)])?;
-    }
-    let stored = model.stored;
-    let dims = [model.size[0], model.size[1], files.len() as u64];
-    let extent = GridExtent::checked(attempt, "files", dims, stored.voxel_type(), options.limits(control))?;
-    let voxels = read_slices(attempt, &stored, extent, &ValueMapping::identity(None), control, |some| {
-        some.par_iter()
-            .map(|&slice| {
-                let path = &files[slice];
+    placement: GridPlacement,
+}
+
+impl PictureStack {
+    /// Reads the volume.
+    ///
+    /// # Errors
+    /// `BadInput` where slices differ or are broken; `Limit` over the budget.
+    fn read(
+        self,
+        attempt: LoadContext<'_>,
+        options: &LoadOptions,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        let Self { kind, files, name, mut placement } = self;
+        let look_at = |path: &PathBuf, is_decoded| {
+            read_picture(slice_attempt(path), kind, options, control, is_decoded)
+        };
+        let paths: Vec<&PathBuf> = files.iter().flatten().collect();
+        let headers: Vec<PictureHeader> = paths
+            .par_iter()
+            .map(|path| look_at(path, false).map(|(header, _)| header))
+            .collect::<Result<_, _>>()?;
+        let (Some(&model), Some(&first)) = (headers.first(), paths.first()) else {
+            return Err(attempt.bad_input_error("files", "there is no slice", "open a single file"));
+        };
+        for (header, path) in headers.iter().zip(&paths) {
+            check_slices_match(attempt, [(&model, first), (header, path)])?;
+        }
+        let stored = model.stored;
+        let dims = [model.size[0], model.size[1], files.len() as u64];
+        let extent =
+            GridExtent::checked(attempt, "files", dims, stored.voxel_type(), options.limits(control))?;
+        let empty = || {
+            let bytes = model.size[0].saturating_mul(model.size[1]).saturating_mul(stored.voxel_bytes());
+            alloc_zeroed(usize::try_from(bytes).unwrap_or(usize::MAX)).map_err(|_no_memory| {
+                let why = format!("there is not enough memory for {bytes} bytes");
+                attempt.limit_error("files", why, "close other programs or load a smaller volume")
+            })
+        };
+        let meant = ValueMapping::identity(None);
+        let voxels = read_slices(attempt, &stored, extent, &meant, control, |some| {
+            let decode = |&slice: &usize| {
+                let Some(path) = &files[slice] else { return empty() };
                 let (header, bytes) = look_at(path, true)?;
                 check_slices_match(attempt, [(&model, first), (&header, path)])?;
                 Ok(bytes)
-            })
-            .collect()
-    })?;
-    let mut placement = GridPlacement::unknown();
-    placement.remarks = remarks;
-    placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
-    VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }.into_volume(attempt)
+            };
+            some.par_iter().map(decode).collect()
+        })?;
+        placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
+        VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
+            .into_volume(attempt, control)
+    }
 }
 
 /// Checks that two slices have equal size and type, and that each file holds only one.

@@ -63,6 +63,20 @@ impl SliceFormat {
         Ok(Self::detect(&start))
     }
 
+    /// Name of the format, of one picture or of a folder of them.
+    pub(super) fn name(self, is_folder: bool) -> &'static str {
+        match (self, is_folder) {
+            (Self::Png, false) => "PNG",
+            (Self::Jpeg, false) => "JPEG",
+            (Self::Bmp, false) => "BMP",
+            (Self::Tiff, false) => "TIFF",
+            (Self::Png, true) => "folder of PNG pictures",
+            (Self::Jpeg, true) => "folder of JPEG pictures",
+            (Self::Bmp, true) => "folder of BMP pictures",
+            (Self::Tiff, true) => "folder of TIFF pictures",
+        }
+    }
+
     fn format(self) -> Option<ImageFormat> {
         match self {
             Self::Png => Some(ImageFormat::Png),
@@ -97,7 +111,7 @@ pub(super) fn read_picture(
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     control.check()?;
     if let Some(format) = kind.format() {
-        return read_image(attempt, format, options, is_decoded);
+        return read_image(attempt, format, options, is_decoded, control);
     }
     let picture = tiff::SingleSlice::open(attempt, control)?;
     let (size, pages) = (picture.size(), picture.pages);
@@ -163,6 +177,7 @@ fn read_image(
     format: ImageFormat,
     options: &LoadOptions,
     is_decoded: bool,
+    control: &LoadControl,
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     let mut input = InputFile::open(attempt)?;
     let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
@@ -183,7 +198,7 @@ fn read_image(
     if input.len > budget {
         return Err(too_large(input.len));
     }
-    let witness = FileChangeGuard::new(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input, control)?;
     let fault = |error: ImageError| match error {
         ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit_error(
             "size",

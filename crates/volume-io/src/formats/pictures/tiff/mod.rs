@@ -5,7 +5,6 @@
 //! `ImageJ`, LSM. World axes are those of the grid: TIFF has no anatomical orientation.
 
 mod file;
-mod gaps;
 mod messages;
 mod metadata;
 mod single;
@@ -64,7 +63,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let description = tiff.text_entry(tag::DESCRIPTION, ome::MAX_XML_BYTES).unwrap_or_default();
     let choice = &options.choice;
     let stack = if ome::is_ome(&description) {
-        ome::stack(attempt, &tiff, &description, choice)?
+        ome::stack(attempt, &tiff, &description, choice, control)?
     } else if imagej::is_imagej(&description) {
         imagej::stack(attempt, &mut tiff, &description, choice)?
     } else if let Some(info) = lsm::LsmInfo::read(&mut tiff) {
@@ -82,13 +81,13 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
 fn load_companion(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, options, control, .. } = source;
     let attempt = LoadContext { operation: "read the OME-XML of the volume", path };
-    let xml = ome::companion_text(attempt)?;
+    let xml = ome::companion_text(attempt, control)?;
     let first = ome::first_file(attempt, &xml, &options.choice)?;
     let of_first = LoadContext { operation: WHAT, path: &first };
     let input = InputFile::open(of_first)?;
-    let witness = FileChangeGuard::new(of_first, &input)?;
+    let witness = FileChangeGuard::new(of_first, &input, control)?;
     let tiff = TiffFile::open(of_first, input, control)?;
-    let stack = ome::stack(of_first, &tiff, &xml, &options.choice)?;
+    let stack = ome::stack(of_first, &tiff, &xml, &options.choice, control)?;
     witness.check_unchanged(of_first, volume(of_first, tiff, stack, options, control))
 }
 

@@ -4,11 +4,10 @@ use super::file::TiffFile;
 use super::file::page::{TiffPage, tag};
 use super::metadata::ome;
 use super::stack::{check_page_bytes, page_encoding};
-use super::undescribed::usable_pages;
+use super::undescribed::UsablePages;
 use crate::LoadOptions;
 use crate::reading::input::InputFile;
 use crate::reading::number::VoxelEncoding;
-use crate::reading::read_files::record_read;
 use chiaroscuro_volume::{LoadContext, LoadControl, LoadError};
 
 /// Single page of a file, with the file.
@@ -27,7 +26,7 @@ impl SingleSlice {
     /// As the reader of whole volumes.
     pub(crate) fn open(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
         let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
-        let pages = usable_pages(&tiff, &mut Vec::new());
+        let UsablePages { pages, .. } = UsablePages::new(&tiff);
         let Some(&number) = pages.first() else {
             return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
         };
@@ -69,7 +68,7 @@ impl SingleSlice {
         attempt: LoadContext<'_>,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
-        record_read(attempt.path);
+        control.record_read(attempt.path);
         let packed = self.tiff.fetch(attempt, self.number, None, control)?;
         packed.unpack(attempt, self.number, control)
     }

@@ -14,10 +14,7 @@ use crate::reading::placement::{GridPlacement, VolumeParts};
 use crate::reading::rescale::rescale;
 use crate::reading::voxels::ValueMapping;
 use crate::{Endian, LoadOptions};
-use chiaroscuro_volume::{
-    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume, VolumeChoice,
-    VolumeOffer,
-};
+use chiaroscuro_volume::{GridExtent, LoadContext, LoadControl, LoadError, ValueMetadata, Volume};
 
 /// Bytes of compressed pages that are read before they are decoded. Compressed pages are longer than their pixels
 /// only by mistake, or where many pages share the same bytes.
@@ -46,72 +43,6 @@ pub(super) struct TiffStack {
     pub(super) scale: [f64; 2],
 }
 
-/// Numbers of channels and time steps in a file.
-pub(super) struct ChannelsAndTimes {
-    pub(super) dims: [u64; 3],
-    pub(super) channels: usize,
-    pub(super) channel_names: Vec<String>,
-    pub(super) frames: usize,
-}
-
-/// Chosen channel and time step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ChosenChannelAndTime {
-    pub(super) channel: usize,
-    pub(super) frame: usize,
-    /// True if each time step is one slice, and all together are shown as a volume.
-    pub(super) time_is_depth: bool,
-}
-
-impl ChannelsAndTimes {
-    /// Selects the channel and the time step by the user's choice, where there are several.
-    pub(super) fn choose(
-        &self,
-        attempt: LoadContext<'_>,
-        choice: &VolumeChoice,
-    ) -> Result<ChosenChannelAndTime, LoadError> {
-        let [width, height, slices] = self.dims;
-        // A time series of one slice is a volume only with time as its depth.
-        let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
-        let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
-        let offers = |count: usize| {
-            let name = |at: usize| self.channel_names.get(at).map_or("", String::as_str);
-            (0..count).map(move |at| VolumeOffer::with_number(at, name(at), dims)).collect()
-        };
-        let channel = attempt.resolve_choice(choice, FileDimension::Channel, offers(self.channels))?;
-        let frame = if is_time_depth {
-            0
-        } else {
-            let frames = (0..self.frames).map(|at| VolumeOffer::with_number(at, "", dims)).collect();
-            attempt.resolve_choice(choice, FileDimension::Frame, frames)?
-        };
-        Ok(ChosenChannelAndTime { channel, frame, time_is_depth: is_time_depth })
-    }
-}
-
-impl ChosenChannelAndTime {
-    /// Time step and slice index of each slice of the volume.
-    pub(super) fn slices(&self, slices: usize, frames: usize) -> Vec<[usize; 2]> {
-        if self.time_is_depth {
-            (0..frames).map(|frame| [frame, 0]).collect()
-        } else {
-            (0..slices).map(|slice| [self.frame, slice]).collect()
-        }
-    }
-
-    /// Adds the remark on time as depth to a placement; the scale along it is unknown.
-    pub(super) fn add_time_remark(&self, placement: &mut GridPlacement) {
-        if self.time_is_depth {
-            let remark = "each time step is one slice: they are stacked in the order of time";
-            placement.remarks.push(remark.to_owned());
-            let axes = placement.world_from_index.matrix3;
-            let flat = GridPlacement::from_spacing([1.0, axes.y_axis.length() / axes.x_axis.length(), 1.0]);
-            placement.world_from_index = flat.world_from_index;
-            placement.is_scale_known = false;
-        }
-    }
-}
-
 /// Files of a stack: the first, and one of the others open at a time.
 struct TiffStackFiles<'a> {
     attempt: LoadContext<'a>,
@@ -135,7 +66,7 @@ impl TiffStackFiles<'_> {
             Some((open, tiff, witness)) if open == number => (tiff, witness),
             _ => {
                 let input = InputFile::open(attempt)?;
-                let witness = FileChangeGuard::new(attempt, &input)?;
+                let witness = FileChangeGuard::new(attempt, &input, self.control)?;
                 (TiffFile::open(attempt, input, self.control)?, witness)
             }
         };
@@ -222,7 +153,7 @@ impl TiffStack {
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt)
+        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
     }
 }
 

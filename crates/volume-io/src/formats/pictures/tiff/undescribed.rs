@@ -2,30 +2,47 @@
 
 use super::file::TiffFile;
 use super::file::page::SampleMeaning;
-use super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
+use super::stack::{TiffSlice, TiffStack};
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
 use crate::reading::input::stem;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_volume::{LoadContext, LoadError, ValueMetadata, VolumeChoice};
 
-/// Indices of the pages that are slices: those that match the first page that is not a thumbnail or mask. Adds
-/// remarks on the pages that are left out.
-pub(super) fn usable_pages(tiff: &TiffFile, remarks: &mut Vec<String>) -> Vec<usize> {
-    let pages = &tiff.pages;
-    let all_aside = pages.iter().all(|page| page.is_auxiliary);
-    let is_meant = |page: usize| all_aside || !pages[page].is_auxiliary;
-    let Some(first) = (0..pages.len()).find(|&page| is_meant(page)) else { return Vec::new() };
-    let (meant, aside): (Vec<usize>, Vec<usize>) = (0..pages.len()).partition(|&page| is_meant(page));
-    let (like, unlike): (Vec<usize>, Vec<usize>) =
-        meant.into_iter().partition(|&page| pages[page].matches(&pages[first]));
-    for (left_out, why) in [
-        (aside, "are left out: they are masks or smaller versions of others"),
-        (unlike, "are left out: their size or sample type differs from the first"),
-    ] {
-        if !left_out.is_empty() {
-            remarks.push(format!("{} of {} pages {why}", left_out.len(), pages.len()));
+/// Pages that are slices: those that match the first page that is not a thumbnail or mask.
+pub(super) struct UsablePages {
+    /// Their indices in the file.
+    pub(super) pages: Vec<usize>,
+    /// Remark on masks and smaller versions that are left out.
+    pub(super) auxiliary_remark: Option<String>,
+    /// Remark on pages of another kind that are left out.
+    pub(super) mismatch_remark: Option<String>,
+}
+
+impl UsablePages {
+    /// Selects the pages of a file.
+    pub(super) fn new(tiff: &TiffFile) -> Self {
+        let pages = &tiff.pages;
+        let all_aside = pages.iter().all(|page| page.is_auxiliary);
+        let is_meant = |page: usize| all_aside || !pages[page].is_auxiliary;
+        let (meant, aside): (Vec<usize>, Vec<usize>) = (0..pages.len()).partition(|&page| is_meant(page));
+        let is_like_first = |&page: &usize| pages[page].matches(&pages[meant[0]]);
+        let (like, unlike): (Vec<usize>, Vec<usize>) = meant.iter().copied().partition(is_like_first);
+        let remark = |left_out: &[usize], why: &str| {
+            (!left_out.is_empty())
+                .then(|| format!("{} of {} pages are left out: {why}", left_out.len(), pages.len()))
+        };
+        Self {
+            auxiliary_remark: remark(&aside, "they are masks or smaller versions of others"),
+            mismatch_remark: remark(&unlike, "their size or sample type differs from the first"),
+            pages: like,
         }
     }
-    like
+
+    /// Takes the indices, and adds the remarks on the pages that are left out.
+    pub(super) fn with_remarks(self, remarks: &mut Vec<String>) -> Vec<usize> {
+        remarks.extend(self.auxiliary_remark.into_iter().chain(self.mismatch_remark));
+        self.pages
+    }
 }
 
 /// Builds the stack of a file without further metadata.
@@ -35,7 +52,7 @@ pub(super) fn stack_of_pages(
     choice: &VolumeChoice,
 ) -> Result<TiffStack, LoadError> {
     let mut placement = GridPlacement::unknown();
-    let pages = usable_pages(tiff, &mut placement.remarks);
+    let pages = UsablePages::new(tiff).with_remarks(&mut placement.remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
         return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
     };
@@ -45,6 +62,7 @@ pub(super) fn stack_of_pages(
         channels: if is_channels { first.samples } else { 1 },
         channel_names: Vec::new(),
         frames: 1,
+        frame_names: Vec::new(),
     };
     let chosen = steps.choose(attempt, choice)?;
     Ok(TiffStack {

@@ -15,11 +15,11 @@ mod shapes;
 mod tests;
 
 use std::io;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::bytes::RawBytes;
 use super::name_hints::RawNameHints;
 use autocorrelation::LagDifferences;
+use chiaroscuro_volume::CancelToken;
 pub use evidence::{LayoutEvidence, LayoutProposal};
 use number_candidates::NumberCandidate;
 pub(super) use numbers::for_each_value;
@@ -35,14 +35,14 @@ const MAX_CANDIDATES: usize = 4;
 /// Maximum cost of an interpretation, relative to the best.
 const MAX_RELATIVE_COST: f64 = 1.6;
 
-/// Proposes layouts of a file, most likely first; empty if `stop` was set meanwhile.
+/// Proposes layouts of a file, most likely first; empty if `cancel` was cancelled meanwhile.
 ///
 /// # Errors
 /// When the file cannot be read.
 pub fn propose_layouts(
     bytes: &mut RawBytes,
     said: RawNameHints,
-    stop: &AtomicBool,
+    cancel: &CancelToken,
 ) -> io::Result<Vec<LayoutProposal>> {
     if bytes.is_empty() {
         return Ok(Vec::new());
@@ -52,13 +52,13 @@ pub fn propose_layouts(
     let mut found: Vec<LayoutProposal> = Vec::new();
     let best = codes.first().map_or(0.0, |code| code.cost);
     for code in codes.iter().take(MAX_CANDIDATES).filter(|code| code.cost <= MAX_RELATIVE_COST * best) {
-        if stop.load(Ordering::Relaxed) {
+        if cancel.is_cancelled() {
             return Ok(Vec::new());
         }
         let size = RawFileLength::new(bytes, code);
         // Unaligned numbers count only where they are by far the best.
         if found.is_empty() || size.fits_usual_header() {
-            found.extend(proposals_for_candidate(bytes, &spots, code, said, stop)?);
+            found.extend(proposals_for_candidate(bytes, &spots, code, said, cancel)?);
         }
     }
     found.sort_by(|a, b| b.evidence.score.total_cmp(&a.evidence.score));
@@ -74,7 +74,7 @@ fn proposals_for_candidate(
     spots: &SampleBlocks,
     code: &NumberCandidate,
     said: RawNameHints,
-    stop: &AtomicBool,
+    cancel: &CancelToken,
 ) -> io::Result<Vec<LayoutProposal>> {
     let size = RawFileLength::new(bytes, code);
     let lags = LagDifferences::new(bytes, spots, code)?;
@@ -83,7 +83,7 @@ fn proposals_for_candidate(
     let mut shapes: Vec<ScoredShape> = Vec::new();
     for row in rows {
         shapes.extend(shapes::slices(bytes, &size, &lags, row, &agreeing, said)?);
-        if stop.load(Ordering::Relaxed) {
+        if cancel.is_cancelled() {
             return Ok(Vec::new());
         }
     }

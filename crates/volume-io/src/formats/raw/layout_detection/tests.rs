@@ -92,7 +92,7 @@ fn write_case(volume: &Volume, case: &DetectionCase) -> Vec<u8> {
 }
 
 fn found(bytes: Vec<u8>, said: RawNameHints) -> Vec<LayoutProposal> {
-    propose_layouts(&mut RawBytes::from(bytes), said, &AtomicBool::new(false)).expect("bytes in memory")
+    propose_layouts(&mut RawBytes::from(bytes), said, &CancelToken::new()).expect("bytes in memory")
 }
 
 fn is_true(layout: &RawLayout, case: &DetectionCase) -> bool {
@@ -222,9 +222,11 @@ fn long_files_are_only_looked_into() {
     file.as_file().set_len(2048 * 2048 * 1024 * 2).unwrap();
     let mut bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact(), bytes.is_in_memory()), (8 << 30, true, false));
-    let found = propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(false)).unwrap();
+    let found = propose_layouts(&mut bytes, RawNameHints::default(), &CancelToken::new()).unwrap();
     assert!(found.iter().all(|proposal| proposal.layout.file_bytes() == Some(8 << 30)));
-    assert_eq!(propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(true)).unwrap(), []);
+    let cancel = CancelToken::new();
+    cancel.cancel();
+    assert_eq!(propose_layouts(&mut bytes, RawNameHints::default(), &cancel).unwrap(), []);
 }
 
 #[test]
@@ -244,7 +246,7 @@ fn of_compressed_files_the_start_is_looked_at() {
     encoder.finish().unwrap();
     let mut bytes = RawBytes::open(file.path()).unwrap();
     assert_eq!((bytes.length(), bytes.is_exact()), (48 * 40 * 36 * 2, true));
-    let found = propose_layouts(&mut bytes, RawNameHints::default(), &AtomicBool::new(false)).unwrap();
+    let found = propose_layouts(&mut bytes, RawNameHints::default(), &CancelToken::new()).unwrap();
     assert!(is_true(&found[0].layout, &case), "{found:#?}");
     // Longer than the part that is inflated: its trailer gives the length.
     let mut file = tempfile::NamedTempFile::new().unwrap();

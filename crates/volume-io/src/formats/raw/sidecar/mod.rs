@@ -77,7 +77,7 @@ fn load(mut source: VolumeSource<'_>, parse: DescriptionParser) -> Result<Volume
     let attempt = LoadContext { operation: "read the RAW volume", path: &data_path };
     let form = with_overrides(attempt, form, &source.options.raw)?;
     let mut input = InputFile::open(attempt)?;
-    let witness = FileChangeGuard::new(attempt, &input)?;
+    let witness = FileChangeGuard::new(attempt, &input, source.control)?;
     let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
     let name = stem(&data_path);
     let source =

@@ -45,5 +45,5 @@ pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         let mut bytes = open_content_at(attempt, &mut source, start)?;
         chosen.read(attempt, &mut bytes, Endian::Big, control)?
     };
-    chosen.volume(attempt, &grid, voxels, &title)
+    chosen.volume(attempt, &grid, voxels, &title, control)
 }

@@ -75,7 +75,7 @@ pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let arrays = arrays(attempt, piece, &grid)?;
     let chosen = choose_array(attempt, &grid, arrays, source.options, source.control)?;
     let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
-    chosen.volume(attempt, &grid, voxels, "")
+    chosen.volume(attempt, &grid, voxels, "", control)
 }
 
 /// Finds the single piece of the image.

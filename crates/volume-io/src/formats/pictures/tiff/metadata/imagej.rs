@@ -6,11 +6,12 @@
 
 use super::super::file::TiffFile;
 use super::super::messages::HELP;
-use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
-use super::super::undescribed::usable_pages;
+use super::super::stack::{TiffSlice, TiffStack};
+use super::super::undescribed::UsablePages;
 use super::contiguous::contiguous_pages;
 use super::imagej_names::ImagejMetadata;
 use super::spacing::placement_from_resolution;
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
 use crate::reading::input::stem;
 use chiaroscuro_volume::{LoadContext, LoadError, ValueMetadata, VolumeChoice};
 
@@ -55,7 +56,7 @@ pub(crate) fn stack(
         tiff.pages = contiguous_pages(attempt, tiff, &page, images, "images")?;
     }
     let mut remarks = Vec::new();
-    let pages = usable_pages(tiff, &mut remarks);
+    let pages = UsablePages::new(tiff).with_remarks(&mut remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
         return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
     };
@@ -82,7 +83,8 @@ pub(crate) fn stack(
     };
     let dims = [first.width, first.height, slices as u64];
     let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
-    let chosen = ChannelsAndTimes { dims, channels, channel_names, frames }.choose(attempt, choice)?;
+    let steps = ChannelsAndTimes { dims, channels, channel_names, frames, frame_names: Vec::new() };
+    let chosen = steps.choose(attempt, choice)?;
     let mut placement = placement_from_resolution(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);
     chosen.add_time_remark(&mut placement);

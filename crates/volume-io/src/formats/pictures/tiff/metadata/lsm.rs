@@ -1,13 +1,16 @@
 //! LSM metadata of Zeiss laser scanning microscopes, in a directory entry of their own: numbers of slices and time
-//! steps, and the voxel size. Slices vary fastest over the pages; channels are the samples of a page.
+//! steps, the voxel size, and the names of channels. Slices vary fastest over the pages; channels are the samples of a
+//! page.
 
 use super::super::file::TiffFile;
 use super::super::file::bytes::decode_integer;
 use super::super::file::page::{SampleMeaning, tag};
 use super::super::messages::HELP;
-use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
-use super::super::undescribed::usable_pages;
+use super::super::stack::{TiffSlice, TiffStack};
+use super::super::undescribed::UsablePages;
+use super::lsm_names::channel_names;
 use crate::Endian;
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
 use crate::reading::input::stem;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_volume::{LoadContext, LoadError, Modality, ValueMetadata, VolumeChoice};
@@ -15,8 +18,8 @@ use chiaroscuro_volume::{LoadContext, LoadError, Modality, ValueMetadata, Volume
 /// Magic numbers of the entry, versions 1.3 and later.
 const MAGIC: [u64; 2] = [0x0030_0494, 0x0040_0494];
 
-/// Number of bytes of the entry that are read, to the end of the voxel sizes.
-const INFO_BYTES: u64 = 64;
+/// Number of bytes of the entry that are read, to the end of the offset of the channel names.
+const INFO_BYTES: u64 = 112;
 
 /// Contents of the LSM entry.
 pub(crate) struct LsmInfo {
@@ -24,6 +27,8 @@ pub(crate) struct LsmInfo {
     frames: usize,
     /// Voxel size, in metres.
     spacing: [f64; 3],
+    /// Names of the channels; empty where the file has none.
+    channel_names: Vec<String>,
 }
 
 impl LsmInfo {
@@ -31,12 +36,15 @@ impl LsmInfo {
     pub(crate) fn read(tiff: &mut TiffFile) -> Option<Self> {
         let bytes = tiff.first.get(tag::LSM_INFO)?.raw(&mut tiff.bytes, INFO_BYTES).ok()?;
         let number = |at: usize, size: usize| Some(decode_integer(bytes.get(at..at + size)?, Endian::Little));
-        let is_one = number(0, 4).is_some_and(|magic| MAGIC.contains(&magic));
+        if !number(0, 4).is_some_and(|magic| MAGIC.contains(&magic)) {
+            return None;
+        }
         let length = |at| number(at, 8).map(f64::from_bits);
-        is_one.then_some(Self {
+        Some(Self {
             slices: number(16, 4)?.max(1) as usize,
             frames: number(24, 4)?.max(1) as usize,
             spacing: [length(40)?, length(48)?, length(56)?],
+            channel_names: channel_names(&mut tiff.bytes, number(108, 4).unwrap_or(0)),
         })
     }
 
@@ -53,10 +61,9 @@ impl LsmInfo {
         } else {
             GridPlacement::unknown()
         };
-        let mut remarks = Vec::new();
-        let pages = usable_pages(tiff, &mut remarks);
+        let UsablePages { pages, mismatch_remark, .. } = UsablePages::new(tiff);
         // Without a remark on thumbnails: LSM files always have them.
-        placement.remarks.extend(remarks.into_iter().filter(|remark| !remark.contains("smaller versions")));
+        placement.remarks.extend(mismatch_remark);
         let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
             return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
         };
@@ -66,8 +73,9 @@ impl LsmInfo {
         let steps = ChannelsAndTimes {
             dims: [first.width, first.height, slices as u64],
             channels: if is_channels { first.samples } else { 1 },
-            channel_names: Vec::new(),
+            channel_names: self.channel_names.clone(),
             frames,
+            frame_names: Vec::new(),
         };
         let chosen = steps.choose(attempt, choice)?;
         chosen.add_time_remark(&mut placement);

@@ -5,6 +5,7 @@ pub(super) mod imagej;
 pub(super) mod imagej_names;
 mod length_unit;
 pub(super) mod lsm;
+pub(super) mod lsm_names;
 pub(super) mod ome;
 pub(super) mod palette;
 pub(super) mod shaped;

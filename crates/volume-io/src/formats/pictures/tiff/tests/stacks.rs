@@ -5,6 +5,7 @@ use super::{assert_refused, load_bytes, load_chosen};
 use crate::Endian;
 use crate::formats::pictures::tiff::file::page::tag;
 use crate::formats::pictures::tiff::metadata::imagej_names::tests::entries;
+use crate::formats::pictures::tiff::metadata::lsm_names;
 use chiaroscuro_volume::{LoadErrorKind, Modality, Samples, Volume, VolumeChoice};
 
 fn page(value: u8) -> TiffLeaf {
@@ -136,7 +137,7 @@ fn times_of_one_slice_are_a_volume() {
 
 #[test]
 fn laser_scanning_microscopes_say_their_sizes() {
-    let mut info = vec![0; 64];
+    let mut info = vec![0; 128];
     for (at, number) in [(0, 0x0040_0494u32), (8, 2), (12, 1), (16, 2), (20, 2), (24, 1)] {
         info[at..at + 4].copy_from_slice(&number.to_le_bytes());
     }
@@ -149,11 +150,25 @@ fn laser_scanning_microscopes_say_their_sizes() {
         leaf.with_parts(vec![vec![value, value], vec![value + 5, value + 5]])
     };
     let thumbnail = || LITTLE.leaf([1, 1], 8, &[99]).with(tag::NEW_SUBFILE_TYPE, LONG, &[1]);
-    let first = slice(0).with_bytes(tag::LSM_INFO, &info);
-    let file = LITTLE.file(&[first, thumbnail(), slice(10), thumbnail()]);
-    assert_refused(load_bytes(&file), LoadErrorKind::BadInput, &["2 channels"]);
+    let write = |info: &[u8]| {
+        let first = slice(0).with_bytes(tag::LSM_INFO, info);
+        LITTLE.file(&[first, thumbnail(), slice(10), thumbnail()])
+    };
+    let file = write(&info);
+    assert_refused(
+        load_bytes(&file),
+        LoadErrorKind::BadInput,
+        &["2 channels", "0 (2 x 1 x 2), 1 (2 x 1 x 2)"],
+    );
     let volume = load_chosen(&file, VolumeChoice { channel: Some(1), ..VolumeChoice::default() }).unwrap();
     assert_eq!((firsts(&volume), volume.remarks().len()), (vec![5.0, 15.0], 0));
     assert!((volume.spacing_mm() - glam::DVec3::new(1e-4, 2e-4, 5e-4)).length() < 1e-12);
     assert_eq!(volume.metadata().modality, Modality::LightMicroscopy);
+    // Names of the channels are behind the pages, and the entry has their offset.
+    info[108..112].copy_from_slice(&(file.len() as u32).to_le_bytes());
+    let named = [write(&info), lsm_names::tests::block(&[b"DAPI", b"Ch2-T1"])].concat();
+    let words = ["0 \"DAPI\" (2 x 1 x 2)", "1 \"Ch2-T1\""];
+    assert_refused(load_bytes(&named), LoadErrorKind::BadInput, &words);
+    let truncated = &named[..file.len() + 10];
+    assert_refused(load_bytes(truncated), LoadErrorKind::BadInput, &["0 (2 x 1 x 2)"]);
 }

@@ -11,15 +11,17 @@ use roxmltree::{Document, Node};
 
 use super::super::file::TiffFile;
 use super::super::file::page::SampleMeaning;
-use super::super::gaps::SliceRun;
 use super::super::messages::HELP;
-use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
+use super::super::stack::{TiffSlice, TiffStack};
 use super::length_unit::millimetres;
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
+use crate::formats::pictures::gaps::{ANNOUNCED_PAGES, SliceRun};
 use crate::reading::companion_path;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_files::{sanitised, xml};
 use chiaroscuro_volume::{
-    FileDimension, LoadContext, LoadError, Modality, ValueMetadata, VolumeChoice, VolumeOffer, quoted,
+    FileDimension, LoadContext, LoadControl, LoadError, Modality, ValueMetadata, VolumeChoice, VolumeOffer,
+    quoted,
 };
 use pages::OmePages;
 
@@ -103,6 +105,7 @@ pub(crate) fn stack(
     tiff: &TiffFile,
     description: &str,
     choice: &VolumeChoice,
+    control: &LoadControl,
 ) -> Result<TiffStack, LoadError> {
     let document = parsed(attempt, description)?;
     let root = document.root_element();
@@ -110,7 +113,7 @@ pub(crate) fn stack(
     if let Some(name) = child(root, "BinaryOnly").and_then(|node| node.attribute("MetadataFile")) {
         let path = companion_path::resolve(attempt, "MetadataFile", name)?;
         let companion = LoadContext { operation: "read the OME-XML of the volume", path: &path };
-        let xml = companion_text(companion)?;
+        let xml = companion_text(companion, control)?;
         let document = parsed(companion, &xml)?;
         return stack_from_root(attempt, tiff, document.root_element(), choice);
     }
@@ -153,10 +156,10 @@ fn is_generic_name(name: &str) -> bool {
 }
 
 /// Reads the text of a companion XML file.
-pub(crate) fn companion_text(attempt: LoadContext<'_>) -> Result<String, LoadError> {
+pub(crate) fn companion_text(attempt: LoadContext<'_>, control: &LoadControl) -> Result<String, LoadError> {
     use std::io::Read as _;
     let input = crate::reading::input::InputFile::open(attempt)?;
-    crate::reading::read_files::record_read(attempt.path);
+    control.record_read(attempt.path);
     let mut text = Vec::new();
     input.reader.take(MAX_XML_BYTES).read_to_end(&mut text).map_err(|error| attempt.io_error(error))?;
     Ok(String::from_utf8_lossy(&text).into_owned())
@@ -235,13 +238,14 @@ fn stack_from_root(
         channels: channels_there,
         channel_names: children(pixels, "Channel").map(channel_name).collect(),
         frames,
+        frame_names: Vec::new(),
     };
     let chosen = steps.choose(attempt, choice)?;
     let channel = chosen.channel / inside;
     let wanted: Vec<[usize; 3]> =
         chosen.slices(slices, frames).into_iter().map(|[frame, slice]| [slice, channel, frame]).collect();
     let found = pages.find(attempt, &wanted)?;
-    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices) else {
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices, ANNOUNCED_PAGES) else {
         return Err(pages.missing_page_error(attempt, channel, chosen.frame));
     };
     let mut placement = placement_from_physical_size(pixels);

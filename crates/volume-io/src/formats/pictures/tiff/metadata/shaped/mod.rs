@@ -8,11 +8,12 @@ mod json;
 
 use super::super::file::TiffFile;
 use super::super::file::page::{SampleMeaning, TiffPage};
-use super::super::gaps::SliceRun;
 use super::super::messages::HELP;
-use super::super::stack::{ChannelsAndTimes, TiffSlice, TiffStack};
+use super::super::stack::{TiffSlice, TiffStack};
 use super::contiguous::contiguous_pages;
 use super::spacing::placement_from_resolution;
+use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
+use crate::formats::pictures::gaps::{ANNOUNCED_PAGES, SliceRun};
 use crate::reading::input::stem;
 use axes::{PageAxes, PageStride};
 use chiaroscuro_volume::{FileDimension, LoadContext, LoadError, ValueMetadata, VolumeChoice, VolumeOffer};
@@ -115,6 +116,7 @@ pub(crate) fn stack_of_shapes(
         channels: channels.saturating_mul(inside),
         channel_names: words.channel_names(size(axes.channels).saturating_mul(inside)),
         frames,
+        frame_names: Vec::new(),
     };
     let chosen = steps.choose(attempt, choice)?;
     let step = |stride: Option<PageStride>, at: usize| stride.map_or(0, |stride| stride.pages * at);
@@ -123,7 +125,8 @@ pub(crate) fn stack_of_shapes(
         let page = of_series + channel + step(axes.frames, frame) + step(axes.slices, slice);
         (page < pages).then_some(TiffSlice { file: 0, page: first + page })
     });
-    let Some(SliceRun { slices, remark }) = SliceRun::new(&wanted.collect::<Vec<_>>()) else {
+    let Some(SliceRun { slices, remark }) = SliceRun::new(&wanted.collect::<Vec<_>>(), ANNOUNCED_PAGES)
+    else {
         let why = format!(
             "{} pages are announced, and {pages} exist: none for the chosen channel and time step",
             axes.pages

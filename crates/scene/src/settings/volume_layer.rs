@@ -1,0 +1,180 @@
+//! Layers of a scene: the settings that belong to one field of the volume each.
+//!
+//! A file can have several fields on one grid, for instance channels of a microscope. Settings that differ by field
+//! are in a layer; camera, light, clipping and sampling are of the scene.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{DensityRange, LabelTable, OpacityLength, Settings, TransferFunction};
+
+/// Settings that belong to one field of the volume.
+///
+/// Corrections of the volume are not among them: they are of the file's grid and of the numbers that it stores, which
+/// all of its fields share, so they stay in [`Settings::volume`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct VolumeLayer {
+    /// Range of values that is mapped to densities of 0 … 1.
+    pub range: DensityRange,
+    /// Looks of labels, by number. If it has entries, volumes of integers are shown by their labels, and the transfer
+    /// functions are not used.
+    pub labels: LabelTable,
+    /// Transfer function of the eye: colour and opacity of every value.
+    pub transfer: TransferFunction,
+    /// Opacity that attenuates light.
+    pub lighting: LightingTransfer,
+    /// Length to which opacities refer.
+    pub opacity_unit: OpacityLength,
+}
+
+impl Default for VolumeLayer {
+    fn default() -> Self {
+        Self {
+            range: DensityRange::Robust,
+            labels: LabelTable::default(),
+            transfer: TransferFunction::default(),
+            lighting: LightingTransfer::default(),
+            opacity_unit: OpacityLength::Voxels(1.0),
+        }
+    }
+}
+
+/// Opacity that attenuates light: the eye's, scaled, or a curve of its own (P §4: lower opacities here let light
+/// faintly pass thin opaque structures).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LightingTransfer {
+    /// Uses the eye's opacity instead of the curve.
+    pub linked: bool,
+    /// Factor for the extinction, linked or not.
+    pub scale: f64,
+    /// Opacity curve if not linked; its colours are not used.
+    pub curve: TransferFunction,
+}
+
+impl Default for LightingTransfer {
+    fn default() -> Self {
+        Self { linked: true, scale: 1.0, curve: TransferFunction::default() }
+    }
+}
+
+/// Layers of a scene, a list in JSON. It is never empty, and in this version has one layer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<VolumeLayer>")]
+pub struct VolumeLayers(Vec<VolumeLayer>);
+
+/// Number of layers that a scene of this version cannot have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum LayerCountError {
+    /// Empty list, which would show nothing.
+    #[error("`layers` is empty, and a look has one layer")]
+    None,
+    /// List of a version that shows several fields in one scene.
+    #[error("`layers` has {count} layers, and this version shows one")]
+    Several {
+        /// Length of the list.
+        count: usize,
+    },
+}
+
+impl VolumeLayers {
+    /// Creates the list of a scene that shows one field.
+    pub fn new(layer: VolumeLayer) -> Self {
+        Self(vec![layer])
+    }
+
+    /// Returns the first layer of the list.
+    pub fn first(&self) -> &VolumeLayer {
+        &self.0[0]
+    }
+
+    /// Returns the first layer, to be changed.
+    pub fn first_mut(&mut self) -> &mut VolumeLayer {
+        &mut self.0[0]
+    }
+
+    /// Returns all layers, to be changed.
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut VolumeLayer> {
+        self.0.iter_mut()
+    }
+}
+
+impl Default for VolumeLayers {
+    fn default() -> Self {
+        Self::new(VolumeLayer::default())
+    }
+}
+
+impl TryFrom<Vec<VolumeLayer>> for VolumeLayers {
+    type Error = LayerCountError;
+
+    fn try_from(layers: Vec<VolumeLayer>) -> Result<Self, LayerCountError> {
+        match layers.len() {
+            0 => Err(LayerCountError::None),
+            1 => Ok(Self(layers)),
+            count => Err(LayerCountError::Several { count }),
+        }
+    }
+}
+
+impl Settings {
+    /// Returns the settings of the field that is shown.
+    pub fn layer(&self) -> &VolumeLayer {
+        self.layers.first()
+    }
+
+    /// Returns the settings of the field that is shown, to be changed. [`VolumeLayers::first_mut`] leaves the other
+    /// settings free to be borrowed.
+    pub fn layer_mut(&mut self) -> &mut VolumeLayer {
+        self.layers.first_mut()
+    }
+
+    /// Replaces the range of values that is mapped to densities.
+    #[must_use]
+    pub fn with_range(mut self, range: DensityRange) -> Self {
+        self.layer_mut().range = range;
+        self
+    }
+
+    /// Replaces the table of labels.
+    #[must_use]
+    pub fn with_labels(mut self, labels: LabelTable) -> Self {
+        self.layer_mut().labels = labels;
+        self
+    }
+
+    /// Replaces the transfer function of the eye.
+    #[must_use]
+    pub fn with_transfer(mut self, transfer: TransferFunction) -> Self {
+        self.layer_mut().transfer = transfer;
+        self
+    }
+
+    /// Replaces the opacity that attenuates light.
+    #[must_use]
+    pub fn with_lighting(mut self, lighting: LightingTransfer) -> Self {
+        self.layer_mut().lighting = lighting;
+        self
+    }
+
+    /// Replaces the length to which opacities refer.
+    #[must_use]
+    pub fn with_opacity_unit(mut self, opacity_unit: OpacityLength) -> Self {
+        self.layer_mut().opacity_unit = opacity_unit;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_has_exactly_one_layer() {
+        let layer = VolumeLayer { range: DensityRange::Full, ..VolumeLayer::default() };
+        let layers = |count: usize| VolumeLayers::try_from(vec![layer.clone(); count]);
+        assert_eq!(layers(1), Ok(VolumeLayers::new(layer.clone())));
+        assert_eq!(layers(0).unwrap_err().to_string(), "`layers` is empty, and a look has one layer");
+        assert_eq!(layers(2).unwrap_err().to_string(), "`layers` has 2 layers, and this version shows one");
+    }
+}
