@@ -108,16 +108,16 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
 
 fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     control.check()?;
-    let attempt = LoadContext { operation: "open the volume", path };
+    let context = LoadContext { operation: "open the volume", path };
     if path.is_dir() {
         return folder::load(path, options, control);
     }
-    let mut input = InputFile::open(attempt)?;
-    let witness = FileChangeGuard::new(attempt, &input, control)?;
-    let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
+    let mut input = InputFile::open(context)?;
+    let guard = FileChangeGuard::new(context, &input, control)?;
+    let start = FileStart::read(&mut input).map_err(|error| context.io_error(error))?;
     // Voxels of a described raw file may begin like this by chance.
     if start.is_packed_twice() && options.raw.dims.is_none() {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "format",
             "it is compressed twice: the gzip file contains another gzip file",
             "unpack it once, with gunzip for example, and open the result",
@@ -125,10 +125,10 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     }
     let reader = match detect_format(path, &start, &mut input, options) {
         FileFormat::Reader(reader) => reader,
-        FileFormat::Unsupported(format) => return Err(format.refusal(attempt)),
+        FileFormat::Unsupported(format) => return Err(format.refusal(context)),
         FileFormat::Unknown => {
             let names: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "format",
                 format!("its format is not supported; supported formats: {}", names.join(", ")),
                 "convert it to NRRD, or describe its voxels with --dims and --type",
@@ -137,5 +137,5 @@ fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Re
     };
     options.choice.record_format(reader.name);
     let loaded = (reader.load)(VolumeSource { path, input, start, options, control });
-    witness.check_unchanged(attempt, loaded)
+    guard.check_unchanged(context, loaded)
 }

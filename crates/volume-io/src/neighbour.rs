@@ -68,8 +68,8 @@ fn entries(folder: &Path, are_folders: bool) -> Vec<PathBuf> {
 
 /// Returns true if a reader recognises the file.
 fn is_known(path: &Path) -> bool {
-    let attempt = LoadContext { operation: "look at the file", path };
-    let Ok(mut input) = InputFile::open(attempt) else { return false };
+    let context = LoadContext { operation: "look at the file", path };
+    let Ok(mut input) = InputFile::open(context) else { return false };
     FileStart::read(&mut input).is_ok_and(|start| reader_of(path, &start).is_some())
 }
 

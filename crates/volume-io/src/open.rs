@@ -26,13 +26,13 @@ pub fn open(
     let Some(builtin) = source.to_str().and_then(|name| name.strip_prefix(BUILTIN)) else {
         return load(source, options, control);
     };
-    let attempt = LoadContext { operation: "make the built-in volume", path: source };
+    let context = LoadContext { operation: "make the built-in volume", path: source };
     let (name, n) = match builtin.split_once(':') {
         None => (builtin, None),
         Some((name, digits)) => match digits.parse() {
             Ok(n) => (name, Some(n)),
             Err(_) => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "N",
                     format!("a number of voxels was expected after {name}:, {} was found", quoted(digits)),
                     "write it like builtin:chair:128",
@@ -40,18 +40,18 @@ pub fn open(
             }
         },
     };
-    attempt.reject_unsupported_choice(&options.choice, &ContentsRecorder::default())?;
+    context.reject_unsupported_choice(&options.choice, &ContentsRecorder::default())?;
     let volume =
         synthetic::builtin_with_budget(name, n, options.memory_budget_bytes, &options.choice, control)?;
     // Built-in volumes are made whole; the portion is taken afterwards.
     let (portion, dims) = (options.choice.portion.unwrap_or_default(), volume.dims());
     let Some(wanted) = ResolvedPortion::resolve(&portion, dims, false) else {
-        return Err(attempt.region_error(dims));
+        return Err(context.region_error(dims));
     };
     let held = FileContents { portion, grid: Some(dims), ..FileContents::default() };
     // A part of a valid volume is valid; no other error is expected here.
     volume
         .extract_portion(&ResolvedPortion::whole_grid(dims), &wanted)
         .map(|volume| volume.with_contents(held))
-        .map_err(|err| attempt.bad_input_error("voxels", err.to_string(), "load the whole volume"))
+        .map_err(|err| context.bad_input_error("voxels", err.to_string(), "load the whole volume"))
 }

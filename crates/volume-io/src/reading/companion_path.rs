@@ -15,24 +15,24 @@ use chiaroscuro_volume::{LoadContext, quoted};
 const MAX_PART_BYTES: usize = 255;
 const MAX_NAME_BYTES: usize = 1024;
 
-/// Path of the file that the header in `attempt` names in a field.
+/// Path of the file that a header names in a field; `context` is that of the header.
 ///
 /// # Errors
 /// `BadInput` for every name that leads out of the header's folder, by its text or through symbolic links; `Io` when
 /// there is no such file.
 ///
 /// The path goes through the header's folder, so that a link keeps the name that the header has for it.
-pub(crate) fn resolve(attempt: LoadContext<'_>, field: &str, name: &str) -> Result<PathBuf, LoadError> {
+pub(crate) fn resolve(context: LoadContext<'_>, field: &str, name: &str) -> Result<PathBuf, LoadError> {
     if let Some(why) = path_escape_reason(name) {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             field,
             format!("{} {why}", quoted(name)),
             "put the data file beside the header and write its bare name",
         ));
     }
-    let folder = parent_folder(attempt.path).canonicalize().map_err(|error| attempt.io_error(error))?;
+    let folder = parent_folder(context.path).canonicalize().map_err(|error| context.io_error(error))?;
     // If the header is a link, its data may lie beside the link or beside its target.
-    let header = attempt.path.canonicalize().ok();
+    let header = context.path.canonicalize().ok();
     let own = header.as_deref().map_or(folder.as_path(), parent_folder);
     let is_there = |folder: &&Path| folder.join(name).symlink_metadata().is_ok();
     let from = [folder.as_path(), own].into_iter().find(is_there).unwrap_or(&folder);
@@ -48,7 +48,7 @@ pub(crate) fn resolve(attempt: LoadContext<'_>, field: &str, name: &str) -> Resu
     // By component: as strings, /data would also contain /database.
     let is_inside = |folder: &Path| path.starts_with(folder);
     if !is_inside(&folder) && !is_inside(own) && !is_in_annex_store(&path, &folder) {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             field,
             format!("{} is a link that leads out of the header's folder", quoted(name)),
             "copy the data file beside the header, or open the header that lies beside it",
@@ -56,7 +56,7 @@ pub(crate) fn resolve(attempt: LoadContext<'_>, field: &str, name: &str) -> Resu
     }
     if path.is_dir() {
         let why = format!("{} is a folder", quoted(name));
-        return Err(attempt.bad_input_error(field, why, "write the name of the data file"));
+        return Err(context.bad_input_error(field, why, "write the name of the data file"));
     }
     Ok(beside)
 }

@@ -25,31 +25,31 @@ impl InputFile {
     /// # Errors
     /// `Io` when it does not exist, is not readable, or is a directory, pipe, socket or device. Pipes and devices are
     /// never opened: opening a pipe blocks, and a device may have no end.
-    pub(crate) fn open(attempt: LoadContext<'_>) -> Result<Self, LoadError> {
-        let io = |error| attempt.io_error(error);
+    pub(crate) fn open(context: LoadContext<'_>) -> Result<Self, LoadError> {
+        let io = |error| context.io_error(error);
         let refuse = |file_type: FileType| {
             if file_type.is_dir() {
-                attempt.not_a_file_error("it is a directory", "name one file")
+                context.not_a_file_error("it is a directory", "name one file")
             } else {
-                attempt.not_a_file_error(
+                context.not_a_file_error(
                     "it is a pipe, socket or device, not a regular file",
                     "copy it to a file first",
                 )
             }
         };
-        let file_type = match fs::metadata(attempt.path) {
+        let file_type = match fs::metadata(context.path) {
             Ok(metadata) => metadata.file_type(),
             Err(error)
-                if error.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(attempt.path).is_ok() =>
+                if error.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(context.path).is_ok() =>
             {
-                return Err(attempt.not_a_file_error(DANGLING_LINK, DANGLING_LINK_HELP));
+                return Err(context.not_a_file_error(DANGLING_LINK, DANGLING_LINK_HELP));
             }
             Err(error) => return Err(io(error)),
         };
         if !file_type.is_file() {
             return Err(refuse(file_type));
         }
-        let file = File::open(attempt.path).map_err(io)?;
+        let file = File::open(context.path).map_err(io)?;
         // The path may name another file by now; the open handle cannot.
         let metadata = file.metadata().map_err(io)?;
         if !metadata.is_file() {
@@ -66,7 +66,7 @@ impl InputFile {
     /// Skips `lines` lines and returns their length in bytes, or `None` when the file ends before that.
     pub(crate) fn skip_lines(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         lines: u64,
         control: &LoadControl,
     ) -> Result<Option<u64>, LoadError> {
@@ -74,7 +74,7 @@ impl InputFile {
         let mut skipped = 0;
         while left > 0 {
             control.check()?;
-            let block = self.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
+            let block = self.reader.fill_buf().map_err(|error| context.io_error(error))?;
             if block.is_empty() {
                 return Ok(None);
             }
@@ -108,14 +108,14 @@ fn file_state(file: &File) -> io::Result<(u64, Option<SystemTime>)> {
 impl FileChangeGuard {
     /// Records the state of an input before anything is read from it.
     pub(crate) fn new(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         input: &InputFile,
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
-        control.record_read(attempt.path);
+        control.record_read(context.path);
         let seen = input.reader.get_ref().try_clone().and_then(|file| Ok((file_state(&file)?, file)));
         seen.map(|(before, file)| Self { file, initial_state: before })
-            .map_err(|error| attempt.io_error(error))
+            .map_err(|error| context.io_error(error))
     }
 
     /// Returns the result of reading, unless the file has changed since it was opened.
@@ -125,16 +125,16 @@ impl FileChangeGuard {
     /// on.
     pub(crate) fn check_unchanged<T>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         read: Result<T, LoadError>,
     ) -> Result<T, LoadError> {
         if matches!(read, Err(LoadError::Cancelled)) {
             return read;
         }
-        if file_state(&self.file).map_err(|error| attempt.io_error(error))? == self.initial_state {
+        if file_state(&self.file).map_err(|error| context.io_error(error))? == self.initial_state {
             return read;
         }
-        Err(attempt.not_a_file_error(
+        Err(context.not_a_file_error(
             "the file has changed while it was being read",
             "open it again when the program that writes it has finished",
         ))

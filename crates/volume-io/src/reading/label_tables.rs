@@ -16,7 +16,7 @@ const ENDINGS: [&str; 4] = [".ctab", ".label", ".lut", ".txt"];
 /// Reads the label table beside a volume, if there is one, and marks the volume as a label map; only where all values
 /// are integers.
 pub(crate) fn add_label_table(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     endings: &[&str],
     samples: &Samples,
     hints: &mut ValueMetadata,
@@ -24,7 +24,7 @@ pub(crate) fn add_label_table(
     if !all_integers(samples) {
         return;
     }
-    let labels = read_label_table(attempt, endings);
+    let labels = read_label_table(context, endings);
     if !labels.is_empty() {
         hints.labels = labels;
         hints.meaning = ValueMeaning::Labels;
@@ -33,16 +33,16 @@ pub(crate) fn add_label_table(
 
 /// Labels of the table beside the volume that has the volume's file name without its extension (one of `endings`);
 /// empty where there is no such file, or where it is not a label table.
-fn read_label_table(attempt: LoadContext<'_>, endings: &[&str]) -> FileLabelTable {
-    let stem = name_without_extension(attempt.path, endings);
-    let folder = attempt.path.parent().unwrap_or(Path::new(""));
+fn read_label_table(context: LoadContext<'_>, endings: &[&str]) -> FileLabelTable {
+    let stem = name_without_extension(context.path, endings);
+    let folder = context.path.parent().unwrap_or(Path::new(""));
     let found = ENDINGS.iter().find_map(|ending| {
         let name = format!("{stem}{ending}");
         // Checked before opening: usually there is no such file.
         if !folder.join(&name).is_file() {
             return None;
         }
-        let path = companion_path::resolve(attempt, "labels", &name).ok()?;
+        let path = companion_path::resolve(context, "labels", &name).ok()?;
         parse_label_table(&String::from_utf8_lossy(&read_small_file(&path).ok()?))
     });
     found.unwrap_or_default()
@@ -160,16 +160,16 @@ mod tests {
     fn a_file_that_is_called_like_the_volume_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("seg.nii.gz");
-        let attempt = LoadContext { operation: "test", path: &path };
+        let context = LoadContext { operation: "test", path: &path };
         let endings = [".nii.gz", ".nii"];
         let mut hints = ValueMetadata::default();
-        add_label_table(attempt, &endings, &Samples::U8(vec![1]), &mut hints);
+        add_label_table(context, &endings, &Samples::U8(vec![1]), &mut hints);
         assert!(hints.is_empty());
         std::fs::write(folder.path().join("seg.label"), "no table").unwrap();
         std::fs::write(folder.path().join("seg.txt"), "1 Bone 255 0 0 0").unwrap();
-        add_label_table(attempt, &endings, &Samples::F32(vec![1.5]), &mut hints);
+        add_label_table(context, &endings, &Samples::F32(vec![1.5]), &mut hints);
         assert!(hints.is_empty(), "values with fractions are no labels");
-        add_label_table(attempt, &endings, &Samples::F32(vec![1.0]), &mut hints);
+        add_label_table(context, &endings, &Samples::F32(vec![1.0]), &mut hints);
         assert_eq!(hints.meaning, ValueMeaning::Labels);
         assert_eq!(hints.labels.get(1), Some(&label("Bone", [255, 0, 0])));
     }

@@ -286,13 +286,13 @@ impl ScalarReduction {
 
     /// Calls [`Self::from_choice`] and turns a missing component into an error.
     pub(crate) fn require(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         component: Option<usize>,
         components: usize,
         is_color: bool,
     ) -> Result<Self, LoadError> {
         Self::from_choice(component, components, is_color).ok_or_else(|| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "--component",
                 format!(
                     "component {} is not among its {components} components, which are numbered from 0",

@@ -128,23 +128,23 @@ impl VolumeParts {
     /// `BadInput` where the parts are no valid volume: no value is finite, or the value range overflows.
     pub(crate) fn into_volume(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         control: &LoadControl,
     ) -> Result<Volume, LoadError> {
-        self.into_volume_with_help(attempt, control, "check the header against the data")
+        self.into_volume_with_help(context, control, "check the header against the data")
     }
 
     /// Assembles the volume as [`Self::into_volume`] does, with another help text for errors.
     pub(crate) fn into_volume_with_help(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         control: &LoadControl,
         help: &str,
     ) -> Result<Volume, LoadError> {
         let Self { name, extent, placement, voxels, hints } = self;
         let GridExtent { read, wanted, .. } = extent;
         for remark in &placement.remarks {
-            attempt.warn(remark);
+            context.warn(remark);
         }
         let start = Instant::now();
         let of = |samples: Samples| {
@@ -172,7 +172,7 @@ impl VolumeParts {
         let volume =
             labels.map_or_else(|| of(samples), Ok).and_then(|volume| volume.extract_portion(&read, &wanted));
         control.set_analysis_time(start.elapsed());
-        volume.map_err(|error| attempt.bad_input_error("data", error.to_string(), help))
+        volume.map_err(|error| context.bad_input_error("data", error.to_string(), help))
     }
 }
 

@@ -68,7 +68,7 @@ impl VolumeSource<'_> {
     /// `BadInput` for data that are too short, too long or corrupt, with `help`; `Limit` where memory is exhausted.
     pub(crate) fn voxels(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         at: u64,
         (stored, extent): (&VoxelEncoding, GridExtent),
         after: TrailingData,
@@ -84,21 +84,21 @@ impl VolumeSource<'_> {
             if most < needed {
                 let why =
                     format!("the data are truncated: {needed} bytes expected {grid}, at most {most} found");
-                return Err(attempt.bad_input_error("data", why, help));
+                return Err(context.bad_input_error("data", why, help));
             }
         } else {
             let found = self.input.len.saturating_sub(at);
             if found < needed {
                 let why = format!("the data are truncated: {needed} bytes expected {grid}, {found} found");
-                return Err(attempt.bad_input_error("data", why, help));
+                return Err(context.bad_input_error("data", why, help));
             }
             if found > needed && after == TrailingData::Refused {
                 let why = format!("there are {found} bytes where {needed} were expected {grid}");
-                return Err(attempt.bad_input_error("data", why, help));
+                return Err(context.bad_input_error("data", why, help));
             }
             let read =
                 stored.read_from_file(&mut self.input, at, extent, &ValueMapping::identity(None), control);
-            return read.map_err(|fault| fault.into_error(attempt, &layout, "bytes", help));
+            return read.map_err(|fault| fault.into_error(context, &layout, "bytes", help));
         }
         let skip = at;
         // One byte more than needed distinguishes "too much" from "enough", and limits decompression bombs.
@@ -119,7 +119,7 @@ impl VolumeSource<'_> {
                 ReadFault::Io(error) if is_corruption(&error) => ReadFault::Corrupt(error),
                 fault => fault,
             };
-            fault.into_error(attempt, &layout, "bytes", help)
+            fault.into_error(context, &layout, "bytes", help)
         })
     }
 
@@ -129,21 +129,21 @@ impl VolumeSource<'_> {
     /// As [`LoadContext::resolve_choice`]; `Limit` for more than [`MAX_OFFERS`].
     pub(crate) fn choose_numbered(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         dimension: FileDimension,
         count: u64,
         dims: [u64; 3],
         name: impl Fn(usize) -> String,
     ) -> Result<usize, LoadError> {
         if count > MAX_OFFERS {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 dimension.option(),
                 format!("it holds {count} {}, {MAX_OFFERS} are allowed", dimension.plural()),
                 "check the header, or write fewer into one file",
             ));
         }
         let offers = (0..count as usize).map(|at| VolumeOffer::with_number(at, &name(at), dims)).collect();
-        attempt.resolve_choice(&self.options.choice, dimension, offers)
+        context.resolve_choice(&self.options.choice, dimension, offers)
     }
 
     /// Scalar to derive from voxels of several components, by the user's choice.
@@ -152,12 +152,12 @@ impl VolumeSource<'_> {
     /// `BadInput` where the user has chosen a component that does not exist.
     pub(crate) fn scalar_reduction(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         components: usize,
         is_color: bool,
     ) -> Result<ScalarReduction, LoadError> {
         let component = self.options.choice.resolve_component(components, is_color);
-        ScalarReduction::require(attempt, component, components, is_color)
+        ScalarReduction::require(context, component, components, is_color)
     }
 }
 

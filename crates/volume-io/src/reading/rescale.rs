@@ -12,7 +12,7 @@ use chiaroscuro_volume::{
 /// # Errors
 /// `Limit` where both buffers together exceed `budget_bytes`, or memory is exhausted.
 pub(crate) fn rescale(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     samples: Samples,
     [slope, intercept]: [f64; 2],
     budget_bytes: u64,
@@ -30,7 +30,7 @@ pub(crate) fn rescale(
         bytes_of(before).saturating_add(bytes_of(after))
     };
     let too_large = || {
-        attempt.limit_error(
+        context.limit_error(
             "slope and intercept",
             format!(
                 "converting the {} values to {} needs {}, {} are allowed",
@@ -139,8 +139,8 @@ mod tests {
     use chiaroscuro_volume::LoadErrorKind;
 
     fn tried(samples: Samples, scale: [f64; 2], budget: u64) -> Result<Samples, LoadErrorKind> {
-        let attempt = LoadContext { operation: "test", path: Path::new("t") };
-        rescale(attempt, samples, scale, budget).map_err(|error| error.kind())
+        let context = LoadContext { operation: "test", path: Path::new("t") };
+        rescale(context, samples, scale, budget).map_err(|error| error.kind())
     }
 
     #[test]

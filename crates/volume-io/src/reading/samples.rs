@@ -68,7 +68,7 @@ impl ReadFault {
     /// Converts to the error to report, with `help` for sizes that do not fit.
     pub(crate) fn into_error(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         layout: &VoxelLayout,
         unit: &str,
         help: &str,
@@ -78,17 +78,17 @@ impl ReadFault {
         let announced = if unit == "bytes" { layout.extent.bytes } else { layout.extent.voxels as u64 };
         let grid = format!("{x} x {y} x {z} voxels of {name}");
         match self {
-            Self::Short { got } => attempt.bad_input_error(
+            Self::Short { got } => context.bad_input_error(
                 "data",
                 format!("the data are truncated: {announced} {unit} expected for {grid}, {got} found"),
                 help,
             ),
-            Self::Long => attempt.bad_input_error(
+            Self::Long => context.bad_input_error(
                 "data",
                 format!("there is more data than the {announced} {unit} expected for {grid}"),
                 help,
             ),
-            Self::Corrupt(error) => attempt.bad_input_error(
+            Self::Corrupt(error) => context.bad_input_error(
                 "data",
                 match error.kind() {
                     io::ErrorKind::UnexpectedEof => {
@@ -98,12 +98,12 @@ impl ReadFault {
                 },
                 "copy or download the file again",
             ),
-            Self::NotANumber { text } => attempt.bad_input_error(
+            Self::NotANumber { text } => context.bad_input_error(
                 "data",
                 format!("a number of type {name} was expected, {} was found", quoted(&text)),
                 "check the type and that the data are plain numbers",
             ),
-            Self::NoMemory => attempt.limit_error(
+            Self::NoMemory => context.limit_error(
                 "data",
                 format!(
                     "there is not enough memory for {grid}: {}",
@@ -111,7 +111,7 @@ impl ReadFault {
                 ),
                 "close other programs or load a smaller volume",
             ),
-            Self::Io(error) => attempt.io_error(error),
+            Self::Io(error) => context.io_error(error),
             Self::Stopped(error) => error,
         }
     }

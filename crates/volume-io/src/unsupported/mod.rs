@@ -84,8 +84,8 @@ pub(crate) fn by_name(path: &Path) -> Option<&'static UnsupportedFormat> {
 
 impl UnsupportedFormat {
     /// Error message of one line, with the advice.
-    pub(crate) fn refusal(&self, attempt: LoadContext<'_>) -> LoadError {
-        attempt.bad_input_error(
+    pub(crate) fn refusal(&self, context: LoadContext<'_>) -> LoadError {
+        context.bad_input_error(
             "format",
             format!("it is {}, which is not supported", self.description),
             self.advice,

@@ -256,8 +256,8 @@ mod tests {
 
     #[test]
     fn messages_say_what_why_where_and_what_helps() {
-        let attempt = LoadContext { operation: "read the RAW volume", path: Path::new("dir/a\nb.raw") };
-        let error = attempt.bad_input_error("--dims", "a dimension is 0", "give three numbers above 0");
+        let context = LoadContext { operation: "read the RAW volume", path: Path::new("dir/a\nb.raw") };
+        let error = context.bad_input_error("--dims", "a dimension is 0", "give three numbers above 0");
         assert_eq!(
             error.to_string(),
             "cannot read the RAW volume: a dimension is 0 (dir/a·b.raw, --dims); give three numbers above 0"

@@ -55,13 +55,13 @@ impl GridExtent {
     ///
     /// Blocks are averaged after reading if all their voxels fit into the budget, otherwise while reading.
     pub fn checked(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         dims: [u64; 3],
         voxel_type: VoxelType,
         room: ReadContext<'_>,
     ) -> Result<Self, LoadError> {
-        let extent = Self::from_header(attempt, field, dims, voxel_type, room)?;
+        let extent = Self::from_header(context, field, dims, voxel_type, room)?;
         extent.ask_acceptance(voxel_type, room, false)?;
         let Self { wanted, .. } = extent;
         let boxed = Self { read: wanted.full_box(), ..extent };
@@ -69,7 +69,7 @@ impl GridExtent {
         if wanted.is_averaged && has_room && !room.control.is_memory_scarce() {
             return Ok(boxed);
         }
-        let extent = extent.check_budget(attempt, field, voxel_type, room, false)?;
+        let extent = extent.check_budget(context, field, voxel_type, room, false)?;
         if let Some(watch) = room.choice.recorder.as_ref().filter(|_| extent.read.is_averaged) {
             watch.record_averaging();
         }
@@ -78,21 +78,21 @@ impl GridExtent {
 
     /// Does the check of [`Self::checked`] for a reader that decodes all voxels before any can be dropped.
     pub fn checked_whole(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         dims: [u64; 3],
         voxel_type: VoxelType,
         room: ReadContext<'_>,
     ) -> Result<Self, LoadError> {
-        let extent = Self::from_header(attempt, field, dims, voxel_type, room)?;
+        let extent = Self::from_header(context, field, dims, voxel_type, room)?;
         extent.ask_acceptance(voxel_type, room, true)?;
         Self { read: ResolvedPortion::whole_grid(extent.dims), ..extent }
-            .check_budget(attempt, field, voxel_type, room, true)
+            .check_budget(context, field, voxel_type, room, true)
     }
 
     /// Computes the extent of a grid of which only the wanted portion is read.
     fn from_header(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         dims: [u64; 3],
         voxel_type: VoxelType,
@@ -100,7 +100,7 @@ impl GridExtent {
     ) -> Result<Self, LoadError> {
         let [x, y, z] = dims;
         if dims.contains(&0) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 field,
                 format!("a volume of {x} x {y} x {z} voxels is empty"),
                 "every dimension must be at least 1",
@@ -115,7 +115,7 @@ impl GridExtent {
         let (Some(x), Some(y), Some(z), Ok(voxels), Ok(bytes)) =
             (narrow(x), narrow(y), narrow(z), usize::try_from(voxels), u64::try_from(bytes))
         else {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 field,
                 format!(
                     "{x} x {y} x {z} voxels of {} need {}, {} are allowed",
@@ -129,7 +129,7 @@ impl GridExtent {
         let dims = [x, y, z];
         let portion = room.choice.portion.unwrap_or_default();
         let Some(wanted) = ResolvedPortion::resolve(&portion, dims, room.choice.are_labels) else {
-            return Err(attempt.region_error(dims));
+            return Err(context.region_error(dims));
         };
         if let Some(watch) = &room.choice.recorder {
             watch.record_grid(dims);
@@ -156,7 +156,7 @@ impl GridExtent {
     /// Checks that the voxels that are read, and those derived from them, fit into the budget.
     fn check_budget(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         voxel_type: VoxelType,
         room: ReadContext<'_>,
@@ -170,7 +170,7 @@ impl GridExtent {
         let portion = room.choice.portion.unwrap_or_default();
         let grid = format!("{x} x {y} x {z} voxels of {}", voxel_type.name());
         let what = if portion.is_whole() { grid } else { format!("{} {grid}", portion.in_words()) };
-        Err(attempt.limit_error(
+        Err(context.limit_error(
             field,
             format!(
                 "{what} need {}, {} are allowed",
@@ -229,10 +229,10 @@ mod tests {
     use super::*;
 
     fn extent(dims: [u64; 3], budget_bytes: u64, portion: Portion) -> Result<GridExtent, LoadError> {
-        let attempt = LoadContext { operation: "test", path: Path::new("t") };
+        let context = LoadContext { operation: "test", path: Path::new("t") };
         let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default() };
         let room = ReadContext { budget_bytes, choice: &choice, control: &LoadControl::new() };
-        GridExtent::checked(attempt, "sizes", dims, VoxelType::U16, room)
+        GridExtent::checked(context, "sizes", dims, VoxelType::U16, room)
     }
 
     fn kind_of(dims: [u64; 3], budget: u64) -> Result<GridExtent, LoadErrorKind> {

@@ -26,10 +26,10 @@ const PUFFS: [([f64; 3], [f64; 3]); 7] = [
 /// Computes the voxels of the cloud, 0 … 220.
 pub(super) fn voxels(
     grid: UnitGrid,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Vec<u8>, LoadError> {
-    grid.fill(attempt, control, |z, slice| {
+    grid.fill(context, control, |z, slice| {
         for (y, row) in slice.chunks_exact_mut(grid.n).enumerate() {
             for (x, voxel) in row.iter_mut().enumerate() {
                 let p = DVec3::new(grid.centre(x), grid.centre(y), grid.centre(z));

@@ -11,11 +11,11 @@ const HALF: f64 = 0.5;
 /// If n is divisible by four, the faces lie between voxels and every value is 0 or 255.
 pub(super) fn voxels(
     grid: UnitGrid,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Vec<u8>, LoadError> {
     let coverage: Vec<f64> = (0..grid.n).map(|i| coverage(grid, i)).collect();
-    grid.fill(attempt, control, |z, slice| {
+    grid.fill(context, control, |z, slice| {
         for (y, row) in slice.chunks_exact_mut(grid.n).enumerate() {
             for (x, voxel) in row.iter_mut().enumerate() {
                 *voxel = (255.0 * (coverage[x] * coverage[y] * coverage[z])).round() as u8;

@@ -17,7 +17,7 @@ const F_M: f64 = 6.0;
 /// Computes ρ(p), in [0, 1], at the voxel centres of [-1, 1]³.
 pub(super) fn voxels(
     grid: UnitGrid,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Vec<f32>, LoadError> {
     let centres: Vec<f64> = (0..grid.n).map(|i| grid.centre(i)).collect();
@@ -25,7 +25,7 @@ pub(super) fn voxels(
     let radius = |x: f64, y: f64| (x * x + y * y).sqrt();
     let ripples: Vec<f64> =
         centres.iter().flat_map(|&y| centres.iter().map(move |&x| ripple(radius(x, y)))).collect();
-    grid.fill(attempt, control, |z, slice| {
+    grid.fill(context, control, |z, slice| {
         for (voxel, ripple) in slice.iter_mut().zip(&ripples) {
             *voxel = density(centres[z], *ripple) as f32;
         }

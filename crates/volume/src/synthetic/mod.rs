@@ -66,14 +66,14 @@ impl UnitGrid {
     /// Computes all voxels in parallel: `slice(z, values)` fills one z-slice, which begins as zeros.
     fn fill<T: Copy + Default + Send>(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         control: &LoadControl,
         slice: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<Vec<T>, LoadError> {
         let mut values = Vec::new();
         let count = self.n.pow(3);
         if values.try_reserve_exact(count).is_err() {
-            return Err(attempt.limit_error("N", "there is not enough memory", "choose fewer voxels"));
+            return Err(context.limit_error("N", "there is not enough memory", "choose fewer voxels"));
         }
         values.resize(count, T::default());
         control.start((count * size_of::<T>()) as u64);
@@ -109,10 +109,10 @@ pub fn builtin_with_budget(
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let source = format!("builtin:{name}");
-    let attempt = LoadContext { operation: "make the built-in volume", path: Path::new(&source) };
+    let context = LoadContext { operation: "make the built-in volume", path: Path::new(&source) };
     let n = n.unwrap_or(DEFAULT_SIZE);
     if !BUILTIN_NAMES.contains(&name) {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "NAME",
             "there is no built-in volume of that name",
             format!("choose one of {}", BUILTIN_NAMES.join(", ")),
@@ -120,7 +120,7 @@ pub fn builtin_with_budget(
     }
     if !SIZES.contains(&n) {
         let (least, most) = (SIZES.start(), SIZES.end());
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "N",
             format!("{least} to {most} voxels along an edge are possible, {n} were asked for"),
             format!("write it like builtin:{name}:{DEFAULT_SIZE}"),
@@ -130,14 +130,14 @@ pub fn builtin_with_budget(
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
     // All voxels are made, even if only a portion of them is wanted.
     let room = ReadContext { budget_bytes, choice, control };
-    GridExtent::checked_whole(attempt, "N", [n as u64; 3], voxel_type, room)?;
+    GridExtent::checked_whole(context, "N", [n as u64; 3], voxel_type, room)?;
     let grid = UnitGrid { n };
     let samples = match name {
-        "chair" => Samples::U8(voxelise::voxelise(grid, &chair::parts(), attempt, control)?),
-        "sphere" => Samples::U8(voxelise::voxelise(grid, &sphere::parts(), attempt, control)?),
-        "cloud" => Samples::U8(cloud::voxels(grid, attempt, control)?),
-        "box" => Samples::U8(cube::voxels(grid, attempt, control)?),
-        _ => Samples::F32(marschner_lobb::voxels(grid, attempt, control)?),
+        "chair" => Samples::U8(voxelise::voxelise(grid, &chair::parts(), context, control)?),
+        "sphere" => Samples::U8(voxelise::voxelise(grid, &sphere::parts(), context, control)?),
+        "cloud" => Samples::U8(cloud::voxels(grid, context, control)?),
+        "box" => Samples::U8(cube::voxels(grid, context, control)?),
+        _ => Samples::F32(marschner_lobb::voxels(grid, context, control)?),
     };
     let spacing_mm = EDGE_MM / n as f64;
     let world_from_index = DAffine3 {
@@ -148,7 +148,7 @@ pub fn builtin_with_budget(
         // The opacity unit is one voxel of the default size, so that the look is independent of the resolution.
         .map(|volume| volume.with_unit_mm(OPACITY_UNIT_MM))
         .map_err(|error| {
-            attempt.bad_input_error("data", error.to_string(), "choose another number of voxels")
+            context.bad_input_error("data", error.to_string(), "choose another number of voxels")
         })
 }
 

@@ -21,11 +21,11 @@ pub(super) struct ScenePart {
 pub(super) fn voxelise(
     grid: UnitGrid,
     parts: &[ScenePart],
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Vec<u8>, LoadError> {
     let edge = grid.voxel_edge();
-    grid.fill(attempt, control, |z, slice| {
+    grid.fill(context, control, |z, slice| {
         for part in parts {
             // The ramp ends half a voxel outside the shape, so that only its bounding box is visited.
             let bounds = part.shape.bounds();

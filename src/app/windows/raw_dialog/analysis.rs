@@ -91,6 +91,7 @@ impl RawAnalysis {
         self.result.as_ref().map(|found| found.length)
     }
 
+    /// Returns the bytes of the file, which the preview of slices shares.
     pub(super) fn bytes(&self) -> &SharedBytes {
         &self.bytes
     }

@@ -32,18 +32,18 @@ pub(super) struct CubeHeader {
 }
 
 impl CubeHeader {
-    pub(super) fn read(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Self, LoadError> {
-        let title = line(attempt, words)?.trim().to_owned();
-        line(attempt, words)?;
-        let third = line(attempt, words)?;
+    pub(super) fn read(context: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Self, LoadError> {
+        let title = line(context, words)?.trim().to_owned();
+        line(context, words)?;
+        let third = line(context, words)?;
         let numbers: Vec<f64> = third.split_whitespace().map_while(|word| word.parse().ok()).collect();
         let count = third.split_whitespace().next().and_then(|word| word.parse::<i64>().ok());
         let (Some(count), [_, x, y, z, more @ ..]) = (count, &numbers[..]) else {
-            return Err(bad_line(attempt, "line 3", &third, "a number of atoms and an origin"));
+            return Err(bad_line(context, "line 3", &third, "a number of atoms and an origin"));
         };
         let atoms = count.unsigned_abs();
         if atoms > MAX_ATOMS {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 "line 3",
                 format!("{atoms} atoms exceed the limit of {MAX_ATOMS}"),
                 "check that the file is a Gaussian cube",
@@ -52,12 +52,12 @@ impl CubeHeader {
         let mut counts = [0i64; 3];
         let mut axes = [DVec3::ZERO; 3];
         for (at, field) in ["line 4", "line 5", "line 6"].into_iter().enumerate() {
-            let text = line(attempt, words)?;
+            let text = line(context, words)?;
             let mut pieces = text.split_whitespace();
             let n = pieces.next().and_then(|word| word.parse().ok());
             let numbers: Vec<f64> = pieces.map_while(|word| word.parse().ok()).collect();
             let (Some(n), [x, y, z, ..]) = (n, &numbers[..]) else {
-                return Err(bad_line(attempt, field, &text, "a number of voxels and a step"));
+                return Err(bad_line(context, field, &text, "a number of voxels and a step"));
             };
             counts[at] = n;
             axes[at] = DVec3::new(*x, *y, *z);
@@ -65,8 +65,8 @@ impl CubeHeader {
         let has_orbitals = count < 0;
         let values = match more.first() {
             _ if has_orbitals => {
-                skip_lines(attempt, words, atoms)?;
-                read_orbitals(attempt, words)?
+                skip_lines(context, words, atoms)?;
+                read_orbitals(context, words)?
             }
             Some(&n) if n > 1.0 && n <= MAX_VALUES as f64 => vec![String::new(); n as usize],
             _ => vec![String::new()],
@@ -85,39 +85,39 @@ impl CubeHeader {
     /// Skips a header that was parsed before.
     pub(super) fn skip(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         words: &mut CubeWordReader<'_>,
     ) -> Result<(), LoadError> {
-        skip_lines(attempt, words, 6 + self.atoms)?;
+        skip_lines(context, words, 6 + self.atoms)?;
         if self.has_orbitals {
-            read_orbitals(attempt, words)?;
+            read_orbitals(context, words)?;
         }
         Ok(())
     }
 }
 
 /// Reads the list of orbitals: their number, and the identifier of each.
-fn read_orbitals(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Vec<String>, LoadError> {
+fn read_orbitals(context: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Vec<String>, LoadError> {
     let mut word = String::new();
     let mut next = || -> Result<String, LoadError> {
-        words.word(&mut word).map_err(|fault| error_of(attempt, fault))?;
+        words.word(&mut word).map_err(|fault| error_of(context, fault))?;
         Ok(word.clone())
     };
     let said = next()?;
     let Some(count) = said.parse::<u64>().ok().filter(|count| (1..=MAX_VALUES).contains(count)) else {
-        return Err(bad_line(attempt, "orbitals", &said, "the number of orbitals"));
+        return Err(bad_line(context, "orbitals", &said, "the number of orbitals"));
     };
     (0..count).map(|_| next().map(|id| format!("orbital {id}"))).collect()
 }
 
-fn skip_lines(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>, count: u64) -> Result<(), LoadError> {
-    (0..count).try_for_each(|_| line(attempt, words).map(drop))
+fn skip_lines(context: LoadContext<'_>, words: &mut CubeWordReader<'_>, count: u64) -> Result<(), LoadError> {
+    (0..count).try_for_each(|_| line(context, words).map(drop))
 }
 
-fn line(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<String, LoadError> {
-    let found = words.line().map_err(|fault| error_of(attempt, fault))?;
+fn line(context: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<String, LoadError> {
+    let found = words.line().map_err(|fault| error_of(context, fault))?;
     found.ok_or_else(|| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "header",
             "the file ends within its header",
             "copy or download the file again",
@@ -125,12 +125,12 @@ fn line(attempt: LoadContext<'_>, words: &mut CubeWordReader<'_>) -> Result<Stri
     })
 }
 
-fn error_of(attempt: LoadContext<'_>, fault: ReadFault) -> LoadError {
+fn error_of(context: LoadContext<'_>, fault: ReadFault) -> LoadError {
     match fault {
         ReadFault::Stopped(error) => error,
-        ReadFault::Io(error) if !is_corruption(&error) => attempt.io_error(error),
-        ReadFault::NotANumber { text } => bad_line(attempt, "header", &text, "a short line of numbers"),
-        _ => attempt.bad_input_error(
+        ReadFault::Io(error) if !is_corruption(&error) => context.io_error(error),
+        ReadFault::NotANumber { text } => bad_line(context, "header", &text, "a short line of numbers"),
+        _ => context.bad_input_error(
             "header",
             "the gzip data are broken or truncated",
             "copy or download the file again",

@@ -27,27 +27,27 @@ const HELP: &str = "check the header against the data, or copy the file again";
 
 /// Loads a Gaussian cube file.
 fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the Gaussian cube", path: source.path };
+    let context = LoadContext { operation: "read the Gaussian cube", path: source.path };
     let header = {
         let control = source.control;
-        CubeHeader::read(attempt, &mut CubeWordReader::new(source.content(), control))?
+        CubeHeader::read(context, &mut CubeWordReader::new(source.content(), control))?
     };
     let voxel_type = VoxelType::F32;
     // x is slowest in the file, so that its slices are not those of the volume: all of it is read before a selection
     // is made.
     let room = source.options.limits(source.control);
-    let extent = GridExtent::checked_whole(attempt, "numbers of voxels", header.dims, voxel_type, room)?;
+    let extent = GridExtent::checked_whole(context, "numbers of voxels", header.dims, voxel_type, room)?;
     let layout = VoxelLayout { extent, voxel_type, endian: Endian::Little };
     let values = header.values.len();
     let chosen =
-        source.choose_numbered(attempt, FileDimension::Channel, values as u64, header.dims, |at| {
+        source.choose_numbered(context, FileDimension::Channel, values as u64, header.dims, |at| {
             header.values[at].clone()
         })?;
     // At least a digit and a space each: shorter data are refused before memory is allocated.
     let needed = (extent.voxels as u64).saturating_mul(values as u64);
     let room = source.input.len.div_ceil(2);
     if !source.start.is_gzip() && room < needed {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "data",
             format!("the data are truncated: {needed} numbers expected, at most {room} found"),
             HELP,
@@ -57,24 +57,24 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let control = source.control;
     control.start(extent.bytes);
     // From the beginning again, because the first reader has buffered data.
-    source.input.seek(0).map_err(|error| attempt.io_error(error))?;
+    source.input.seek(0).map_err(|error| context.io_error(error))?;
     let mut words = CubeWordReader::new(source.content(), control);
-    header.skip(attempt, &mut words)?;
+    header.skip(context, &mut words)?;
     let samples = read(&mut words, extent, values, chosen).map_err(|fault| match fault {
         ReadFault::Io(error) if is_corruption(&error) => {
-            ReadFault::Corrupt(error).into_error(attempt, &layout, "numbers", HELP)
+            ReadFault::Corrupt(error).into_error(context, &layout, "numbers", HELP)
         }
-        ReadFault::Short { got } => attempt.bad_input_error(
+        ReadFault::Short { got } => context.bad_input_error(
             "data",
             format!("the data are truncated: {needed} numbers expected, {got} found"),
             HELP,
         ),
-        fault => fault.into_error(attempt, &layout, "numbers", HELP),
+        fault => fault.into_error(context, &layout, "numbers", HELP),
     })?;
     let mut hints = ValueMetadata::default();
     hints.set_acquisition(&header.title);
     VolumeParts { name, extent, placement: header.placement, voxels: samples.into(), hints }
-        .into_volume(attempt, control)
+        .into_volume(context, control)
 }
 
 /// Reads one value of each voxel, transposing the grid: x is slowest in the file, and fastest in memory.
@@ -111,8 +111,8 @@ fn read(
 }
 
 /// Error for a header line with unexpected content.
-fn bad_line(attempt: LoadContext<'_>, field: &str, line: &str, expected: &str) -> LoadError {
-    attempt.bad_input_error(
+fn bad_line(context: LoadContext<'_>, field: &str, line: &str, expected: &str) -> LoadError {
+    context.bad_input_error(
         field,
         format!("{expected} was expected, {} was found", quoted(line)),
         "check that the file is a Gaussian cube",

@@ -71,8 +71,8 @@ pub(super) fn scan_headers(files: &[PathBuf], control: &LoadControl) -> Result<H
 
 fn scan_file(path: &Path, control: &LoadControl) -> Result<ScannedFile, LoadError> {
     control.check()?;
-    let attempt = LoadContext { operation: super::READ_FILE, path };
-    let Ok(mut input) = InputFile::open(attempt) else { return Ok(ScannedFile::Other) };
+    let context = LoadContext { operation: super::READ_FILE, path };
+    let Ok(mut input) = InputFile::open(context) else { return Ok(ScannedFile::Other) };
     let length = input.len;
     // Not through the buffer, which is large: most files in the folder may be of another kind.
     let mut start = Vec::new();
@@ -81,7 +81,7 @@ fn scan_file(path: &Path, control: &LoadControl) -> Result<ScannedFile, LoadErro
         control.advance(length);
         return Ok(ScannedFile::Other);
     }
-    let seen = match DicomHeader::parse(attempt, input, &start, control) {
+    let seen = match DicomHeader::parse(context, input, &start, control) {
         Ok((header, _)) if header.pixels.is_some() => ScannedFile::Header(Box::new(header)),
         Ok((header, _)) => ScannedFile::WithoutPixels(header.object_kind()),
         Err(LoadError::Cancelled) => return Err(LoadError::Cancelled),

@@ -117,10 +117,10 @@ fn image_types_of(header: &DicomHeader) -> impl Iterator<Item = &str> {
 
 /// Returns the pixel layout of a file, if it is supported and the file is long enough for its frames.
 pub(super) fn readable_layout(header: &DicomHeader) -> Result<PixelLayout, LoadError> {
-    let attempt = LoadContext { operation: super::READ_FILE, path: &header.path };
-    let shape = PixelLayout::from_header(attempt, header)?;
-    supported_codec(attempt, header)?;
-    check_file_size(attempt, header, &shape)?;
+    let context = LoadContext { operation: super::READ_FILE, path: &header.path };
+    let shape = PixelLayout::from_header(context, header)?;
+    supported_codec(context, header)?;
+    check_file_size(context, header, &shape)?;
     Ok(shape)
 }
 

@@ -65,11 +65,11 @@ impl<T: VoxelNumber> ImageBuffers<T> {
     /// Takes the buffer for a whole image, resized to this many pixels.
     pub(super) fn take_whole(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         pixels: usize,
     ) -> Result<Vec<T>, LoadError> {
         let mut whole = std::mem::take(&mut self.whole);
-        resize(attempt, &mut whole, pixels)?;
+        resize(context, &mut whole, pixels)?;
         Ok(whole)
     }
 
@@ -83,7 +83,7 @@ impl LayerSource<'_> {
     /// Reads the voxels of a layer.
     pub(super) fn read_layer<T: VoxelNumber>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         layer: &SliceLayer,
         voxels: &mut [T],
         scratch: &mut ImageBuffers<T>,
@@ -102,13 +102,13 @@ impl LayerSource<'_> {
                 self.read_slice(&self.slices[*nearest], voxels, &mut scratch.mosaic)?;
             }
             SliceLayer::Blend { pictures: [low, high], share, .. } => {
-                resize(attempt, &mut scratch.other, voxels.len())?;
+                resize(context, &mut scratch.other, voxels.len())?;
                 self.read_slice(&self.slices[*low], voxels, &mut scratch.mosaic)?;
                 self.read_slice(&self.slices[*high], &mut scratch.other, &mut scratch.mosaic)?;
                 self.interpolate(voxels, &scratch.other, *share);
             }
             SliceLayer::Masks(masks) => {
-                self.read_masks(attempt, &self.slices[masks.clone()], voxels, scratch)?;
+                self.read_masks(context, &self.slices[masks.clone()], voxels, scratch)?;
             }
             SliceLayer::Empty if self.gap_fill == GapFill::Interpolate => voxels.fill(T::UNMEASURED),
             SliceLayer::Empty => voxels.fill(T::default()),
@@ -131,14 +131,14 @@ impl LayerSource<'_> {
     /// shares the one with the highest number.
     fn read_masks<T: VoxelNumber>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         masks: &[DicomSlice],
         voxels: &mut [T],
         scratch: &mut ImageBuffers<T>,
     ) -> Result<(), VolumeReadError> {
         let ImageBuffers { other, shares, mosaic, .. } = scratch;
-        resize(attempt, other, voxels.len())?;
-        resize(attempt, shares, voxels.len())?;
+        resize(context, other, voxels.len())?;
+        resize(context, shares, voxels.len())?;
         voxels.fill(T::default());
         shares.fill(T::default());
         let mut overlapping = 0;
@@ -169,15 +169,15 @@ impl LayerSource<'_> {
         mosaic: &mut Vec<T>,
     ) -> Result<(), VolumeReadError> {
         let header = &self.headers[slice.file];
-        let attempt = LoadContext { operation: READ_FILE, path: &header.path };
+        let context = LoadContext { operation: READ_FILE, path: &header.path };
         let Some(store) = &self.stores[slice.file] else { return Ok(()) };
         let scale = self.has_own_scales.then(|| slice.plane.scale());
         let raster = PixelConversion { scale, shape: store.shape(), ..self.raster };
         let read = match slice.tile.zip(Mosaic::new(header)) {
-            None => store.read(attempt, slice.frame, raster, voxels, self.control),
+            None => store.read(context, slice.frame, raster, voxels, self.control),
             Some((tile, layout)) => {
-                resize(attempt, mosaic, store.shape().pixel_count())?;
-                let read = store.read(attempt, slice.frame, raster, mosaic, self.control);
+                resize(context, mosaic, store.shape().pixel_count())?;
+                let read = store.read(context, slice.frame, raster, mosaic, self.control);
                 read.map(|()| layout.copy_tile(tile, mosaic, voxels))
             }
         };
@@ -191,13 +191,13 @@ impl LayerSource<'_> {
 }
 
 /// Allocates an empty vector for this many voxels.
-pub(super) fn reserve_voxels<T>(attempt: LoadContext<'_>, count: usize) -> Result<Vec<T>, LoadError> {
-    alloc_with_capacity(count).map_err(|_no_memory| no_memory(attempt, count))
+pub(super) fn reserve_voxels<T>(context: LoadContext<'_>, count: usize) -> Result<Vec<T>, LoadError> {
+    alloc_with_capacity(count).map_err(|_no_memory| no_memory(context, count))
 }
 
 /// Makes the error for voxels that do not fit in memory.
-pub(super) fn no_memory(attempt: LoadContext<'_>, count: usize) -> LoadError {
-    attempt.limit_error(
+pub(super) fn no_memory(context: LoadContext<'_>, count: usize) -> LoadError {
+    context.limit_error(
         "data",
         format!("there is not enough memory for {count} voxels"),
         "close other programs",
@@ -205,12 +205,12 @@ pub(super) fn no_memory(attempt: LoadContext<'_>, count: usize) -> LoadError {
 }
 
 fn resize<T: VoxelNumber>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     voxels: &mut Vec<T>,
     count: usize,
 ) -> Result<(), LoadError> {
     if voxels.len() != count {
-        *voxels = reserve_voxels(attempt, count)?;
+        *voxels = reserve_voxels(context, count)?;
         voxels.resize(count, T::default());
     }
     Ok(())

@@ -50,13 +50,13 @@ pub(super) const READER: FormatReader = FormatReader {
 /// Returns the identifier of the series of which a file is a slice; `None` for other files, and for files that hold a
 /// whole volume.
 pub(crate) fn series_uid(path: &Path, control: &LoadControl) -> Option<String> {
-    let attempt = LoadContext { operation: READ_FILE, path };
-    let mut input = InputFile::open(attempt).ok()?;
+    let context = LoadContext { operation: READ_FILE, path };
+    let mut input = InputFile::open(context).ok()?;
     let start = FileStart::read(&mut input).ok()?;
     if !is_dicom(start.stored()) {
         return None;
     }
-    let (header, _) = DicomHeader::parse(attempt, input, start.stored(), control).ok()?;
+    let (header, _) = DicomHeader::parse(context, input, start.stored(), control).ok()?;
     let is_slice = header.pixels.is_some() && header.frame_count() == 1;
     Some(header.values.series_uid).filter(|series| is_slice && !series.is_empty())
 }
@@ -65,23 +65,23 @@ pub(crate) fn series_uid(path: &Path, control: &LoadControl) -> Option<String> {
 /// there, those in the folders beside it.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
-    let attempt = LoadContext { operation: READ_FILE, path };
+    let context = LoadContext { operation: READ_FILE, path };
     if start.is_gzip() {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "file",
             "the file itself is compressed with gzip",
             "unpack it with gunzip",
         ));
     }
-    let (header, _) = DicomHeader::parse(attempt, input, start.stored(), control)?;
+    let (header, _) = DicomHeader::parse(context, input, start.stored(), control)?;
     if header.pixels.is_none() {
-        return Err(no_pixels_error(attempt, &header));
+        return Err(no_pixels_error(context, &header));
     }
     let is_slice = header.frame_count() == 1 && !header.values.series_uid.is_empty();
     if !is_slice {
         let headers = [header];
         let grouping = group_images(&headers);
-        let open = SeriesSelection { attempt, path, headers: &headers, named_file: None, options, control };
+        let open = SeriesSelection { context, path, headers: &headers, named_file: None, options, control };
         return open.load(grouping, Vec::new());
     }
     let HeaderScan { headers: others, unreadable_count, first_error, .. } =
@@ -116,7 +116,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         return Err(grouping.unreadable.swap_remove(wrong).error);
     }
     let named_file = main.map(|index| NamedFile { index, place });
-    SeriesSelection { attempt, path, headers: &headers, named_file, options, control }.load(grouping, remarks)
+    SeriesSelection { context, path, headers: &headers, named_file, options, control }.load(grouping, remarks)
 }
 
 /// Loads a series from a folder's files; `None` if none is a DICOM file. `remarks` holds earlier remarks on the
@@ -128,13 +128,13 @@ pub(super) fn load_folder(
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Option<Volume>, LoadError> {
-    let attempt = LoadContext { operation: READ_SERIES, path };
+    let context = LoadContext { operation: READ_SERIES, path };
     let HeaderScan { mut headers, without_pixels, unreadable_count, first_error: why } =
         scan_headers(files, control)?;
     if headers.is_empty() {
         return match why {
             Some(why) => Err(why),
-            None if !without_pixels.is_empty() => Err(no_pixels_in_folder_error(attempt, without_pixels)),
+            None if !without_pixels.is_empty() => Err(no_pixels_in_folder_error(context, without_pixels)),
             None => Ok(None),
         };
     }
@@ -144,7 +144,7 @@ pub(super) fn load_folder(
         why.map(|why| omission_remark(unreadable_count, headers.len() + unreadable_count, "files", &why)),
     );
     let grouping = group_images(&headers);
-    let open = SeriesSelection { attempt, path, headers: &headers, named_file: None, options, control };
+    let open = SeriesSelection { context, path, headers: &headers, named_file: None, options, control };
     open.load(grouping, remarks).map(Some)
 }
 
@@ -154,22 +154,22 @@ pub(super) fn count_pictures(files: &[PathBuf], control: &LoadControl) -> Result
 }
 
 /// Makes the error for a file without pixels, which tells what the file is.
-fn no_pixels_error(attempt: LoadContext<'_>, header: &DicomHeader) -> LoadError {
+fn no_pixels_error(context: LoadContext<'_>, header: &DicomHeader) -> LoadError {
     let found = &header.values;
     if found.is_directory {
-        return attempt.bad_input_error(
+        return context.bad_input_error(
             "Directory Record Sequence",
             "it is a DICOMDIR: it lists the files of a disk, and has no images itself",
             "open the folder that contains it: subfolders are searched as well",
         );
     }
     match ObjectClass::from_uid(&found.sop_class) {
-        Some(ObjectClass { name, advice: help }) => attempt.bad_input_error(
+        Some(ObjectClass { name, advice: help }) => context.bad_input_error(
             "SOP Class UID",
             format!("it has no pixels: it is a DICOM object of another kind, {name}"),
             help,
         ),
-        None => attempt.bad_input_error(
+        None => context.bad_input_error(
             "Pixel Data",
             format!("it has no pixels, as is usual for reports and plans: {}", header.object_kind()),
             "open a file with images; if this one should have some, copy it again",
@@ -178,13 +178,13 @@ fn no_pixels_error(attempt: LoadContext<'_>, header: &DicomHeader) -> LoadError 
 }
 
 /// Makes the error for a folder whose DICOM files have no pixels, with a count of each kind of object.
-fn no_pixels_in_folder_error(attempt: LoadContext<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
+fn no_pixels_in_folder_error(context: LoadContext<'_>, kinds: BTreeMap<String, usize>) -> LoadError {
     // As many kinds as fit on a line.
     const MAX_KINDS: usize = 6;
     let count: usize = kinds.values().sum();
     let listed = kinds.into_iter().take(MAX_KINDS).map(|(kind, count)| format!("{count} {kind}"));
     let kinds = listed.collect::<Vec<_>>().join(", ");
-    attempt.bad_input_error(
+    context.bad_input_error(
         "files",
         format!("its {count} DICOM files have no pixels: {kinds}"),
         "open the folder that holds the images",

@@ -36,7 +36,7 @@ pub(super) enum SlicePlace {
 
 /// Files from which one volume is opened.
 pub(super) struct SeriesSelection<'a> {
-    pub(super) attempt: LoadContext<'a>,
+    pub(super) context: LoadContext<'a>,
     /// File or folder that the user named.
     pub(super) path: &'a Path,
     pub(super) headers: &'a [DicomHeader],
@@ -68,7 +68,7 @@ impl SeriesSelection<'_> {
         let offers = series.iter().enumerate().map(|(number, series)| series.offer(number)).collect();
         let chosen = match self.named_file {
             Some(_) => 0,
-            None => self.attempt.resolve_choice(&self.options.choice, FileDimension::Series, offers)?,
+            None => self.context.resolve_choice(&self.options.choice, FileDimension::Series, offers)?,
         };
         let series = series.swap_remove(chosen);
         // A single file may hold several slices of its own.
@@ -86,7 +86,7 @@ impl SeriesSelection<'_> {
         {
             choice = choice.with_selected(FileDimension::Frame, &volume.to_string());
         }
-        let volume = self.attempt.resolve_choice(&choice, FileDimension::Frame, series.volume_offers())?;
+        let volume = self.context.resolve_choice(&choice, FileDimension::Frame, series.volume_offers())?;
         self.read(series, volume, remarks)
     }
 
@@ -104,7 +104,7 @@ impl SeriesSelection<'_> {
         for _ in 0..MAX_ATTEMPTS {
             request.volume.placement.remarks.splice(0..0, remarks.iter().cloned());
             let (pictures, total, why) =
-                match volume_reader::load_volume(self.attempt, &request, self.options, self.control) {
+                match volume_reader::load_volume(self.context, &request, self.options, self.control) {
                     Ok(volume) => return Ok(volume),
                     Err(VolumeReadError::Load(error)) => return Err(error),
                     Err(VolumeReadError::Unreadable { pictures, total, why }) => (pictures, total, why),
@@ -126,14 +126,14 @@ impl SeriesSelection<'_> {
             let StackedVolume { slices, layers, placement, .. } = stack.volumes.swap_remove(0);
             request.volume = StackedVolume { slices, layers, placement, ..request.volume };
         }
-        Err(self.attempt.bad_input_error("files", "its files change while they are read", "open them again"))
+        Err(self.context.bad_input_error("files", "its files change while they are read", "open them again"))
     }
 
     /// Makes the error for a series without a single readable file.
     fn no_readable_file_error(&self, mut unreadable: Vec<UnreadableFile>) -> LoadError {
         let count = unreadable.len();
         if unreadable.is_empty() {
-            return self.attempt.bad_input_error(
+            return self.context.bad_input_error(
                 "files",
                 "its files have no images",
                 "copy or export them again",

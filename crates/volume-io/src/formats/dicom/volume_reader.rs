@@ -35,7 +35,7 @@ pub(super) struct VolumeRequest<'a> {
 /// # Errors
 /// [`VolumeReadError::Unreadable`] lists the slices that cannot be read, if others can.
 pub(super) fn load_volume(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     request: &VolumeRequest<'_>,
     options: &LoadOptions,
     control: &LoadControl,
@@ -44,10 +44,10 @@ pub(super) fn load_volume(
     let headers = request.headers;
     let StackedVolume { slices, layers, placement, .. } = volume;
     let component = options.choice.resolve_component(shape.samples, shape.samples > 1);
-    let part = ScalarReduction::require(attempt, component, shape.samples, shape.samples > 1)?;
+    let part = ScalarReduction::require(context, component, shape.samples, shape.samples > 1)?;
     let Some(first) = slices.first() else {
         let why =
-            attempt.bad_input_error("Number of Frames", "it has no frames", "copy or export the file again");
+            context.bad_input_error("Number of Frames", "it has no frames", "copy or export the file again");
         return Err(why.into());
     };
     let scale = if request.has_masks { [1.0, 0.0] } else { first.plane.scale() };
@@ -56,7 +56,7 @@ pub(super) fn load_volume(
         shape.samples == 1 && !request.has_masks && slices.iter().any(|slice| slice.plane.scale() != scale);
     let voxel_type = request.voxel_type(is_scaled);
     let dims = [shape.columns as u64, shape.rows as u64, layers.len() as u64];
-    let extent = GridExtent::checked(attempt, "Rows, Columns", dims, voxel_type, options.limits(control))?;
+    let extent = GridExtent::checked(context, "Rows, Columns", dims, voxel_type, options.limits(control))?;
     let read_slices = extent.read.slices().flat_map(|layer| layers[layer].slices()).map(|at| &slices[at]);
     let stores = open_stores(headers, read_slices, options, control)?;
     let found = &headers[first.file].values;
@@ -77,12 +77,12 @@ pub(super) fn load_volume(
         if is_scaled || shape.samples > 1 {
             Ok(samples)
         } else {
-            rescale(attempt, samples, scale, options.memory_budget_bytes)
+            rescale(context, samples, scale, options.memory_budget_bytes)
         }
     };
     let meant = ValueMapping { padding: hints.padding, map: &values };
     let layers = LayerReader { source: &source, layers, shape: *shape };
-    let voxels = layers.read(attempt, &extent.read, voxel_type, &meant);
+    let voxels = layers.read(context, &extent.read, voxel_type, &meant);
     let voxels = voxels.map_err(|fault| layers.list_unreadable(&extent.read, fault))?;
     let mut placement = placement.clone();
     let is_unpacked = first.tile.is_some();
@@ -99,7 +99,7 @@ pub(super) fn load_volume(
         ));
     }
     let parts = VolumeParts { name: request.name.clone(), extent, placement, voxels, hints };
-    parts.into_volume(attempt, control).map_err(VolumeReadError::from)
+    parts.into_volume(context, control).map_err(VolumeReadError::from)
 }
 
 impl VolumeRequest<'_> {
@@ -153,7 +153,7 @@ impl LayerReader<'_> {
     /// Reads the kept part of the volume, averaged if requested.
     fn read(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         kept: &ResolvedPortion,
         voxel_type: VoxelType,
         meant: &ValueMapping<'_>,
@@ -167,49 +167,49 @@ impl LayerReader<'_> {
             high: [1, 1, first + 1],
             ..ResolvedPortion::whole_grid(kept.grid)
         };
-        self.read_typed(attempt, &one, voxel_type)?;
+        self.read_typed(context, &one, voxel_type)?;
         self.source.overlapping.store(0, Ordering::Relaxed);
         self.source.control.start(GridExtent::unchecked(boxed.dims(), voxel_type).bytes);
         if !kept.is_averaged {
-            return Ok((meant.map)(self.read_typed(attempt, &boxed, voxel_type)?)?.into());
+            return Ok((meant.map)(self.read_typed(context, &boxed, voxel_type)?)?.into());
         }
         average_blocks(kept, voxel_type.bytes(), meant, self.source.control, |slices| {
             let (mut low, mut high) = (boxed.low, boxed.high);
             (low[2], high[2]) = (boxed.low[2] + slices.start, boxed.low[2] + slices.end);
-            self.read_typed(attempt, &ResolvedPortion { low, high, ..boxed }, voxel_type)
+            self.read_typed(context, &ResolvedPortion { low, high, ..boxed }, voxel_type)
         })
         .map_err(|why| match why {
             AveragingError::Read(fault) => fault,
-            AveragingError::NoMemory => no_memory(attempt, kept.count()).into(),
+            AveragingError::NoMemory => no_memory(context, kept.count()).into(),
         })
     }
 
     /// Reads a part of the volume without averaging, in the given type.
     fn read_typed(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         kept: &ResolvedPortion,
         voxel_type: VoxelType,
     ) -> Result<Samples, VolumeReadError> {
         match voxel_type {
-            VoxelType::U8 => self.read_voxels(attempt, kept).map(Samples::U8),
-            VoxelType::I8 => self.read_voxels(attempt, kept).map(Samples::I8),
-            VoxelType::U16 => self.read_voxels(attempt, kept).map(Samples::U16),
-            VoxelType::I16 => self.read_voxels(attempt, kept).map(Samples::I16),
-            VoxelType::U32 => self.read_voxels(attempt, kept).map(Samples::U32),
-            VoxelType::I32 => self.read_voxels(attempt, kept).map(Samples::I32),
-            VoxelType::F32 => self.read_voxels(attempt, kept).map(Samples::F32),
-            VoxelType::F64 => self.read_voxels(attempt, kept).map(Samples::F64),
+            VoxelType::U8 => self.read_voxels(context, kept).map(Samples::U8),
+            VoxelType::I8 => self.read_voxels(context, kept).map(Samples::I8),
+            VoxelType::U16 => self.read_voxels(context, kept).map(Samples::U16),
+            VoxelType::I16 => self.read_voxels(context, kept).map(Samples::I16),
+            VoxelType::U32 => self.read_voxels(context, kept).map(Samples::U32),
+            VoxelType::I32 => self.read_voxels(context, kept).map(Samples::I32),
+            VoxelType::F32 => self.read_voxels(context, kept).map(Samples::F32),
+            VoxelType::F64 => self.read_voxels(context, kept).map(Samples::F64),
         }
     }
 
     fn read_voxels<T: VoxelNumber>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         kept: &ResolvedPortion,
     ) -> Result<Vec<T>, VolumeReadError> {
         let [width, height, _] = kept.dims();
-        let mut voxels: Vec<T> = reserve_voxels(attempt, kept.count())?;
+        let mut voxels: Vec<T> = reserve_voxels(context, kept.count())?;
         voxels.resize(kept.count(), T::default());
         let layers: Vec<&SliceLayer> = kept.slices().map(|layer| &self.layers[layer]).collect();
         let is_whole = [width, height] == [kept.grid[0], kept.grid[1]];
@@ -219,10 +219,10 @@ impl LayerReader<'_> {
             |scratch: &mut ImageBuffers<T>, (voxels, layer)| {
                 self.source.control.check()?;
                 if is_whole {
-                    self.source.read_layer(attempt, layer, voxels, scratch)?;
+                    self.source.read_layer(context, layer, voxels, scratch)?;
                 } else {
-                    let mut whole = scratch.take_whole(attempt, self.shape.pixel_count())?;
-                    self.source.read_layer(attempt, layer, &mut whole, scratch)?;
+                    let mut whole = scratch.take_whole(context, self.shape.pixel_count())?;
+                    self.source.read_layer(context, layer, &mut whole, scratch)?;
                     kept.copy_from_slice(&whole, voxels);
                     scratch.give_back(whole);
                 }

@@ -62,7 +62,7 @@ impl FitsUnits {
     /// `BadInput` for an invalid first header and for corrupt gzip data, `Limit` for a header without an end. Other
     /// errors behind the first unit end the list.
     pub(super) fn read(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         content: &mut FileContent,
         is_gzip: bool,
         control: &LoadControl,
@@ -71,38 +71,38 @@ impl FitsUnits {
         let mut at = 0u64;
         while units.kinds.len() < MAX_UNITS {
             let is_first = units.kinds.is_empty();
-            let Some(header) = FitsHeader::read(attempt, content, is_first, control)? else { break };
+            let Some(header) = FitsHeader::read(context, content, is_first, control)? else { break };
             // Trailing bytes behind the last unit, which are no extension.
             if !is_first && header.first_keyword() != "XTENSION" {
                 break;
             }
             let data_start = at.saturating_add(header.bytes);
-            let data_bytes = match data_bytes(attempt, &header) {
+            let data_bytes = match data_bytes(context, &header) {
                 Ok(bytes) => bytes,
                 Err(error) if is_first => return Err(error),
                 Err(_) => break,
             };
-            units.add(attempt, header, data_start);
+            units.add(context, header, data_start);
             at = data_start.saturating_add(data_bytes.div_ceil(BLOCK_BYTES).saturating_mul(BLOCK_BYTES));
             match content.seek_forward(at, control).map_err(ReadFault::into_decoder_fault) {
                 Ok(()) => {}
                 // The next unit would begin beyond the end of the file, or of the range of offsets: the list ends.
                 Err(ReadFault::Short { .. }) => break,
                 Err(ReadFault::Corrupt(_)) if !is_gzip => break,
-                Err(fault) => return Err(header_read_error(attempt, fault)),
+                Err(fault) => return Err(header_read_error(context, fault)),
             }
         }
         Ok(units)
     }
 
-    fn add(&mut self, attempt: LoadContext<'_>, header: FitsHeader, data_start: u64) {
+    fn add(&mut self, context: LoadContext<'_>, header: FitsHeader, data_start: u64) {
         let number = self.kinds.len();
         let kind = kind_of(&header);
         self.kinds.push(kind);
         if kind != FitsUnitKind::Image {
             return;
         }
-        match FitsLayout::new(attempt, &header) {
+        match FitsLayout::new(context, &header) {
             Ok(Some(layout)) => self.images.push(FitsImage { number, header, data_start, layout }),
             Ok(None) => {}
             Err(error) => {
@@ -112,30 +112,30 @@ impl FitsUnits {
     }
 
     /// Makes the error that explains why no unit is a volume.
-    pub(super) fn no_image_error(self, attempt: LoadContext<'_>) -> LoadError {
+    pub(super) fn no_image_error(self, context: LoadContext<'_>) -> LoadError {
         let has = |kind| self.kinds.contains(&kind);
         if let Some(error) = self.first_error {
             error
         } else if has(FitsUnitKind::CompressedImage) {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "ZIMAGE",
                 "its images are compressed in tiles (as by fpack), which is not supported",
                 "unpack it: funpack -O OUT.fits IN.fits.fz",
             )
         } else if has(FitsUnitKind::RandomGroups) {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "GROUPS",
                 "it holds visibilities of an interferometer (random groups), not an image",
                 "make an image of them first, for example with CASA's tclean, and export it with exportfits",
             )
         } else if has(FitsUnitKind::Table) {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "XTENSION",
                 "it holds tables and no image",
                 "open a file with an image of two axes or more; TOPCAT shows tables",
             )
         } else {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "NAXIS",
                 "it holds no image: no header and data unit (HDU) has two axes or more",
                 "open a file with an image of two to four axes",
@@ -162,9 +162,9 @@ fn kind_of(header: &FitsHeader) -> FitsUnitKind {
 }
 
 /// Returns the size of a unit's data in bytes, without the fill of the last block (section 4.4.1.2).
-fn data_bytes(attempt: LoadContext<'_>, header: &FitsHeader) -> Result<u64, LoadError> {
-    let bits = header.required_int(attempt, "BITPIX")?.unsigned_abs();
-    let mut axes = header.axes(attempt)?;
+fn data_bytes(context: LoadContext<'_>, header: &FitsHeader) -> Result<u64, LoadError> {
+    let bits = header.required_int(context, "BITPIX")?.unsigned_abs();
+    let mut axes = header.axes(context)?;
     let is_grouped = kind_of(header) == FitsUnitKind::RandomGroups;
     if is_grouped {
         axes.remove(0);
@@ -173,7 +173,7 @@ fn data_bytes(attempt: LoadContext<'_>, header: &FitsHeader) -> Result<u64, Load
         return Ok(0);
     }
     let count = |keyword, otherwise: u64| {
-        let said = header.int(attempt, keyword)?;
+        let said = header.int(context, keyword)?;
         Ok::<_, LoadError>(said.map_or(otherwise, |n| u64::try_from(n).unwrap_or(0)))
     };
     let (parameters, groups) = (count("PCOUNT", 0)?, count("GCOUNT", 1)?);

@@ -39,7 +39,7 @@ impl FitsHeader {
     /// # Errors
     /// `BadInput` for a corrupt file, and for a first header without an end; `Limit` for a header that is too long.
     pub(super) fn read(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         content: &mut FileContent,
         is_first: bool,
         control: &LoadControl,
@@ -48,7 +48,7 @@ impl FitsHeader {
         let mut block = vec![0; BLOCK_BYTES as usize];
         loop {
             let got = read_until_full(content, &mut block, control)
-                .map_err(|fault| header_read_error(attempt, fault))?;
+                .map_err(|fault| header_read_error(context, fault))?;
             let may_be_header =
                 is_first || header.first_keyword.is_empty() || header.first_keyword == "XTENSION";
             if got == 0 && header.bytes == 0 || !may_be_header || !is_first && got < block.len() {
@@ -62,11 +62,11 @@ impl FitsHeader {
             if got < block.len() {
                 let why =
                     format!("the header is truncated: it ends after {} bytes without END", header.bytes);
-                return Err(attempt.bad_input_error("header", why, HELP));
+                return Err(context.bad_input_error("header", why, HELP));
             }
             if header.bytes >= MAX_HEADER_BLOCKS * BLOCK_BYTES {
                 let why = format!("the header has no END within {} bytes", header.bytes);
-                return Err(attempt.limit_error("header", why, HELP));
+                return Err(context.limit_error("header", why, HELP));
             }
         }
     }
@@ -115,33 +115,33 @@ impl FitsHeader {
     ///
     /// # Errors
     /// `BadInput` for a value that is no integer.
-    pub(super) fn int(&self, attempt: LoadContext<'_>, keyword: &str) -> Result<Option<i64>, LoadError> {
+    pub(super) fn int(&self, context: LoadContext<'_>, keyword: &str) -> Result<Option<i64>, LoadError> {
         let Some(text) = self.values.get(keyword) else { return Ok(None) };
         let whole = text.trim().trim_end_matches('.').parse().ok();
         whole.map(Some).ok_or_else(|| {
             let why = format!("a whole number was expected, {} was found", quoted(text));
-            attempt.bad_input_error(keyword, why, HELP)
+            context.bad_input_error(keyword, why, HELP)
         })
     }
 
     /// Returns an integer whose keyword is mandatory.
-    pub(super) fn required_int(&self, attempt: LoadContext<'_>, keyword: &str) -> Result<i64, LoadError> {
-        self.int(attempt, keyword)?
-            .ok_or_else(|| attempt.bad_input_error(keyword, "the header lacks this mandatory keyword", HELP))
+    pub(super) fn required_int(&self, context: LoadContext<'_>, keyword: &str) -> Result<i64, LoadError> {
+        self.int(context, keyword)?
+            .ok_or_else(|| context.bad_input_error(keyword, "the header lacks this mandatory keyword", HELP))
     }
 
     /// Returns the lengths of all axes, fastest first.
-    pub(super) fn axes(&self, attempt: LoadContext<'_>) -> Result<Vec<u64>, LoadError> {
-        let count = self.required_int(attempt, "NAXIS")?;
+    pub(super) fn axes(&self, context: LoadContext<'_>) -> Result<Vec<u64>, LoadError> {
+        let count = self.required_int(context, "NAXIS")?;
         if !(0..=MAX_AXES).contains(&count) {
             let why = format!("{count} axes are not possible: 0 to {MAX_AXES} were expected");
-            return Err(attempt.bad_input_error("NAXIS", why, HELP));
+            return Err(context.bad_input_error("NAXIS", why, HELP));
         }
         let length = |axis| {
             let keyword = format!("NAXIS{axis}");
-            let length = self.required_int(attempt, &keyword)?;
+            let length = self.required_int(context, &keyword)?;
             u64::try_from(length).map_err(|_negative| {
-                attempt.bad_input_error(&keyword, format!("{length} cannot be the length of an axis"), HELP)
+                context.bad_input_error(&keyword, format!("{length} cannot be the length of an axis"), HELP)
             })
         };
         (1..=count).map(length).collect()
@@ -167,14 +167,14 @@ fn parse_value(text: &str) -> String {
 }
 
 /// Makes the error for a header that could not be read.
-pub(super) fn header_read_error(attempt: LoadContext<'_>, fault: ReadFault) -> LoadError {
+pub(super) fn header_read_error(context: LoadContext<'_>, fault: ReadFault) -> LoadError {
     match fault.into_decoder_fault() {
         ReadFault::Corrupt(error) => {
-            attempt.bad_input_error("header", format!("the gzip data are broken or cut off: {error}"), HELP)
+            context.bad_input_error("header", format!("the gzip data are broken or cut off: {error}"), HELP)
         }
-        ReadFault::Io(error) => attempt.io_error(error),
+        ReadFault::Io(error) => context.io_error(error),
         ReadFault::Stopped(error) => error,
-        _ => attempt.bad_input_error("header", "the file is truncated", HELP),
+        _ => context.bad_input_error("header", "the file is truncated", HELP),
     }
 }
 

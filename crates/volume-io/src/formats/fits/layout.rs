@@ -28,14 +28,14 @@ impl FitsLayout {
     ///
     /// # Errors
     /// `BadInput` for an unknown type, and for more than four axes longer than 1.
-    pub(super) fn new(attempt: LoadContext<'_>, header: &FitsHeader) -> Result<Option<Self>, LoadError> {
-        let lengths = header.axes(attempt)?;
+    pub(super) fn new(context: LoadContext<'_>, header: &FitsHeader) -> Result<Option<Self>, LoadError> {
+        let lengths = header.axes(context)?;
         if lengths.contains(&0) {
             return Ok(None);
         }
-        let bits = header.required_int(attempt, "BITPIX")?;
+        let bits = header.required_int(context, "BITPIX")?;
         let Some(number) = number_from_bitpix(bits) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "BITPIX",
                 format!("values of {bits} bits are not supported; 8, 16, 32, 64, -32 and -64 are"),
                 "copy or download the file again",
@@ -52,7 +52,7 @@ impl FitsLayout {
             [x, y, z] => ([Some(x), Some(y), Some(z)], None),
             [x, y, z, outer] => ([Some(x), Some(y), Some(z)], Some(outer)),
             _ => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "NAXIS",
                     format!(
                         "an array of {} axes longer than 1 is not supported: two to four are",
@@ -65,7 +65,7 @@ impl FitsLayout {
         };
         let scale = [header.float("BSCALE").unwrap_or(1.0), header.float("BZERO").unwrap_or(0.0)];
         // Only integer arrays have `BLANK`; floating-point arrays use NaN.
-        let blank = if bits > 0 { header.int(attempt, "BLANK").ok().flatten() } else { None };
+        let blank = if bits > 0 { header.int(context, "BLANK").ok().flatten() } else { None };
         Ok(Some(Self {
             number,
             dims: grid.map(|axis| axis.map_or(1, |(_, length)| length)),

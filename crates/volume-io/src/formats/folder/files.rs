@@ -19,17 +19,17 @@ const MAX_DEPTH: usize = 12;
 ///
 /// # Errors
 /// `Io` where the folder cannot be read, `Limit` where it has more files than any volume has slices.
-pub(super) fn list_files(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Vec<PathBuf>, LoadError> {
+pub(super) fn list_files(context: LoadContext<'_>, control: &LoadControl) -> Result<Vec<PathBuf>, LoadError> {
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(attempt.path).map_err(|error| attempt.io_error(error))? {
+    for entry in std::fs::read_dir(context.path).map_err(|error| context.io_error(error))? {
         control.check()?;
-        let entry = entry.map_err(|error| attempt.io_error(error))?;
+        let entry = entry.map_err(|error| context.io_error(error))?;
         let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
         if is_hidden || !entry.path().is_file() {
             continue;
         }
         if files.len() == MAX_FILES {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 "files",
                 format!("there are more than {MAX_FILES} files in it"),
                 "put the slices of one volume into a folder of their own",

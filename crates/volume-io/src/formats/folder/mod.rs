@@ -18,11 +18,11 @@ const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
 /// Loads the volume whose slices lie in a folder, restricted to [`LoadOptions::only_files`] where it is given.
 pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "open the folder", path };
+    let context = LoadContext { operation: "open the folder", path };
     if let Some(format) = unsupported_folder(path) {
-        return Err(format.refusal(attempt));
+        return Err(format.refusal(context));
     }
-    let mut files = list_files(attempt, control)?;
+    let mut files = list_files(context, control)?;
     let mut nested = NestedFiles::default();
     if let Some(among) = &options.only_files {
         let selected: HashSet<&OsStr> = among.iter().filter_map(|path| path.file_name()).collect();
@@ -39,12 +39,12 @@ pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) ->
     if let Some(volume) = dicom::load_folder(path, &all, nested.remarks(), options, control)? {
         return Ok(volume);
     }
-    if let Some(volume) = slices::load(attempt, &files, options, control)? {
+    if let Some(volume) = slices::load(context, &files, options, control)? {
         return Ok(volume);
     }
     let within =
         if count > 0 { format!(" or of the {count} files in its subfolders") } else { String::new() };
-    Err(attempt.bad_input_error(
+    Err(context.bad_input_error(
         "files",
         format!("none of its {} files{within} is a slice in a supported format", files.len()),
         "open a single file",

@@ -22,7 +22,7 @@ pub(super) enum DataFiles {
 
 impl DataFiles {
     pub(super) fn parse(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         header: &MetaImageHeader,
         grid: &MetaImageGrid,
     ) -> Result<Self, LoadError> {
@@ -31,9 +31,9 @@ impl DataFiles {
         match words[..] {
             ["LOCAL" | "Local" | "local"] => Ok(Self::Attached),
             ["LIST", ref arguments @ ..] => {
-                let needed = list_file_count(attempt, arguments.first().copied(), grid)?;
+                let needed = list_file_count(context, arguments.first().copied(), grid)?;
                 if (header.list.len() as u64) < needed {
-                    return Err(attempt.bad_input_error(
+                    return Err(context.bad_input_error(
                         DATA_FILE,
                         format!(
                             "{needed} names of files were expected after it, {} were found",
@@ -49,7 +49,7 @@ impl DataFiles {
             {
                 let numbers: Option<Vec<i64>> = said.iter().map(|word| word.parse().ok()).collect();
                 match (numbers, find_number(pattern)) {
-                    (Some(numbers), Some(_)) => expand_pattern(attempt, pattern, &numbers, grid),
+                    (Some(numbers), Some(_)) => expand_pattern(context, pattern, &numbers, grid),
                     // A name that contains spaces and a percent sign.
                     _ => Ok(Self::Detached(vec![text.to_owned()])),
                 }
@@ -61,7 +61,7 @@ impl DataFiles {
 
 /// Returns the number of files if each holds the first dimensions: as many as the list states, or all but the last.
 fn list_file_count(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     said: Option<&str>,
     grid: &MetaImageGrid,
 ) -> Result<u64, LoadError> {
@@ -71,7 +71,7 @@ fn list_file_count(
         None => count - 1,
         Some(Ok(dimensions)) if (1..=count).contains(&dimensions) => dimensions,
         Some(_) => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 DATA_FILE,
                 format!("a list of files of 1 to {count} dimensions was expected"),
                 "write LIST, and a file for each slice",
@@ -79,11 +79,11 @@ fn list_file_count(
         }
     };
     let files = grid.sizes.iter().skip(dimensions).fold(1u64, |product, &n| product.saturating_mul(n));
-    if files <= MAX_FILES { Ok(files) } else { Err(too_many_files(attempt, files)) }
+    if files <= MAX_FILES { Ok(files) } else { Err(too_many_files(context, files)) }
 }
 
-fn too_many_files(attempt: LoadContext<'_>, files: u64) -> LoadError {
-    attempt.limit_error(
+fn too_many_files(context: LoadContext<'_>, files: u64) -> LoadError {
+    context.limit_error(
         DATA_FILE,
         format!("{files} files are too many: at most {MAX_FILES} are supported"),
         "join them into one file",
@@ -92,14 +92,14 @@ fn too_many_files(attempt: LoadContext<'_>, files: u64) -> LoadError {
 
 /// Expands a pattern with first number, last number and step, each of which may be missing.
 fn expand_pattern(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     pattern: &str,
     numbers: &[i64],
     grid: &MetaImageGrid,
 ) -> Result<DataFiles, LoadError> {
     let needed = grid.sizes.last().copied().unwrap_or(1);
     if needed > MAX_FILES {
-        return Err(too_many_files(attempt, needed));
+        return Err(too_many_files(context, needed));
     }
     let number = |at: usize, default: i64| numbers.get(at).copied().unwrap_or(default);
     let first = number(0, 1);
@@ -113,7 +113,7 @@ fn expand_pattern(
         })
         .collect();
     names.map(DataFiles::Detached).ok_or_else(|| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             DATA_FILE,
             format!(
                 "{needed} files were expected, {} from {first} to {last} by {step} gives fewer",

@@ -46,7 +46,7 @@ pub(super) struct DataStream<'a> {
 struct OpenDataFile {
     path: PathBuf,
     /// Detects changes of the file while it is read; `None` for the header's own file, which the caller watches.
-    witness: Option<FileChangeGuard>,
+    guard: Option<FileChangeGuard>,
     reader: Box<dyn Read>,
     /// Bytes of voxels that remain to be read from the file.
     remaining_bytes: u64,
@@ -55,7 +55,7 @@ struct OpenDataFile {
 impl<'a> DataStream<'a> {
     /// Finds the data files of a time step, and skips to the first of its voxels.
     pub(super) fn open(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         input: InputFile,
         description: DataDescription<'_>,
         frame: usize,
@@ -63,7 +63,7 @@ impl<'a> DataStream<'a> {
     ) -> Result<Self, LoadError> {
         let DataDescription { grid, storage, files, data_start } = description;
         let too_large = || {
-            attempt.limit_error(
+            context.limit_error(
                 "DimSize",
                 "the volume has more bytes than a file can have",
                 "check the dimensions",
@@ -74,7 +74,7 @@ impl<'a> DataStream<'a> {
         let count = if let DataFiles::Detached(names) = files { names.len() as u64 } else { 1 };
         let piece_bytes = all_bytes / count.max(1);
         if piece_bytes == 0 || piece_bytes.checked_mul(count) != Some(all_bytes) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 DATA_FILE,
                 format!("{all_bytes} bytes of voxels cannot be divided equally among {count} files"),
                 "write a file for each slice",
@@ -96,16 +96,16 @@ impl<'a> DataStream<'a> {
                     Some(0) => Some(data_start),
                     given => given,
                 };
-                pieces.check_length(attempt, input.len, begin)?;
-                pieces.open = Some(pieces.open_at(attempt, input, begin, None)?);
+                pieces.check_length(context, input.len, begin)?;
+                pieces.open = Some(pieces.open_at(context, input, begin, None)?);
             }
             DataFiles::Detached(names) => {
                 let mut paths = Vec::new();
                 for name in &names[first as usize..=last as usize] {
                     control.check()?;
-                    let path = companion_path::resolve(attempt, DATA_FILE, name)?;
-                    if path.canonicalize().ok() == attempt.path.canonicalize().ok() {
-                        return Err(attempt.bad_input_error(
+                    let path = companion_path::resolve(context, DATA_FILE, name)?;
+                    if path.canonicalize().ok() == context.path.canonicalize().ok() {
+                        return Err(context.bad_input_error(
                             DATA_FILE,
                             format!("{} is the header itself", quoted(name)),
                             "write LOCAL if the voxels follow the header",
@@ -128,7 +128,7 @@ impl<'a> DataStream<'a> {
                     Err(ReadFault::Io(error)) => error.to_string(),
                     _ => "the data end before it".to_owned(),
                 };
-                attempt.bad_input_error(
+                context.bad_input_error(
                     "data",
                     format!("no data for time step {frame}: {why}"),
                     "copy the file again",
@@ -138,7 +138,7 @@ impl<'a> DataStream<'a> {
     }
 
     /// Checks that a file of `len` bytes can hold its share of the voxels.
-    fn check_length(&self, attempt: LoadContext<'_>, len: u64, begin: Option<u64>) -> Result<(), LoadError> {
+    fn check_length(&self, context: LoadContext<'_>, len: u64, begin: Option<u64>) -> Result<(), LoadError> {
         let found = len.saturating_sub(begin.unwrap_or(0));
         let expected = match self.storage {
             // Compressed data take at least one byte.
@@ -150,14 +150,14 @@ impl<'a> DataStream<'a> {
             _ => self.piece_bytes,
         };
         if found < expected {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "data",
                 format!("the data are truncated: {expected} bytes expected, {found} found"),
                 "check DimSize, ElementType and HeaderSize, or copy the file again",
             ));
         }
         if found > expected && begin.is_some() && !self.storage.is_compressed && !self.storage.is_text {
-            attempt.warn(format_args!("{} bytes after the voxels are ignored", found - expected));
+            context.warn(format_args!("{} bytes after the voxels are ignored", found - expected));
         }
         Ok(())
     }
@@ -165,18 +165,18 @@ impl<'a> DataStream<'a> {
     /// Opens a data file at offset `begin`; `None` means that the voxels are its last bytes.
     fn open_at(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         mut input: InputFile,
         begin: Option<u64>,
-        witness: Option<FileChangeGuard>,
+        guard: Option<FileChangeGuard>,
     ) -> Result<OpenDataFile, LoadError> {
         let begin = begin.unwrap_or(input.len.saturating_sub(self.piece_bytes));
-        input.seek(begin).map_err(|error| attempt.io_error(error))?;
+        input.seek(begin).map_err(|error| context.io_error(error))?;
         let mut reader: Box<dyn Read> = Box::new(input.reader);
         if self.storage.is_compressed {
             let mut magic = Vec::new();
             let mut source = reader;
-            source.by_ref().take(3).read_to_end(&mut magic).map_err(|error| attempt.io_error(error))?;
+            source.by_ref().take(3).read_to_end(&mut magic).map_err(|error| context.io_error(error))?;
             let is_gzip = is_gzip(&magic);
             let source = BufReader::new(io::Cursor::new(magic).chain(source));
             // The definition says zlib; the decoders in common use accept gzip as well.
@@ -188,15 +188,15 @@ impl<'a> DataStream<'a> {
             let count = self.piece_bytes / number.bytes() as u64;
             reader = Box::new(TextNumbers::new(BufReader::new(reader), number, count));
         }
-        Ok(OpenDataFile { path: attempt.path.to_owned(), witness, reader, remaining_bytes: self.piece_bytes })
+        Ok(OpenDataFile { path: context.path.to_owned(), guard, reader, remaining_bytes: self.piece_bytes })
     }
 
-    /// Opens the next data file, with its witness.
+    /// Opens the next data file, with its guard.
     fn open_file(&self, path: &Path) -> Result<OpenDataFile, LoadError> {
-        let attempt = LoadContext { operation: READ_DATA, path };
-        let input = InputFile::open(attempt)?;
-        let witness = FileChangeGuard::new(attempt, &input, self.control)?;
-        self.open_at(attempt, input, self.storage.header_bytes, Some(witness))
+        let context = LoadContext { operation: READ_DATA, path };
+        let input = InputFile::open(context)?;
+        let guard = FileChangeGuard::new(context, &input, self.control)?;
+        self.open_at(context, input, self.storage.header_bytes, Some(guard))
     }
 
     /// Reads on to the checksum behind the last voxel, and verifies that the last file has not changed.
@@ -216,8 +216,8 @@ impl<'a> DataStream<'a> {
             // The decoder verifies the checksum, which follows the last byte.
             let _more = piece.reader.read(&mut [0])?;
         }
-        let attempt = LoadContext { operation: READ_DATA, path: &piece.path };
-        Ok(piece.witness.map_or(Ok(()), |witness| witness.check_unchanged(attempt, Ok(()))))
+        let context = LoadContext { operation: READ_DATA, path: &piece.path };
+        Ok(piece.guard.map_or(Ok(()), |guard| guard.check_unchanged(context, Ok(()))))
     }
 
     fn read_some(&mut self, buffer: &mut [u8]) -> Result<usize, MetaImageReadFailure> {

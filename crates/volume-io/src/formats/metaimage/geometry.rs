@@ -10,14 +10,14 @@ use chiaroscuro_volume::LoadContext;
 
 /// Returns the placement of a grid's voxels. A matrix gives the anatomical orientation, or else three letters do.
 pub(super) fn placement(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &MetaImageHeader,
     grid: &MetaImageGrid,
 ) -> Result<GridPlacement, LoadError> {
     let count = grid.sizes.len();
-    let spacing = header.numbers(attempt, &["ElementSpacing", "ElementSize"], count)?;
-    let origin = header.numbers(attempt, &["Offset", "Position", "Origin"], count)?;
-    let matrix = header.numbers(attempt, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
+    let spacing = header.numbers(context, &["ElementSpacing", "ElementSize"], count)?;
+    let origin = header.numbers(context, &["Offset", "Position", "Origin"], count)?;
+    let matrix = header.numbers(context, &["TransformMatrix", "Rotation", "Orientation"], count * count)?;
     // MetaIO's values for "unknown".
     let is_scale_known = header.get("DistanceUnits") != Some("?");
     let is_of_a_body = header.get("AnatomicalOrientation") != Some("???");

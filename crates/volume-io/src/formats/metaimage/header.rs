@@ -44,16 +44,16 @@ pub(super) struct MetaImageHeader {
 
 impl MetaImageHeader {
     /// Reads up to the field that names the data, and the list that it may announce.
-    pub(super) fn read(attempt: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
+    pub(super) fn read(context: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
         let mut reader = reader.take(MAX_HEADER_BYTES);
         let mut line = Vec::new();
         let (mut fields, mut list) = (BTreeMap::new(), Vec::new());
         let (mut data_start, mut is_list) = (0, false);
         loop {
             line.clear();
-            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io_error(error))?;
+            reader.read_until(b'\n', &mut line).map_err(|error| context.io_error(error))?;
             if !line.ends_with(b"\n") && reader.limit() == 0 {
-                return Err(attempt.limit_error(
+                return Err(context.limit_error(
                     "header",
                     "the header has no end within 4 MiB",
                     format!("check that its last field is {DATA_FILE}"),
@@ -80,7 +80,7 @@ impl MetaImageHeader {
             }
         }
         let header = Self { fields, list, data_start };
-        header.require(attempt, DATA_FILE, "write LOCAL, or the name of the file of voxels")?;
+        header.require(context, DATA_FILE, "write LOCAL, or the name of the file of voxels")?;
         Ok(header)
     }
 
@@ -97,12 +97,12 @@ impl MetaImageHeader {
     /// Returns the value of a mandatory field; `help` tells the user what it should be.
     pub(super) fn require(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         name: &str,
         help: &str,
     ) -> Result<&str, LoadError> {
         self.get(name)
-            .ok_or_else(|| attempt.bad_input_error(name, format!("the field {name} is missing"), help))
+            .ok_or_else(|| context.bad_input_error(name, format!("the field {name} is missing"), help))
     }
 
     /// Returns the boolean value of a field; `None` if it is absent.
@@ -120,7 +120,7 @@ impl MetaImageHeader {
     /// Returns the numbers of the first of several fields that the header has.
     pub(super) fn numbers(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         names: &[&str],
         count: usize,
     ) -> Result<Option<Vec<f64>>, LoadError> {
@@ -129,7 +129,7 @@ impl MetaImageHeader {
             text.split_whitespace().take(count + 1).map(|word| word.parse().ok()).collect();
         match numbers.filter(|numbers| numbers.len() == count) {
             Some(numbers) => Ok(Some(numbers)),
-            None => Err(attempt.bad_input_error(
+            None => Err(context.bad_input_error(
                 name,
                 format!("{count} numbers were expected, {} was found", quoted(text)),
                 "correct the header",

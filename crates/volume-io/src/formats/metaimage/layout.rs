@@ -27,20 +27,20 @@ pub(super) struct MetaImageGrid {
 }
 
 impl MetaImageGrid {
-    pub(super) fn parse(attempt: LoadContext<'_>, header: &MetaImageHeader) -> Result<Self, LoadError> {
-        let text = header.require(attempt, "NDims", "write NDims = 3")?;
+    pub(super) fn parse(context: LoadContext<'_>, header: &MetaImageHeader) -> Result<Self, LoadError> {
+        let text = header.require(context, "NDims", "write NDims = 3")?;
         let Some(count) = text.parse::<usize>().ok().filter(|count| (2..=4).contains(count)) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "NDims",
                 format!("2 to 4 dimensions were expected, {} was found", quoted(text)),
                 "write it again with three dimensions",
             ));
         };
-        let text = header.require(attempt, "DimSize", "write the numbers of voxels along all axes")?;
+        let text = header.require(context, "DimSize", "write the numbers of voxels along all axes")?;
         let sizes: Option<Vec<u64>> =
             text.split_whitespace().take(count + 1).map(|word| word.parse().ok()).collect();
         let Some(sizes) = sizes.filter(|sizes| sizes.len() == count) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "DimSize",
                 format!("{count} numbers of voxels were expected, {} was found", quoted(text)),
                 "correct the header",
@@ -49,13 +49,13 @@ impl MetaImageGrid {
         let size = |axis: usize| sizes.get(axis).copied().unwrap_or(1);
         let (dims, frames) = ([size(0), size(1), size(2)], size(3));
         match frames {
-            0 => Err(attempt.bad_input_error(
+            0 => Err(context.bad_input_error(
                 "DimSize",
                 format!("{} holds no voxels", quoted(text)),
                 "every dimension must be at least 1",
             )),
             1..=MAX_FRAMES => Ok(Self { dims, frames: frames as usize, sizes }),
-            _ => Err(attempt.limit_error(
+            _ => Err(context.limit_error(
                 "DimSize",
                 format!("{frames} volumes are too many: at most {MAX_FRAMES} are supported"),
                 "split the file",
@@ -81,13 +81,13 @@ pub(super) struct MetaImageStorage {
 
 impl MetaImageStorage {
     pub(super) fn parse(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         header: &MetaImageHeader,
         choice: &VolumeChoice,
     ) -> Result<Self, LoadError> {
-        let text = header.require(attempt, "ElementType", "write for example MET_SHORT")?;
+        let text = header.require(context, "ElementType", "write for example MET_SHORT")?;
         let number = number_from_name(text).ok_or_else(|| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "ElementType",
                 format!(
                     "a type like MET_UCHAR, MET_SHORT or MET_FLOAT was expected, {} was found",
@@ -98,7 +98,7 @@ impl MetaImageStorage {
         })?;
         let text = header.get("ElementNumberOfChannels").unwrap_or("1");
         let Some(components) = text.parse().ok().filter(|count| (1..=MAX_COMPONENTS).contains(count)) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "ElementNumberOfChannels",
                 format!("1 to {MAX_COMPONENTS} channels were expected, {} was found", quoted(text)),
                 "correct the header",
@@ -107,7 +107,7 @@ impl MetaImageStorage {
         // The format has no flag for colour, but three or four bytes per voxel are nearly always one.
         let is_color = number == FileNumberType::U8 && matches!(components, 3 | 4);
         let part = ScalarReduction::require(
-            attempt,
+            context,
             choice.resolve_component(components, is_color),
             components,
             is_color,
@@ -122,14 +122,14 @@ impl MetaImageStorage {
             (_, Ok(bytes)) => Some(bytes),
             ("-1", _) if !is_compressed && !is_text => None,
             ("-1", _) => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "HeaderSize",
                     "-1 (the voxels are the last bytes) is possible with plain binary data only",
                     "give the number of bytes to skip",
                 ));
             }
             _ => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "HeaderSize",
                     format!("a number of bytes or -1 was expected, {} was found", quoted(text)),
                     "correct the header",

@@ -38,28 +38,28 @@ pub(super) const READER: FormatReader = FormatReader {
 /// Loads a `MetaImage` file, with its data files.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, mut input, options, control, .. } = source;
-    let attempt = LoadContext { operation: "read the MetaImage volume", path };
-    let header = MetaImageHeader::read(attempt, &mut input.reader)?;
-    let grid = layout::MetaImageGrid::parse(attempt, &header)?;
-    let storage = MetaImageStorage::parse(attempt, &header, &options.choice)?;
-    let mut placement = geometry::placement(attempt, &header, &grid)?;
+    let context = LoadContext { operation: "read the MetaImage volume", path };
+    let header = MetaImageHeader::read(context, &mut input.reader)?;
+    let grid = layout::MetaImageGrid::parse(context, &header)?;
+    let storage = MetaImageStorage::parse(context, &header, &options.choice)?;
+    let mut placement = geometry::placement(context, &header, &grid)?;
 
     let offers = (0..grid.frames).map(|frame| VolumeOffer::with_number(frame, "", grid.dims)).collect();
-    let frame = attempt.resolve_choice(&options.choice, FileDimension::Frame, offers)?;
+    let frame = context.resolve_choice(&options.choice, FileDimension::Frame, offers)?;
     let stored = storage.stored;
     let voxel_type = stored.voxel_type();
-    let extent = GridExtent::checked(attempt, "DimSize", grid.dims, voxel_type, options.limits(control))?;
-    let files = DataFiles::parse(attempt, &header, &grid)?;
+    let extent = GridExtent::checked(context, "DimSize", grid.dims, voxel_type, options.limits(control))?;
+    let files = DataFiles::parse(context, &header, &grid)?;
     let described =
         DataDescription { grid: &grid, storage: &storage, files: &files, data_start: header.data_start };
-    let mut pieces = DataStream::open(attempt, input, described, frame, control)?;
+    let mut pieces = DataStream::open(context, input, described, frame, control)?;
 
     let mut hints = hints::hints_from_header(&header);
     let scale = |name, default| header.number(name).unwrap_or(default);
     let scale = [scale(layout::SLOPE, 1.0), scale(layout::INTERCEPT, 0.0)];
     let is_single = stored.components == 1;
     let values = |samples| {
-        if is_single { rescale(attempt, samples, scale, options.memory_budget_bytes) } else { Ok(samples) }
+        if is_single { rescale(context, samples, scale, options.memory_budget_bytes) } else { Ok(samples) }
     };
     let meant = ValueMapping { padding: hints.padding, map: &values };
     let voxels =
@@ -67,12 +67,12 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let voxels = voxels.and_then(|voxels| pieces.finish().map(|()| voxels));
     let voxels = voxels.map_err(|fault| match (pieces.failure(), fault) {
         (Some(error), _) => error,
-        (None, ReadFault::Corrupt(error)) if storage.is_text => attempt.bad_input_error(
+        (None, ReadFault::Corrupt(error)) if storage.is_text => context.bad_input_error(
             "data",
             error.to_string(),
             "check ElementType and that the data are plain numbers",
         ),
-        (None, ReadFault::Corrupt(error)) => attempt.bad_input_error(
+        (None, ReadFault::Corrupt(error)) => context.bad_input_error(
             "data",
             format!("the compressed data are broken or truncated: {error}"),
             "copy or download the file again",
@@ -80,7 +80,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         (None, fault) => {
             let layout = VoxelLayout { extent, voxel_type, endian: stored.endian };
             fault.into_error(
-                attempt,
+                context,
                 &layout,
                 "bytes",
                 "check DimSize and ElementType, or copy the file again",
@@ -90,9 +90,9 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
 
     placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
     if is_single {
-        label_tables::add_label_table(attempt, ENDINGS, voxels.stored_numbers(), &mut hints);
+        label_tables::add_label_table(context, ENDINGS, voxels.stored_numbers(), &mut hints);
     }
     let name = header.get("Name").filter(|name| !name.is_empty());
     let name = sanitised(&name.map_or_else(|| name_without_extension(path, ENDINGS), str::to_owned), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(context, control)
 }

@@ -81,27 +81,27 @@ impl MghHeader {
     ///
     /// # Errors
     /// `BadInput` if it is truncated, of another version, or contains invalid values.
-    pub(super) fn parse(attempt: LoadContext<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
+    pub(super) fn parse(context: LoadContext<'_>, bytes: &[u8]) -> Result<Self, LoadError> {
         let fields = MghFields(bytes);
         if bytes.len() < HEADER_BYTES {
             let why =
                 format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", bytes.len());
-            return Err(attempt.bad_input_error("header", why, HELP));
+            return Err(context.bad_input_error("header", why, HELP));
         }
         let [_, _, intent, version] = fields.array(0);
         if version != VERSION || fields.int(0) >> 16 != 0 {
             let why = format!("version {VERSION} was expected, {} was found", fields.int(0));
-            return Err(attempt.bad_input_error("version", why, HELP));
+            return Err(context.bad_input_error("version", why, HELP));
         }
         let [x, y, z, frames] = [4, 8, 12, 16].map(|at| fields.int(at));
         let count = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
         let (Some(dims), Some(frames)) = (all_present([x, y, z].map(count)), count(frames)) else {
             let why = format!("{x} x {y} x {z} voxels in {frames} frames are not valid dimensions");
-            return Err(attempt.bad_input_error("width, height, depth, nframes", why, HELP));
+            return Err(context.bad_input_error("width, height, depth, nframes", why, HELP));
         };
         let number = number_from_code(fields.int(20)).map_err(|why| {
             let help = "write it again with numbers: mri_convert --out_data_type float IN OUT.mgz";
-            attempt.bad_input_error("type", why, help)
+            context.bad_input_error("type", why, help)
         })?;
         let place = (fields.short(28) > 0).then(|| fields.geometry());
         Ok(Self { dims, frames, number, are_labels: intent == LABEL_INTENT, geometry: place })

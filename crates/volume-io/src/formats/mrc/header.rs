@@ -30,9 +30,9 @@ pub(super) struct MrcHeader {
 
 impl MrcHeader {
     /// Parses the header at the beginning of a file, and detects its byte order.
-    pub(super) fn parse(attempt: LoadContext<'_>, start: &[u8]) -> Result<Self, LoadError> {
+    pub(super) fn parse(context: LoadContext<'_>, start: &[u8]) -> Result<Self, LoadError> {
         let Some(&bytes) = start.first_chunk() else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "header",
                 format!("the header is truncated: {HEADER_BYTES} bytes expected, {} found", start.len()),
                 "copy or download the file again",
@@ -53,7 +53,7 @@ impl MrcHeader {
         } else if swapped.is_plausible() {
             Ok(swapped)
         } else {
-            Err(attempt.bad_input_error(
+            Err(context.bad_input_error(
                 "header",
                 "the header is not that of an MRC file: its dimensions or mode are invalid in either byte order",
                 "check the file's name and format",
@@ -96,12 +96,12 @@ impl MrcHeader {
     }
 
     /// Returns the numbers of columns, rows and sections (`NX`, `NY`, `NZ`).
-    pub(super) fn dims(&self, attempt: LoadContext<'_>) -> Result<[u64; 3], LoadError> {
+    pub(super) fn dims(&self, context: LoadContext<'_>) -> Result<[u64; 3], LoadError> {
         let [x, y, z] = self.ints(1);
         let along = |n: i32| u64::try_from(n).ok().filter(|&n| n > 0);
         match (along(x), along(y), along(z)) {
             (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-            _ => Err(attempt.bad_input_error(
+            _ => Err(context.bad_input_error(
                 "NX, NY, NZ",
                 format!("{x} x {y} x {z} are not valid dimensions"),
                 "every dimension must be at least 1",
@@ -130,10 +130,10 @@ impl MrcHeader {
     }
 
     /// Returns the size of the extended header in bytes (`NSYMBT`), which lies between header and voxels.
-    pub(super) fn extension_bytes(&self, attempt: LoadContext<'_>) -> Result<u64, LoadError> {
+    pub(super) fn extension_bytes(&self, context: LoadContext<'_>) -> Result<u64, LoadError> {
         let said = self.int(24);
         u64::try_from(said).map_err(|_negative| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "NSYMBT",
                 format!("{said} bytes cannot be the length of an extended header"),
                 "copy or download the file again",

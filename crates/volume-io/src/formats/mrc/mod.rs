@@ -35,11 +35,11 @@ const HELP: &str = "copy or download the file again";
 
 /// Loads an MRC or CCP4 file.
 fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the MRC volume", path: source.path };
-    let header = MrcHeader::parse(attempt, source.start.bytes())?;
-    let [x, y, all_z] = header.dims(attempt)?;
-    let mode = mode_from_header(attempt, &header)?;
-    let part = source.scalar_reduction(attempt, mode.components, mode.is_color)?;
+    let context = LoadContext { operation: "read the MRC volume", path: source.path };
+    let header = MrcHeader::parse(context, source.start.bytes())?;
+    let [x, y, all_z] = header.dims(context)?;
+    let mode = mode_from_header(context, &header)?;
+    let part = source.scalar_reduction(context, mode.components, mode.is_color)?;
     let stored = VoxelEncoding {
         number: mode.number,
         endian: header.endian,
@@ -50,9 +50,9 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let per_volume = header.sections_per_volume(all_z);
     let count = all_z / per_volume;
     let dims = [x, y, per_volume];
-    let frame = source.choose_numbered(attempt, FileDimension::Frame, count, dims, |_| String::new())?;
+    let frame = source.choose_numbered(context, FileDimension::Frame, count, dims, |_| String::new())?;
     let extent = GridExtent::checked(
-        attempt,
+        context,
         "NX, NY, NZ",
         dims,
         stored.voxel_type(),
@@ -60,8 +60,8 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     )?;
     let preceding_bytes =
         (extent.voxels as u64).saturating_mul(stored.voxel_bytes()).saturating_mul(frame as u64);
-    let at = (HEADER_BYTES as u64 + header.extension_bytes(attempt)?).saturating_add(preceding_bytes);
-    let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
+    let at = (HEADER_BYTES as u64 + header.extension_bytes(context)?).saturating_add(preceding_bytes);
+    let voxels = source.voxels(context, at, (&stored, extent), TrailingData::Allowed, HELP)?;
 
     let remark = if mode.is_complex && source.options.choice.component.is_none() {
         Some("complex numbers are shown as their magnitude")
@@ -79,7 +79,7 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     hints.set_acquisition(&header.label());
     VolumeParts { name: stem(source.path), extent, placement, voxels, hints }
-        .into_volume(attempt, source.control)
+        .into_volume(context, source.control)
 }
 
 /// Storage of the voxels of a mode.
@@ -92,7 +92,7 @@ struct MrcMode {
     is_map: bool,
 }
 
-fn mode_from_header(attempt: LoadContext<'_>, header: &MrcHeader) -> Result<MrcMode, LoadError> {
+fn mode_from_header(context: LoadContext<'_>, header: &MrcHeader) -> Result<MrcMode, LoadError> {
     let plain = |number| MrcMode { number, components: 1, is_color: false, is_complex: false, is_map: false };
     Ok(match header.mode() {
         0 if header.bytes_are_signed() => plain(FileNumberType::I8),
@@ -106,14 +106,14 @@ fn mode_from_header(attempt: LoadContext<'_>, header: &MrcHeader) -> Result<MrcM
         // IMOD's mode for RGB colours.
         16 => MrcMode { components: 3, is_color: true, ..plain(FileNumberType::U8) },
         101 => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "MODE",
                 "its voxels have 4 bits each (mode 101), which is not supported",
                 "write it again with 8 bits, for example with IMOD's newstack -mode 0",
             ));
         }
         other => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "MODE",
                 format!("mode {other} is unknown; 0, 1, 2, 3, 4, 6, 12 and 16 are supported"),
                 "check that the file is an MRC file, or copy it again",

@@ -27,9 +27,9 @@ pub(super) struct NiftiGrid {
 }
 
 impl NiftiGrid {
-    pub(super) fn parse(attempt: LoadContext<'_>, header: &NiftiHeader) -> Result<Self, LoadError> {
+    pub(super) fn parse(context: LoadContext<'_>, header: &NiftiHeader) -> Result<Self, LoadError> {
         let wrong = |field: &str, found: i64, expected: &str| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 field,
                 format!("{expected} was expected, {found} was found"),
                 "correct the header",
@@ -60,7 +60,7 @@ impl NiftiGrid {
         }
         let frames = others.iter().fold(1u64, |product, &n| product.saturating_mul(n));
         if frames > MAX_FRAMES || components > MAX_COMPONENTS {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 "dim",
                 format!(
                     "{frames} volumes of {components} components are too many: at most {MAX_FRAMES} of \

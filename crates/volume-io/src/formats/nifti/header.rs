@@ -105,12 +105,12 @@ pub(super) struct NiftiHeader {
 impl NiftiHeader {
     /// Parses a header whose format is known.
     pub(super) fn parse(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         form: NiftiVersion,
         bytes: &[u8],
     ) -> Result<Self, LoadError> {
         let Some(endian) = form.endian(bytes) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "dim[0]",
                 "the number of dimensions is invalid in either byte order: 1 to 7 were expected",
                 "copy the file again",
@@ -124,7 +124,7 @@ impl NiftiHeader {
             NiftiVersion::Nifti2 => (fields.parse_nifti2(), fields.i64(168) as f64),
         };
         if !(0.0..=u64::MAX as f64).contains(&offset) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "vox_offset",
                 format!("voxels cannot begin at byte {offset}"),
                 "correct the header",

@@ -41,48 +41,48 @@ pub(super) const READER: FormatReader = FormatReader {
 /// Loads a `NIfTI` or Analyze volume from a single file, or from a pair of which either file may be named.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
-    let attempt = LoadContext { operation: "read the NIfTI volume", path };
+    let context = LoadContext { operation: "read the NIfTI volume", path };
     let Some(form) = NiftiVersion::detect(start.bytes()) else {
         // The file holds voxels alone; the header lies in the file beside it.
-        let header = pair::read_header_beside(attempt, control)?;
-        return read(attempt, &header, FileContent::new(input, start.is_gzip()), options, control);
+        let header = pair::read_header_beside(context, control)?;
+        return read(context, &header, FileContent::new(input, start.is_gzip()), options, control);
     };
-    let header = NiftiHeader::parse(attempt, form, start.bytes())?;
+    let header = NiftiHeader::parse(context, form, start.bytes())?;
     if header.has_data {
-        return read(attempt, &header, FileContent::new(input, start.is_gzip()), options, control);
+        return read(context, &header, FileContent::new(input, start.is_gzip()), options, control);
     }
-    let data_path = pair::data_path_beside(attempt)?;
-    let data_attempt = LoadContext { operation: "read the NIfTI volume's data file", path: &data_path };
-    let mut input = InputFile::open(data_attempt)?;
-    let witness = FileChangeGuard::new(data_attempt, &input, control)?;
-    let is_gzip = pair::starts_as_gzip(data_attempt, &mut input)?;
-    witness.check_unchanged(
-        data_attempt,
-        read(attempt, &header, FileContent::new(input, is_gzip), options, control),
+    let data_path = pair::data_path_beside(context)?;
+    let data_context = LoadContext { operation: "read the NIfTI volume's data file", path: &data_path };
+    let mut input = InputFile::open(data_context)?;
+    let guard = FileChangeGuard::new(data_context, &input, control)?;
+    let is_gzip = pair::starts_as_gzip(data_context, &mut input)?;
+    guard.check_unchanged(
+        data_context,
+        read(context, &header, FileContent::new(input, is_gzip), options, control),
     )
 }
 
 /// Reads the volume that a header describes from the content that holds its voxels.
 fn read(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NiftiHeader,
     mut content: FileContent,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
-    let number_type = NiftiNumberType::from_header(attempt, header)?;
-    let grid = NiftiGrid::parse(attempt, header)?;
-    let frame = attempt.resolve_choice(&options.choice, FileDimension::Frame, grid.offers(header))?;
+    let number_type = NiftiNumberType::from_header(context, header)?;
+    let grid = NiftiGrid::parse(context, header)?;
+    let frame = context.resolve_choice(&options.choice, FileDimension::Frame, grid.offers(header))?;
     let components = if grid.components > 1 { grid.components } else { number_type.components };
     if grid.components > 1 && number_type.components > 1 {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "datatype",
             "vectors of colours or of complex numbers are not supported",
             "write its components as separate volumes",
         ));
     }
     let component = options.choice.resolve_component(components, number_type.is_color);
-    let part = ScalarReduction::require(attempt, component, components, number_type.is_color)?;
+    let part = ScalarReduction::require(context, component, components, number_type.is_color)?;
     let stored =
         VoxelEncoding { number: number_type.number, endian: header.endian, components, reduction: part };
     let dims = grid.dims;
@@ -93,10 +93,10 @@ fn read(
     } else {
         GridExtent::checked
     };
-    let extent = checked(attempt, "dim", dims, stored.voxel_type(), options.limits(control))?;
+    let extent = checked(context, "dim", dims, stored.voxel_type(), options.limits(control))?;
     let layout = VoxelLayout { extent, voxel_type: stored.voxel_type(), endian: header.endian };
     let failed = |fault: ReadFault| {
-        fault.into_error(attempt, &layout, "bytes", "check the header, or copy the file again")
+        fault.into_error(context, &layout, "bytes", "check the header, or copy the file again")
     };
 
     // Volumes are consecutive: all time steps of one component, then those of the next.
@@ -111,7 +111,7 @@ fn read(
         ScalarReduction::Component(at) if is_planar => (byte_offset(at), byte_offset(at)),
         _ => (byte_offset(0), byte_offset(grid.components - 1)),
     };
-    content.check_length(attempt, "dim", last, bytes)?;
+    content.check_length(context, "dim", last, bytes)?;
     let voxels = if is_magnitude {
         let places = (0..grid.components).map(byte_offset);
         vector_magnitudes::read_magnitudes(&mut content, &stored, places, header.scale(), extent, control)
@@ -119,7 +119,7 @@ fn read(
     } else {
         let stored = if is_planar { VoxelEncoding::scalar(stored.number, stored.endian) } else { stored };
         let values = |samples| match applied_scale(header, &number_type, part) {
-            Some(scale) => rescale(attempt, samples, scale, options.memory_budget_bytes),
+            Some(scale) => rescale(context, samples, scale, options.memory_budget_bytes),
             None => Ok(samples),
         };
         let meant = ValueMapping { padding: None, map: &values };
@@ -131,10 +131,10 @@ fn read(
     placement.remarks.extend(number_type.remark(part).map(str::to_owned));
     let mut hints = hints::hints_from_header(header);
     if components == 1 {
-        label_tables::add_label_table(attempt, ENDINGS, voxels.stored_numbers(), &mut hints);
+        label_tables::add_label_table(context, ENDINGS, voxels.stored_numbers(), &mut hints);
     }
-    let name = sanitised(&name_without_extension(attempt.path, ENDINGS), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
+    let name = sanitised(&name_without_extension(context.path, ENDINGS), 120);
+    VolumeParts { name, extent, placement, voxels, hints }.into_volume(context, control)
 }
 
 /// Returns the slope and intercept to apply to the values shown. Colours are not scaled (`nifti1.h`, "data scaling").

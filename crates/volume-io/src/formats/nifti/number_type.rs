@@ -17,7 +17,7 @@ pub(super) struct NiftiNumberType {
 impl NiftiNumberType {
     /// Looks up the type of a header's `datatype` code (`nifti1.h`, `DT_`… and `NIFTI_TYPE_`…). Codes 130 to 136 are
     /// those that SPM added to Analyze.
-    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NiftiHeader) -> Result<Self, LoadError> {
+    pub(super) fn from_header(context: LoadContext<'_>, header: &NiftiHeader) -> Result<Self, LoadError> {
         let scalar = |number| Ok(Self { number, components: 1, is_color: false });
         let colors = |components| Ok(Self { number: FileNumberType::U8, components, is_color: true });
         let complex = |number| Ok(Self { number, components: 2, is_color: false });
@@ -42,7 +42,7 @@ impl NiftiNumberType {
                     1536 | 2048 => "numbers of 128 bits".to_owned(),
                     _ => format!("voxels of the unknown type {code}"),
                 };
-                Err(attempt.bad_input_error(
+                Err(context.bad_input_error(
                     "datatype",
                     format!("{why} are not supported"),
                     "write it with a type of 8 to 64 bits",

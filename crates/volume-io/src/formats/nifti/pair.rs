@@ -12,11 +12,11 @@ use chiaroscuro_volume::{LoadContext, LoadControl};
 
 /// Reads the header file beside a file of voxels.
 pub(super) fn read_header_beside(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<NiftiHeader, LoadError> {
-    let Some(path) = paired_file(attempt, "hdr")? else {
-        return Err(attempt.bad_input_error(
+    let Some(path) = paired_file(context, "hdr")? else {
+        return Err(context.bad_input_error(
             "header",
             "it has no NIfTI or Analyze header, and there is no .hdr file of the same name beside it",
             "put the header file beside it",
@@ -37,9 +37,9 @@ pub(super) fn read_header_beside(
 }
 
 /// Finds the data file beside a header file.
-pub(super) fn data_path_beside(attempt: LoadContext<'_>) -> Result<PathBuf, LoadError> {
-    paired_file(attempt, "img")?.ok_or_else(|| {
-        attempt.bad_input_error(
+pub(super) fn data_path_beside(context: LoadContext<'_>) -> Result<PathBuf, LoadError> {
+    paired_file(context, "img")?.ok_or_else(|| {
+        context.bad_input_error(
             "data",
             "the header's voxels are in a second file, and no .img or .img.gz file of the same name is beside it",
             "put the data file beside the header",
@@ -48,22 +48,22 @@ pub(super) fn data_path_beside(attempt: LoadContext<'_>) -> Result<PathBuf, Load
 }
 
 /// Finds the file in the same folder with the same stem and another ending, in either case and optionally gzipped.
-fn paired_file(attempt: LoadContext<'_>, ending: &str) -> Result<Option<PathBuf>, LoadError> {
-    let stem = name_without_extension(attempt.path, ENDINGS);
-    let folder = attempt.path.parent().unwrap_or(Path::new(""));
+fn paired_file(context: LoadContext<'_>, ending: &str) -> Result<Option<PathBuf>, LoadError> {
+    let stem = name_without_extension(context.path, ENDINGS);
+    let folder = context.path.parent().unwrap_or(Path::new(""));
     let (lower, upper) = (format!("{stem}.{ending}"), format!("{stem}.{}", ending.to_uppercase()));
     for name in [lower.clone(), format!("{lower}.gz"), upper.clone(), format!("{upper}.GZ")] {
         if folder.join(&name).is_file() {
-            return companion_path::resolve(attempt, "file name", &name).map(Some);
+            return companion_path::resolve(context, "file name", &name).map(Some);
         }
     }
     Ok(None)
 }
 
 /// Returns true if a file is gzipped as a whole; rewinds it to its beginning.
-pub(super) fn starts_as_gzip(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<bool, LoadError> {
+pub(super) fn starts_as_gzip(context: LoadContext<'_>, input: &mut InputFile) -> Result<bool, LoadError> {
     let mut magic = Vec::new();
     let magic_read =
         input.reader.by_ref().take(3).read_to_end(&mut magic).and_then(|_| input.reader.rewind());
-    magic_read.map(|()| is_gzip(&magic)).map_err(|error| attempt.io_error(error))
+    magic_read.map(|()| is_gzip(&magic)).map_err(|error| context.io_error(error))
 }

@@ -17,7 +17,7 @@ const MAX_DIGITS: usize = 32;
 
 /// Returns the names of the data files, each with an equal share of the data; `None` if the data follow the header.
 pub(super) fn data_file_names(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NrrdHeader,
     sizes: &[u64],
 ) -> Result<Option<Vec<String>>, LoadError> {
@@ -26,11 +26,11 @@ pub(super) fn data_file_names(
     let (names, dimension) = if words.first() == Some(&"LIST") {
         (header.files.clone(), words.get(1).copied())
     } else if let Some(numbers) = pattern_numbers(&words) {
-        (expand_pattern(attempt, words[0], numbers)?, words.get(4).copied())
+        (expand_pattern(context, words[0], numbers)?, words.get(4).copied())
     } else {
         return Ok(Some(vec![field.to_owned()]));
     };
-    check_count(attempt, names.len() as u64, dimension, sizes)?;
+    check_count(context, names.len() as u64, dimension, sizes)?;
     Ok(Some(names))
 }
 
@@ -44,18 +44,18 @@ fn pattern_numbers(words: &[&str]) -> Option<[i64; 3]> {
 }
 
 fn expand_pattern(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     format: &str,
     [min, max, step]: [i64; 3],
 ) -> Result<Vec<String>, LoadError> {
-    let wrong = |why: String| attempt.bad_input_error(FIELD, why, "write it like: slice%03d.raw 1 20 1");
+    let wrong = |why: String| context.bad_input_error(FIELD, why, "write it like: slice%03d.raw 1 20 1");
     let steps = i128::from(max).checked_sub(i128::from(min)).unwrap_or_default();
     if step == 0 || (steps != 0 && (steps > 0) != (step > 0)) {
         return Err(wrong(format!("no steps of {step} lead from {min} to {max}")));
     }
     let count = (steps / i128::from(step)).unsigned_abs() + 1;
     if count > u128::from(MAX_FILES) {
-        return Err(attempt.limit_error(
+        return Err(context.limit_error(
             FIELD,
             format!("{count} files are more than the {MAX_FILES} that are supported"),
             "join them into one file (for example: unu save -f nrrd -e gzip)",
@@ -87,12 +87,12 @@ fn split_format(format: &str) -> Option<(String, usize, bool, String)> {
 
 /// Checks that the number of files matches the dimension that each file holds.
 fn check_count(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     count: u64,
     dimension: Option<&str>,
     sizes: &[u64],
 ) -> Result<(), LoadError> {
-    let wrong = |why: String| attempt.bad_input_error(FIELD, why, "check the list of files against sizes");
+    let wrong = |why: String| context.bad_input_error(FIELD, why, "check the list of files against sizes");
     if count == 0 || count > MAX_FILES {
         return Err(wrong(format!("1 to {MAX_FILES} files were expected, {count} are named")));
     }
@@ -130,8 +130,8 @@ mod tests {
 
     #[test]
     fn names_are_counted_up_and_down() {
-        let attempt = LoadContext { operation: "test", path: Path::new("t") };
-        let names = |format: &str, numbers| expand_pattern(attempt, format, numbers).unwrap().join(" ");
+        let context = LoadContext { operation: "test", path: Path::new("t") };
+        let names = |format: &str, numbers| expand_pattern(context, format, numbers).unwrap().join(" ");
         assert_eq!(names("s%03d.raw", [8, 10, 1]), "s008.raw s009.raw s010.raw");
         assert_eq!(names("%d", [3, -1, -2]), "3 1 -1");
         assert_eq!(names("100%%_%i.raw", [5, 5, 1]), "100%_5.raw");
@@ -147,7 +147,7 @@ mod tests {
             ("%99999999999999999999d", [1, 2, 1]),
             ("%999d", [1, 2, 1]),
         ] {
-            assert!(expand_pattern(attempt, format, numbers).is_err(), "{format} {numbers:?}");
+            assert!(expand_pattern(context, format, numbers).is_err(), "{format} {numbers:?}");
         }
     }
 

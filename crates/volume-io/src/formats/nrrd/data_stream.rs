@@ -45,7 +45,7 @@ pub(super) struct NrrdDataStream<'a> {
 
 struct CurrentFile {
     path: PathBuf,
-    witness: FileChangeGuard,
+    guard: FileChangeGuard,
     reader: FileReader,
     remaining_bytes: u64,
 }
@@ -122,12 +122,12 @@ impl<'a> NrrdDataStream<'a> {
     /// Opens the next file; returns false if there is none.
     fn open_next(&mut self) -> Result<bool, LoadError> {
         let Some(place) = self.locations.pop() else { return Ok(false) };
-        let attempt = attempt_for(&place);
-        let input = InputFile::open(attempt)?;
-        let witness = FileChangeGuard::new(attempt, &input, self.control)?;
-        let reader = open_decoder(attempt, input, &place, self.storage, self.bytes_of_file, self.control)?;
+        let context = context_for(&place);
+        let input = InputFile::open(context)?;
+        let guard = FileChangeGuard::new(context, &input, self.control)?;
+        let reader = open_decoder(context, input, &place, self.storage, self.bytes_of_file, self.control)?;
         let path = place.path().to_owned();
-        self.current = Some(CurrentFile { path, witness, reader, remaining_bytes: self.bytes_of_file });
+        self.current = Some(CurrentFile { path, guard, reader, remaining_bytes: self.bytes_of_file });
         Ok(true)
     }
 
@@ -138,7 +138,7 @@ impl<'a> NrrdDataStream<'a> {
         if current.remaining_bytes > 0 {
             return Ok(());
         }
-        let attempt = LoadContext { operation: READ_DATA, path: &current.path };
+        let context = LoadContext { operation: READ_DATA, path: &current.path };
         let is_more = match self.storage.encoding {
             // Several headers may refer to one file.
             NrrdEncoding::Raw => false,
@@ -147,14 +147,14 @@ impl<'a> NrrdDataStream<'a> {
                 current
                     .reader
                     .read(&mut [0])
-                    .map_err(|error| decode_error(attempt, self.storage.encoding, error))?
+                    .map_err(|error| decode_error(context, self.storage.encoding, error))?
                     > 0
             }
         };
-        current.witness.check_unchanged(attempt, Ok(()))?;
+        current.guard.check_unchanged(context, Ok(()))?;
         if is_more {
             let why = format!("there is more data than the {} bytes expected", self.bytes_of_file);
-            return Err(attempt.bad_input_error("data", why, HELP));
+            return Err(context.bad_input_error("data", why, HELP));
         }
         self.current = None;
         Ok(())
@@ -166,12 +166,12 @@ impl<'a> NrrdDataStream<'a> {
             return Ok(0);
         }
         let Some(current) = &mut self.current else { return Ok(0) };
-        let attempt = LoadContext { operation: READ_DATA, path: &current.path };
+        let context = LoadContext { operation: READ_DATA, path: &current.path };
         let want = usize::try_from(current.remaining_bytes).map_or(into.len(), |left| left.min(into.len()));
         let got = loop {
             match current.reader.read(&mut into[..want]) {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => self.control.check()?,
-                Err(error) => return Err(decode_error(attempt, self.storage.encoding, error)),
+                Err(error) => return Err(decode_error(context, self.storage.encoding, error)),
                 Ok(got) => break got,
             }
         };
@@ -184,7 +184,7 @@ impl<'a> NrrdDataStream<'a> {
             let (expected, found) =
                 (self.bytes_of_file / size, (self.bytes_of_file - current.remaining_bytes) / size);
             let why = format!("the data are truncated: {expected} {unit} expected, {found} found");
-            return Err(attempt.bad_input_error("data", why, HELP));
+            return Err(context.bad_input_error("data", why, HELP));
         }
         self.check_end()?;
         Ok(got)
@@ -200,13 +200,13 @@ impl Read for NrrdDataStream<'_> {
 /// Action that error messages name for data files.
 const READ_DATA: &str = "read the NRRD volume's data";
 
-fn attempt_for(place: &DataLocation) -> LoadContext<'_> {
+fn context_for(place: &DataLocation) -> LoadContext<'_> {
     LoadContext { operation: READ_DATA, path: place.path() }
 }
 
 /// Opens the decoder of a file at the first byte of its data; the length of uncompressed data is checked.
 fn open_decoder(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     mut input: InputFile,
     place: &DataLocation,
     storage: NrrdStorage,
@@ -217,9 +217,9 @@ fn open_decoder(
         DataLocation::Attached(_, start) => *start,
         DataLocation::Detached(_) => 0,
     };
-    input.seek(start).map_err(|error| attempt.io_error(error))?;
-    let Some(lines) = input.skip_lines(attempt, storage.line_skip, control)? else {
-        return Err(attempt.bad_input_error(
+    input.seek(start).map_err(|error| context.io_error(error))?;
+    let Some(lines) = input.skip_lines(context, storage.line_skip, control)? else {
+        return Err(context.bad_input_error(
             "line skip",
             format!("the data end before {} lines have been skipped", storage.line_skip),
             HELP,
@@ -230,14 +230,14 @@ fn open_decoder(
     let found = available.saturating_sub(skip);
     let truncated = |needed: u64, found: u64, unit: &str| {
         let why = format!("the data are truncated: {needed} {unit} expected, {found} found");
-        attempt.bad_input_error("data", why, HELP)
+        context.bad_input_error("data", why, HELP)
     };
     let numbers = bytes / storage.number.bytes() as u64;
     match storage.encoding {
         NrrdEncoding::Raw if found < bytes => return Err(truncated(bytes, found, "bytes")),
         NrrdEncoding::Raw if found > bytes => {
             // Legal: several headers may refer to one file.
-            attempt.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
+            context.warn(format_args!("{} bytes after the voxels are ignored", found - bytes));
         }
         NrrdEncoding::Gzip if max_inflated_bytes(available) < bytes => {
             return Err(truncated(bytes, max_inflated_bytes(available), "bytes"));
@@ -257,7 +257,7 @@ fn open_decoder(
         NrrdEncoding::Bzip2 => FileReader::Decoded(Box::new(Bzip2Members::new(reader))),
         NrrdEncoding::Hex | NrrdEncoding::Text => {
             let mut reader = reader;
-            skip_bytes(attempt, storage.encoding, &mut reader, skip, control)?;
+            skip_bytes(context, storage.encoding, &mut reader, skip, control)?;
             return Ok(FileReader::Decoded(match storage.encoding {
                 NrrdEncoding::Hex => Box::new(HexDecoder { reader }),
                 // One number more than needed, so that surplus data are detected.
@@ -265,12 +265,12 @@ fn open_decoder(
             }));
         }
     };
-    skip_bytes(attempt, storage.encoding, &mut decoder, skip, control)?;
+    skip_bytes(context, storage.encoding, &mut decoder, skip, control)?;
     Ok(decoder)
 }
 
 fn skip_bytes(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     encoding: NrrdEncoding,
     reader: &mut impl Read,
     count: u64,
@@ -280,7 +280,7 @@ fn skip_bytes(
     while left > 0 {
         control.check()?;
         let skipped = io::copy(&mut reader.by_ref().take(left.min(1 << 20)), &mut io::sink());
-        match skipped.map_err(|error| decode_error(attempt, encoding, error))? {
+        match skipped.map_err(|error| decode_error(context, encoding, error))? {
             0 => break,
             skipped => left -= skipped,
         }
@@ -289,27 +289,27 @@ fn skip_bytes(
 }
 
 /// Converts an error of a decoder: either the data are corrupt, or the disk failed.
-fn decode_error(attempt: LoadContext<'_>, encoding: NrrdEncoding, error: io::Error) -> LoadError {
+fn decode_error(context: LoadContext<'_>, encoding: NrrdEncoding, error: io::Error) -> LoadError {
     let name = match encoding {
         NrrdEncoding::Gzip => "gzip",
         NrrdEncoding::Bzip2 => "bzip2",
         NrrdEncoding::Hex | NrrdEncoding::Text => {
-            return attempt.bad_input_error("data", error.to_string(), HELP);
+            return context.bad_input_error("data", error.to_string(), HELP);
         }
-        NrrdEncoding::Raw => return attempt.io_error(error),
+        NrrdEncoding::Raw => return context.io_error(error),
     };
     match error.kind() {
-        io::ErrorKind::UnexpectedEof => attempt.bad_input_error(
+        io::ErrorKind::UnexpectedEof => context.bad_input_error(
             "data",
             format!("the {name} data are truncated: they end too early"),
             "copy or download the file again",
         ),
-        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => attempt.bad_input_error(
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => context.bad_input_error(
             "data",
             format!("the {name} data are broken: {error}"),
             "copy or download the file again",
         ),
-        _ => attempt.io_error(error),
+        _ => context.io_error(error),
     }
 }
 

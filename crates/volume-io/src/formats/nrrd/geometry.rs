@@ -84,14 +84,14 @@ impl NrrdAxis {
 }
 
 impl NrrdGeometry {
-    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Self, LoadError> {
-        let all = parse_axes(attempt, header)?;
+    pub(super) fn from_header(context: LoadContext<'_>, header: &NrrdHeader) -> Result<Self, LoadError> {
+        let all = parse_axes(context, header)?;
         let sizes = all.iter().map(|axis| axis.size).collect();
-        let all = drop_single_axes(attempt, all)?;
+        let all = drop_single_axes(context, all)?;
         let spatial: Vec<&NrrdAxis> = all.iter().filter(|axis| axis.is_spatial).collect();
         let size = |axis: usize| spatial.get(axis).map_or(1, |axis| axis.size);
         let dims = [size(0), size(1), size(2)];
-        let placement = placement(attempt, header, &spatial)?;
+        let placement = placement(context, header, &spatial)?;
         let unit = mm_per_unit(header, "space units").or_else(|| mm_per_unit(header, "units"));
         let placement = placement.with_length_unit(unit.unwrap_or(1.0));
         let placement = if is_in_voxel_units(header) { placement.with_unknown_scale() } else { placement };
@@ -106,10 +106,10 @@ impl NrrdGeometry {
         let (components, frames) = (product(&before), product(&behind));
         if components == 0 || frames == 0 {
             let why = "a non-spatial axis has no samples: 1 or more were expected, 0 was found";
-            return Err(attempt.bad_input_error("sizes", why.to_owned(), "correct the header"));
+            return Err(context.bad_input_error("sizes", why.to_owned(), "correct the header"));
         }
         if components > MAX_COMPONENTS {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 "sizes",
                 format!(
                     "{components} numbers for each voxel are more than the {MAX_COMPONENTS} that are supported"
@@ -133,17 +133,17 @@ impl NrrdGeometry {
 
 /// Returns the placement of the voxels in the world.
 fn placement(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NrrdHeader,
     axes: &[&NrrdAxis],
 ) -> Result<GridPlacement, LoadError> {
-    let ras_from_file = DMat3::from_diagonal(ras_signs(attempt, header)?);
-    let origin_mm = origin(attempt, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
+    let ras_from_file = DMat3::from_diagonal(ras_signs(context, header)?);
+    let origin_mm = origin(context, header)? * mm_per_unit(header, "space units").unwrap_or(1.0);
     let has_origin = header.get("space origin").is_some();
     let is_anatomical = is_anatomical(header);
     let has_directions = axes.iter().any(|axis| axis.step_mm.is_some());
     if !has_directions && axes.iter().all(|axis| axis.spacing_mm.is_nan()) {
-        attempt.warn("no spacings: the voxel size is unknown");
+        context.warn("no spacings: the voxel size is unknown");
         let world_from_index = DAffine3 { matrix3: ras_from_file, translation: DVec3::ZERO };
         return Ok(GridPlacement { world_from_index, is_anatomical, ..GridPlacement::unknown() });
     }
@@ -180,29 +180,29 @@ fn placement(
 }
 
 /// Reads all axes of the array from the header.
-fn parse_axes(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Vec<NrrdAxis>, LoadError> {
-    let dimension_text = header.require(attempt, "dimension", "add dimension: 3")?;
+fn parse_axes(context: LoadContext<'_>, header: &NrrdHeader) -> Result<Vec<NrrdAxis>, LoadError> {
+    let dimension_text = header.require(context, "dimension", "add dimension: 3")?;
     let dimension = dimension_text.parse().ok().filter(|n| (1..=MAX_AXES).contains(n)).ok_or_else(|| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "dimension",
             format!("a number from 1 to {MAX_AXES} was expected, {} was found", quoted(dimension_text)),
             "correct the header",
         )
     })?;
-    header.require(attempt, "sizes", "add the number of samples along each axis")?;
-    let sizes: Vec<u64> = parse_numbers(attempt, header, "sizes", dimension)?.unwrap_or_default();
-    let spacings: Option<Vec<f64>> = parse_numbers(attempt, header, "spacings", dimension)?;
+    header.require(context, "sizes", "add the number of samples along each axis")?;
+    let sizes: Vec<u64> = parse_numbers(context, header, "sizes", dimension)?.unwrap_or_default();
+    let spacings: Option<Vec<f64>> = parse_numbers(context, header, "spacings", dimension)?;
     // Older headers give the bounds of an axis instead of its spacing.
-    let bounds = |field: &str| match parse_numbers::<f64>(attempt, header, field, dimension) {
+    let bounds = |field: &str| match parse_numbers::<f64>(context, header, field, dimension) {
         Ok(bounds) => bounds,
         Err(error) => {
-            attempt.warn(format_args!("{field} is not used: {error}"));
+            context.warn(format_args!("{field} is not used: {error}"));
             None
         }
     };
     let (mins, maxs) = (bounds("axis mins"), bounds("axis maxs"));
     let centers: Vec<_> = header.get_any("centers", "centerings").split_whitespace().collect();
-    let directions = directions(attempt, header, dimension)?;
+    let directions = directions(context, header, dimension)?;
     let kinds: Vec<_> = header.get("kinds").unwrap_or_default().split_whitespace().collect();
     let space_unit_mm = mm_per_unit(header, "space units").unwrap_or(1.0);
     // Different known units per axis do not occur in practice: the first known one counts.
@@ -238,7 +238,7 @@ fn parse_axes(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Vec<NrrdA
 
 /// Drops surplus axes of length 1; afterwards two or three axes are spatial, and the others lie before or behind
 /// them.
-fn drop_single_axes(attempt: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result<Vec<NrrdAxis>, LoadError> {
+fn drop_single_axes(context: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result<Vec<NrrdAxis>, LoadError> {
     let dimension = axes.len();
     axes.retain(|axis| axis.is_spatial || axis.size != 1);
     while axes.iter().filter(|axis| axis.is_spatial).count() > 3 {
@@ -249,7 +249,7 @@ fn drop_single_axes(attempt: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result
     }
     let spatial = axes.iter().filter(|axis| axis.is_spatial).count();
     if spatial < 2 {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "dimension",
             format!("{spatial} of {dimension} axes are spatial; 3, or 2 for a slice, are expected"),
             "check dimension, kinds and space directions",
@@ -258,7 +258,7 @@ fn drop_single_axes(attempt: LoadContext<'_>, mut axes: Vec<NrrdAxis>) -> Result
     let first = axes.iter().position(|axis| axis.is_spatial).unwrap_or(0);
     let last = axes.iter().rposition(|axis| axis.is_spatial).unwrap_or(0);
     if let Some(within) = axes[first..=last].iter().position(|axis| !axis.is_spatial) {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "sizes",
             format!(
                 "{} components or time steps lie between the spatial axes; they must lie before or after them",
@@ -290,7 +290,7 @@ fn mark_non_spatial(axes: &mut [NrrdAxis]) {
 
 /// Returns a list of `count` numbers, if the header has the field.
 fn parse_numbers<T: std::str::FromStr>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NrrdHeader,
     field: &str,
     count: usize,
@@ -301,7 +301,7 @@ fn parse_numbers<T: std::str::FromStr>(
     let numbers: Option<Vec<T>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     match numbers {
         Some(numbers) if numbers.len() == count => Ok(Some(numbers)),
-        _ => Err(attempt.bad_input_error(
+        _ => Err(context.bad_input_error(
             field,
             format!("{count} numbers were expected, one for each axis; {} was found", quoted(text)),
             "correct the header",

@@ -24,7 +24,7 @@ pub(super) struct NrrdHeader {
 
 impl NrrdHeader {
     /// Reads up to the empty line or the end of the file.
-    pub(super) fn read(attempt: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
+    pub(super) fn read(context: LoadContext<'_>, reader: &mut impl BufRead) -> Result<Self, LoadError> {
         let mut reader = reader.take(MAX_HEADER_BYTES);
         let mut line = Vec::new();
         let (mut fields, mut keys) = (BTreeMap::new(), BTreeMap::new());
@@ -32,9 +32,9 @@ impl NrrdHeader {
         let mut data_start = None;
         for number in 1.. {
             line.clear();
-            reader.read_until(b'\n', &mut line).map_err(|error| attempt.io_error(error))?;
+            reader.read_until(b'\n', &mut line).map_err(|error| context.io_error(error))?;
             if !line.ends_with(b"\n") && reader.limit() == 0 {
-                return Err(attempt.limit_error(
+                return Err(context.limit_error(
                     "header",
                     "the header has no end within 1 MiB",
                     "check that it ends with an empty line",
@@ -46,7 +46,7 @@ impl NrrdHeader {
             let text = String::from_utf8_lossy(&line);
             let text = text.trim_end_matches(['\n', '\r']);
             if number == 1 {
-                check_magic(attempt, text)?;
+                check_magic(context, text)?;
             } else if is_list {
                 files.extend(Some(text.trim()).filter(|name| !name.is_empty()).map(str::to_owned));
             } else if text.is_empty() {
@@ -55,11 +55,11 @@ impl NrrdHeader {
             } else if let Some((key, value)) = key_and_value(text) {
                 keys.entry(key).or_insert(value);
             } else if !text.starts_with('#') {
-                is_list = add_field(attempt, &mut fields, text, number)?;
+                is_list = add_field(context, &mut fields, text, number)?;
             }
         }
         if fields.is_empty() {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "header",
                 "it has no fields",
                 "check that it is an NRRD file",
@@ -86,18 +86,18 @@ impl NrrdHeader {
     /// Returns the value of a mandatory field; `help` tells the user what it should be.
     pub(super) fn require(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         name: &str,
         help: &str,
     ) -> Result<&str, LoadError> {
         self.get(name)
-            .ok_or_else(|| attempt.bad_input_error(name, format!("the field {name} is missing"), help))
+            .ok_or_else(|| context.bad_input_error(name, format!("the field {name} is missing"), help))
     }
 
     /// Returns the byte offset of data in the header's own file.
-    pub(super) fn data_start(&self, attempt: LoadContext<'_>) -> Result<u64, LoadError> {
+    pub(super) fn data_start(&self, context: LoadContext<'_>) -> Result<u64, LoadError> {
         self.data_start.ok_or_else(|| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "data file",
                 "the file ends with its header: no data follow, and no data file is named",
                 "copy the file again, or name the file that holds the voxels in the field data file",
@@ -106,15 +106,15 @@ impl NrrdHeader {
     }
 }
 
-fn check_magic(attempt: LoadContext<'_>, line: &str) -> Result<(), LoadError> {
+fn check_magic(context: LoadContext<'_>, line: &str) -> Result<(), LoadError> {
     match line.strip_prefix("NRRD000").map(str::trim_end) {
         Some("1" | "2" | "3" | "4" | "5") => Ok(()),
-        Some(_) => Err(attempt.bad_input_error(
+        Some(_) => Err(context.bad_input_error(
             "magic",
             format!("NRRD0001 to NRRD0005 are supported, {} was found", quoted(line)),
             "write it again as NRRD0004 or NRRD0005",
         )),
-        None => Err(attempt.bad_input_error(
+        None => Err(context.bad_input_error(
             "magic",
             format!("an NRRD file begins with NRRD0001 to NRRD0005, {} was found", quoted(line)),
             "check the file's name and format",
@@ -131,13 +131,13 @@ fn key_and_value(line: &str) -> Option<(String, String)> {
 
 /// Adds the field of one line; returns true if it announces a list of data files.
 fn add_field(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     fields: &mut BTreeMap<String, String>,
     line: &str,
     number: u32,
 ) -> Result<bool, LoadError> {
     let Some((name, value)) = line.split_once(':') else {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "header",
             format!("line {number} is neither a field, a key, a comment nor empty: {}", quoted(line)),
             "check that an empty line separates header and data",
@@ -147,7 +147,7 @@ fn add_field(
     let is_list = key == "datafile" && value.split_whitespace().next() == Some("LIST");
     let earlier = fields.insert(key, value.to_owned());
     match earlier {
-        Some(earlier) if earlier != value => Err(attempt.bad_input_error(
+        Some(earlier) if earlier != value => Err(context.bad_input_error(
             name.trim(),
             format!("the field is there twice, as {} and as {}", quoted(&earlier), quoted(value)),
             "remove one of the two lines",

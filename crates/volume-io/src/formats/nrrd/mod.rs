@@ -51,13 +51,13 @@ pub(super) const READER: FormatReader = FormatReader {
 /// Loads an NRRD file, with its data files.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, mut input, options, control, .. } = source;
-    let attempt = LoadContext { operation: "read the NRRD volume", path };
-    let header = NrrdHeader::read(attempt, &mut input.reader)?;
-    let storage = NrrdStorage::from_header(attempt, &header)?;
-    let mut geometry = NrrdGeometry::from_header(attempt, &header)?;
+    let context = LoadContext { operation: "read the NRRD volume", path };
+    let header = NrrdHeader::read(context, &mut input.reader)?;
+    let storage = NrrdStorage::from_header(context, &header)?;
+    let mut geometry = NrrdGeometry::from_header(context, &header)?;
     let mut hints = header.hints();
     let is_layered = hints.meaning == ValueMeaning::Labels && geometry.components > 1;
-    let (frame, part) = selected_frame_and_part(attempt, &geometry, storage.number, is_layered, options)?;
+    let (frame, part) = selected_frame_and_part(context, &geometry, storage.number, is_layered, options)?;
     // Text is parsed to little-endian bytes, and single bytes have no byte order.
     let endian = storage.endian.filter(|_| storage.encoding != NrrdEncoding::Text).unwrap_or(Endian::Little);
     // One of several component planes is read like a time step.
@@ -76,17 +76,17 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         }
     };
     let extent =
-        GridExtent::checked(attempt, "sizes", geometry.dims, stored.voxel_type(), options.limits(control))?;
+        GridExtent::checked(context, "sizes", geometry.dims, stored.voxel_type(), options.limits(control))?;
     let bytes_of_frame = (extent.voxels as u64)
         .checked_mul(stored.voxel_bytes())
         .filter(|bytes| bytes.checked_mul(frames).is_some())
-        .ok_or_else(|| attempt.limit_error("sizes", "all time steps have more than 2^64 bytes", HELP))?;
+        .ok_or_else(|| context.limit_error("sizes", "all time steps have more than 2^64 bytes", HELP))?;
 
-    let data_locations = match data_files::data_file_names(attempt, &header, &geometry.sizes)? {
-        None => vec![DataLocation::Attached(path.to_owned(), header.data_start(attempt)?)],
+    let data_locations = match data_files::data_file_names(context, &header, &geometry.sizes)? {
+        None => vec![DataLocation::Attached(path.to_owned(), header.data_start(context)?)],
         Some(names) => names
             .iter()
-            .map(|name| companion_path::resolve(attempt, data_files::FIELD, name).map(DataLocation::Detached))
+            .map(|name| companion_path::resolve(context, data_files::FIELD, name).map(DataLocation::Detached))
             .collect::<Result<_, _>>()?,
     };
     let bytes_of_file = bytes_of_frame * frames / data_locations.len() as u64;
@@ -99,7 +99,7 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
                 "all components together need {}, more than is allowed",
                 human_bytes(bytes_of_frame.into())
             );
-            return Err(attempt.limit_error("sizes", what, "select one with --component"));
+            return Err(context.limit_error("sizes", what, "select one with --component"));
         }
         planar_components::read_interleaved(&mut data, &stored, extent.voxels, control)
             .and_then(|bytes| stored.read_values(&mut bytes.as_slice(), None, extent, &meant, control))
@@ -111,11 +111,11 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     };
     let voxels = voxels.map_err(|fault| match data.failure.take() {
         Some(failure) => failure,
-        None => fault.into_error(attempt, &layout, "bytes", HELP),
+        None => fault.into_error(context, &layout, "bytes", HELP),
     })?;
 
     if hints.labels.is_empty() && geometry.components == 1 && geometry.frames == 1 {
-        label_tables::add_label_table(attempt, READER.extensions, voxels.stored_numbers(), &mut hints);
+        label_tables::add_label_table(context, READER.extensions, voxels.stored_numbers(), &mut hints);
     }
     let placement = &mut geometry.placement;
     if is_layered {
@@ -125,13 +125,13 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     placement.remarks.extend(part.remark().map(str::to_owned));
     let name = header.get("content").filter(|content| !content.is_empty());
     let name = name.map_or_else(|| stem(path), |content| sanitised(content, 120));
-    VolumeParts { name, extent, placement: geometry.placement, voxels, hints }.into_volume(attempt, control)
+    VolumeParts { name, extent, placement: geometry.placement, voxels, hints }.into_volume(context, control)
 }
 
 /// Determines the time step to read, from 0 for consecutive volumes, and the part of interleaved numbers that is
 /// shown.
 fn selected_frame_and_part(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     geometry: &NrrdGeometry,
     number: FileNumberType,
     is_layered: bool,
@@ -144,7 +144,7 @@ fn selected_frame_and_part(
     let are_channels = is_interleaved && geometry.is_list && geometry.frames > 1;
     let times = if is_interleaved && !are_channels { components as u64 } else { geometry.frames };
     if times > MAX_FRAMES || (geometry.has_interleaved_times && geometry.frames > 1) {
-        return Err(attempt.limit_error(
+        return Err(context.limit_error(
             "sizes",
             format!("there are more than {MAX_FRAMES} time steps, or times in two axes"),
             "extract some time steps (for example: unu crop)",
@@ -154,10 +154,10 @@ fn selected_frame_and_part(
         |count: usize| (0..count).map(|step| VolumeOffer::with_number(step, "", geometry.dims)).collect();
     let mut frame = 0;
     if times > 1 {
-        frame = attempt.resolve_choice(&options.choice, FileDimension::Frame, offers(times as usize))?;
+        frame = context.resolve_choice(&options.choice, FileDimension::Frame, offers(times as usize))?;
     }
     if are_channels {
-        let channel = attempt.resolve_choice(&options.choice, FileDimension::Channel, offers(components))?;
+        let channel = context.resolve_choice(&options.choice, FileDimension::Channel, offers(components))?;
         return Ok((frame as u64, ScalarReduction::Component(channel)));
     }
     if is_interleaved {
@@ -171,6 +171,6 @@ fn selected_frame_and_part(
     } else {
         options.choice.resolve_component(components, is_color)
     };
-    let part = ScalarReduction::require(attempt, component, components, is_color)?;
+    let part = ScalarReduction::require(context, component, components, is_color)?;
     Ok((frame as u64, part))
 }

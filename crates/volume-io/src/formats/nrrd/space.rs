@@ -10,7 +10,7 @@ use chiaroscuro_volume::{LoadContext, quoted};
 ///
 /// Without the field, or if it describes no axis at all, there are none.
 pub(super) fn directions(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NrrdHeader,
     dimension: usize,
 ) -> Result<Option<Vec<Option<DVec3>>>, LoadError> {
@@ -18,9 +18,9 @@ pub(super) fn directions(
     let Some(text) = header.get(FIELD) else {
         return Ok(None);
     };
-    let space_dimension = space_dimension(attempt, header)?;
+    let space_dimension = space_dimension(context, header)?;
     let wrong = |why: String| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             FIELD,
             why,
             format!("write {dimension} vectors like (1,0,0), or none, one for each axis"),
@@ -46,14 +46,14 @@ pub(super) fn directions(
 }
 
 /// Returns the centre of the first voxel, in the file's space; the origin if unknown.
-pub(super) fn origin(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
+pub(super) fn origin(context: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
     const FIELD: &str = "space origin";
     let Some(text) = header.get(FIELD) else {
         return Ok(DVec3::ZERO);
     };
-    let space_dimension = space_dimension(attempt, header)?;
+    let space_dimension = space_dimension(context, header)?;
     let wrong = || {
-        attempt.bad_input_error(
+        context.bad_input_error(
             FIELD,
             format!("a vector of {space_dimension} finite numbers was expected, {} was found", quoted(text)),
             "write it like (0,0,0)",
@@ -63,7 +63,7 @@ pub(super) fn origin(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DV
     match &vectors[..] {
         [None] => Ok(DVec3::ZERO),
         [Some(components)] if components.iter().all(|component| component.is_nan()) => {
-            attempt.warn("the space origin is unknown: 0 is used");
+            context.warn("the space origin is unknown: 0 is used");
             Ok(DVec3::ZERO)
         }
         [Some(components)] => {
@@ -76,9 +76,9 @@ pub(super) fn origin(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DV
 /// Returns the signs that convert the file's space to right-anterior-superior.
 ///
 /// Spaces without an anatomical meaning are left unchanged.
-pub(super) fn ras_signs(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
+pub(super) fn ras_signs(context: LoadContext<'_>, header: &NrrdHeader) -> Result<DVec3, LoadError> {
     // Validates the dimension even if no vector uses it.
-    space_dimension(attempt, header)?;
+    space_dimension(context, header)?;
     Ok(match space_name(header).as_str() {
         "left-posterior-superior" | "lps" => DVec3::new(-1.0, -1.0, 1.0),
         "left-anterior-superior" | "las" => DVec3::new(-1.0, 1.0, 1.0),
@@ -127,9 +127,9 @@ fn space_name(header: &NrrdHeader) -> String {
 }
 
 /// Returns the number of components of the file's vectors: 3, 4 with time, or 2 for images.
-fn space_dimension(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<usize, LoadError> {
+fn space_dimension(context: LoadContext<'_>, header: &NrrdHeader) -> Result<usize, LoadError> {
     let wrong = |found: &str| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "space dimension",
             format!(
                 "a space of 3 dimensions, 4 with time, or 2 for a slice, was expected, {} was found",

@@ -29,12 +29,12 @@ pub(super) struct NrrdStorage {
 }
 
 impl NrrdStorage {
-    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Self, LoadError> {
-        let number = parse_number_type(attempt, header)?;
-        let encoding = parse_encoding(attempt, header)?;
-        let endian = parse_endian(attempt, header)?;
+    pub(super) fn from_header(context: LoadContext<'_>, header: &NrrdHeader) -> Result<Self, LoadError> {
+        let number = parse_number_type(context, header)?;
+        let encoding = parse_encoding(context, header)?;
+        let endian = parse_endian(context, header)?;
         if endian.is_none() && encoding != NrrdEncoding::Text && number.bytes() > 1 {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "endian",
                 "the field endian is missing and the type has more than one byte",
                 "add endian: little or endian: big",
@@ -44,15 +44,15 @@ impl NrrdStorage {
             number,
             encoding,
             endian,
-            line_skip: parse_line_skip(attempt, header)?,
-            byte_skip: parse_byte_skip(attempt, header, encoding)?,
+            line_skip: parse_line_skip(context, header)?,
+            byte_skip: parse_byte_skip(context, header, encoding)?,
         })
     }
 }
 
-fn parse_number_type(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<FileNumberType, LoadError> {
+fn parse_number_type(context: LoadContext<'_>, header: &NrrdHeader) -> Result<FileNumberType, LoadError> {
     const HELP: &str = "use one of uint8, int8, uint16, int16, uint32, int32, uint64, int64, float, double";
-    let text = header.require(attempt, "type", HELP)?;
+    let text = header.require(context, "type", HELP)?;
     let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
     Ok(match words.join(" ").as_str() {
         "signed char" | "int8" | "int8_t" => FileNumberType::I8,
@@ -76,14 +76,14 @@ fn parse_number_type(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Fi
             FileNumberType::U64
         }
         "block" => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "type",
                 format!("voxels of type {} are not supported", quoted(text)),
                 HELP,
             ));
         }
         _ => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "type",
                 format!("{} is not an NRRD type", quoted(text)),
                 HELP,
@@ -92,15 +92,15 @@ fn parse_number_type(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Fi
     })
 }
 
-fn parse_encoding(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<NrrdEncoding, LoadError> {
-    let text = header.require(attempt, "encoding", "add encoding: raw, gzip, bzip2, hex or ascii")?;
+fn parse_encoding(context: LoadContext<'_>, header: &NrrdHeader) -> Result<NrrdEncoding, LoadError> {
+    let text = header.require(context, "encoding", "add encoding: raw, gzip, bzip2, hex or ascii")?;
     match text.to_lowercase().as_str() {
         "raw" => Ok(NrrdEncoding::Raw),
         "gz" | "gzip" => Ok(NrrdEncoding::Gzip),
         "bz2" | "bzip2" => Ok(NrrdEncoding::Bzip2),
         "hex" => Ok(NrrdEncoding::Hex),
         "txt" | "text" | "ascii" => Ok(NrrdEncoding::Text),
-        _ => Err(attempt.bad_input_error(
+        _ => Err(context.bad_input_error(
             "encoding",
             format!("raw, gzip, bzip2, hex or ascii was expected, {} was found", quoted(text)),
             "write it again with encoding raw or gzip (for example: unu save -f nrrd -e gzip)",
@@ -108,12 +108,12 @@ fn parse_encoding(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<NrrdE
     }
 }
 
-fn parse_endian(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Option<Endian>, LoadError> {
+fn parse_endian(context: LoadContext<'_>, header: &NrrdHeader) -> Result<Option<Endian>, LoadError> {
     match header.get("endian").map(str::to_lowercase).as_deref() {
         None => Ok(None),
         Some("little") => Ok(Some(Endian::Little)),
         Some("big") => Ok(Some(Endian::Big)),
-        Some(other) => Err(attempt.bad_input_error(
+        Some(other) => Err(context.bad_input_error(
             "endian",
             format!("little or big was expected, {} was found", quoted(other)),
             "correct the header",
@@ -121,10 +121,10 @@ fn parse_endian(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<Option<
     }
 }
 
-fn parse_line_skip(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<u64, LoadError> {
+fn parse_line_skip(context: LoadContext<'_>, header: &NrrdHeader) -> Result<u64, LoadError> {
     let text = header.get("line skip").unwrap_or("0");
     text.parse().map_err(|_unreadable| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "line skip",
             format!("a number of lines was expected, {} was found", quoted(text)),
             "correct the header",
@@ -133,7 +133,7 @@ fn parse_line_skip(attempt: LoadContext<'_>, header: &NrrdHeader) -> Result<u64,
 }
 
 fn parse_byte_skip(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NrrdHeader,
     encoding: NrrdEncoding,
 ) -> Result<Option<u64>, LoadError> {
@@ -141,12 +141,12 @@ fn parse_byte_skip(
     match text.parse::<u64>() {
         Ok(skip) => Ok(Some(skip)),
         Err(_) if text == "-1" && encoding == NrrdEncoding::Raw => Ok(None),
-        Err(_) if text == "-1" => Err(attempt.bad_input_error(
+        Err(_) if text == "-1" => Err(context.bad_input_error(
             "byte skip",
             "-1 (the data are the last bytes) is possible with encoding raw only",
             "give the number of bytes to skip",
         )),
-        Err(_) => Err(attempt.bad_input_error(
+        Err(_) => Err(context.bad_input_error(
             "byte skip",
             format!("a number of bytes or -1 was expected, {} was found", quoted(text)),
             "correct the header",

@@ -36,7 +36,7 @@ impl ArchiveAffine {
 
     /// Reads the transform from such an array.
     pub(super) fn read(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         input: &mut InputFile,
         entry: &ZipEntry,
         header: &NumpyHeader,
@@ -44,7 +44,7 @@ impl ArchiveAffine {
     ) -> Self {
         let size = grid.number.bytes();
         let mut bytes = Vec::new();
-        let read = open_entry(attempt, input, entry).ok().and_then(|mut content| {
+        let read = open_entry(context, input, entry).ok().and_then(|mut content| {
             let skipped =
                 std::io::copy(&mut content.by_ref().take(header.bytes), &mut std::io::sink()).ok()?;
             content.take((COUNT * size) as u64).read_to_end(&mut bytes).ok()?;

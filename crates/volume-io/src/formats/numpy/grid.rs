@@ -29,9 +29,9 @@ pub(super) struct NumpyGrid {
 
 impl NumpyGrid {
     /// Interprets the axes. Axes of length 1 are dropped while there are more than three.
-    pub(super) fn from_header(attempt: LoadContext<'_>, header: &NumpyHeader) -> Result<Self, LoadError> {
+    pub(super) fn from_header(context: LoadContext<'_>, header: &NumpyHeader) -> Result<Self, LoadError> {
         let (number, endian, mut components) = parse_type_code(&header.descr).ok_or_else(|| {
-            attempt.bad_input_error(
+            context.bad_input_error(
                 "descr",
                 format!("elements of type {} are not supported", quoted(&header.descr)),
                 "convert the array to whole or real numbers of at most 64 bits, for example with astype(numpy.float32)",
@@ -63,7 +63,7 @@ impl NumpyGrid {
                 (vec![(FileDimension::Frame, frames), (FileDimension::Channel, channels)], [x, y, z])
             }
             _ => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "shape",
                     format!("an array of {count} axes is not a volume"),
                     "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
@@ -71,7 +71,7 @@ impl NumpyGrid {
             }
         };
         if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "shape",
                 format!("the array has no {}", dimension.plural()),
                 "every axis must have at least one element",

@@ -25,9 +25,9 @@ pub(super) struct NumpyHeader {
 
 impl NumpyHeader {
     /// Reads the header from the beginning of an array file.
-    pub(super) fn read(attempt: LoadContext<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
+    pub(super) fn read(context: LoadContext<'_>, content: &mut dyn Read) -> Result<Self, LoadError> {
         let bad =
-            |why: String| attempt.bad_input_error("header", why, "save the array again with numpy.save");
+            |why: String| context.bad_input_error("header", why, "save the array again with numpy.save");
         let mut exactly = |count: u64| {
             let mut bytes = Vec::new();
             match Read::take(&mut *content, count).read_to_end(&mut bytes) {
@@ -63,7 +63,7 @@ impl NumpyHeader {
         let descr = match find("descr") {
             Some(PythonValue::Text(descr)) => descr.clone(),
             Some(PythonValue::List) => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "descr",
                     "its elements are records of several fields",
                     "save one of the fields as an array",

@@ -62,11 +62,11 @@ struct ChosenNumpyArray {
 /// Selects the volume of an array by the user's choice.
 fn choose_volume(
     source: &VolumeSource<'_>,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &NumpyHeader,
     grid: &NumpyGrid,
 ) -> Result<ChosenNumpyArray, LoadError> {
-    let part = source.scalar_reduction(attempt, grid.components, grid.is_color)?;
+    let part = source.scalar_reduction(context, grid.components, grid.is_color)?;
     let stored = VoxelEncoding {
         number: grid.number,
         endian: grid.endian,
@@ -75,11 +75,11 @@ fn choose_volume(
     };
     let mut number = 0u64;
     for &(dimension, count) in &grid.outer {
-        let chosen = source.choose_numbered(attempt, dimension, count, grid.dims, |_| String::new())?;
+        let chosen = source.choose_numbered(context, dimension, count, grid.dims, |_| String::new())?;
         number = number.saturating_mul(count).saturating_add(chosen as u64);
     }
     let extent = GridExtent::checked(
-        attempt,
+        context,
         "shape",
         grid.dims,
         stored.voxel_type(),
@@ -96,14 +96,14 @@ fn choose_volume(
 
 /// Loads a file of a single array.
 fn load_array(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the NumPy array", path: source.path };
-    let header = NumpyHeader::read(attempt, &mut source.content())?;
-    let grid = NumpyGrid::from_header(attempt, &header)?;
-    let ChosenNumpyArray { stored, extent, at, placement } = choose_volume(&source, attempt, &header, &grid)?;
-    let voxels = source.voxels(attempt, at, (&stored, extent), TrailingData::Allowed, HELP)?;
+    let context = LoadContext { operation: "read the NumPy array", path: source.path };
+    let header = NumpyHeader::read(context, &mut source.content())?;
+    let grid = NumpyGrid::from_header(context, &header)?;
+    let ChosenNumpyArray { stored, extent, at, placement } = choose_volume(&source, context, &header, &grid)?;
+    let voxels = source.voxels(context, at, (&stored, extent), TrailingData::Allowed, HELP)?;
     let name = stem(source.path);
     VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
-        .into_volume(attempt, source.control)
+        .into_volume(context, source.control)
 }
 
 /// Array in an archive that may be a volume.
@@ -127,16 +127,16 @@ impl ArchivedArray {
 
 /// Loads an array of an archive.
 fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the NumPy archive", path: source.path };
-    let mut directory = zip::read_central_directory(attempt, &mut source.input)?;
+    let context = LoadContext { operation: "read the NumPy archive", path: source.path };
+    let mut directory = zip::read_central_directory(context, &mut source.input)?;
     let mut arrays: Vec<ArchivedArray> = Vec::new();
     let mut refused = Vec::new();
     let entries = std::mem::take(&mut directory.entries);
     for entry in entries.into_iter().filter(|entry| entry.name.ends_with(ENDING)).take(MAX_ARRAYS) {
         source.control.check()?;
-        let header = zip::open_entry(attempt, &mut source.input, &entry)
-            .and_then(|mut content| NumpyHeader::read(attempt, &mut content));
-        match header.and_then(|header| NumpyGrid::from_header(attempt, &header).map(|grid| (header, grid))) {
+        let header = zip::open_entry(context, &mut source.input, &entry)
+            .and_then(|mut content| NumpyHeader::read(context, &mut content));
+        match header.and_then(|header| NumpyGrid::from_header(context, &header).map(|grid| (header, grid))) {
             Ok((header, grid)) => arrays.push(ArchivedArray { entry, header, grid }),
             Err(error @ LoadError::Io { .. }) => return Err(error),
             Err(error) => refused.push(error),
@@ -144,7 +144,7 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     let affine = arrays.iter().find(|array| ArchiveAffine::is_held_by(&array.key(), &array.header));
     let affine = affine.map(|ArchivedArray { entry, header, grid }| {
-        let read = ArchiveAffine::read(attempt, &mut source.input, entry, header, grid);
+        let read = ArchiveAffine::read(context, &mut source.input, entry, header, grid);
         (entry.name.clone(), read)
     });
     // Beside a volume, matrices and tables (an affine, directions, a list of points) are no images. One that the user
@@ -156,16 +156,16 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     // Nor are one-dimensional arrays offered beside a volume; without any volume, the errors of the arrays are
     // reported.
     if arrays.is_empty() {
-        return Err(no_array_error(attempt, &directory, refused));
+        return Err(no_array_error(context, &directory, refused));
     }
     let offers = arrays.iter().map(|array| {
         let key = array.key();
         VolumeOffer { name: key.clone(), key, dims: Some(array.grid.dims) }
     });
-    let chosen = attempt.resolve_choice(&source.options.choice, FileDimension::Array, offers.collect())?;
+    let chosen = context.resolve_choice(&source.options.choice, FileDimension::Array, offers.collect())?;
     let ArchivedArray { entry, header, grid } = arrays.swap_remove(chosen);
-    let wanted = choose_volume(&source, attempt, &header, &grid)?;
-    let voxels = read_entry(&mut source, attempt, &entry, &wanted)?;
+    let wanted = choose_volume(&source, context, &header, &grid)?;
+    let voxels = read_entry(&mut source, context, &entry, &wanted)?;
     let ChosenNumpyArray { extent, mut placement, .. } = wanted;
     if let Some((_, affine)) = affine.filter(|(name, _)| *name != entry.name) {
         let mut placed = affine.placement(grid.array_axes);
@@ -174,12 +174,12 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     let name = sanitised(&format!("{} {}", stem(source.path), entry.name.trim_end_matches(ENDING)), 120);
     VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
-        .into_volume(attempt, source.control)
+        .into_volume(context, source.control)
 }
 
 /// Error for an archive without a single array that is a volume: `refused` holds the errors of its arrays.
 fn no_array_error(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     directory: &ZipDirectory,
     mut refused: Vec<LoadError>,
 ) -> LoadError {
@@ -190,22 +190,22 @@ fn no_array_error(
         [&directory.encrypted, &directory.unsupported].map(|names| arrays_among(names));
     match refused.pop() {
         Some(only) if count == 1 => only,
-        Some(_) => attempt.bad_input_error(
+        Some(_) => context.bad_input_error(
             "arrays",
             format!("none of its {count} arrays is a volume"),
             "save an array of numbers with three axes: z, y, x",
         ),
-        None if encrypted > 0 => attempt.bad_input_error(
+        None if encrypted > 0 => context.bad_input_error(
             "arrays",
             format!("{} encrypted, and cannot be read without a password", are(encrypted)),
             "unpack it with its password (`7z x FILE`), and open the array",
         ),
-        None if unsupported > 0 => attempt.bad_input_error(
+        None if unsupported > 0 => context.bad_input_error(
             "arrays",
             format!("{} compressed in a way that is not supported", are(unsupported)),
             "unpack it (`7z x FILE`) and open the array, or save it with numpy.savez_compressed",
         ),
-        None => attempt.bad_input_error(
+        None => context.bad_input_error(
             "arrays",
             "it holds no arrays: no file in it ends in .npy",
             "save an array of numbers with three axes (z, y, x) with numpy.savez",
@@ -216,7 +216,7 @@ fn no_array_error(
 /// Reads the selected volume of an archive entry.
 fn read_entry(
     source: &mut VolumeSource<'_>,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     entry: &ZipEntry,
     wanted: &ChosenNumpyArray,
 ) -> Result<ReadVoxels, LoadError> {
@@ -224,7 +224,7 @@ fn read_entry(
     let needed = (extent.voxels as u64).saturating_mul(stored.voxel_bytes()).saturating_add(*at);
     // Before memory is allocated.
     if needed > entry.bytes {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "shape",
             format!(
                 "the data of {} are truncated: {needed} bytes expected, {} found",
@@ -236,7 +236,7 @@ fn read_entry(
     }
     let control = source.control;
     let layout = VoxelLayout { extent: *extent, voxel_type: stored.voxel_type(), endian: stored.endian };
-    let mut content = CrcReader::new(zip::open_entry(attempt, &mut source.input, entry)?);
+    let mut content = CrcReader::new(zip::open_entry(context, &mut source.input, entry)?);
     let mut read = || {
         if skip_bytes(&mut content, *at, control)? < *at {
             return Err(ReadFault::Short { got: 0 });
@@ -245,18 +245,18 @@ fn read_entry(
     };
     let voxels = read().map_err(|fault| match fault {
         ReadFault::Io(error) if is_corruption(&error) => {
-            broken_entry_error(attempt, entry, &format!("they cannot be decompressed: {error}"))
+            broken_entry_error(context, entry, &format!("they cannot be decompressed: {error}"))
         }
-        fault => fault.into_error(attempt, &layout, "bytes", HELP),
+        fault => fault.into_error(context, &layout, "bytes", HELP),
     })?;
     // The checksum covers the whole array, and can be verified only if all of it was read.
     let is_all = needed == entry.bytes && content.by_ref().read(&mut [0]).is_ok_and(|more| more == 0);
     if is_all && content.crc().sum() != entry.checksum {
-        return Err(broken_entry_error(attempt, entry, "their checksum does not match"));
+        return Err(broken_entry_error(context, entry, "their checksum does not match"));
     }
     Ok(voxels)
 }
 
-fn broken_entry_error(attempt: LoadContext<'_>, entry: &ZipEntry, why: &str) -> LoadError {
-    attempt.bad_input_error("data", format!("the data of {} are broken: {why}", quoted(&entry.name)), HELP)
+fn broken_entry_error(context: LoadContext<'_>, entry: &ZipEntry, why: &str) -> LoadError {
+    context.bad_input_error("data", format!("the data of {} are broken: {why}", quoted(&entry.name)), HELP)
 }

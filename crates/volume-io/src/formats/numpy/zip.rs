@@ -71,15 +71,15 @@ pub(super) struct ZipDirectory {
 /// # Errors
 /// `BadInput` where the directory is missing, or inconsistent.
 pub(super) fn read_central_directory(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     input: &mut InputFile,
 ) -> Result<ZipDirectory, LoadError> {
-    let bad = |why: &str| attempt.bad_input_error("directory", why, HELP);
-    let (at, length) = find_central_directory(attempt, input)?;
+    let bad = |why: &str| context.bad_input_error("directory", why, HELP);
+    let (at, length) = find_central_directory(context, input)?;
     if length > MAX_DIRECTORY || at.saturating_add(length) > input.len {
         return Err(bad("the directory of the archive is too long, or reaches beyond the file"));
     }
-    let bytes = read_at(input, at, length).map_err(|error| attempt.io_error(error))?;
+    let bytes = read_at(input, at, length).map_err(|error| context.io_error(error))?;
     let mut directory = ZipDirectory::default();
     let mut rest = &bytes[..];
     while rest.starts_with(CENTRAL_HEADER) && rest.len() >= 46 {
@@ -122,18 +122,18 @@ pub(super) fn read_central_directory(
 
 /// Opens an entry for reading, inflated; it yields at most its announced length.
 pub(super) fn open_entry<'a>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     input: &'a mut InputFile,
     entry: &ZipEntry,
 ) -> Result<Box<dyn Read + 'a>, LoadError> {
-    let head = read_at(input, entry.at, 30).map_err(|error| attempt.io_error(error))?;
+    let head = read_at(input, entry.at, 30).map_err(|error| context.io_error(error))?;
     if !head.starts_with(LOCAL_HEADER) || head.len() < 30 {
         let why = format!("{} is not where the directory of the archive says", quoted(&entry.name));
-        return Err(attempt.bad_input_error("directory", why, HELP));
+        return Err(context.bad_input_error("directory", why, HELP));
     }
     // The file name, and an extra field whose length may differ from that in the directory.
     let skip = 30 + read_le(&head, 26, 2) + read_le(&head, 28, 2);
-    input.seek(entry.at.saturating_add(skip)).map_err(|error| attempt.io_error(error))?;
+    input.seek(entry.at.saturating_add(skip)).map_err(|error| context.io_error(error))?;
     let stored = io::Read::by_ref(&mut input.reader).take(entry.stored_bytes);
     Ok(if entry.is_deflated {
         Box::new(DeflateDecoder::new(stored).take(entry.bytes))
@@ -143,13 +143,13 @@ pub(super) fn open_entry<'a>(
 }
 
 /// Finds the central directory; returns its offset and its length.
-fn find_central_directory(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<(u64, u64), LoadError> {
+fn find_central_directory(context: LoadContext<'_>, input: &mut InputFile) -> Result<(u64, u64), LoadError> {
     // A comment after the record has at most 65535 bytes.
     let most = (END_BYTES + LARGE_NOTE_BYTES) as u64 + 0xffff;
     let from = input.len.saturating_sub(most);
-    let tail = read_at(input, from, most).map_err(|error| attempt.io_error(error))?;
+    let tail = read_at(input, from, most).map_err(|error| context.io_error(error))?;
     let Some(end) = tail.windows(END_BYTES).rposition(|window| window.starts_with(END_OF_DIRECTORY)) else {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "directory",
             "the archive is truncated: it has no directory",
             HELP,
@@ -159,7 +159,7 @@ fn find_central_directory(attempt: LoadContext<'_>, input: &mut InputFile) -> Re
     let note = end.checked_sub(LARGE_NOTE_BYTES).and_then(|at| tail.get(at..end));
     let note = note.filter(|note| note.starts_with(ZIP64_LOCATOR));
     if let Some(note) = note.filter(|_| at == IN_ZIP64_FIELD || length == IN_ZIP64_FIELD) {
-        let end = read_at(input, read_le(note, 8, 8), 56).map_err(|error| attempt.io_error(error))?;
+        let end = read_at(input, read_le(note, 8, 8), 56).map_err(|error| context.io_error(error))?;
         if end.starts_with(ZIP64_END) {
             return Ok((read_le(&end, 48, 8), read_le(&end, 40, 8)));
         }

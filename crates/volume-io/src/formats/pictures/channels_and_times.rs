@@ -26,7 +26,7 @@ impl ChannelsAndTimes {
     /// Selects the channel and the time step by the user's choice, where there are several.
     pub(crate) fn choose(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         choice: &VolumeChoice,
     ) -> Result<ChosenChannelAndTime, LoadError> {
         let [width, height, slices] = self.dims;
@@ -38,12 +38,12 @@ impl ChannelsAndTimes {
             (0..count).map(|at| VolumeOffer::with_number(at, name(at), dims)).collect()
         };
         let channels = offers(self.channels, &self.channel_names);
-        let channel = attempt.resolve_choice(choice, FileDimension::Channel, channels)?;
+        let channel = context.resolve_choice(choice, FileDimension::Channel, channels)?;
         let frame = if is_time_depth {
             0
         } else {
             let frames = offers(self.frames, &self.frame_names);
-            attempt.resolve_choice(choice, FileDimension::Frame, frames)?
+            context.resolve_choice(choice, FileDimension::Frame, frames)?
         };
         Ok(ChosenChannelAndTime { channel, frame, time_is_depth: is_time_depth })
     }

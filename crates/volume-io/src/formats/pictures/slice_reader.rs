@@ -18,7 +18,7 @@ const AT_ONCE_BYTES: u64 = 32 << 20;
 /// # Errors
 /// Errors of `decode`; `BadInput` where a slice has an unexpected length, `Limit` where memory is exhausted.
 pub(super) fn read_slices(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     stored: &VoxelEncoding,
     extent: GridExtent,
     meant: &ValueMapping<'_>,
@@ -37,7 +37,7 @@ pub(super) fn read_slices(
     match (read, pile.failed) {
         (_, Some(error)) => Err(error),
         (read, None) => read.map_err(|fault: ReadFault| {
-            fault.into_error(attempt, &layout, "bytes", "copy the file again, or save it anew")
+            fault.into_error(context, &layout, "bytes", "copy the file again, or save it anew")
         }),
     }
 }
@@ -99,25 +99,25 @@ mod tests {
 
     #[test]
     fn slices_follow_each_other_and_one_that_fails_ends_it() {
-        let attempt = LoadContext { operation: "test", path: Path::new("t") };
+        let context = LoadContext { operation: "test", path: Path::new("t") };
         let stored = VoxelEncoding::scalar(FileNumberType::U8, Endian::Little);
         let extent = GridExtent::unchecked([2, 1, 3], stored.voxel_type());
         let (control, meant) = (LoadControl::new(), ValueMapping::identity(None));
         let slices = |some: &[usize]| Ok(some.iter().map(|&z| vec![z as u8, 10 + z as u8]).collect());
-        let read = read_slices(attempt, &stored, extent, &meant, &control, slices);
+        let read = read_slices(context, &stored, extent, &meant, &control, slices);
         assert_eq!(read.unwrap().samples, Samples::U8(vec![0, 10, 1, 11, 2, 12]));
         let half = ResolvedPortion::resolve(&Portion::with_stride(2), [2, 1, 3], false).unwrap();
         let half = GridExtent { wanted: half, read: half, ..extent };
-        let read = read_slices(attempt, &stored, half, &meant, &control, |some| {
+        let read = read_slices(context, &stored, half, &meant, &control, |some| {
             assert_eq!(some, [0, 2], "of the second slice nothing is kept");
             slices(some)
         });
         assert_eq!(read.unwrap().samples, Samples::U8(vec![0, 2]));
         let short = |some: &[usize]| Ok(some.iter().map(|&z| vec![z as u8]).collect());
-        let error = read_slices(attempt, &stored, extent, &meant, &control, short).unwrap_err();
+        let error = read_slices(context, &stored, extent, &meant, &control, short).unwrap_err();
         assert!(error.to_string().contains("6 bytes expected"), "{error}");
-        let fails = |_: &[usize]| Err(attempt.bad_input_error("page 1", "it is broken", "mend it"));
-        let error = read_slices(attempt, &stored, extent, &meant, &control, fails).unwrap_err();
+        let fails = |_: &[usize]| Err(context.bad_input_error("page 1", "it is broken", "mend it"));
+        let error = read_slices(context, &stored, extent, &meant, &control, fails).unwrap_err();
         assert!(error.to_string().contains("it is broken"), "{error}");
     }
 }

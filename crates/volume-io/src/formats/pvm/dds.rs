@@ -27,7 +27,7 @@ pub(super) fn is_packed(start: &[u8]) -> bool {
 
 /// Unpacks the whole content, to at most `most` bytes.
 pub(super) fn unpack(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     content: &mut dyn Read,
     most: u64,
     control: &LoadControl,
@@ -42,21 +42,21 @@ pub(super) fn unpack(
         })
         .map_err(|fault| match fault {
             ReadFault::Stopped(error) => error,
-            ReadFault::Long => attempt.limit_error(
+            ReadFault::Long => context.limit_error(
                 "data",
                 format!("it unpacks to more than the {} that are allowed", human_bytes(u128::from(most))),
                 "close other programs, or allow more memory",
             ),
-            ReadFault::NoMemory => attempt.limit_error(
+            ReadFault::NoMemory => context.limit_error(
                 "data",
                 "there is not enough memory for the unpacked data",
                 "close other programs or load a smaller volume",
             ),
             ReadFault::Io(error) if is_corruption(&error) => {
-                attempt.bad_input_error("data", format!("the gzip data are broken: {error}"), HELP)
+                context.bad_input_error("data", format!("the gzip data are broken: {error}"), HELP)
             }
-            ReadFault::Io(error) => attempt.io_error(error),
-            _ => attempt.bad_input_error("data", "the packed data are truncated", HELP),
+            ReadFault::Io(error) => context.io_error(error),
+            _ => context.bad_input_error("data", "the packed data are truncated", HELP),
         })
 }
 

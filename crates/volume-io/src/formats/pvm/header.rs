@@ -28,11 +28,11 @@ pub(super) struct PvmHeader {
 }
 
 impl PvmHeader {
-    pub(super) fn parse(attempt: LoadContext<'_>, content: &[u8]) -> Result<Self, LoadError> {
+    pub(super) fn parse(context: LoadContext<'_>, content: &[u8]) -> Result<Self, LoadError> {
         let mut lines = PvmLines { content: &content[..content.len().min(MAX_BYTES)], at: 0 };
         let bad = |field: &str, found: &str, expected: &str| {
             let why = format!("{expected} was expected, {} was found", quoted(found));
-            attempt.bad_input_error(field, why, "check that the file is a PVM volume, or copy it again")
+            context.bad_input_error(field, why, "check that the file is a PVM volume, or copy it again")
         };
         let mark = lines.next().unwrap_or_default();
         let version = match mark.as_str() {

@@ -60,17 +60,17 @@ pub(super) fn is_described(path: &Path) -> bool {
 /// Loads a RAW file.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let path = source.path;
-    let attempt = LoadContext { operation: "read the RAW volume", path };
+    let context = LoadContext { operation: "read the RAW volume", path };
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
     let named = name::parse_file_name(&file_name, unpacked_length(&source));
-    let (form, name) = if let Some(form) = storage_from_companion(attempt, &source, named.is_some())? {
+    let (form, name) = if let Some(form) = storage_from_companion(context, &source, named.is_some())? {
         (form, stem(path))
     } else {
         let name = named.as_ref().map(|named| named.name.clone()).filter(|name| !name.is_empty());
-        let form = storage_from_options(attempt, source.options, named, &file_name)?;
+        let form = storage_from_options(context, source.options, named, &file_name)?;
         (form, name.map_or_else(|| stem(path), |name| sanitised(&name, 120)))
     };
-    with_overrides(attempt, form, &source.options.raw)?.read(source, attempt, name, HELP)
+    with_overrides(context, form, &source.options.raw)?.read(source, context, name, HELP)
 }
 
 /// Number of bytes of voxels, unless the file is compressed.
@@ -81,7 +81,7 @@ fn unpacked_length(source: &VolumeSource<'_>) -> Option<u64> {
 
 /// Layout by a companion file, unless the options give the dimensions.
 fn storage_from_companion(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     source: &VolumeSource<'_>,
     is_named: bool,
 ) -> Result<Option<RawStorage>, LoadError> {
@@ -91,7 +91,7 @@ fn storage_from_companion(
     match sidecar::find_description(source.path) {
         Some(Ok(form)) => Ok(Some(form)),
         Some(Err(error)) if is_named => {
-            attempt.warn(format_args!("the description beside it is not used: {error}"));
+            context.warn(format_args!("the description beside it is not used: {error}"));
             Ok(None)
         }
         Some(Err(error)) => Err(error),
@@ -101,7 +101,7 @@ fn storage_from_companion(
 
 /// Layout by the options and the file name.
 fn storage_from_options(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     options: &LoadOptions,
     named: Option<name::RawFileName>,
     file_name: &str,
@@ -111,7 +111,7 @@ fn storage_from_options(
         (Some(dims), _) => (dims.map(|n| n as u64), "--dims"),
         (None, Some(named)) => (named.dims, "file name"),
         (None, None) => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "file name",
                 format!("the name {} does not state the dimensions and the type", quoted(file_name)),
                 "give --dims and --type, or name it like skull_256x256x256_uint8.raw",
@@ -120,7 +120,7 @@ fn storage_from_options(
     };
     let named_type = named.as_ref().and_then(|named| named.voxel_type);
     let Some(voxel_type) = format.voxel_type.or(named_type) else {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "--type",
             "neither the options nor the file name state the voxel type",
             "give --type: uint8, int8, uint16, int16, uint32, int32, float32 or float64",
@@ -138,7 +138,7 @@ fn storage_from_options(
 
 /// Replaces properties of a layout by the options that are given.
 fn with_overrides(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     mut form: RawStorage,
     format: &RawFormat,
 ) -> Result<RawStorage, LoadError> {
@@ -153,7 +153,7 @@ fn with_overrides(
     form.offset = format.offset.or(form.offset);
     if let Some(spacing_mm) = format.spacing_mm {
         if !spacing_mm.into_iter().all(is_usable_spacing) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "--spacing",
                 format!("{spacing_mm:?} mm is not a usable voxel spacing"),
                 "give three lengths in millimetres, each above 0",
@@ -161,7 +161,7 @@ fn with_overrides(
         }
         if let Some(why) = spacing_ratio_error(spacing_mm) {
             let help = "give the three lengths in one unit, millimetres";
-            return Err(attempt.bad_input_error("--spacing", why, help));
+            return Err(context.bad_input_error("--spacing", why, help));
         }
         let remarks = std::mem::take(&mut form.placement.remarks);
         form.placement = GridPlacement { remarks, ..GridPlacement::from_spacing(spacing_mm) };

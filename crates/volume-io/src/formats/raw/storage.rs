@@ -51,11 +51,11 @@ impl RawStorage {
     pub(super) fn read(
         self,
         mut source: VolumeSource<'_>,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         name: String,
         help: &str,
     ) -> Result<Volume, LoadError> {
-        let part = source.scalar_reduction(attempt, self.components, self.is_color)?;
+        let part = source.scalar_reduction(context, self.components, self.is_color)?;
         let stored = VoxelEncoding {
             number: self.number,
             endian: self.endian,
@@ -63,9 +63,9 @@ impl RawStorage {
             reduction: part,
         };
         let frame = source
-            .choose_numbered(attempt, FileDimension::Frame, self.frames, self.dims, |_| String::new())?;
+            .choose_numbered(context, FileDimension::Frame, self.frames, self.dims, |_| String::new())?;
         let room = source.options.limits(source.control);
-        let extent = GridExtent::checked(attempt, self.dims_source, self.dims, stored.voxel_type(), room)?;
+        let extent = GridExtent::checked(context, self.dims_source, self.dims, stored.voxel_type(), room)?;
         let bytes = (extent.voxels as u64).saturating_mul(stored.voxel_bytes());
         let all_bytes = bytes.saturating_mul(self.frames);
         let offset = self.offset.unwrap_or(0);
@@ -77,20 +77,20 @@ impl RawStorage {
         let voxels = if source.start.is_gzip() && (zipped_name || !fits_exactly) {
             let after = if self.frames == 1 { TrailingData::Refused } else { TrailingData::Allowed };
             let help = "check the dimensions, the type and --offset";
-            source.voxels(attempt, at, (&stored, extent), after, help)?
+            source.voxels(context, at, (&stored, extent), after, help)?
         } else {
-            self.check_length(attempt, (&stored, extent), all_bytes, source.input.len)?;
-            read_plain(&mut source, attempt, at, &stored, extent)?
+            self.check_length(context, (&stored, extent), all_bytes, source.input.len)?;
+            read_plain(&mut source, context, at, &stored, extent)?
         };
         let placement = self.placement.with_remark(part.remark());
         let parts = VolumeParts { name, extent, placement, voxels, hints: self.hints };
-        parts.into_volume_with_help(attempt, source.control, help)
+        parts.into_volume_with_help(context, source.control, help)
     }
 
     /// Checks that a file of `len` bytes holds exactly the offset and the voxels.
     fn check_length(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         (stored, extent): (&VoxelEncoding, GridExtent),
         bytes: u64,
         len: u64,
@@ -118,14 +118,14 @@ impl RawStorage {
             }
             _ => "check the dimensions and the type, or copy the file again".to_owned(),
         };
-        Err(attempt.bad_input_error("file size", why, help))
+        Err(context.bad_input_error("file size", why, help))
     }
 }
 
 /// Reads voxels as stored, although they may look compressed.
 fn read_plain(
     source: &mut VolumeSource<'_>,
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     at: u64,
     stored: &VoxelEncoding,
     extent: GridExtent,
@@ -133,6 +133,6 @@ fn read_plain(
     let meant = ValueMapping::identity(None);
     stored.read_from_file(&mut source.input, at, extent, &meant, source.control).map_err(|fault| {
         let layout = VoxelLayout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
-        fault.into_error(attempt, &layout, "bytes", "the file has changed meanwhile: load it again")
+        fault.into_error(context, &layout, "bytes", "the file has changed meanwhile: load it again")
     })
 }

@@ -118,7 +118,7 @@ impl<P> ChosenVtkArray<P> {
     /// `BadInput` also for errors of the reader about invalid or truncated data, since it decodes the file's content.
     pub(super) fn read(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         reader: &mut impl Read,
         endian: Endian,
         control: &LoadControl,
@@ -128,19 +128,19 @@ impl<P> ChosenVtkArray<P> {
         let layout = VoxelLayout { extent: self.extent, voxel_type: stored.voxel_type(), endian };
         stored.read(reader, self.extent, control).map_err(|fault| match fault {
             ReadFault::Io(error) if is_content_error(&error) => {
-                attempt.bad_input_error(&self.array.name, error.to_string(), HELP)
+                context.bad_input_error(&self.array.name, error.to_string(), HELP)
             }
             ReadFault::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => {
-                ReadFault::NoMemory.into_error(attempt, &layout, "bytes", HELP)
+                ReadFault::NoMemory.into_error(context, &layout, "bytes", HELP)
             }
-            fault => fault.into_error(attempt, &layout, "bytes", HELP),
+            fault => fault.into_error(context, &layout, "bytes", HELP),
         })
     }
 
     /// Assembles the volume from the values.
     pub(super) fn volume(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         grid: &VtkGrid,
         voxels: ReadVoxels,
         title: &str,
@@ -148,24 +148,24 @@ impl<P> ChosenVtkArray<P> {
     ) -> Result<Volume, LoadError> {
         let mut placement = grid.placement(self.array.is_cell_data);
         placement.remarks.extend(self.stored.reduction.remark().map(str::to_owned));
-        let file = stem(attempt.path);
+        let file = stem(context.path);
         let name = if self.is_one_of_several { format!("{file} {}", self.array.name) } else { file };
         let mut hints = ValueMetadata::default();
         hints.modality = Modality::from_description(title);
-        VolumeParts { name, extent: self.extent, placement, voxels, hints }.into_volume(attempt, control)
+        VolumeParts { name, extent: self.extent, placement, voxels, hints }.into_volume(context, control)
     }
 }
 
 /// Selects the array and its component by the user's choice.
 pub(super) fn choose_array<P>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     grid: &VtkGrid,
     mut arrays: Vec<VtkArray<P>>,
     options: &LoadOptions,
     control: &LoadControl,
 ) -> Result<ChosenVtkArray<P>, LoadError> {
     if arrays.is_empty() {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "arrays",
             "it holds no array of numbers with a value for each point or cell",
             "write it again with the values as point data",
@@ -177,21 +177,21 @@ pub(super) fn choose_array<P>(
         .enumerate()
         .map(|(at, array)| VolumeOffer::with_number(at, &array.name, grid.dims(array.is_cell_data)))
         .collect();
-    let array = arrays.swap_remove(attempt.resolve_choice(&options.choice, FileDimension::Array, offers)?);
+    let array = arrays.swap_remove(context.resolve_choice(&options.choice, FileDimension::Array, offers)?);
     let components = array.components;
     let component = options.choice.resolve_component(components, array.is_color);
-    let part = ScalarReduction::require(attempt, component, components, array.is_color)?;
+    let part = ScalarReduction::require(context, component, components, array.is_color)?;
     // The byte order is set when values are read.
     let stored = VoxelEncoding { number: array.number, endian: Endian::Little, components, reduction: part };
     let dims = grid.dims(array.is_cell_data);
     let extent =
-        GridExtent::checked(attempt, "dimensions", dims, stored.voxel_type(), options.limits(control))?;
+        GridExtent::checked(context, "dimensions", dims, stored.voxel_type(), options.limits(control))?;
     Ok(ChosenVtkArray { array, stored, extent, is_one_of_several })
 }
 
 /// Refuses truncated data before memory is allocated for them.
 pub(super) fn check_available(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     field: &str,
     needed: u64,
     found: u64,
@@ -200,7 +200,7 @@ pub(super) fn check_available(
     if needed <= found {
         return Ok(());
     }
-    Err(attempt.bad_input_error(
+    Err(context.bad_input_error(
         field,
         format!("the data are truncated: {needed} {unit} expected, at most {found} found"),
         "copy the file again",
@@ -222,15 +222,15 @@ pub(super) fn invalid_data(why: impl Into<String>) -> io::Error {
 
 /// Opens the content of a file from offset `at` on, inflated where it is compressed.
 pub(super) fn open_content_at<'a>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     source: &'a mut VolumeSource<'_>,
     at: u64,
 ) -> Result<Box<dyn BufRead + 'a>, LoadError> {
     if !source.start.is_gzip() {
-        source.input.seek(at).map_err(|error| attempt.io_error(error))?;
+        source.input.seek(at).map_err(|error| context.io_error(error))?;
         return Ok(Box::new(&mut source.input.reader));
     }
-    source.input.reader.rewind().map_err(|error| attempt.io_error(error))?;
+    source.input.reader.rewind().map_err(|error| context.io_error(error))?;
     let control = source.control;
     let mut content = source.content();
     let mut left = at;
@@ -240,7 +240,7 @@ pub(super) fn open_content_at<'a>(
         control.check()?;
         let want = left.min(BLOCK_BYTES);
         let got = io::copy(&mut content.by_ref().take(want), &mut io::sink())
-            .map_err(|error| content_error(attempt, error))?;
+            .map_err(|error| content_error(context, error))?;
         if got == 0 {
             break;
         }
@@ -250,10 +250,10 @@ pub(super) fn open_content_at<'a>(
 }
 
 /// Converts an I/O error of a reader: `BadInput` where it concerns the content.
-pub(super) fn content_error(attempt: LoadContext<'_>, error: io::Error) -> LoadError {
+pub(super) fn content_error(context: LoadContext<'_>, error: io::Error) -> LoadError {
     if is_content_error(&error) {
-        attempt.bad_input_error("content", format!("the file is broken: {error}"), "copy the file again")
+        context.bad_input_error("content", format!("the file is broken: {error}"), "copy the file again")
     } else {
-        attempt.io_error(error)
+        context.io_error(error)
     }
 }

@@ -43,7 +43,7 @@ impl FileContent {
     /// Checks that the content can have `bytes` bytes from `start` on, without inflating it.
     pub(crate) fn check_length(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         start: u64,
         bytes: u128,
@@ -52,7 +52,7 @@ impl FileContent {
         if u128::from(found) >= bytes {
             return Ok(());
         }
-        Err(attempt.bad_input_error(
+        Err(context.bad_input_error(
             field,
             match self.form {
                 ContentReader::Stored(_) => {

@@ -80,24 +80,24 @@ fn begins_with_elements(start: &[u8]) -> bool {
 impl DicomHeader {
     /// Reads the header of a file.
     pub(super) fn read(path: &Path, control: &LoadControl) -> Result<(Self, DicomReader), LoadError> {
-        let attempt = LoadContext { operation: super::READ_FILE, path };
-        let mut input = InputFile::open(attempt)?;
-        let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
-        Self::parse(attempt, input, start.stored(), control)
+        let context = LoadContext { operation: super::READ_FILE, path };
+        let mut input = InputFile::open(context)?;
+        let start = FileStart::read(&mut input).map_err(|error| context.io_error(error))?;
+        Self::parse(context, input, start.stored(), control)
     }
 
     /// Reads the header of a file that is already open and begins with the bytes `start`.
     pub(super) fn parse(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         input: InputFile,
         start: &[u8],
         control: &LoadControl,
     ) -> Result<(Self, DicomReader), LoadError> {
         let len = input.len;
         let mut bytes = DicomReader::new(input);
-        let broken = |broken: DataSetError| broken.into_error(attempt);
+        let broken = |broken: DataSetError| broken.into_error(context);
         if has_magic(start) {
-            bytes.skip(MAGIC_OFFSET as u64 + 4).map_err(|error| attempt.io_error(error))?;
+            bytes.skip(MAGIC_OFFSET as u64 + 4).map_err(|error| context.io_error(error))?;
         }
         let syntax_uid = read_file_meta(&mut bytes).map_err(broken)?;
         let mut syntax = syntax_uid
@@ -107,7 +107,7 @@ impl DicomHeader {
             bytes = bytes.into_inflated();
         } else {
             // The data themselves decide: programs convert a file and leave its transfer syntax unchanged.
-            let start = bytes.peek::<6>().map_err(|error| attempt.io_error(error))?;
+            let start = bytes.peek::<6>().map_err(|error| context.io_error(error))?;
             syntax.encoding = ElementEncoding::detect(&start, syntax.encoding);
         }
         let mut found = DicomValues::default();
@@ -117,10 +117,10 @@ impl DicomHeader {
         {
             let start =
                 if syntax.is_private() { read_fragment_start(&mut bytes, pixels) } else { Ok(Vec::new()) };
-            let start = start.map_err(|error| attempt.io_error(error))?;
+            let start = start.map_err(|error| context.io_error(error))?;
             syntax = syntax.corrected_by_pixels(pixels.length, native_bytes(&found), &start);
         }
-        Ok((Self { path: attempt.path.to_owned(), file_bytes: len, syntax, values: found, pixels }, bytes))
+        Ok((Self { path: context.path.to_owned(), file_bytes: len, syntax, values: found, pixels }, bytes))
     }
 
     /// Describes a file without pixels: the name of its class, or what its header states.

@@ -62,10 +62,10 @@ impl From<io::Error> for DataSetError {
 }
 
 impl DataSetError {
-    pub(crate) fn into_error(self, attempt: LoadContext<'_>) -> LoadError {
+    pub(crate) fn into_error(self, load: LoadContext<'_>) -> LoadError {
         match self {
-            Self::Io(error) => attempt.io_error(error),
-            Self::Malformed(why) => attempt.bad_input_error("data set", why, "copy or export the file again"),
+            Self::Io(error) => load.io_error(error),
+            Self::Malformed(why) => load.bad_input_error("data set", why, "copy or export the file again"),
             Self::Cancelled(error) => error,
         }
     }

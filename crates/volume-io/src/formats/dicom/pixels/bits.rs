@@ -20,13 +20,13 @@ impl PixelStore {
     /// Reads the voxels of a frame of one-bit pixels.
     pub(super) fn read_bits<T: VoxelNumber>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         frame: usize,
         raster: PixelConversion,
         voxels: &mut [T],
     ) -> Result<(), LoadError> {
         let beyond =
-            || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
+            || context.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
         let pixels = self.shape().pixel_count() as u64;
         let first = pixels.checked_mul(frame as u64).ok_or_else(beyond)?;
         // Begins at the 16-bit word that contains the frame's first bit, as bytes may be swapped within words.
@@ -36,10 +36,10 @@ impl PixelStore {
         let mut packed = Vec::new();
         match &self.location {
             PixelLocation::Native { offset, is_swapped, .. } => {
-                let mut input = InputFile::open(attempt)?;
-                input.seek(offset.saturating_add(start)).map_err(|error| attempt.io_error(error))?;
+                let mut input = InputFile::open(context)?;
+                input.seek(offset.saturating_add(start)).map_err(|error| context.io_error(error))?;
                 let read = input.reader.by_ref().take(length).read_to_end(&mut packed);
-                read.map_err(|error| attempt.io_error(error))?;
+                read.map_err(|error| context.io_error(error))?;
                 if *is_swapped {
                     packed.as_chunks_mut::<2>().0.iter_mut().for_each(|pair| pair.swap(0, 1));
                 }
@@ -50,9 +50,9 @@ impl PixelStore {
                 packed.extend_from_slice(&from[..from.len().min(length as usize)]);
             }
             PixelLocation::Compressed { codec, frames } => {
-                let compressed = read_fragments(attempt, frames.get(frame).ok_or_else(beyond)?)?;
+                let compressed = read_fragments(context, frames.get(frame).ok_or_else(beyond)?)?;
                 let mask = decode_mask(*codec, compressed, self.shape())
-                    .map_err(|why| frame_error(attempt, frame, why))?;
+                    .map_err(|why| frame_error(context, frame, why))?;
                 raster.write(&mask[..mask.len().min(voxels.len())], voxels);
                 return Ok(());
             }

@@ -58,10 +58,10 @@ pub(crate) struct IntegerBits {
 
 impl PixelLayout {
     /// Derives the pixel layout from a file's header.
-    pub(crate) fn from_header(attempt: LoadContext<'_>, header: &DicomHeader) -> Result<Self, LoadError> {
+    pub(crate) fn from_header(context: LoadContext<'_>, header: &DicomHeader) -> Result<Self, LoadError> {
         let found = &header.values;
         let (Some(rows), Some(columns)) = (found.rows, found.columns) else {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "Rows, Columns",
                 "the size of its images is not stated",
                 "copy or export the file again",
@@ -76,7 +76,7 @@ impl PixelLayout {
             (3, "YBR_FULL_422") => PhotometricKind::Ybr422,
             (3, "RGB" | "YBR_RCT" | "YBR_ICT" | "") => PhotometricKind::Rgb,
             (samples, photometric) => {
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "Photometric Interpretation",
                     format!("{samples} samples per pixel as {} are not supported", quoted(photometric)),
                     "convert it to grey values or RGB: `gdcmconv --photometric-interpretation RGB in.dcm out.dcm`",
@@ -87,7 +87,7 @@ impl PixelLayout {
             Some(FLOATS) => PixelNumber::F32,
             Some(DOUBLES) => PixelNumber::F64,
             _ if header.values.bits_allocated == Some(1) && samples == 1 => PixelNumber::Bit,
-            _ => PixelNumber::Integer(bits_from_header(attempt, header)?),
+            _ => PixelNumber::Integer(bits_from_header(context, header)?),
         };
         let shape = Self {
             columns: usize::from(columns),
@@ -98,7 +98,7 @@ impl PixelLayout {
             number,
         };
         if shape.colors == PhotometricKind::Ybr422 && !shape.columns.is_multiple_of(2) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "Columns",
                 format!("pixels share colours in pairs (YBR_FULL_422), but the number of columns, {columns}, is odd"),
                 "copy or export the file again",
@@ -160,12 +160,12 @@ impl PixelLayout {
 }
 
 /// Reads the bit layout of the header; impossible values are replaced by the most common ones.
-fn bits_from_header(attempt: LoadContext<'_>, header: &DicomHeader) -> Result<IntegerBits, LoadError> {
+fn bits_from_header(context: LoadContext<'_>, header: &DicomHeader) -> Result<IntegerBits, LoadError> {
     let found = &header.values;
     let allocated = u32::from(found.bits_allocated.unwrap_or(16));
     if !matches!(allocated, 8 | 16 | 32) {
         let why = format!("samples of {allocated} bits are not supported, only those of 1, 8, 16 and 32");
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "Bits Allocated",
             why,
             "convert it with `gdcmconv --raw in.dcm out.dcm`",

@@ -54,18 +54,18 @@ impl PixelStore {
         budget_bytes: u64,
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
-        let attempt = LoadContext { operation: super::super::READ_FILE, path: &header.path };
+        let context = LoadContext { operation: super::super::READ_FILE, path: &header.path };
         let count = header.frame_count();
         let Some(pixels) = header.pixels else {
-            return Err(attempt.bad_input_error("Pixel Data", "it has no pixels", COPY_ADVICE));
+            return Err(context.bad_input_error("Pixel Data", "it has no pixels", COPY_ADVICE));
         };
-        let codec = supported_codec(attempt, header)?;
+        let codec = supported_codec(context, header)?;
         if pixels.length.is_none() {
-            let packed = Self::locate_compressed(attempt, header, pixels, codec, count, control)?;
+            let packed = Self::locate_compressed(context, header, pixels, codec, count, control)?;
             return Ok(Self { layout: shape, location: packed });
         }
         if header.syntax.is_encapsulated {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "Pixel Data",
                 "compressed pixels are not in fragments",
                 COPY_ADVICE,
@@ -73,9 +73,9 @@ impl PixelStore {
         }
         if header.syntax.is_deflated {
             let expected = shape.stored_bytes(count);
-            return Self::inflate(attempt, header, shape, expected, budget_bytes, control);
+            return Self::inflate(context, header, shape, expected, budget_bytes, control);
         }
-        check_file_size(attempt, header, &shape)?;
+        check_file_size(context, header, &shape)?;
         let endian = header.syntax.pixel_endian.unwrap_or(header.syntax.encoding.endian);
         let is_swapped = endian == Endian::Big && shape.bytes_per_number() == 1 && pixels.is_words;
         Ok(Self {
@@ -85,7 +85,7 @@ impl PixelStore {
     }
 
     fn inflate(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         header: &DicomHeader,
         shape: PixelLayout,
         expected: u64,
@@ -93,7 +93,7 @@ impl PixelStore {
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
         if expected > budget_bytes {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 "Number of Frames",
                 format!(
                     "its pixels take {} uncompressed, {} are allowed",
@@ -111,7 +111,7 @@ impl PixelStore {
             match io::Read::by_ref(&mut bytes).take(most).read_to_end(&mut inflated) {
                 Ok(0) => {
                     return Err(truncated_error(
-                        attempt,
+                        context,
                         &shape,
                         header.frame_count(),
                         inflated.len() as u64,
@@ -119,7 +119,7 @@ impl PixelStore {
                 }
                 Ok(_) => {}
                 Err(error) => {
-                    return Err(attempt.bad_input_error(
+                    return Err(context.bad_input_error(
                         "data",
                         format!("the deflated data are broken: {error}"),
                         COPY_ADVICE,
@@ -131,19 +131,19 @@ impl PixelStore {
     }
 
     fn locate_compressed(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         header: &DicomHeader,
         pixels: PixelElement,
         codec: PixelCodec,
         count: u64,
         control: &LoadControl,
     ) -> Result<PixelLocation, LoadError> {
-        let wrong = |why: &str| attempt.bad_input_error("Pixel Data", why, COPY_ADVICE);
+        let wrong = |why: &str| context.bad_input_error("Pixel Data", why, COPY_ADVICE);
         if header.syntax.is_deflated {
             return Err(wrong("its pixels are compressed twice"));
         }
-        let mut input = InputFile::open(attempt)?;
-        input.seek(pixels.offset).map_err(|error| attempt.io_error(error))?;
+        let mut input = InputFile::open(context)?;
+        input.seek(pixels.offset).map_err(|error| context.io_error(error))?;
         let mut bytes = DicomReader::new(input);
         bytes.position = pixels.offset;
         let mut table = Vec::new();
@@ -151,7 +151,7 @@ impl PixelStore {
         let mut is_first = true;
         loop {
             control.check()?;
-            let tag = bytes.tag(Endian::Little).map_err(|error| attempt.io_error(error))?;
+            let tag = bytes.tag(Endian::Little).map_err(|error| context.io_error(error))?;
             // Without a delimiter the fragments found so far count: the decoder detects incomplete ones.
             let (Some(ITEM), Ok(length)) = (tag, bytes.u32(Endian::Little)) else {
                 if matches!(tag, None | Some(SEQUENCE_END | ITEM)) {
@@ -171,17 +171,17 @@ impl PixelStore {
                 // An offset table whose size does not match the number of frames is ignored.
                 if u64::from(length) == count.saturating_mul(4) {
                     table = parse_offset_table(
-                        &bytes.value(u64::from(length)).map_err(|error| attempt.io_error(error))?,
+                        &bytes.value(u64::from(length)).map_err(|error| context.io_error(error))?,
                     );
                 } else {
-                    bytes.skip(u64::from(length)).map_err(|error| attempt.io_error(error))?;
+                    bytes.skip(u64::from(length)).map_err(|error| context.io_error(error))?;
                 }
                 continue;
             }
             if fragments.len() == MAX_FRAGMENTS {
                 return Err(wrong(&format!("it has more than {MAX_FRAGMENTS} fragments")));
             }
-            bytes.skip(u64::from(length)).map_err(|error| attempt.io_error(error))?;
+            bytes.skip(u64::from(length)).map_err(|error| context.io_error(error))?;
             fragments.push(PixelFragment { offset, length });
         }
         if table.is_empty() && header.values.frame_starts.len() as u64 == count {
@@ -204,26 +204,26 @@ impl PixelStore {
     /// Reads the voxels of a frame.
     pub(crate) fn read<T: VoxelNumber>(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         frame: usize,
         raster: PixelConversion,
         voxels: &mut [T],
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        control.record_read(attempt.path);
+        control.record_read(context.path);
         let size = self.layout.bytes_per_frame();
         let missing_frame_error =
-            || attempt.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
+            || context.bad_input_error("Number of Frames", "it has fewer frames than stated", COPY_ADVICE);
         if self.layout.number == PixelNumber::Bit {
-            return self.read_bits(attempt, frame, raster, voxels);
+            return self.read_bits(context, frame, raster, voxels);
         }
         match &self.location {
             PixelLocation::Native { offset, endian, is_swapped } => {
                 let start = size.checked_mul(frame as u64).and_then(|start| start.checked_add(*offset));
-                let mut input = InputFile::open(attempt)?;
+                let mut input = InputFile::open(context)?;
                 input
                     .seek(start.ok_or_else(missing_frame_error)?)
-                    .map_err(|error| attempt.io_error(error))?;
+                    .map_err(|error| context.io_error(error))?;
                 let raster = PixelConversion { endian: *endian, ..raster };
                 let at_once = if self.layout.is_planar { voxels.len() } else { PIXELS_AT_ONCE };
                 let mut block = Vec::new();
@@ -232,7 +232,7 @@ impl PixelStore {
                     // The last byte of an image of odd size shares a 16-bit word with the next image.
                     let bytes = (voxels.len() * self.layout.bytes_per_pair()).div_ceil(2);
                     block.resize(bytes + usize::from(*is_swapped && !bytes.is_multiple_of(2)), 0);
-                    input.reader.read_exact(&mut block).map_err(|error| attempt.io_error(error))?;
+                    input.reader.read_exact(&mut block).map_err(|error| context.io_error(error))?;
                     if *is_swapped {
                         block.as_chunks_mut::<2>().0.iter_mut().for_each(|pair| pair.swap(0, 1));
                     }
@@ -246,8 +246,8 @@ impl PixelStore {
             }
             PixelLocation::Compressed { codec, frames } => {
                 let fragments = frames.get(frame).ok_or_else(missing_frame_error)?;
-                let packed = read_fragments(attempt, fragments)?;
-                let wrong = |why| frame_error(attempt, frame, why);
+                let packed = read_fragments(context, fragments)?;
+                let wrong = |why| frame_error(context, frame, why);
                 let DecodedImage { bytes, shape } =
                     decode_image(*codec, packed, self.layout).map_err(wrong)?;
                 if (bytes.len() as u64) < shape.bytes_per_frame() {
@@ -261,8 +261,8 @@ impl PixelStore {
 }
 
 /// Makes the error for a frame that cannot be decompressed.
-pub(super) fn frame_error(attempt: LoadContext<'_>, frame: usize, why: String) -> LoadError {
-    attempt.bad_input_error(
+pub(super) fn frame_error(context: LoadContext<'_>, frame: usize, why: String) -> LoadError {
+    context.bad_input_error(
         &format!("Pixel Data, frame {frame}"),
         why,
         "convert it with `gdcmconv --raw in.dcm out.dcm`, or copy it again",
@@ -271,20 +271,20 @@ pub(super) fn frame_error(attempt: LoadContext<'_>, frame: usize, why: String) -
 
 /// Reads and concatenates the bytes of fragments, whose positions have been checked.
 pub(super) fn read_fragments(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     fragments: &[PixelFragment],
 ) -> Result<Vec<u8>, LoadError> {
     let mut packed = Vec::new();
-    let mut input = InputFile::open(attempt)?;
+    let mut input = InputFile::open(context)?;
     for fragment in fragments {
-        input.seek(fragment.offset).map_err(|error| attempt.io_error(error))?;
+        input.seek(fragment.offset).map_err(|error| context.io_error(error))?;
         let length = u64::from(fragment.length);
         input
             .reader
             .by_ref()
             .take(length)
             .read_to_end(&mut packed)
-            .map_err(|error| attempt.io_error(error))?;
+            .map_err(|error| context.io_error(error))?;
     }
     Ok(packed)
 }

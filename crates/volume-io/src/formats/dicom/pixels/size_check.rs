@@ -44,11 +44,11 @@ const MAX_DEFLATE_RATIO: u64 = 1032;
 /// # Errors
 /// `BadInput` if the codec is not supported.
 pub(crate) fn supported_codec(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &DicomHeader,
 ) -> Result<PixelCodec, LoadError> {
     header.syntax.codec.as_ref().copied().map_err(|UnsupportedSyntax { name, advice: help, .. }| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "Transfer Syntax",
             format!("its pixel compression is not supported: {name}"),
             *help,
@@ -58,7 +58,7 @@ pub(crate) fn supported_codec(
 
 /// Checks that the file is large enough for the frames that it announces, before memory for them is allocated.
 pub(crate) fn check_file_size(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     header: &DicomHeader,
     shape: &PixelLayout,
 ) -> Result<(), LoadError> {
@@ -70,7 +70,7 @@ pub(crate) fn check_file_size(
     };
     match pixels.length {
         // Each fragment begins with 8 bytes of tag and length.
-        None if count > available / 8 => Err(attempt.bad_input_error(
+        None if count > available / 8 => Err(context.bad_input_error(
             "Number of Frames",
             format!("the file is too short for the {count} frames that it announces"),
             COPY_ADVICE,
@@ -81,7 +81,7 @@ pub(crate) fn check_file_size(
                 "the data are truncated: {count} frames of {columns} x {rows} pixels do not fit in {available} \
                  compressed bytes"
             );
-            Err(attempt.bad_input_error("Pixel Data", found, COPY_ADVICE))
+            Err(context.bad_input_error("Pixel Data", found, COPY_ADVICE))
         }
         None => Ok(()),
         Some(length) => {
@@ -93,20 +93,20 @@ pub(crate) fn check_file_size(
             } else {
                 length
             };
-            if expected <= most { Ok(()) } else { Err(truncated_error(attempt, shape, count, length)) }
+            if expected <= most { Ok(()) } else { Err(truncated_error(context, shape, count, length)) }
         }
     }
 }
 
 pub(super) fn truncated_error(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     shape: &PixelLayout,
     count: u64,
     found: u64,
 ) -> LoadError {
     let expected = shape.stored_bytes(count);
     let (columns, rows) = (shape.columns, shape.rows);
-    attempt.bad_input_error(
+    context.bad_input_error(
         "Pixel Data",
         format!(
             "the data are truncated: {expected} bytes expected for {count} frames of {columns} x {rows} pixels, \

@@ -44,9 +44,9 @@ pub(crate) const READER: FormatReader = FormatReader {
 
 fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, start, options, control, .. } = source;
-    let attempt = LoadContext { operation: "read the picture", path };
+    let context = LoadContext { operation: "read the picture", path };
     let Some(kind) = SliceFormat::detect(start.stored()) else {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "header",
             "its first bytes are not those of a picture",
             "copy the file again",
@@ -59,7 +59,7 @@ fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         name: stem(path),
         placement: GridPlacement::unknown(),
     };
-    stack.read(attempt, options, control)
+    stack.read(context, options, control)
 }
 
 /// Loads the volume whose slices are among the files of a folder, in natural order; `None` where none is a picture.
@@ -68,7 +68,7 @@ fn load_single_picture(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
 /// [`LoadError::Several`] where there are several volumes, `BadInput` for slices that do not match each
 /// other or are broken.
 pub(crate) fn load(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     files: &[PathBuf],
     options: &LoadOptions,
     control: &LoadControl,
@@ -76,7 +76,7 @@ pub(crate) fn load(
     let (mut pictures, mut others) = (Vec::new(), Vec::new());
     for path in files {
         control.check()?;
-        match SliceFormat::detect_file(slice_attempt(path))? {
+        match SliceFormat::detect_file(slice_context(path))? {
             Some(kind) => pictures.push((path.as_path(), kind)),
             None => others.push(path.as_path()),
         }
@@ -90,7 +90,7 @@ pub(crate) fn load(
     let for_sizes = LoadOptions { choice: VolumeChoice::default(), ..options.clone() };
     let size_of = |file: usize| {
         let (path, kind) = pictures[file];
-        let header = read_picture(slice_attempt(path), kind, &for_sizes, control, false);
+        let header = read_picture(slice_context(path), kind, &for_sizes, control, false);
         header.ok().map(|(header, _)| header.size)
     };
     let mut series = join_recordings(group_slices(pictures.iter().copied()), size_of);
@@ -104,7 +104,7 @@ pub(crate) fn load(
     }
     let is_one = series.len() == 1;
     let offers = offers(&series, size_of);
-    let chosen = attempt.resolve_choice(&options.choice, FileDimension::Series, offers)?;
+    let chosen = context.resolve_choice(&options.choice, FileDimension::Series, offers)?;
     let SliceSeries { group, recording } = series.swap_remove(chosen);
     remarks.extend(damaged_slices_remark(&others, &group, &pictures));
     if group.kind == SliceFormat::Tiff
@@ -119,7 +119,7 @@ pub(crate) fn load(
     let mut placement = GridPlacement::unknown();
     let files = match recording {
         Some(recording) => {
-            let stack = recording.choose(attempt, &options.choice)?;
+            let stack = recording.choose(context, &options.choice)?;
             remarks.extend(stack.remarks);
             stack.choice.add_time_remark(&mut placement);
             stack.files
@@ -127,15 +127,15 @@ pub(crate) fn load(
         None => group.files.into_iter().map(Some).collect(),
     };
     placement.remarks.splice(0..0, remarks);
-    let folder = attempt.path.file_name().unwrap_or_default().to_string_lossy();
+    let folder = context.path.file_name().unwrap_or_default().to_string_lossy();
     let name =
         if is_one && !folder.is_empty() { sanitised(&folder, 120) } else { sanitised(&group.name, 120) };
     let path_of = |file: Option<usize>| file.map(|file| pictures[file].0.to_owned());
     let files = files.into_iter().map(path_of).collect();
-    PictureStack { kind: group.kind, files, name, placement }.read(attempt, options, control).map(Some)
+    PictureStack { kind: group.kind, files, name, placement }.read(context, options, control).map(Some)
 }
 
-fn slice_attempt(path: &Path) -> LoadContext<'_> {
+fn slice_context(path: &Path) -> LoadContext<'_> {
     LoadContext { operation: "read the slice", path }
 }
 
@@ -215,15 +215,15 @@ fn tiff_set_file<'a>(
 ) -> Result<Option<&'a Path>, LoadError> {
     let [(first, _), (second, _), ..] = *pictures else { return Ok(None) };
     let name = second.file_name().unwrap_or_default().to_string_lossy();
-    let is_set = tiff::SingleSlice::open(slice_attempt(first), control)?.describes_set_with(&name);
+    let is_set = tiff::SingleSlice::open(slice_context(first), control)?.describes_set_with(&name);
     Ok(is_set.then_some(first))
 }
 
 fn load_tiff(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
-    let attempt = slice_attempt(path);
+    let context = slice_context(path);
     options.choice.record_format(tiff::READER.name);
-    let mut input = InputFile::open(attempt)?;
-    let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
+    let mut input = InputFile::open(context)?;
+    let start = FileStart::read(&mut input).map_err(|error| context.io_error(error))?;
     (tiff::READER.load)(VolumeSource { path, input, start, options, control })
 }
 
@@ -243,13 +243,13 @@ impl PictureStack {
     /// `BadInput` where slices differ or are broken; `Limit` over the budget.
     fn read(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         options: &LoadOptions,
         control: &LoadControl,
     ) -> Result<Volume, LoadError> {
         let Self { kind, files, name, mut placement } = self;
         let look_at = |path: &PathBuf, is_decoded| {
-            read_picture(slice_attempt(path), kind, options, control, is_decoded)
+            read_picture(slice_context(path), kind, options, control, is_decoded)
         };
         let paths: Vec<&PathBuf> = files.iter().flatten().collect();
         let headers: Vec<PictureHeader> = paths
@@ -257,48 +257,48 @@ impl PictureStack {
             .map(|path| look_at(path, false).map(|(header, _)| header))
             .collect::<Result<_, _>>()?;
         let (Some(&model), Some(&first)) = (headers.first(), paths.first()) else {
-            return Err(attempt.bad_input_error("files", "there is no slice", "open a single file"));
+            return Err(context.bad_input_error("files", "there is no slice", "open a single file"));
         };
         for (header, path) in headers.iter().zip(&paths) {
-            check_slices_match(attempt, [(&model, first), (header, path)])?;
+            check_slices_match(context, [(&model, first), (header, path)])?;
         }
         let stored = model.stored;
         let dims = [model.size[0], model.size[1], files.len() as u64];
         let extent =
-            GridExtent::checked(attempt, "files", dims, stored.voxel_type(), options.limits(control))?;
+            GridExtent::checked(context, "files", dims, stored.voxel_type(), options.limits(control))?;
         let empty = || {
             let bytes = model.size[0].saturating_mul(model.size[1]).saturating_mul(stored.voxel_bytes());
             alloc_zeroed(usize::try_from(bytes).unwrap_or(usize::MAX)).map_err(|_no_memory| {
                 let why = format!("there is not enough memory for {bytes} bytes");
-                attempt.limit_error("files", why, "close other programs or load a smaller volume")
+                context.limit_error("files", why, "close other programs or load a smaller volume")
             })
         };
         let meant = ValueMapping::identity(None);
-        let voxels = read_slices(attempt, &stored, extent, &meant, control, |some| {
+        let voxels = read_slices(context, &stored, extent, &meant, control, |some| {
             let decode = |&slice: &usize| {
                 let Some(path) = &files[slice] else { return empty() };
                 let (header, bytes) = look_at(path, true)?;
-                check_slices_match(attempt, [(&model, first), (&header, path)])?;
+                check_slices_match(context, [(&model, first), (&header, path)])?;
                 Ok(bytes)
             };
             some.par_iter().map(decode).collect()
         })?;
         placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
         VolumeParts { name, extent, placement, voxels, hints: ValueMetadata::default() }
-            .into_volume(attempt, control)
+            .into_volume(context, control)
     }
 }
 
 /// Checks that two slices have equal size and type, and that each file holds only one.
 fn check_slices_match(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     slices: [(&PictureHeader, &PathBuf); 2],
 ) -> Result<(), LoadError> {
     let [(model, _), (header, _)] = slices;
     let [first, path] =
         slices.map(|(_, path)| quoted(&path.file_name().unwrap_or_default().to_string_lossy()));
     if header.pages > 1 {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "files",
             format!("{path} alone holds {} slices", header.pages),
             "open that file, or choose another series with --series",
@@ -312,7 +312,7 @@ fn check_slices_match(
         let PictureHeader { stored, .. } = header;
         format!("{width} x {height} pixels of {} x {} bits", stored.components, stored.number.bytes() * 8)
     };
-    Err(attempt.bad_input_error(
+    Err(context.bad_input_error(
         "files",
         format!("{path} has {}, {first} has {}", say(header), say(model)),
         "put slices of one size and type into a folder of their own",

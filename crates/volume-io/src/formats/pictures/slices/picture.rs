@@ -53,13 +53,13 @@ impl SliceFormat {
     ///
     /// # Errors
     /// `Io` where it cannot be read.
-    pub(super) fn detect_file(attempt: LoadContext<'_>) -> Result<Option<Self>, LoadError> {
-        let input = InputFile::open(attempt)?;
+    pub(super) fn detect_file(context: LoadContext<'_>) -> Result<Option<Self>, LoadError> {
+        let input = InputFile::open(context)?;
         let mut start = Vec::new();
         // Without the large buffer, for a few bytes.
         let mut file = input.reader.into_inner();
         let read = file.by_ref().take(MAGIC_BYTES as u64).read_to_end(&mut start);
-        read.map_err(|error| attempt.io_error(error))?;
+        read.map_err(|error| context.io_error(error))?;
         Ok(Self::detect(&start))
     }
 
@@ -103,7 +103,7 @@ pub(super) struct PictureHeader {
 /// # Errors
 /// `BadInput` for a broken file, or an unsupported number type; `Limit` over the budget.
 pub(super) fn read_picture(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     kind: SliceFormat,
     options: &LoadOptions,
     control: &LoadControl,
@@ -111,12 +111,12 @@ pub(super) fn read_picture(
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
     control.check()?;
     if let Some(format) = kind.format() {
-        return read_image(attempt, format, options, is_decoded, control);
+        return read_image(context, format, options, is_decoded, control);
     }
-    let picture = tiff::SingleSlice::open(attempt, control)?;
+    let picture = tiff::SingleSlice::open(context, control)?;
     let (size, pages) = (picture.size(), picture.pages);
-    let header = PictureHeader { size, stored: picture.stored(attempt, options)?, pages };
-    let bytes = if is_decoded { picture.decode(attempt, control)? } else { Vec::new() };
+    let header = PictureHeader { size, stored: picture.stored(context, options)?, pages };
+    let bytes = if is_decoded { picture.decode(context, control)? } else { Vec::new() };
     Ok((header, bytes))
 }
 
@@ -173,18 +173,18 @@ fn has_end_of_image(input: &mut InputFile) -> io::Result<bool> {
 }
 
 fn read_image(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     format: ImageFormat,
     options: &LoadOptions,
     is_decoded: bool,
     control: &LoadControl,
 ) -> Result<(PictureHeader, Vec<u8>), LoadError> {
-    let mut input = InputFile::open(attempt)?;
-    let first_bytes = input.reader.fill_buf().map_err(|error| attempt.io_error(error))?;
+    let mut input = InputFile::open(context)?;
+    let first_bytes = input.reader.fill_buf().map_err(|error| context.io_error(error))?;
     let first_bytes = first_bytes[..first_bytes.len().min(BMP_HEADER)].to_vec();
     let budget = options.memory_budget_bytes;
     let too_large = |bytes: u64| {
-        attempt.limit_error(
+        context.limit_error(
             "size",
             format!(
                 "the picture needs {}, {} are allowed",
@@ -198,25 +198,25 @@ fn read_image(
     if input.len > budget {
         return Err(too_large(input.len));
     }
-    let witness = FileChangeGuard::new(attempt, &input, control)?;
+    let guard = FileChangeGuard::new(context, &input, control)?;
     let fault = |error: ImageError| match error {
-        ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => attempt.limit_error(
+        ImageError::Limits(limit) if limit.kind() != LimitErrorKind::DimensionError => context.limit_error(
             "size",
             format!("the picture needs more than the {} that are allowed", human_bytes(budget.into())),
             "close other programs, or load a smaller picture",
         ),
         ImageError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-            attempt.bad_input_error("data", "the picture is truncated: the file ends too early", HELP)
+            context.bad_input_error("data", "the picture is truncated: the file ends too early", HELP)
         }
         error => {
-            attempt.bad_input_error("data", sanitised(&format!("the picture is broken: {error}"), 200), HELP)
+            context.bad_input_error("data", sanitised(&format!("the picture is broken: {error}"), 200), HELP)
         }
     };
     if is_decoded
         && format == ImageFormat::Jpeg
-        && !has_end_of_image(&mut input).map_err(|error| attempt.io_error(error))?
+        && !has_end_of_image(&mut input).map_err(|error| context.io_error(error))?
     {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "data",
             "the picture is truncated: its end marker is missing",
             HELP,
@@ -239,7 +239,7 @@ fn read_image(
         ColorType::Rgb16 => (FileNumberType::U16, 3),
         ColorType::Rgba16 => (FileNumberType::U16, 4),
         other => {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "data",
                 format!("its colour type {other:?} is not supported"),
                 HELP,
@@ -247,7 +247,7 @@ fn read_image(
         }
     };
     let component = options.choice.resolve_component(components, true);
-    let part = ScalarReduction::require(attempt, component, components, true)?;
+    let part = ScalarReduction::require(context, component, components, true)?;
     // Decoders return numbers in machine byte order.
     let endian = if cfg!(target_endian = "big") { Endian::Big } else { Endian::Little };
     let stored = VoxelEncoding { number, endian, components, reduction: part };
@@ -259,7 +259,7 @@ fn read_image(
     if u64::from(width).saturating_mul(height.into()) > most_pixels {
         let found =
             format!("the picture is truncated: {width} x {height} pixels do not fit in {length} bytes");
-        return Err(attempt.bad_input_error("data", found, HELP));
+        return Err(context.bad_input_error("data", found, HELP));
     }
     let mut bytes = Vec::new();
     if is_decoded {
@@ -268,5 +268,5 @@ fn read_image(
         bytes.resize(bytes.capacity().min(count.unwrap_or(0)), 0);
         decoder.read_image(&mut bytes).map_err(fault)?;
     }
-    witness.check_unchanged(attempt, Ok((header, bytes)))
+    guard.check_unchanged(context, Ok((header, bytes)))
 }

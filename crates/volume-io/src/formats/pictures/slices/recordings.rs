@@ -170,7 +170,7 @@ impl SliceRecording {
     /// [`LoadError::Several`] where nothing is selected, `BadInput` where the selected stack has no files.
     pub(super) fn choose(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         choice: &VolumeChoice,
     ) -> Result<ChosenStack, LoadError> {
         let labels = |values: &[CounterValue]| values.iter().map(|value| value.label.clone()).collect();
@@ -181,7 +181,7 @@ impl SliceRecording {
             frames: self.times.len(),
             frame_names: labels(&self.times),
         };
-        let choice = steps.choose(attempt, choice)?;
+        let choice = steps.choose(context, choice)?;
         let mut slots = HashMap::new();
         let times = if choice.time_is_depth { 0..self.times.len() } else { choice.frame..choice.frame + 1 };
         let mut remarks = BTreeSet::new();
@@ -198,7 +198,7 @@ impl SliceRecording {
             let [channel, time] = [&self.channels[choice.channel], &self.times[choice.frame]];
             let names = [time, channel].map(|value| value.label.as_str());
             let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "files",
                 format!("there are no files for {}", names.join(" and ")),
                 "choose another time step or channel with --frame or --channel",

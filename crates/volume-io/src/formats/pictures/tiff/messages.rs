@@ -8,17 +8,17 @@ use chiaroscuro_volume::{LoadContext, LoadError};
 pub(super) const HELP: &str = "copy the file again, or save it anew with the program that wrote it";
 
 /// Error for an unreadable or invalid part of a file, which `field` names.
-pub(super) fn unreadable_error(attempt: LoadContext<'_>, field: &str, error: io::Error) -> LoadError {
+pub(super) fn unreadable_error(context: LoadContext<'_>, field: &str, error: io::Error) -> LoadError {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => {
-            attempt.bad_input_error(field, "the file is truncated: it points to bytes beyond its end", HELP)
+            context.bad_input_error(field, "the file is truncated: it points to bytes beyond its end", HELP)
         }
-        io::ErrorKind::InvalidData => attempt.bad_input_error(field, "it holds invalid values", HELP),
+        io::ErrorKind::InvalidData => context.bad_input_error(field, "it holds invalid values", HELP),
         io::ErrorKind::Unsupported => {
             let why = "its pages have several layers (ImageDepth): only the first would be read";
-            attempt.bad_input_error(field, why, "save it anew with a page for each slice")
+            context.bad_input_error(field, why, "save it anew with a page for each slice")
         }
-        _ => attempt.io_error(error),
+        _ => context.io_error(error),
     }
 }
 

@@ -51,49 +51,49 @@ const WHAT: &str = "read the TIFF volume";
 /// Loads a TIFF file.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
-    let attempt = LoadContext { operation: WHAT, path };
+    let context = LoadContext { operation: WHAT, path };
     if !is_tiff(start.stored()) {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "header",
             "its first bytes are not those of a TIFF file",
             messages::HELP,
         ));
     }
-    let mut tiff = TiffFile::open(attempt, input, control)?;
+    let mut tiff = TiffFile::open(context, input, control)?;
     let description = tiff.text_entry(tag::DESCRIPTION, ome::MAX_XML_BYTES).unwrap_or_default();
     let choice = &options.choice;
     let stack = if ome::is_ome(&description) {
-        ome::stack(attempt, &tiff, &description, choice, control)?
+        ome::stack(context, &tiff, &description, choice, control)?
     } else if imagej::is_imagej(&description) {
-        imagej::stack(attempt, &mut tiff, &description, choice)?
+        imagej::stack(context, &mut tiff, &description, choice)?
     } else if let Some(info) = lsm::LsmInfo::read(&mut tiff) {
-        info.stack(attempt, &tiff, choice)?
-    } else if let Some(stack) = shaped::stack_of_shapes(attempt, &mut tiff, choice)? {
+        info.stack(context, &tiff, choice)?
+    } else if let Some(stack) = shaped::stack_of_shapes(context, &mut tiff, choice)? {
         stack
     } else {
-        undescribed::stack_of_pages(attempt, &tiff, choice)?
+        undescribed::stack_of_pages(context, &tiff, choice)?
     };
-    volume(attempt, tiff, stack, options, control)
+    volume(context, tiff, stack, options, control)
 }
 
 /// Loads the volume of an OME-XML file that lies beside its TIFF files.
 #[expect(clippy::needless_pass_by_value, reason = "as all readers are called")]
 fn load_companion(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, options, control, .. } = source;
-    let attempt = LoadContext { operation: "read the OME-XML of the volume", path };
-    let xml = ome::companion_text(attempt, control)?;
-    let first = ome::first_file(attempt, &xml, &options.choice)?;
+    let context = LoadContext { operation: "read the OME-XML of the volume", path };
+    let xml = ome::companion_text(context, control)?;
+    let first = ome::first_file(context, &xml, &options.choice)?;
     let of_first = LoadContext { operation: WHAT, path: &first };
     let input = InputFile::open(of_first)?;
-    let witness = FileChangeGuard::new(of_first, &input, control)?;
+    let guard = FileChangeGuard::new(of_first, &input, control)?;
     let tiff = TiffFile::open(of_first, input, control)?;
     let stack = ome::stack(of_first, &tiff, &xml, &options.choice, control)?;
-    witness.check_unchanged(of_first, volume(of_first, tiff, stack, options, control))
+    guard.check_unchanged(of_first, volume(of_first, tiff, stack, options, control))
 }
 
 /// Reads the volume of a stack, with the padding value and the palette of the first page.
 fn volume(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     mut tiff: TiffFile,
     mut stack: TiffStack,
     options: &LoadOptions,
@@ -106,7 +106,7 @@ fn volume(
         stack.hints.set_padding(slope.mul_add(stored, intercept));
     }
     let palette = TiffPalette::read(&mut tiff);
-    let volume = stack.into_volume(attempt, tiff, options, control)?;
+    let volume = stack.into_volume(context, tiff, options, control)?;
     Ok(match palette {
         Some(palette) => palette.apply(volume),
         None => volume,

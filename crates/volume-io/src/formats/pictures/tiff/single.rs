@@ -24,11 +24,11 @@ impl SingleSlice {
     ///
     /// # Errors
     /// As the reader of whole volumes.
-    pub(crate) fn open(attempt: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
-        let tiff = TiffFile::open(attempt, InputFile::open(attempt)?, control)?;
+    pub(crate) fn open(context: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
+        let tiff = TiffFile::open(context, InputFile::open(context)?, control)?;
         let UsablePages { pages, .. } = UsablePages::new(&tiff);
         let Some(&number) = pages.first() else {
-            return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
+            return Err(context.bad_input_error("pages", "it has no usable page", super::messages::HELP));
         };
         let page = tiff.pages[number];
         Ok(Self { tiff, page, number, pages: pages.len() })
@@ -52,11 +52,11 @@ impl SingleSlice {
     /// `BadInput` for unsupported encodings, `Limit` for a page over the budget.
     pub(crate) fn stored(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         options: &LoadOptions,
     ) -> Result<VoxelEncoding, LoadError> {
-        check_page_bytes(attempt, &self.page, options)?;
-        page_encoding(attempt, &self.page, None, options)
+        check_page_bytes(context, &self.page, options)?;
+        page_encoding(context, &self.page, None, options)
     }
 
     /// Decodes the samples of the page.
@@ -65,11 +65,11 @@ impl SingleSlice {
     /// `BadInput` where the file is broken.
     pub(crate) fn decode(
         mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
-        control.record_read(attempt.path);
-        let packed = self.tiff.fetch(attempt, self.number, None, control)?;
-        packed.unpack(attempt, self.number, control)
+        control.record_read(context.path);
+        let packed = self.tiff.fetch(context, self.number, None, control)?;
+        packed.unpack(context, self.number, control)
     }
 }

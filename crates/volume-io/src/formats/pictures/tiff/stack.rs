@@ -45,7 +45,7 @@ pub(super) struct TiffStack {
 
 /// Files of a stack: the first, and one of the others open at a time.
 struct TiffStackFiles<'a> {
-    attempt: LoadContext<'a>,
+    context: LoadContext<'a>,
     first: TiffFile,
     beside: &'a [PathBuf],
     open: Option<(usize, TiffFile, FileChangeGuard)>,
@@ -53,26 +53,27 @@ struct TiffStackFiles<'a> {
 }
 
 impl TiffStackFiles<'_> {
-    /// Calls a function with one of the files.
+    /// Opens the file of this number, unless it is open, and calls a function with it; fails if the file changes
+    /// meanwhile.
     fn with<T>(
         &mut self,
         number: usize,
         what: impl FnOnce(LoadContext<'_>, &mut TiffFile) -> Result<T, LoadError>,
     ) -> Result<T, LoadError> {
-        let Some(at) = number.checked_sub(1) else { return what(self.attempt, &mut self.first) };
-        let path: &Path = self.beside.get(at).map_or(self.attempt.path, PathBuf::as_path);
-        let attempt = LoadContext { operation: self.attempt.operation, path };
-        let (tiff, witness) = match self.open.take() {
-            Some((open, tiff, witness)) if open == number => (tiff, witness),
+        let Some(at) = number.checked_sub(1) else { return what(self.context, &mut self.first) };
+        let path: &Path = self.beside.get(at).map_or(self.context.path, PathBuf::as_path);
+        let context = LoadContext { operation: self.context.operation, path };
+        let (tiff, guard) = match self.open.take() {
+            Some((open, tiff, guard)) if open == number => (tiff, guard),
             _ => {
-                let input = InputFile::open(attempt)?;
-                let witness = FileChangeGuard::new(attempt, &input, self.control)?;
-                (TiffFile::open(attempt, input, self.control)?, witness)
+                let input = InputFile::open(context)?;
+                let guard = FileChangeGuard::new(context, &input, self.control)?;
+                (TiffFile::open(context, input, self.control)?, guard)
             }
         };
-        let (_, tiff, witness) = self.open.insert((number, tiff, witness));
-        let done = what(attempt, tiff);
-        witness.check_unchanged(attempt, done)
+        let (_, tiff, guard) = self.open.insert((number, tiff, guard));
+        let done = what(context, tiff);
+        guard.check_unchanged(context, done)
     }
 }
 
@@ -83,7 +84,7 @@ impl TiffStack {
     /// `BadInput` where pages are broken, missing, or differ; `Limit` over the budget.
     pub(super) fn into_volume(
         self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         tiff: TiffFile,
         options: &LoadOptions,
         control: &LoadControl,
@@ -97,17 +98,17 @@ impl TiffStack {
             mut hints,
             scale: [slope, intercept],
         } = self;
-        let mut files = TiffStackFiles { attempt, first: tiff, beside: &beside, open: None, control };
+        let mut files = TiffStackFiles { context, first: tiff, beside: &beside, open: None, control };
         let Some(&first) = slices.iter().flatten().next() else {
-            return Err(attempt.bad_input_error("pages", "it has no pages", HELP));
+            return Err(context.bad_input_error("pages", "it has no pages", HELP));
         };
-        let model = files.with(first.file, |attempt, tiff| page_of(attempt, tiff, first.page))?;
+        let model = files.with(first.file, |context, tiff| page_of(context, tiff, first.page))?;
         let sample = sample.or_else(|| chosen_sample(&model, options));
-        let stored = page_encoding(attempt, &model, sample, options)?;
+        let stored = page_encoding(context, &model, sample, options)?;
         let dims = [model.width, model.height, slices.len() as u64];
         let extent =
-            GridExtent::checked(attempt, "pages", dims, stored.voxel_type(), options.limits(control))?;
-        check_page_bytes(attempt, &model, options)?;
+            GridExtent::checked(context, "pages", dims, stored.voxel_type(), options.limits(control))?;
+        check_page_bytes(context, &model, options)?;
         placement.remarks.extend(stored.reduction.remark().map(str::to_owned));
         // Inversion is a property of display: the stored values are the measurements, or those of the mask.
         if model.is_inverted {
@@ -115,13 +116,13 @@ impl TiffStack {
             placement.remarks.push(remark.to_owned());
         }
         // The first page is checked before memory is allocated for all, in case that it lacks the announced data.
-        files.with(first.file, |attempt, tiff| {
-            tiff.check_parts(attempt, first.page, sample.filter(|_| model.is_planar), control)
+        files.with(first.file, |context, tiff| {
+            tiff.check_parts(context, first.page, sample.filter(|_| model.is_planar), control)
         })?;
-        let values = |samples| rescale(attempt, samples, [slope, intercept], options.memory_budget_bytes);
+        let values = |samples| rescale(context, samples, [slope, intercept], options.memory_budget_bytes);
         let empty_bytes = model.width.saturating_mul(model.height).saturating_mul(stored.voxel_bytes());
         let meant = ValueMapping { padding: hints.padding, map: &values };
-        let voxels = read_slices(attempt, &stored, extent, &meant, control, |some| {
+        let voxels = read_slices(context, &stored, extent, &meant, control, |some| {
             let mut unpacked = Vec::new();
             let mut slices = some.iter().map(|&slice| &slices[slice]).peekable();
             while slices.peek().is_some() {
@@ -131,20 +132,20 @@ impl TiffStack {
                         packed.push(None);
                         continue;
                     };
-                    let of_page = files.with(file, |attempt, tiff| {
-                        let found = page_of(attempt, tiff, page)?;
+                    let of_page = files.with(file, |context, tiff| {
+                        let found = page_of(context, tiff, page)?;
                         if !found.matches(&model) {
-                            return Err(mismatch_error(attempt, page, &found, &model));
+                            return Err(mismatch_error(context, page, &found, &model));
                         }
                         // Interleaved samples are all read, and one is selected later.
-                        tiff.fetch(attempt, page, sample.filter(|_| found.is_planar), control)
+                        tiff.fetch(context, page, sample.filter(|_| found.is_planar), control)
                     })?;
                     bytes += of_page.len();
                     packed.push(Some((page, of_page)));
                 }
                 let of_slices = packed.par_iter().map(|packed| match packed {
-                    Some((page, packed)) => packed.unpack(attempt, *page, control),
-                    None => alloc_zeroed_bytes(attempt, "pages", empty_bytes),
+                    Some((page, packed)) => packed.unpack(context, *page, control),
+                    None => alloc_zeroed_bytes(context, "pages", empty_bytes),
                 });
                 unpacked.extend(of_slices.collect::<Result<Vec<_>, _>>()?);
             }
@@ -153,15 +154,15 @@ impl TiffStack {
         if let Some([low, high]) = hints.window.take() {
             hints.set_window(low.mul_add(slope, intercept), high.mul_add(slope, intercept));
         }
-        VolumeParts { name, extent, placement, voxels, hints }.into_volume(attempt, control)
+        VolumeParts { name, extent, placement, voxels, hints }.into_volume(context, control)
     }
 }
 
-fn page_of(attempt: LoadContext<'_>, tiff: &TiffFile, number: usize) -> Result<TiffPage, LoadError> {
+fn page_of(context: LoadContext<'_>, tiff: &TiffFile, number: usize) -> Result<TiffPage, LoadError> {
     let count = tiff.pages.len();
     tiff.pages.get(number).copied().ok_or_else(|| {
         let field = format!("page {number}");
-        attempt.bad_input_error(&field, format!("the file has only {count} pages"), HELP)
+        context.bad_input_error(&field, format!("the file has only {count} pages"), HELP)
     })
 }
 
@@ -183,21 +184,21 @@ fn chosen_sample(page: &TiffPage, options: &LoadOptions) -> Option<usize> {
 /// # Errors
 /// `BadInput` for unsupported encodings, and for a component that does not exist.
 pub(super) fn page_encoding(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     page: &TiffPage,
     sample: Option<usize>,
     options: &LoadOptions,
 ) -> Result<VoxelEncoding, LoadError> {
-    page.check_supported(attempt, "first page")?;
+    page.check_supported(context, "first page")?;
     let Some(number) = page.number() else {
-        return Err(attempt.bad_input_error("first page", "its sample type is not supported", HELP));
+        return Err(context.bad_input_error("first page", "its sample type is not supported", HELP));
     };
     let component = sample.or(chosen_component(page, options)).or(match page.meaning {
         SampleMeaning::Channels => Some(0),
         _ => None,
     });
     let is_color = page.meaning != SampleMeaning::Channels;
-    let part = ScalarReduction::require(attempt, component, page.samples, is_color)?;
+    let part = ScalarReduction::require(context, component, page.samples, is_color)?;
     // A sample in strips of its own is read alone.
     let is_alone = page.is_planar && sample.is_some();
     let (components, part) = if is_alone { (1, ScalarReduction::Component(0)) } else { (page.samples, part) };
@@ -206,14 +207,14 @@ pub(super) fn page_encoding(
 
 /// Checks that a decoded page fits into the budget, since pages are decoded as a whole.
 pub(super) fn check_page_bytes(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     page: &TiffPage,
     options: &LoadOptions,
 ) -> Result<(), LoadError> {
     if page.bytes().is_some_and(|bytes| bytes <= options.memory_budget_bytes) {
         return Ok(());
     }
-    Err(attempt.limit_error(
+    Err(context.limit_error(
         "first page",
         format!("a page of {} x {} pixels of {} samples is too large", page.width, page.height, page.samples),
         "close other programs, or load a smaller or cropped picture",
@@ -221,12 +222,12 @@ pub(super) fn check_page_bytes(
 }
 
 /// Error for two pages that cannot be slices of one volume.
-fn mismatch_error(attempt: LoadContext<'_>, number: usize, page: &TiffPage, model: &TiffPage) -> LoadError {
+fn mismatch_error(context: LoadContext<'_>, number: usize, page: &TiffPage, model: &TiffPage) -> LoadError {
     let say = |page: &TiffPage| {
         let TiffPage { width, height, bits, samples, .. } = page;
         format!("{width} x {height} pixels of {samples} x {bits} bits")
     };
-    attempt.bad_input_error(
+    context.bad_input_error(
         &format!("page {number}"),
         format!("it has {}, the first page has {}", say(page), say(model)),
         "save the pages of one size in a file of their own",

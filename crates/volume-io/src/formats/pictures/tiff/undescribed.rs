@@ -47,14 +47,14 @@ impl UsablePages {
 
 /// Builds the stack of a file without further metadata.
 pub(super) fn stack_of_pages(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &TiffFile,
     choice: &VolumeChoice,
 ) -> Result<TiffStack, LoadError> {
     let mut placement = GridPlacement::unknown();
     let pages = UsablePages::new(tiff).with_remarks(&mut placement.remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-        return Err(attempt.bad_input_error("pages", "it has no usable page", super::messages::HELP));
+        return Err(context.bad_input_error("pages", "it has no usable page", super::messages::HELP));
     };
     let is_channels = first.meaning == SampleMeaning::Channels;
     let steps = ChannelsAndTimes {
@@ -64,9 +64,9 @@ pub(super) fn stack_of_pages(
         frames: 1,
         frame_names: Vec::new(),
     };
-    let chosen = steps.choose(attempt, choice)?;
+    let chosen = steps.choose(context, choice)?;
     Ok(TiffStack {
-        name: stem(attempt.path),
+        name: stem(context.path),
         slices: pages.into_iter().map(|page| Some(TiffSlice { file: 0, page })).collect(),
         other_files: Vec::new(),
         sample: is_channels.then_some(chosen.channel),

@@ -20,16 +20,16 @@ pub(super) fn is_dat(start: &[u8]) -> bool {
     lines(&text).iter().any(|(key, _)| DATA.contains(&key.as_str()))
 }
 
-pub(super) fn parse(attempt: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
+pub(super) fn parse(context: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
     let pairs = lines(text);
-    let data = find_value(&pairs, &DATA).ok_or_else(|| missing_key(attempt, "ObjectFileName"))?;
+    let data = find_value(&pairs, &DATA).ok_or_else(|| missing_key(context, "ObjectFileName"))?;
     let said = find_value(&pairs, &["resolution", "dimension", "dimensions"])
-        .ok_or_else(|| missing_key(attempt, "Resolution"))?;
+        .ok_or_else(|| missing_key(context, "Resolution"))?;
     let dims =
-        parse_three(said).ok_or_else(|| bad_value(attempt, "Resolution", said, "three numbers of voxels"))?;
-    let said = find_value(&pairs, &["format"]).ok_or_else(|| missing_key(attempt, "Format"))?;
+        parse_three(said).ok_or_else(|| bad_value(context, "Resolution", said, "three numbers of voxels"))?;
+    let said = find_value(&pairs, &["format"]).ok_or_else(|| missing_key(context, "Format"))?;
     let (kind, mut components) = parse_number_type(said)
-        .ok_or_else(|| bad_value(attempt, "Format", said, "a number type like UCHAR"))?;
+        .ok_or_else(|| bad_value(context, "Format", said, "a number type like UCHAR"))?;
     let mut form = RawStorage::new(dims, "Resolution", kind);
     // Voreen gives the number of components in another line.
     if components == 1 {
@@ -44,15 +44,15 @@ pub(super) fn parse(attempt: LoadContext<'_>, text: &str) -> Result<RawDescripti
     form.is_color = components > 2;
     if let Some(said) = find_value(&pairs, &["byteorder", "endianness", "endian"]) {
         form.endian = parse_byte_order(said)
-            .ok_or_else(|| bad_value(attempt, "ByteOrder", said, "LittleEndian or BigEndian"))?;
+            .ok_or_else(|| bad_value(context, "ByteOrder", said, "LittleEndian or BigEndian"))?;
     }
     if let Some(said) = find_value(&pairs, &["byteoffset"]) {
         form.offset =
-            Some(said.parse().map_err(|_error| bad_value(attempt, "ByteOffset", said, "a number of bytes"))?);
+            Some(said.parse().map_err(|_error| bad_value(context, "ByteOffset", said, "a number of bytes"))?);
     }
     if let Some(said) = find_value(&pairs, &["sequences"]) {
         let frames = said.parse().ok().filter(|&n| n > 0);
-        form.frames = frames.ok_or_else(|| bad_value(attempt, "Sequences", said, "a number of volumes"))?;
+        form.frames = frames.ok_or_else(|| bad_value(context, "Sequences", said, "a number of volumes"))?;
     }
     let spacing = find_value(&pairs, &["spacing", "slicethickness"]).and_then(parse_three::<f64>);
     let vectors = ["basisvector1", "basisvector2", "basisvector3"]

@@ -14,25 +14,25 @@ pub(super) fn is_ini(start: &[u8]) -> bool {
     ["dimx", "dimy", "dimz"].iter().all(|key| pairs.iter().any(|(name, _)| name == key))
 }
 
-pub(super) fn parse(attempt: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
+pub(super) fn parse(context: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
     let pairs = lines(text);
     let mut dims = [0; 3];
     for (dim, key) in dims.iter_mut().zip(["dimx", "dimy", "dimz"]) {
-        let said = find_value(&pairs, &[key]).ok_or_else(|| missing_key(attempt, key))?;
-        *dim = said.parse().map_err(|_error| bad_value(attempt, key, said, "a number of voxels"))?;
+        let said = find_value(&pairs, &[key]).ok_or_else(|| missing_key(context, key))?;
+        *dim = said.parse().map_err(|_error| bad_value(context, key, said, "a number of voxels"))?;
     }
-    let said = find_value(&pairs, &["format"]).ok_or_else(|| missing_key(attempt, "format"))?;
+    let said = find_value(&pairs, &["format"]).ok_or_else(|| missing_key(context, "format"))?;
     let (kind, components) = parse_number_type(said)
-        .ok_or_else(|| bad_value(attempt, "format", said, "a number type like uint8"))?;
+        .ok_or_else(|| bad_value(context, "format", said, "a number type like uint8"))?;
     let mut form = RawStorage::new(dims, "dimx, dimy, dimz", kind);
     form.components = components;
     if let Some(said) = find_value(&pairs, &["skip"]) {
         form.offset =
-            Some(said.parse().map_err(|_error| bad_value(attempt, "skip", said, "a number of bytes"))?);
+            Some(said.parse().map_err(|_error| bad_value(context, "skip", said, "a number of bytes"))?);
     }
     if let Some(said) = find_value(&pairs, &["endianness", "endian"]) {
         form.endian = parse_byte_order(said)
-            .ok_or_else(|| bad_value(attempt, "endianness", said, "LittleEndian or BigEndian"))?;
+            .ok_or_else(|| bad_value(context, "endianness", said, "LittleEndian or BigEndian"))?;
     }
     Ok(RawDescription { data_file: None, storage: form })
 }

@@ -16,29 +16,29 @@ pub(super) fn is_ivf(start: &[u8]) -> bool {
     text.trim_start_matches('\u{feff}').trim_start().starts_with('<') && text.contains("<RawFile")
 }
 
-pub(super) fn parse(attempt: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
+pub(super) fn parse(context: LoadContext<'_>, text: &str) -> Result<RawDescription, LoadError> {
     let document = xml::parse(text)
-        .map_err(|error| attempt.bad_input_error("XML", error.to_string(), "copy the description again"))?;
+        .map_err(|error| context.bad_input_error("XML", error.to_string(), "copy the description again"))?;
     let node = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
     let content = |name: &str| node(name).and_then(|node| node.attribute("content")).map(str::trim);
-    let data = content("RawFile").ok_or_else(|| missing_key(attempt, "RawFile"))?;
+    let data = content("RawFile").ok_or_else(|| missing_key(context, "RawFile"))?;
     let said =
-        node("Dimension").or_else(|| node("Dimensions")).ok_or_else(|| missing_key(attempt, "Dimension"))?;
+        node("Dimension").or_else(|| node("Dimensions")).ok_or_else(|| missing_key(context, "Dimension"))?;
     let dims = parse_three_attributes(said)
-        .ok_or_else(|| bad_value(attempt, "Dimension", "", "x, y and z as numbers of voxels"))?;
-    let said = content("Format").ok_or_else(|| missing_key(attempt, "Format"))?;
+        .ok_or_else(|| bad_value(context, "Dimension", "", "x, y and z as numbers of voxels"))?;
+    let said = content("Format").ok_or_else(|| missing_key(context, "Format"))?;
     let (kind, components) = parse_number_type(said)
-        .ok_or_else(|| bad_value(attempt, "Format", said, "a number type like UINT8"))?;
+        .ok_or_else(|| bad_value(context, "Format", said, "a number type like UINT8"))?;
     let mut form = RawStorage::new(dims, "Dimension", kind);
     form.components = components;
     form.is_color = components > 2;
     if let Some(said) = content("ByteOffset") {
         form.offset =
-            Some(said.parse().map_err(|_error| bad_value(attempt, "ByteOffset", said, "a number of bytes"))?);
+            Some(said.parse().map_err(|_error| bad_value(context, "ByteOffset", said, "a number of bytes"))?);
     }
     if let Some(said) = content("LittleEndian").or_else(|| content("ByteOrder")) {
         form.endian =
-            parse_byte_order(said).ok_or_else(|| bad_value(attempt, "LittleEndian", said, "1 or 0"))?;
+            parse_byte_order(said).ok_or_else(|| bad_value(context, "LittleEndian", said, "1 or 0"))?;
     }
     // Edges of the whole volume in units of Inviwo's scene: only their ratios are known.
     let edges = node("BasisAndOffset").map(|basis| {

@@ -66,33 +66,32 @@ type DescriptionParser = fn(LoadContext<'_>, &str) -> Result<RawDescription, Loa
 
 /// Loads the volume that a description refers to.
 fn load(mut source: VolumeSource<'_>, parse: DescriptionParser) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: WHAT, path: source.path };
-    let text = text(attempt, &mut source.input)?;
-    let RawDescription { data_file: data, storage: form } = parse(attempt, &text)?;
+    let context = LoadContext { operation: WHAT, path: source.path };
+    let text = text(context, &mut source.input)?;
+    let RawDescription { data_file: data, storage: form } = parse(context, &text)?;
     let name = match data {
         Some(name) => name,
-        None => guess_data_file(attempt)?,
+        None => guess_data_file(context)?,
     };
-    let data_path = beside_header::resolve(attempt, "data file", &name)?;
-    let attempt = LoadContext { operation: "read the RAW volume", path: &data_path };
-    let form = with_overrides(attempt, form, &source.options.raw)?;
-    let mut input = InputFile::open(attempt)?;
-    let witness = FileChangeGuard::new(attempt, &input, source.control)?;
-    let start = FileStart::read(&mut input).map_err(|error| attempt.io_error(error))?;
+    let data_path = beside_header::resolve(context, "data file", &name)?;
+    let context = LoadContext { operation: "read the RAW volume", path: &data_path };
+    let form = with_overrides(context, form, &source.options.raw)?;
+    let mut input = InputFile::open(context)?;
+    let guard = FileChangeGuard::new(context, &input, source.control)?;
+    let start = FileStart::read(&mut input).map_err(|error| context.io_error(error))?;
     let name = stem(&data_path);
     let source =
         VolumeSource { path: &data_path, input, start, options: source.options, control: source.control };
-    witness
-        .check_unchanged(attempt, form.read(source, attempt, name, "check the description against the data"))
+    guard.check_unchanged(context, form.read(source, context, name, "check the description against the data"))
 }
 
 /// Name of the data file for a description that names none: `x.raw` or `x` for `x.raw.ini`, `x.raw` for `x.ini`.
-fn guess_data_file(attempt: LoadContext<'_>) -> Result<String, LoadError> {
-    let stem = attempt.path.file_stem().unwrap_or_default().to_string_lossy();
+fn guess_data_file(context: LoadContext<'_>) -> Result<String, LoadError> {
+    let stem = context.path.file_stem().unwrap_or_default().to_string_lossy();
     let candidates = ["", ".raw", ".dat", ".raw.gz", ".bin"].map(|ending| format!("{stem}{ending}"));
-    let is_there = |name: &&String| attempt.path.with_file_name(name).is_file();
+    let is_there = |name: &&String| context.path.with_file_name(name).is_file();
     candidates.iter().find(is_there).cloned().ok_or_else(|| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             "data file",
             "the data file that it describes is not beside it",
             format!("put the data file beside it, named {}.raw", chiaroscuro_files::sanitised(&stem, 60)),
@@ -104,11 +103,11 @@ fn guess_data_file(attempt: LoadContext<'_>) -> Result<String, LoadError> {
 /// that name another file are ignored.
 pub(super) fn find_description(data: &Path) -> Option<Result<RawStorage, LoadError>> {
     description_paths(data).into_iter().find_map(|path| {
-        let attempt = LoadContext { operation: WHAT, path: &path };
+        let context = LoadContext { operation: WHAT, path: &path };
         if !path.is_file() {
             return None;
         }
-        let mut input = InputFile::open(attempt).ok()?;
+        let mut input = InputFile::open(context).ok()?;
         let start = FileStart::read(&mut input).ok()?;
         let bytes = start.stored();
         let (parse, names_it): (DescriptionParser, bool) = if dat::is_dat(bytes) {
@@ -120,7 +119,7 @@ pub(super) fn find_description(data: &Path) -> Option<Result<RawStorage, LoadErr
         } else {
             return None;
         };
-        match text(attempt, &mut input).and_then(|text| parse(attempt, &text)) {
+        match text(context, &mut input).and_then(|text| parse(context, &text)) {
             Ok(described) if names_it && !described.names(data) => None,
             Ok(described) => Some(Ok(described.storage)),
             Err(error) => Some(Err(error)),
@@ -145,13 +144,13 @@ fn description_paths(data: &Path) -> Vec<PathBuf> {
 }
 
 /// Reads the text of a description.
-fn text(attempt: LoadContext<'_>, input: &mut InputFile) -> Result<String, LoadError> {
+fn text(context: LoadContext<'_>, input: &mut InputFile) -> Result<String, LoadError> {
     use std::io::Read as _;
     let mut bytes = Vec::new();
     let read = input.reader.by_ref().take(MAX_BYTES + 1).read_to_end(&mut bytes);
-    read.map_err(|error| attempt.io_error(error))?;
+    read.map_err(|error| context.io_error(error))?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "",
             format!("it is longer than {MAX_BYTES} bytes, the maximum for a description"),
             "check the file's name and format",

@@ -8,13 +8,13 @@ use chiaroscuro_volume::{LoadContext, quoted};
 const HELP: &str = "correct the description, or open the data file with --dims and --type";
 
 /// Error for a value of unexpected form.
-pub(super) fn bad_value(attempt: LoadContext<'_>, field: &str, found: &str, expected: &str) -> LoadError {
-    attempt.bad_input_error(field, format!("{expected} was expected, {} was found", quoted(found)), HELP)
+pub(super) fn bad_value(context: LoadContext<'_>, field: &str, found: &str, expected: &str) -> LoadError {
+    context.bad_input_error(field, format!("{expected} was expected, {} was found", quoted(found)), HELP)
 }
 
 /// Error for a missing key.
-pub(super) fn missing_key(attempt: LoadContext<'_>, field: &str) -> LoadError {
-    attempt.bad_input_error(field, "the field is missing", HELP)
+pub(super) fn missing_key(context: LoadContext<'_>, field: &str) -> LoadError {
+    context.bad_input_error(field, "the field is missing", HELP)
 }
 
 /// Parses lines `key: value` or `key = value`, with keys in lower case. Other lines and comments are ignored.

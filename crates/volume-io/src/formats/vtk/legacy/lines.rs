@@ -11,19 +11,19 @@ const MAX_LINE_BYTES: u64 = 4096;
 
 /// Lines of a file, and the data between them.
 pub(super) struct LegacyLines<'a> {
-    attempt: LoadContext<'a>,
+    context: LoadContext<'a>,
     control: &'a LoadControl,
     reader: CountingReader<'a>,
 }
 
 impl<'a> LegacyLines<'a> {
     pub(super) fn new(
-        attempt: LoadContext<'a>,
+        context: LoadContext<'a>,
         reader: Box<dyn BufRead + 'a>,
         control: &'a LoadControl,
     ) -> Self {
         let reader = CountingReader { ahead: Cursor::default(), reader, position: 0 };
-        Self { attempt, control, reader }
+        Self { context, control, reader }
     }
 
     /// Offset of the next byte in the content.
@@ -36,11 +36,11 @@ impl<'a> LegacyLines<'a> {
         self.control.check()?;
         let mut line = Vec::new();
         let read = self.reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line);
-        read.map_err(|error| content_error(self.attempt, error))?;
+        read.map_err(|error| content_error(self.context, error))?;
         let text = String::from_utf8_lossy(&line);
         if line.len() as u64 == MAX_LINE_BYTES && !line.ends_with(b"\n") {
             let why = format!("a line is longer than {MAX_LINE_BYTES} bytes: {}", quoted(&text));
-            return Err(self.attempt.bad_input_error("lines", why, "check that it is a VTK file"));
+            return Err(self.context.bad_input_error("lines", why, "check that it is a VTK file"));
         }
         Ok((!line.is_empty()).then(|| text.trim().to_owned()))
     }
@@ -60,7 +60,7 @@ impl<'a> LegacyLines<'a> {
         let mut seen = Vec::new();
         let position = self.reader.position;
         let read = self.reader.by_ref().take(word.len() as u64).read_to_end(&mut seen);
-        read.map_err(|error| content_error(self.attempt, error))?;
+        read.map_err(|error| content_error(self.context, error))?;
         let is_it = seen.eq_ignore_ascii_case(word.as_bytes());
         let rest = std::mem::take(&mut self.reader.ahead);
         let (rest, at) = (rest.get_ref().as_slice(), rest.position() as usize);
@@ -113,7 +113,7 @@ impl<'a> LegacyLines<'a> {
 
     fn block(&mut self) -> Result<&[u8], LoadError> {
         self.control.check()?;
-        self.reader.fill_buf().map_err(|error| content_error(self.attempt, error))
+        self.reader.fill_buf().map_err(|error| content_error(self.context, error))
     }
 }
 

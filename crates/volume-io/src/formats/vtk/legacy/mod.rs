@@ -22,28 +22,28 @@ pub(super) fn is_legacy(start: &FileStart) -> bool {
 }
 
 pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the VTK image", path: source.path };
+    let context = LoadContext { operation: "read the VTK image", path: source.path };
     let (control, options) = (source.control, source.options);
-    let lines = LegacyLines::new(attempt, open_content_at(attempt, &mut source, 0)?, control);
-    let LegacyScan { title, is_text, grid, arrays, .. } = LegacyScan::read(attempt, lines)?;
-    let chosen = choose_array(attempt, &grid, arrays, options, control)?;
+    let lines = LegacyLines::new(context, open_content_at(context, &mut source, 0)?, control);
+    let LegacyScan { title, is_text, grid, arrays, .. } = LegacyScan::read(context, lines)?;
+    let chosen = choose_array(context, &grid, arrays, options, control)?;
     let name = chosen.array.name.as_str();
     let LegacyValueLocation { start, are_fractions: are_shares } = chosen.array.location;
     let room = if source.start.is_gzip() { u64::MAX } else { source.input.len.saturating_sub(start) };
     let voxels = if is_text {
         // At least a digit and a space each.
-        check_available(attempt, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
-        let text = open_content_at(attempt, &mut source, start)?;
+        check_available(context, name, chosen.numbers(), room.div_ceil(2), "numbers")?;
+        let text = open_content_at(context, &mut source, start)?;
         let mut numbers = if are_shares {
             TextNumbers::new_fractions(text, chosen.numbers())
         } else {
             TextNumbers::new(text, chosen.array.number, chosen.numbers())
         };
-        chosen.read(attempt, &mut numbers, Endian::Little, control)?
+        chosen.read(context, &mut numbers, Endian::Little, control)?
     } else {
-        check_available(attempt, name, chosen.stored_bytes(), room, "bytes")?;
-        let mut bytes = open_content_at(attempt, &mut source, start)?;
-        chosen.read(attempt, &mut bytes, Endian::Big, control)?
+        check_available(context, name, chosen.stored_bytes(), room, "bytes")?;
+        let mut bytes = open_content_at(context, &mut source, start)?;
+        chosen.read(context, &mut bytes, Endian::Big, control)?
     };
-    chosen.volume(attempt, &grid, voxels, &title, control)
+    chosen.volume(context, &grid, voxels, &title, control)
 }

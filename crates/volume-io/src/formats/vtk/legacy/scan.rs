@@ -22,7 +22,7 @@ pub(super) struct LegacyValueLocation {
 
 /// Contents of a file: title, encoding, grid and arrays.
 pub(super) struct LegacyScan<'a> {
-    attempt: LoadContext<'a>,
+    context: LoadContext<'a>,
     pub(super) title: String,
     /// True if values are text, false if they are binary.
     pub(super) is_text: bool,
@@ -60,7 +60,7 @@ impl ArrayAnnouncement {
 }
 
 impl<'a> LegacyScan<'a> {
-    pub(super) fn read(attempt: LoadContext<'a>, mut lines: LegacyLines<'_>) -> Result<Self, LoadError> {
+    pub(super) fn read(context: LoadContext<'a>, mut lines: LegacyLines<'_>) -> Result<Self, LoadError> {
         lines.next()?;
         let title = lines.next()?.unwrap_or_default();
         let coding = lines.next_non_blank()?.unwrap_or_default();
@@ -69,7 +69,7 @@ impl<'a> LegacyScan<'a> {
             "BINARY" => false,
             _ => {
                 let why = format!("ASCII or BINARY was expected, {} was found", quoted(&coding));
-                return Err(attempt.bad_input_error("line 3", why, "write the file again"));
+                return Err(context.bad_input_error("line 3", why, "write the file again"));
             }
         };
         let dataset = lines.next_non_blank()?.unwrap_or_default();
@@ -77,11 +77,11 @@ impl<'a> LegacyScan<'a> {
             ["DATASET", "STRUCTURED_POINTS"] => {}
             ["DATASET", kind] => {
                 let why = format!("a data set of type {} is not a regular grid", quoted(kind));
-                return Err(attempt.bad_input_error("DATASET", why, RESAMPLE));
+                return Err(context.bad_input_error("DATASET", why, RESAMPLE));
             }
             _ => {
                 let why = format!("DATASET STRUCTURED_POINTS was expected, {} was found", quoted(&dataset));
-                return Err(attempt.bad_input_error("DATASET", why, RESAMPLE));
+                return Err(context.bad_input_error("DATASET", why, RESAMPLE));
             }
         }
         let point = VtkGrid {
@@ -94,7 +94,7 @@ impl<'a> LegacyScan<'a> {
         };
         let arrays = Vec::new();
         let mut scan =
-            LegacyScan { attempt, title, is_text, grid: point, arrays, section: None, has_dims: false };
+            LegacyScan { context, title, is_text, grid: point, arrays, section: None, has_dims: false };
         while let Some(line) = lines.next_non_blank()? {
             if scan.arrays.len() > MAX_ARRAYS || !scan.add(&line, &mut lines)? {
                 break;
@@ -109,31 +109,31 @@ impl<'a> LegacyScan<'a> {
         let words: Vec<_> = line.split_whitespace().collect();
         let keyword = words[0].to_uppercase();
         let word = |at: usize| words.get(at).copied().unwrap_or_default();
-        let attempt = self.attempt;
+        let context = self.context;
         let tuples = self.section.map_or(0, |(count, _)| count);
         let announced = |kind: &str, components: u64| {
             ArrayAnnouncement::new(decode_name(word(1)), kind, [components, tuples])
         };
         let attribute = match keyword.as_str() {
             "DIMENSIONS" => {
-                let [x, y, z]: [i64; 3] = parse_numbers(attempt, &keyword, &words)?;
+                let [x, y, z]: [i64; 3] = parse_numbers(context, &keyword, &words)?;
                 return self.set_extent(
                     &keyword,
                     [0, x.saturating_sub(1), 0, y.saturating_sub(1), 0, z.saturating_sub(1)],
                 );
             }
-            "EXTENT" => return self.set_extent(&keyword, parse_numbers(attempt, &keyword, &words)?),
+            "EXTENT" => return self.set_extent(&keyword, parse_numbers(context, &keyword, &words)?),
             "ORIGIN" => {
-                self.grid.origin = DVec3::from_array(parse_numbers(attempt, &keyword, &words)?);
+                self.grid.origin = DVec3::from_array(parse_numbers(context, &keyword, &words)?);
                 return Ok(true);
             }
             "SPACING" | "ASPECT_RATIO" => {
-                self.grid.spacing = DVec3::from_array(parse_numbers(attempt, &keyword, &words)?);
+                self.grid.spacing = DVec3::from_array(parse_numbers(context, &keyword, &words)?);
                 self.grid.has_spacing = true;
                 return Ok(true);
             }
             "POINT_DATA" | "CELL_DATA" => {
-                let [count] = parse_numbers(attempt, &keyword, &words)?;
+                let [count] = parse_numbers(context, &keyword, &words)?;
                 return self.begin_section(&keyword, count);
             }
             "METADATA" => return skip_metadata(lines),
@@ -178,7 +178,7 @@ impl<'a> LegacyScan<'a> {
     fn set_extent(&mut self, keyword: &str, extent: [i64; 6]) -> Result<bool, LoadError> {
         let VtkGrid { origin, spacing, has_spacing, .. } = self.grid;
         let grid = VtkGrid::from_extent(extent).ok_or_else(|| {
-            self.attempt.bad_input_error(
+            self.context.bad_input_error(
                 keyword,
                 "it has no points along an axis",
                 "every dimension must be at least 1",
@@ -200,7 +200,7 @@ impl<'a> LegacyScan<'a> {
             } else {
                 "the dimensions of the grid are missing before it".to_owned()
             };
-            return Err(self.attempt.bad_input_error(keyword, why, "write the file again"));
+            return Err(self.context.bad_input_error(keyword, why, "write the file again"));
         }
         self.section = Some((count, of_cells));
         Ok(true)
@@ -263,7 +263,7 @@ impl<'a> LegacyScan<'a> {
                     location: place,
                 });
             }
-            _ => self.attempt.warn(format_args!("the array {} is ignored", quoted(&name))),
+            _ => self.context.warn(format_args!("the array {} is ignored", quoted(&name))),
         }
         if self.is_text {
             lines.skip_words(tuples.saturating_mul(components))
@@ -276,27 +276,27 @@ impl<'a> LegacyScan<'a> {
     fn end_at(&self, line: &str) -> Result<bool, LoadError> {
         if self.arrays.is_empty() {
             let why = format!("the line {} is not understood", quoted(line));
-            return Err(self.attempt.bad_input_error(
+            return Err(self.context.bad_input_error(
                 "lines",
                 why,
                 "open it in ParaView and save it as .vti",
             ));
         }
-        self.attempt.warn(format_args!("everything after the line {} is ignored", quoted(line)));
+        self.context.warn(format_args!("everything after the line {} is ignored", quoted(line)));
         Ok(false)
     }
 }
 
 /// Parses the numbers after a keyword.
 fn parse_numbers<T: FromStr, const N: usize>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     keyword: &str,
     words: &[&str],
 ) -> Result<[T; N], LoadError> {
     let found: Option<Vec<T>> = words.iter().skip(1).map(|word| word.parse().ok()).collect();
     found.and_then(|found| found.try_into().ok()).ok_or_else(|| {
         let why = format!("{N} numbers were expected, {} was found", quoted(&words.join(" ")));
-        attempt.bad_input_error(keyword, why, "correct the file")
+        context.bad_input_error(keyword, why, "correct the file")
     })
 }
 

@@ -38,7 +38,7 @@ enum MarkupState {
 
 impl VtkMarkup {
     pub(super) fn read(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         reader: &mut dyn BufRead,
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
@@ -56,9 +56,9 @@ impl VtkMarkup {
                 Ok([]) => break,
                 Ok(block) => block,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(error) => return Err(content_error(attempt, error)),
+                Err(error) => return Err(content_error(context, error)),
             };
-            scan.add(attempt, block, position)?;
+            scan.add(context, block, position)?;
             let length = block.len();
             position += length as u64;
             reader.consume(length);
@@ -81,7 +81,7 @@ struct MarkupScan {
 
 impl MarkupScan {
     /// Scans a block that begins at a position of the content.
-    fn add(&mut self, attempt: LoadContext<'_>, block: &[u8], position: u64) -> Result<(), LoadError> {
+    fn add(&mut self, context: LoadContext<'_>, block: &[u8], position: u64) -> Result<(), LoadError> {
         let mut at = 0;
         while let Some(&byte) = block.get(at) {
             let here = position + at as u64;
@@ -107,12 +107,12 @@ impl MarkupScan {
                     match (*quote, byte) {
                         (Some(open), byte) if open == byte => *quote = None,
                         (None, b'"' | b'\'') => *quote = Some(byte),
-                        (None, b'>') => self.end_tag(attempt)?,
+                        (None, b'>') => self.end_tag(context)?,
                         (None, b'-') if self.tag == b"<!--" => self.state = MarkupState::Comment([0; 2]),
                         _ => {}
                     }
                     if self.markup.len() + self.tag.len() > MAX_MARKUP_BYTES {
-                        return Err(attempt.limit_error(
+                        return Err(context.limit_error(
                             "markup",
                             "its markup takes more than 1 MiB",
                             "write it again with fewer arrays",
@@ -132,7 +132,7 @@ impl MarkupScan {
                         return Ok(());
                     }
                     if !byte.is_ascii_whitespace() {
-                        return Err(attempt.bad_input_error(
+                        return Err(context.bad_input_error(
                             "AppendedData",
                             "the underscore before the appended data is missing",
                             "write the file again",
@@ -144,7 +144,7 @@ impl MarkupScan {
         Ok(())
     }
 
-    fn end_tag(&mut self, attempt: LoadContext<'_>) -> Result<(), LoadError> {
+    fn end_tag(&mut self, context: LoadContext<'_>) -> Result<(), LoadError> {
         let is_opening = !self.tag.starts_with(b"</")
             && !self.tag.starts_with(b"<?")
             && !self.tag.starts_with(b"<!")
@@ -155,7 +155,7 @@ impl MarkupScan {
             self.depth = self.depth.saturating_sub(1);
         }
         if self.depth > MAX_DEPTH {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 "markup",
                 format!("its elements are nested more than {MAX_DEPTH} deep"),
                 "check that it is a VTK file",
@@ -193,10 +193,10 @@ mod tests {
     use super::*;
 
     fn read(text: &[u8]) -> Result<VtkMarkup, LoadError> {
-        let attempt = LoadContext { operation: "test", path: Path::new("t") };
+        let context = LoadContext { operation: "test", path: Path::new("t") };
         // A small buffer, so that every token is split somewhere.
         let mut reader = io::BufReader::with_capacity(5, text);
-        VtkMarkup::read(attempt, &mut reader, &LoadControl::new())
+        VtkMarkup::read(context, &mut reader, &LoadControl::new())
     }
 
     #[test]

@@ -63,43 +63,43 @@ enum XmlValueLocation {
 }
 
 pub(super) fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
-    let attempt = LoadContext { operation: "read the VTK image", path: source.path };
+    let context = LoadContext { operation: "read the VTK image", path: source.path };
     let control = source.control;
-    let skeleton = VtkMarkup::read(attempt, &mut open_content_at(attempt, &mut source, 0)?, control)?;
+    let skeleton = VtkMarkup::read(context, &mut open_content_at(context, &mut source, 0)?, control)?;
     let document = xml::parse(&skeleton.markup)
-        .map_err(|error| attempt.bad_input_error("markup", error.to_string(), "copy the file again"))?;
+        .map_err(|error| context.bad_input_error("markup", error.to_string(), "copy the file again"))?;
     let root = document.root_element();
-    let piece = find_piece(attempt, root)?;
-    let grid = grid(attempt, piece)?;
-    let style = value_encoding(attempt, root)?;
-    let arrays = arrays(attempt, piece, &grid)?;
-    let chosen = choose_array(attempt, &grid, arrays, source.options, source.control)?;
-    let voxels = read(attempt, &mut source, &chosen, style, skeleton.appended)?;
-    chosen.volume(attempt, &grid, voxels, "", control)
+    let piece = find_piece(context, root)?;
+    let grid = grid(context, piece)?;
+    let style = value_encoding(context, root)?;
+    let arrays = arrays(context, piece, &grid)?;
+    let chosen = choose_array(context, &grid, arrays, source.options, source.control)?;
+    let voxels = read(context, &mut source, &chosen, style, skeleton.appended)?;
+    chosen.volume(context, &grid, voxels, "", control)
 }
 
 /// Finds the single piece of the image.
 fn find_piece<'a, 'input>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     root: Node<'a, 'input>,
 ) -> Result<Node<'a, 'input>, LoadError> {
     let kind = root.attribute("type").unwrap_or_default();
     if root.tag_name().name() != "VTKFile" {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "VTKFile",
             "its root element is not VTKFile",
             "check the file's format",
         ));
     }
     if kind == "PImageData" {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "type",
             "it only names the files of its pieces",
             "open one of those, or open it in ParaView and save it as .vti",
         ));
     }
     if kind != "ImageData" {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "type",
             format!("{} is not a regular grid", quoted(kind)),
             RESAMPLE,
@@ -113,8 +113,8 @@ fn find_piece<'a, 'input>(
         .collect();
     match pieces[..] {
         [piece] => Ok(piece),
-        [] => Err(attempt.bad_input_error("Piece", "it has no piece with values", "write the file again")),
-        [..] => Err(attempt.bad_input_error(
+        [] => Err(context.bad_input_error("Piece", "it has no piece with values", "write the file again")),
+        [..] => Err(context.bad_input_error(
             "Piece",
             format!("it is in {} pieces, and only one is supported", pieces.len()),
             "open it in ParaView and save it as one .vti",
@@ -123,11 +123,11 @@ fn find_piece<'a, 'input>(
 }
 
 /// Grid of a piece, which may be a part of the whole image.
-fn grid(attempt: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadError> {
+fn grid(context: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadError> {
     let image = piece.parent().unwrap_or(piece);
     let whole = image.attribute("WholeExtent");
     let wrong = |field: &str, text: &str, what: &str| {
-        attempt.bad_input_error(
+        context.bad_input_error(
             field,
             format!("{what} were expected, {} was found", quoted(text)),
             "correct the file",
@@ -139,7 +139,7 @@ fn grid(attempt: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadEr
         .and_then(|extent| VtkGrid::from_extent(extent.try_into().ok()?))
         .ok_or_else(|| wrong("Extent", text, "the first and last index along x, y and z"))?;
     if whole.is_some_and(|whole| !whole.split_whitespace().eq(text.split_whitespace())) {
-        attempt.warn("its piece is not the whole image");
+        context.warn("its piece is not the whole image");
     }
     let numbers = |field: &str, count: usize| match image.attribute(field) {
         None => Ok(None),
@@ -164,9 +164,9 @@ fn grid(attempt: LoadContext<'_>, piece: Node<'_, '_>) -> Result<VtkGrid, LoadEr
 }
 
 /// Encoding of the values, by the attributes of the root element.
-fn value_encoding(attempt: LoadContext<'_>, root: Node<'_, '_>) -> Result<VtkEncoding, LoadError> {
+fn value_encoding(context: LoadContext<'_>, root: Node<'_, '_>) -> Result<VtkEncoding, LoadError> {
     let refused = |field: &str, text: &str, known: &str, help: &str| {
-        Err(attempt.bad_input_error(field, format!("{known} is supported, {} is not", quoted(text)), help))
+        Err(context.bad_input_error(field, format!("{known} is supported, {} is not", quoted(text)), help))
     };
     let endian = match root.attribute("byte_order") {
         None | Some("LittleEndian") => Endian::Little,
@@ -197,7 +197,7 @@ fn value_encoding(attempt: LoadContext<'_>, root: Node<'_, '_>) -> Result<VtkEnc
 
 /// Numeric arrays with a value for each point or cell.
 fn arrays(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     piece: Node<'_, '_>,
     grid: &VtkGrid,
 ) -> Result<Vec<VtkArray<XmlValueLocation>>, LoadError> {
@@ -209,7 +209,7 @@ fn arrays(
             let name = sanitised(node.attribute("Name").unwrap_or_default().trim(), 80);
             let Some(number) = node.attribute("type").and_then(number) else {
                 let kind = quoted(node.attribute("type").unwrap_or_default());
-                attempt.warn(format_args!("the array {} of type {kind} is ignored", quoted(&name)));
+                context.warn(format_args!("the array {} of type {kind} is ignored", quoted(&name)));
                 continue;
             };
             let text = node.attribute("NumberOfComponents").unwrap_or("1");
@@ -217,15 +217,15 @@ fn arrays(
             let components = components.ok_or_else(|| {
                 let why =
                     format!("a number from 1 to {MAX_COMPONENTS} was expected, {} was found", quoted(text));
-                attempt.bad_input_error("NumberOfComponents", why, "correct the file")
+                context.bad_input_error("NumberOfComponents", why, "correct the file")
             })?;
             let tuples = node.attribute("NumberOfTuples").and_then(|text| text.parse::<u64>().ok());
             if tuples.is_some_and(|tuples| tuples != grid.count(of_cells)) {
-                attempt
+                context
                     .warn(format_args!("the array {} does not fit the grid, and is ignored", quoted(&name)));
                 continue;
             }
-            let place = value_location(attempt, node)?;
+            let place = value_location(context, node)?;
             // VTK's default mapping: such arrays are colours.
             let is_color = number == FileNumberType::U8 && (3..=4).contains(&components);
             found.push(VtkArray {
@@ -262,7 +262,7 @@ fn number(word: &str) -> Option<FileNumberType> {
 }
 
 /// Location of the values of an element.
-fn value_location(attempt: LoadContext<'_>, node: Node<'_, '_>) -> Result<XmlValueLocation, LoadError> {
+fn value_location(context: LoadContext<'_>, node: Node<'_, '_>) -> Result<XmlValueLocation, LoadError> {
     // The skeleton has two numbers in place of text, and nothing for an empty element.
     let inline = || {
         let texts = node.children().filter_map(|child| child.text().filter(|_| child.is_text()));
@@ -279,10 +279,10 @@ fn value_location(attempt: LoadContext<'_>, node: Node<'_, '_>) -> Result<XmlVal
             let text = node.attribute("offset").unwrap_or_default();
             text.parse().map(XmlValueLocation::Appended).map_err(|_no_number| {
                 let why = format!("a number of bytes was expected, {} was found", quoted(text));
-                attempt.bad_input_error("offset", why, "write the file again")
+                context.bad_input_error("offset", why, "write the file again")
             })
         }
-        other => Err(attempt.bad_input_error(
+        other => Err(context.bad_input_error(
             "format",
             format!("ascii, binary or appended was expected, {} was found", quoted(other)),
             "write the file again",
@@ -292,7 +292,7 @@ fn value_location(attempt: LoadContext<'_>, node: Node<'_, '_>) -> Result<XmlVal
 
 /// Reads the values of the chosen array.
 fn read(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     source: &mut VolumeSource<'_>,
     chosen: &ChosenVtkArray<XmlValueLocation>,
     style: VtkEncoding,
@@ -303,30 +303,30 @@ fn read(
     match chosen.array.location {
         XmlValueLocation::Ascii(start, length) => {
             // At least a digit and a space each.
-            check_available(attempt, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
-            let text = open_content_at(attempt, source, start)?.take(length);
+            check_available(context, name, chosen.numbers(), length.div_ceil(2), "numbers")?;
+            let text = open_content_at(context, source, start)?.take(length);
             let mut numbers = TextNumbers::new(text, chosen.array.number, chosen.numbers());
             // Text has no byte order: the adapter yields little-endian numbers.
-            chosen.read(attempt, &mut numbers, Endian::Little, control)
+            chosen.read(context, &mut numbers, Endian::Little, control)
         }
         XmlValueLocation::Base64(start, length) => {
-            let text = open_content_at(attempt, source, start)?.take(length);
+            let text = open_content_at(context, source, start)?.take(length);
             let room = max_decoded_bytes(length);
-            read_binary(attempt, Base64Reader::new(text), chosen, style, Some(room), budget, control)
+            read_binary(context, Base64Reader::new(text), chosen, style, Some(room), budget, control)
         }
         XmlValueLocation::Appended(offset) => {
             let start = appended.and_then(|appended| appended.checked_add(offset)).ok_or_else(|| {
-                attempt.bad_input_error(
+                context.bad_input_error(
                     "AppendedData",
                     "the appended data are missing",
                     "copy the file again",
                 )
             })?;
             let room = (!source.start.is_gzip()).then(|| source.input.len.saturating_sub(start));
-            let content = open_content_at(attempt, source, start)?;
+            let content = open_content_at(context, source, start)?;
             if style.appends_text {
                 read_binary(
-                    attempt,
+                    context,
                     Base64Reader::new(content),
                     chosen,
                     style,
@@ -335,7 +335,7 @@ fn read(
                     control,
                 )
             } else {
-                read_binary(attempt, content, chosen, style, room, budget, control)
+                read_binary(context, content, chosen, style, room, budget, control)
             }
         }
     }
@@ -344,7 +344,7 @@ fn read(
 /// Reads binary values; `room` is the number of bytes left in the file, and `budget_bytes` the limit for the volume
 /// and one block.
 fn read_binary(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     mut reader: impl Read,
     chosen: &ChosenVtkArray<XmlValueLocation>,
     style: VtkEncoding,
@@ -357,18 +357,18 @@ fn read_binary(
     let compressor = compressor.transpose().map_err(|other| {
         let why =
             format!("vtkZLibDataCompressor or vtkLZ4DataCompressor is supported, {} is not", quoted(&other));
-        attempt.bad_input_error("compressor", why, "write it again with one of those, or uncompressed")
+        context.bad_input_error("compressor", why, "write it again with one of those, or uncompressed")
     })?;
     let Some(compressor) = compressor else {
-        check_length(&mut reader, words, expected).map_err(|error| content_error(attempt, error))?;
-        check_available(attempt, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;
-        return chosen.read(attempt, &mut reader, words.endian, control);
+        check_length(&mut reader, words, expected).map_err(|error| content_error(context, error))?;
+        check_available(context, &chosen.array.name, expected, room.unwrap_or(expected), "bytes")?;
+        return chosen.read(context, &mut reader, words.endian, control);
     };
     let blocks = CompressedBlocks::open(reader, words, compressor, expected, room);
-    let mut blocks = blocks.map_err(|error| content_error(attempt, error))?;
+    let mut blocks = blocks.map_err(|error| content_error(context, error))?;
     let needed = chosen.extent.bytes.saturating_add(blocks.needed_bytes());
     if needed > budget_bytes {
-        return Err(attempt.limit_error(
+        return Err(context.limit_error(
             &chosen.array.name,
             format!(
                 "the volume and a compressed block of it need {}, {} are allowed",
@@ -378,5 +378,5 @@ fn read_binary(
             "close other programs, or write the file again with smaller blocks",
         ));
     }
-    chosen.read(attempt, &mut blocks, words.endian, control)
+    chosen.read(context, &mut blocks, words.endian, control)
 }

@@ -149,12 +149,12 @@ impl TiffDirectory {
 /// `BadInput` for a file that is not TIFF or whose list of pages is corrupt, `Limit` for more pages than any
 /// recording has; errors of `each`.
 pub(crate) fn for_each_directory(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     file: &mut TiffBytes,
     control: &LoadControl,
     mut each: impl FnMut(&mut TiffBytes, TiffDirectory) -> Result<(), LoadError>,
 ) -> Result<(), LoadError> {
-    let fault = |error| unreadable_error(attempt, "header", error);
+    let fault = |error| unreadable_error(context, "header", error);
     let mut magic = [0; 2];
     file.read(0, &mut magic).map_err(fault)?;
     file.endian = if magic == *b"MM" { Endian::Big } else { Endian::Little };
@@ -162,7 +162,7 @@ pub(crate) fn for_each_directory(
     // BigTIFF: version 43, the size of an offset (8 bytes), and a zero.
     let is_big = version == 43;
     if is_big && file.number(4, 4).map_err(fault)? != if magic == *b"MM" { 8 << 16 } else { 8 } {
-        return Err(unreadable_error(attempt, "header", io::ErrorKind::InvalidData.into()));
+        return Err(unreadable_error(context, "header", io::ErrorKind::InvalidData.into()));
     }
     let mut next = if is_big { file.number(8, 8) } else { file.number(4, 4) }.map_err(fault)?;
     let mut seen = HashSet::new();
@@ -170,26 +170,26 @@ pub(crate) fn for_each_directory(
         control.check()?;
         let field = format!("directory of page {}", seen.len());
         if seen.len() == MAX_PAGES {
-            return Err(attempt.limit_error(
+            return Err(context.limit_error(
                 &field,
                 format!("there are more than {MAX_PAGES} pages"),
                 "split the file into several",
             ));
         }
         if !seen.insert(next) {
-            return Err(attempt.bad_input_error(
+            return Err(context.bad_input_error(
                 &field,
                 "the list of pages is circular: it leads back to an earlier page",
                 "copy the file again, or save it anew",
             ));
         }
         let (directory, after) = TiffDirectory::read(file, is_big, next)
-            .map_err(|error| unreadable_error(attempt, &field, error))?;
+            .map_err(|error| unreadable_error(context, &field, error))?;
         each(file, directory)?;
         next = after;
     }
     if seen.is_empty() {
-        return Err(attempt.bad_input_error("header", "the file has no pages", "copy the file again"));
+        return Err(context.bad_input_error("header", "the file has no pages", "copy the file again"));
     }
     Ok(())
 }

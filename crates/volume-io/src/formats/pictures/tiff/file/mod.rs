@@ -62,18 +62,18 @@ impl TiffFile {
     /// # Errors
     /// `BadInput` for a file that is not TIFF, or is broken.
     pub(super) fn open(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         input: InputFile,
         control: &LoadControl,
     ) -> Result<Self, LoadError> {
         let len = input.len;
         let mut bytes = TiffBytes::new(input.reader.into_inner(), len);
         let (mut pages, mut first) = (Vec::new(), None);
-        for_each_directory(attempt, &mut bytes, control, |bytes, directory| {
+        for_each_directory(context, &mut bytes, control, |bytes, directory| {
             let field = format!("page {}", pages.len());
             pages.push(
                 TiffPage::parse(bytes, &directory)
-                    .map_err(|error| unreadable_error(attempt, &field, error))?,
+                    .map_err(|error| unreadable_error(context, &field, error))?,
             );
             first.get_or_insert(directory);
             Ok(())
@@ -102,18 +102,18 @@ impl TiffFile {
     /// As [`Self::check_parts`]; `Limit` where memory is exhausted.
     pub(super) fn fetch(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
     ) -> Result<CompressedPage, LoadError> {
         let field = format!("page {number}");
-        let fault = |error| unreadable_error(attempt, &field, error);
-        let (page, places) = self.part_locations(attempt, number, sample, control)?;
+        let fault = |error| unreadable_error(context, &field, error);
+        let (page, places) = self.part_locations(context, number, sample, control)?;
         let mut parts = Vec::new();
         for PartLocation { offset, count } in places {
             control.check()?;
-            let mut part = alloc_zeroed_bytes(attempt, &field, count)?;
+            let mut part = alloc_zeroed_bytes(context, &field, count)?;
             self.bytes.read(offset, &mut part).map_err(fault)?;
             parts.push(part);
         }
@@ -129,28 +129,28 @@ impl TiffFile {
     /// `BadInput` where they do not, or where their encoding is not supported.
     pub(super) fn check_parts(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
     ) -> Result<(), LoadError> {
-        self.part_locations(attempt, number, sample, control).map(drop)
+        self.part_locations(context, number, sample, control).map(drop)
     }
 
     /// Returns a page, and the locations of the strips or tiles that [`Self::fetch`] reads.
     fn part_locations(
         &mut self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         number: usize,
         sample: Option<usize>,
         control: &LoadControl,
     ) -> Result<(TiffPage, Vec<PartLocation>), LoadError> {
         let field = format!("page {number}");
-        let fault = |error| unreadable_error(attempt, &field, error);
+        let fault = |error| unreadable_error(context, &field, error);
         let page = *self.pages.get(number).ok_or_else(|| {
-            attempt.bad_input_error(&field, format!("the file has only {} pages", self.pages.len()), HELP)
+            context.bad_input_error(&field, format!("the file has only {} pages", self.pages.len()), HELP)
         })?;
-        page.check_supported(attempt, &field)?;
+        page.check_supported(context, &field)?;
         let [across, down] = page.grid();
         let per_sample = across.checked_mul(down).ok_or_else(|| fault(io::ErrorKind::InvalidData.into()))?;
         let samples = if page.is_planar { 1 } else { page.samples };
@@ -168,11 +168,11 @@ impl TiffFile {
         if needed > listed {
             let why =
                 format!("{per_sample} strips or tiles are needed per plane and {listed} are listed in all");
-            return Err(attempt.bad_input_error(&field, why, HELP));
+            return Err(context.bad_input_error(&field, why, HELP));
         }
         if needed > MAX_PARTS {
             let why = format!("it has {needed} strips or tiles, {MAX_PARTS} are allowed");
-            return Err(attempt.limit_error(&field, why, "save it with larger tiles"));
+            return Err(context.limit_error(&field, why, "save it with larger tiles"));
         }
         let offsets = match page.offsets {
             PartOffsets::At(at) => vec![at],
@@ -206,13 +206,13 @@ impl TiffFile {
             sum += count;
             if sum > self.bytes.len().saturating_add(MAX_SHARED_BYTES) {
                 let why = "its strips or tiles overlap: they share the same bytes";
-                return Err(attempt.bad_input_error(&field, why, HELP));
+                return Err(context.bad_input_error(&field, why, HELP));
             }
             let room = TiffCodec::from_tag(page.compression).map_or(0, |codec| codec.max_expanded(count));
             if room < whole && count > 0 {
                 let why =
                     format!("a strip or tile ends too early: {whole} bytes expected, at most {room} found");
-                return Err(attempt.bad_input_error(&field, why, HELP));
+                return Err(context.bad_input_error(&field, why, HELP));
             }
             places.push(PartLocation { offset, count });
         }
@@ -229,14 +229,14 @@ struct PartLocation {
 /// Allocates `count` zero bytes, whose pages are committed only as they are written: a page with less data than it
 /// announces takes only the memory for those.
 pub(super) fn alloc_zeroed_bytes(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     field: &str,
     count: u64,
 ) -> Result<Vec<u8>, LoadError> {
     let room = usize::try_from(count).ok().and_then(|count| try_zeroed_vec(count).ok());
     room.ok_or_else(|| {
         let why = format!("there is not enough memory for {count} bytes");
-        attempt.limit_error(field, why, "close other programs or load a smaller volume")
+        context.limit_error(field, why, "close other programs or load a smaller volume")
     })
 }
 
@@ -252,7 +252,7 @@ impl CompressedPage {
     /// `BadInput` where a strip or tile is broken or too short.
     pub(super) fn unpack(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         number: usize,
         control: &LoadControl,
     ) -> Result<Vec<u8>, LoadError> {
@@ -263,7 +263,7 @@ impl CompressedPage {
         let planes = (self.parts.len() / (across * down).max(1)).max(1);
         let row_bytes = page.width as usize * self.samples * size;
         let bytes = (row_bytes as u64).saturating_mul(page.height).saturating_mul(planes as u64);
-        let mut all = alloc_zeroed_bytes(attempt, &field, bytes)?;
+        let mut all = alloc_zeroed_bytes(context, &field, bytes)?;
         let plane_bytes = all.len() / planes;
         for (plane, parts) in all.chunks_exact_mut(plane_bytes).zip(self.parts.chunks(across * down)) {
             // Rows of strips or tiles in parallel.
@@ -272,7 +272,7 @@ impl CompressedPage {
                 .zip(parts.par_chunks(across));
             rows.enumerate().try_for_each(|(row, (band, parts))| {
                 parts.iter().enumerate().try_for_each(|(column, part)| {
-                    self.unpack_part(attempt, &field, [column, row], part, band, control)
+                    self.unpack_part(context, &field, [column, row], part, band, control)
                 })
             })?;
         }
@@ -282,7 +282,7 @@ impl CompressedPage {
     /// Decodes a strip or tile into a band of rows of the page.
     fn unpack_part(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         [column, row]: [usize; 2],
         packed: &[u8],
@@ -301,12 +301,12 @@ impl CompressedPage {
         let row_bytes = page.width as usize * pixel;
         let is_direct = !page.is_tiled && page.bits.is_multiple_of(8);
         if is_direct {
-            self.expand(attempt, field, packed, band, control)?;
+            self.expand(context, field, packed, band, control)?;
             undo_predictor(page, self.endian, self.samples, packed_row, band);
             return Ok(());
         }
-        let mut part = alloc_zeroed_bytes(attempt, field, whole)?;
-        self.expand(attempt, field, packed, &mut part, control)?;
+        let mut part = alloc_zeroed_bytes(context, field, whole)?;
+        self.expand(context, field, packed, &mut part, control)?;
         undo_predictor(page, self.endian, self.samples, packed_row, &mut part);
         // Part of a row that lies within the page.
         let first = column * page.part_size[0] as usize;
@@ -327,7 +327,7 @@ impl CompressedPage {
 
     fn expand(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         field: &str,
         packed: &[u8],
         out: &mut [u8],
@@ -351,7 +351,7 @@ impl CompressedPage {
         };
         match codec.expand(packed, picture, out, control) {
             Ok(found) if found == wanted => Ok(()),
-            Ok(found) => Err(attempt.bad_input_error(
+            Ok(found) => Err(context.bad_input_error(
                 field,
                 format!("a strip or tile ends too early: {wanted} bytes expected, {found} found"),
                 HELP,
@@ -360,13 +360,13 @@ impl CompressedPage {
             Err(ReadFault::Long) => {
                 let why =
                     format!("a compressed strip or tile goes on beyond the {wanted} bytes of its pixels");
-                Err(attempt.bad_input_error(field, why, HELP))
+                Err(context.bad_input_error(field, why, HELP))
             }
             Err(ReadFault::Io(error)) => {
                 let why = format!("a compressed strip or tile is broken: {error}");
-                Err(attempt.bad_input_error(field, chiaroscuro_files::sanitised(&why, 200), HELP))
+                Err(context.bad_input_error(field, chiaroscuro_files::sanitised(&why, 200), HELP))
             }
-            Err(_) => Err(attempt.bad_input_error(field, "a compressed strip or tile is broken", HELP)),
+            Err(_) => Err(context.bad_input_error(field, "a compressed strip or tile is broken", HELP)),
         }
     }
 }

@@ -27,8 +27,8 @@ impl TiffPage {
     }
 
     /// Checks that the page's encoding is supported and its sizes are plausible.
-    pub(crate) fn check_supported(&self, attempt: LoadContext<'_>, field: &str) -> Result<(), LoadError> {
-        let refuse = |why: String, help: &str| Err(attempt.bad_input_error(field, why, help));
+    pub(crate) fn check_supported(&self, context: LoadContext<'_>, field: &str) -> Result<(), LoadError> {
+        let refuse = |why: String, help: &str| Err(context.bad_input_error(field, why, help));
         let bits = self.bits;
         if let SampleMeaning::Unsupported(photometric) = self.meaning {
             let kind = match photometric {

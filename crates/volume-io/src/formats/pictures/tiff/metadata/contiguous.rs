@@ -12,18 +12,18 @@ use chiaroscuro_volume::{LoadContext, LoadError};
 /// # Errors
 /// `BadInput` naming `field` where the file is too short for them.
 pub(super) fn contiguous_pages(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &mut TiffFile,
     page: &TiffPage,
     images: usize,
     field: &str,
 ) -> Result<Vec<TiffPage>, LoadError> {
-    let broken = |why: String| attempt.bad_input_error(field, why, HELP);
+    let broken = |why: String| context.bad_input_error(field, why, HELP);
     let offset = match page.offsets {
         PartOffsets::At(at) => at,
         PartOffsets::Listed(entry) => entry
             .first_integer(&mut tiff.bytes)
-            .map_err(|error| unreadable_error(attempt, "first page", error))?,
+            .map_err(|error| unreadable_error(context, "first page", error))?,
     };
     let slice = page.bytes().ok_or_else(|| broken("the size of its slices is implausible".to_owned()))?;
     let end = slice.checked_mul(images as u64).and_then(|bytes| bytes.checked_add(offset));

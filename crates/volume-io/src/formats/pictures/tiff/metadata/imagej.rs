@@ -42,7 +42,7 @@ pub(crate) fn is_imagej(description: &str) -> bool {
 
 /// Builds the stack of a file with such a description.
 pub(crate) fn stack(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &mut TiffFile,
     description: &str,
     choice: &VolumeChoice,
@@ -53,12 +53,12 @@ pub(crate) fn stack(
         && images > 1
         && page.is_plain_rows()
     {
-        tiff.pages = contiguous_pages(attempt, tiff, &page, images, "images")?;
+        tiff.pages = contiguous_pages(context, tiff, &page, images, "images")?;
     }
     let mut remarks = Vec::new();
     let pages = UsablePages::new(tiff).with_remarks(&mut remarks);
     let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-        return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
+        return Err(context.bad_input_error("pages", "it has no usable page", HELP));
     };
     let (channels, frames) = (said.count("channels").unwrap_or(1), said.count("frames").unwrap_or(1));
     let slices = said.count("slices");
@@ -84,13 +84,13 @@ pub(crate) fn stack(
     let dims = [first.width, first.height, slices as u64];
     let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
     let steps = ChannelsAndTimes { dims, channels, channel_names, frames, frame_names: Vec::new() };
-    let chosen = steps.choose(attempt, choice)?;
+    let chosen = steps.choose(context, choice)?;
     let mut placement = placement_from_resolution(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);
     chosen.add_time_remark(&mut placement);
     let page_of = |[frame, slice]: [usize; 2]| pages[(frame * slices + slice) * channels + chosen.channel];
     Ok(TiffStack {
-        name: stem(attempt.path),
+        name: stem(context.path),
         slices: chosen
             .slices(slices, frames)
             .into_iter()

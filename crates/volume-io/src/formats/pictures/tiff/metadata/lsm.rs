@@ -51,7 +51,7 @@ impl LsmInfo {
     /// Builds the stack of an LSM file.
     pub(crate) fn stack(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         tiff: &TiffFile,
         choice: &VolumeChoice,
     ) -> Result<TiffStack, LoadError> {
@@ -65,7 +65,7 @@ impl LsmInfo {
         // Without a remark on thumbnails: LSM files always have them.
         placement.remarks.extend(mismatch_remark);
         let Some(first) = pages.first().map(|&page| tiff.pages[page]) else {
-            return Err(attempt.bad_input_error("pages", "it has no usable page", HELP));
+            return Err(context.bad_input_error("pages", "it has no usable page", HELP));
         };
         let is_whole = self.slices.checked_mul(self.frames) == Some(pages.len());
         let (slices, frames) = if is_whole { (self.slices, self.frames) } else { (pages.len(), 1) };
@@ -77,14 +77,14 @@ impl LsmInfo {
             frames,
             frame_names: Vec::new(),
         };
-        let chosen = steps.choose(attempt, choice)?;
+        let chosen = steps.choose(context, choice)?;
         chosen.add_time_remark(&mut placement);
         let mut hints = ValueMetadata::default();
         hints.modality = Modality::LightMicroscopy;
         let page_of =
             |[frame, slice]: [usize; 2]| Some(TiffSlice { file: 0, page: pages[frame * slices + slice] });
         Ok(TiffStack {
-            name: stem(attempt.path),
+            name: stem(context.path),
             slices: chosen.slices(slices, frames).into_iter().map(page_of).collect(),
             other_files: Vec::new(),
             sample: is_channels.then_some(chosen.channel),

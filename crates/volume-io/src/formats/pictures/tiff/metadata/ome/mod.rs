@@ -39,8 +39,8 @@ pub(crate) fn is_ome(description: &str) -> bool {
         && (head.contains("<OME") || head.contains(":OME"))
 }
 
-fn parsed<'a>(attempt: LoadContext<'_>, text: &'a str) -> Result<Document<'a>, LoadError> {
-    xml::parse(text).map_err(|error| attempt.bad_input_error("OME-XML", error.to_string(), HELP))
+fn parsed<'a>(context: LoadContext<'_>, text: &'a str) -> Result<Document<'a>, LoadError> {
+    xml::parse(text).map_err(|error| context.bad_input_error("OME-XML", error.to_string(), HELP))
 }
 
 fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
@@ -71,11 +71,11 @@ impl OmeSizes {
     ///
     /// # Errors
     /// `BadInput` for implausible sizes.
-    fn parse(attempt: LoadContext<'_>, pixels: Node<'_, '_>, samples: usize) -> Result<Self, LoadError> {
+    fn parse(context: LoadContext<'_>, pixels: Node<'_, '_>, samples: usize) -> Result<Self, LoadError> {
         let size = |name: &str| {
             number::<u64>(pixels, name).filter(|size| (1..=1 << 31).contains(size)).ok_or_else(|| {
                 let said = quoted(pixels.attribute(name).unwrap_or_default());
-                attempt.bad_input_error(name, format!("{said} is not a valid size"), HELP)
+                context.bad_input_error(name, format!("{said} is not a valid size"), HELP)
             })
         };
         let dims = [size("SizeX")?, size("SizeY")?, size("SizeZ")?];
@@ -88,7 +88,7 @@ impl OmeSizes {
             }
             _ => {
                 let said = quoted(pixels.attribute("DimensionOrder").unwrap_or_default());
-                return Err(attempt.bad_input_error(
+                return Err(context.bad_input_error(
                     "DimensionOrder",
                     format!("{said} is not a valid order"),
                     HELP,
@@ -101,23 +101,23 @@ impl OmeSizes {
 
 /// Builds the stack of a file with such a description.
 pub(crate) fn stack(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &TiffFile,
     description: &str,
     choice: &VolumeChoice,
     control: &LoadControl,
 ) -> Result<TiffStack, LoadError> {
-    let document = parsed(attempt, description)?;
+    let document = parsed(context, description)?;
     let root = document.root_element();
     // The full XML may be in a companion file, which all files of a set name.
     if let Some(name) = child(root, "BinaryOnly").and_then(|node| node.attribute("MetadataFile")) {
-        let path = companion_path::resolve(attempt, "MetadataFile", name)?;
+        let path = companion_path::resolve(context, "MetadataFile", name)?;
         let companion = LoadContext { operation: "read the OME-XML of the volume", path: &path };
         let xml = companion_text(companion, control)?;
         let document = parsed(companion, &xml)?;
-        return stack_from_root(attempt, tiff, document.root_element(), choice);
+        return stack_from_root(context, tiff, document.root_element(), choice);
     }
-    stack_from_root(attempt, tiff, root, choice)
+    stack_from_root(context, tiff, root, choice)
 }
 
 /// First existing file with pages of the chosen image, by a companion XML file.
@@ -125,12 +125,12 @@ pub(crate) fn stack(
 /// # Errors
 /// `BadInput` where it names none, or one that must not be read; `Io` where none exists.
 pub(crate) fn first_file(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     xml: &str,
     choice: &VolumeChoice,
 ) -> Result<PathBuf, LoadError> {
-    let document = parsed(attempt, xml)?;
-    let [_, pixels] = chosen_image(attempt, document.root_element(), choice)?;
+    let document = parsed(context, xml)?;
+    let [_, pixels] = chosen_image(context, document.root_element(), choice)?;
     // If so many files are missing, the others will be as well.
     const MAX_LOOKED_FOR: usize = 1 << 12;
     let names = children(pixels, "TiffData").flat_map(|data| children(data, "UUID"));
@@ -138,14 +138,14 @@ pub(crate) fn first_file(
     names.dedup();
     let mut lost = None;
     for name in names.into_iter().take(MAX_LOOKED_FOR) {
-        match resolve_set_file(attempt, name) {
+        match resolve_set_file(context, name) {
             Err(error @ LoadError::Io { .. }) => lost = lost.or(Some(error)),
             found => return found,
         }
     }
     Err(lost.unwrap_or_else(|| {
         let why = "it names no TIFF files with its pages";
-        attempt.bad_input_error("TiffData", why, "open the TIFF files themselves")
+        context.bad_input_error("TiffData", why, "open the TIFF files themselves")
     }))
 }
 
@@ -156,18 +156,18 @@ fn is_generic_name(name: &str) -> bool {
 }
 
 /// Reads the text of a companion XML file.
-pub(crate) fn companion_text(attempt: LoadContext<'_>, control: &LoadControl) -> Result<String, LoadError> {
+pub(crate) fn companion_text(context: LoadContext<'_>, control: &LoadControl) -> Result<String, LoadError> {
     use std::io::Read as _;
-    let input = crate::reading::input::InputFile::open(attempt)?;
-    control.record_read(attempt.path);
+    let input = crate::reading::input::InputFile::open(context)?;
+    control.record_read(context.path);
     let mut text = Vec::new();
-    input.reader.take(MAX_XML_BYTES).read_to_end(&mut text).map_err(|error| attempt.io_error(error))?;
+    input.reader.take(MAX_XML_BYTES).read_to_end(&mut text).map_err(|error| context.io_error(error))?;
     Ok(String::from_utf8_lossy(&text).into_owned())
 }
 
 /// Finds the element of the chosen image, and its `ExrPixels`.
 fn chosen_image<'a, 'i>(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     root: Node<'a, 'i>,
     choice: &VolumeChoice,
 ) -> Result<[Node<'a, 'i>; 2], LoadError> {
@@ -175,7 +175,7 @@ fn chosen_image<'a, 'i>(
         children(root, "Image").filter_map(|image| Some([image, child(image, "Pixels")?])).collect();
     if images.len() > MAX_IMAGES {
         let why = format!("it has {} images, {MAX_IMAGES} are allowed", images.len());
-        return Err(attempt.limit_error("Image", why, "split the file into several"));
+        return Err(context.limit_error("Image", why, "split the file into several"));
     }
     let offers: Vec<VolumeOffer> = images
         .iter()
@@ -186,9 +186,9 @@ fn chosen_image<'a, 'i>(
         })
         .collect();
     if offers.is_empty() {
-        return Err(attempt.bad_input_error("description", "its OME-XML has no image", HELP));
+        return Err(context.bad_input_error("description", "its OME-XML has no image", HELP));
     }
-    Ok(images.swap_remove(attempt.resolve_choice(choice, FileDimension::Series, offers)?))
+    Ok(images.swap_remove(context.resolve_choice(choice, FileDimension::Series, offers)?))
 }
 
 /// Name attribute of an image.
@@ -207,31 +207,31 @@ fn channel_name(channel: Node<'_, '_>) -> String {
 }
 
 fn stack_from_root(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &TiffFile,
     root: Node<'_, '_>,
     choice: &VolumeChoice,
 ) -> Result<TiffStack, LoadError> {
     let Some(first) = tiff.pages.first() else {
-        return Err(attempt.bad_input_error("pages", "it has no pages", HELP));
+        return Err(context.bad_input_error("pages", "it has no pages", HELP));
     };
-    let [image, pixels] = chosen_image(attempt, root, choice)?;
-    let sizes = OmeSizes::parse(attempt, pixels, first.samples)?;
+    let [image, pixels] = chosen_image(context, root, choice)?;
+    let sizes = OmeSizes::parse(context, pixels, first.samples)?;
     let inside = if first.meaning == SampleMeaning::Channels { first.samples } else { 1 };
     let channels = sizes.channels.saturating_mul(inside);
     if channels.saturating_mul(sizes.frames) > super::super::file::directory::MAX_PAGES {
         let why = "the numbers of channels and time steps are implausible";
-        return Err(attempt.bad_input_error("SizeC, SizeT", why, HELP));
+        return Err(context.bad_input_error("SizeC, SizeT", why, HELP));
     }
     let slices = usize::try_from(sizes.dims[2]).unwrap_or(usize::MAX);
     if slices > super::super::file::directory::MAX_PAGES {
-        return Err(attempt.bad_input_error(
+        return Err(context.bad_input_error(
             "SizeZ",
             format!("a number of {slices} slices is implausible"),
             HELP,
         ));
     }
-    let pages = OmePages::parse(attempt, root, pixels, &sizes, tiff.pages.len())?;
+    let pages = OmePages::parse(context, root, pixels, &sizes, tiff.pages.len())?;
     let (frames, channels_there) = (pages.frames(), pages.channels().saturating_mul(inside));
     let steps = ChannelsAndTimes {
         dims: sizes.dims,
@@ -240,16 +240,16 @@ fn stack_from_root(
         frames,
         frame_names: Vec::new(),
     };
-    let chosen = steps.choose(attempt, choice)?;
+    let chosen = steps.choose(context, choice)?;
     let channel = chosen.channel / inside;
     let wanted: Vec<[usize; 3]> =
         chosen.slices(slices, frames).into_iter().map(|[frame, slice]| [slice, channel, frame]).collect();
-    let found = pages.find(attempt, &wanted)?;
+    let found = pages.find(context, &wanted)?;
     let Some(SliceRun { slices, remark }) = SliceRun::new(&found.slices, ANNOUNCED_PAGES) else {
-        return Err(pages.missing_page_error(attempt, channel, chosen.frame));
+        return Err(pages.missing_page_error(context, channel, chosen.frame));
     };
     let mut placement = placement_from_physical_size(pixels);
-    check_size(attempt, tiff, &slices, sizes.dims)?;
+    check_size(context, tiff, &slices, sizes.dims)?;
     for (there, said, what) in [(frames, sizes.frames, "time steps"), (channels_there, channels, "channels")]
     {
         if there < said {
@@ -261,7 +261,7 @@ fn stack_from_root(
     placement.remarks.extend(found.missing_files_remark);
     chosen.add_time_remark(&mut placement);
     let name = match image_name(image) {
-        name if is_generic_name(name.trim()) => crate::reading::input::stem(attempt.path),
+        name if is_generic_name(name.trim()) => crate::reading::input::stem(context.path),
         name => sanitised(name.trim(), 120),
     };
     Ok(TiffStack {
@@ -278,7 +278,7 @@ fn stack_from_root(
 /// Checks that pages have the size that the XML announces. Those of other files are compared to the first when they
 /// are read.
 fn check_size(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &TiffFile,
     slices: &[Option<TiffSlice>],
     [width, height, _]: [u64; 3],
@@ -286,7 +286,7 @@ fn check_size(
     let own =
         slices.iter().flatten().find(|slice| slice.file == 0).and_then(|slice| tiff.pages.get(slice.page));
     match own {
-        Some(page) if [page.width, page.height] != [width, height] => Err(attempt.bad_input_error(
+        Some(page) if [page.width, page.height] != [width, height] => Err(context.bad_input_error(
             "SizeX, SizeY",
             format!(
                 "pages of {width} x {height} pixels are announced, they have {} x {}",
@@ -339,8 +339,8 @@ fn hints(root: Node<'_, '_>, image: Node<'_, '_>, pixels: Node<'_, '_>, channel:
 }
 
 /// Resolves the path of a file of the set.
-pub(super) fn resolve_set_file(attempt: LoadContext<'_>, name: &str) -> Result<PathBuf, LoadError> {
-    companion_path::resolve(attempt, "FileName", name)
+pub(super) fn resolve_set_file(context: LoadContext<'_>, name: &str) -> Result<PathBuf, LoadError> {
+    companion_path::resolve(context, "FileName", name)
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub(super) struct SlicePages {
 impl<'a> OmePages<'a> {
     /// Reads the `TiffData` elements. `own_pages` is the number of pages of the opened file.
     pub(super) fn parse(
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         root: Node<'a, '_>,
         pixels: Node<'a, '_>,
         sizes: &OmeSizes,
@@ -60,7 +60,7 @@ impl<'a> OmePages<'a> {
                 ["FirstZ", "FirstC", "FirstT"].map(|name| number::<usize>(element, name).unwrap_or(0));
             if (0..3).any(|axis| first[axis] >= counts[axis]) {
                 let why = format!("{first:?} is beyond its {counts:?} slices, channels and time steps");
-                return Err(attempt.bad_input_error("TiffData", why, HELP));
+                return Err(context.bad_input_error("TiffData", why, HELP));
             }
             let page = number::<usize>(element, "IFD");
             let count = number::<usize>(element, "PlaneCount");
@@ -73,7 +73,7 @@ impl<'a> OmePages<'a> {
             said = said.saturating_add(count);
             if said > MAX_PAGES {
                 let why = format!("there are more than {MAX_PAGES} pages");
-                return Err(attempt.limit_error("TiffData", why, "split the file into several"));
+                return Err(context.limit_error("TiffData", why, "split the file into several"));
             }
             for step in 0..count {
                 pages.insert(start + step, (file, page.unwrap_or(0).saturating_add(step)));
@@ -82,7 +82,7 @@ impl<'a> OmePages<'a> {
         if elements.is_empty() {
             pages.extend((0..own_pages.min(all)).map(|page| (page, ("", page))));
         }
-        let own = own_name(attempt, root, &elements);
+        let own = own_name(context, root, &elements);
         Ok(Self { plane_pages: pages, strides, sizes: counts, own_name: own, own_count: own_pages })
     }
 
@@ -92,7 +92,7 @@ impl<'a> OmePages<'a> {
     /// `BadInput` where the name of a file leads out of the folder.
     pub(super) fn find(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         wanted: &[[usize; 3]],
     ) -> Result<SlicePages, LoadError> {
         let (mut beside, mut lost) = (Vec::new(), Vec::new());
@@ -108,7 +108,7 @@ impl<'a> OmePages<'a> {
                 _ if name.is_empty() || Some(name) == self.own_name => (page < self.own_count).then_some(0),
                 Some(&file) => file,
                 None => {
-                    let file = match resolve_set_file(attempt, name) {
+                    let file = match resolve_set_file(context, name) {
                         Ok(path) => {
                             beside.push(path);
                             Some(beside.len())
@@ -157,7 +157,7 @@ impl<'a> OmePages<'a> {
     /// Error for a combination of channel and time without any page.
     pub(super) fn missing_page_error(
         &self,
-        attempt: LoadContext<'_>,
+        context: LoadContext<'_>,
         channel: usize,
         frame: usize,
     ) -> LoadError {
@@ -187,7 +187,7 @@ impl<'a> OmePages<'a> {
                 )
             }
         };
-        attempt.bad_input_error("TiffData", why, help)
+        context.bad_input_error("TiffData", why, help)
     }
 }
 
@@ -201,13 +201,13 @@ fn axis_of(letter: char) -> usize {
 
 /// Name of the opened file in the XML: its own name, or that with the UUID of the file, or the only name, since the
 /// file may have been renamed.
-fn own_name<'a>(attempt: LoadContext<'_>, root: Node<'a, '_>, elements: &[Node<'a, '_>]) -> Option<&'a str> {
+fn own_name<'a>(context: LoadContext<'_>, root: Node<'a, '_>, elements: &[Node<'a, '_>]) -> Option<&'a str> {
     let marks: Vec<(&str, Option<&str>)> = elements
         .iter()
         .flat_map(|&element| children(element, "UUID"))
         .filter_map(|uuid| Some((uuid.attribute("FileName")?, uuid.text())))
         .collect();
-    let file = attempt.path.file_name()?.to_string_lossy();
+    let file = context.path.file_name()?.to_string_lossy();
     let by_name = marks.iter().find(|(name, _)| *name == file).map(|(name, _)| *name);
     let mark = root.attribute("UUID").map(str::trim);
     let by_mark = || {

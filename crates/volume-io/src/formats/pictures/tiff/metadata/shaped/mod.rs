@@ -68,7 +68,7 @@ fn arrays(tiff: &mut TiffFile, remarks: &mut Vec<String>) -> Vec<ShapedArray> {
 
 /// Stack of a file with array shapes; `None` where they add nothing to plain pages.
 pub(crate) fn stack_of_shapes(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &mut TiffFile,
     choice: &VolumeChoice,
 ) -> Result<Option<TiffStack>, LoadError> {
@@ -77,12 +77,12 @@ pub(crate) fn stack_of_shapes(
     if arrays.is_empty() {
         return Ok(None);
     }
-    let [at, series] = chosen_array(attempt, tiff, &arrays, choice)?;
+    let [at, series] = chosen_array(context, tiff, &arrays, choice)?;
     let ShapedArray { description: words, axes, first, pages } = arrays.swap_remove(at);
     let page = tiff.pages[first];
     // One page stands for all, whose data are contiguous.
     let follow = (pages == 1 && axes.pages > 1 && page.is_plain_rows())
-        .then(|| contiguous_pages(attempt, tiff, &page, axes.pages, "shape"));
+        .then(|| contiguous_pages(context, tiff, &page, axes.pages, "shape"));
     let (first, pages) = match follow {
         Some(Ok(all)) => {
             let first = tiff.pages.len();
@@ -118,7 +118,7 @@ pub(crate) fn stack_of_shapes(
         frames,
         frame_names: Vec::new(),
     };
-    let chosen = steps.choose(attempt, choice)?;
+    let chosen = steps.choose(context, choice)?;
     let step = |stride: Option<PageStride>, at: usize| stride.map_or(0, |stride| stride.pages * at);
     let wanted = chosen.slices(slices, frames).into_iter().map(|[frame, slice]| {
         let channel = step(axes.channels, chosen.channel / inside);
@@ -131,7 +131,7 @@ pub(crate) fn stack_of_shapes(
             "{} pages are announced, and {pages} exist: none for the chosen channel and time step",
             axes.pages
         );
-        return Err(attempt.bad_input_error("shape", why, HELP));
+        return Err(context.bad_input_error("shape", why, HELP));
     };
     let mut placement = placement_from_resolution(tiff, words.unit.as_deref(), words.spacing);
     if axes.is_assumed {
@@ -142,7 +142,7 @@ pub(crate) fn stack_of_shapes(
     placement.remarks.splice(0..0, remarks);
     chosen.add_time_remark(&mut placement);
     Ok(Some(TiffStack {
-        name: stem(attempt.path),
+        name: stem(context.path),
         slices,
         other_files: Vec::new(),
         sample: (inside > 1).then_some(chosen.channel % inside),
@@ -154,7 +154,7 @@ pub(crate) fn stack_of_shapes(
 
 /// Index of the chosen array, and index of the series in it.
 fn chosen_array(
-    attempt: LoadContext<'_>,
+    context: LoadContext<'_>,
     tiff: &TiffFile,
     arrays: &[ShapedArray],
     choice: &VolumeChoice,
@@ -163,7 +163,7 @@ fn chosen_array(
     let all = counts.iter().fold(0usize, |all, &count| all.saturating_add(count));
     if all > MAX_SERIES {
         let why = format!("it holds {all} series, {MAX_SERIES} are allowed");
-        return Err(attempt.limit_error("shape", why, "write fewer into one file"));
+        return Err(context.limit_error("shape", why, "write fewer into one file"));
     }
     let mut offers = Vec::new();
     for (array, &count) in arrays.iter().zip(&counts) {
@@ -175,7 +175,7 @@ fn chosen_array(
             offers.push(VolumeOffer::with_number(offers.len(), name, dims));
         }
     }
-    let mut series = attempt.resolve_choice(choice, FileDimension::Series, offers)?;
+    let mut series = context.resolve_choice(choice, FileDimension::Series, offers)?;
     for (at, &count) in counts.iter().enumerate() {
         if series < count {
             return Ok([at, series]);
