@@ -60,7 +60,7 @@ fn pictures_can_be_made_again_from_themselves() {
     assert!(!outcome.stderr.contains("earlier version"), "{outcome:?}");
 
     // A picture of an earlier version may differ, which the message states.
-    let earlier = changed.replace("\"schema\": 2", "\"schema\": 1");
+    let earlier = changed.replace("\"schema\": 3", "\"schema\": 1");
     assert_ne!(earlier, changed);
     export_png([48, 36], &pixels, true, Some(&earlier), &folder.path("earlier.png")).expect("written");
     let said = folder.run_successfully("replay earlier.png");

@@ -7,9 +7,9 @@ use crate::sources::all_sources;
 use crate::tokens::tokens;
 
 /// Statics of the sources: file, name, and the reason why it is none of a value's fields.
-const ALLOWED: [(&str, &str, &str); 9] = [
+const ALLOWED: [(&str, &str, &str); 11] = [
     (
-        "crates/files/src/fault.rs",
+        "crates/files/src/fault/hooks.rs",
         "FAULTS",
         "an option of the process, which everything that can fail asks about",
     ),
@@ -20,6 +20,8 @@ const ALLOWED: [(&str, &str, &str); 9] = [
     ),
     ("crates/media/src/marks/layer.rs", "FONT", "constant"),
     ("crates/media/src/marks/layer.rs", "TYPEFACE", "constant, parsed once"),
+    ("crates/render/src/pipelines/preprocessor.rs", "OPTIONS", "constant, read from the shaders once"),
+    ("crates/render/src/pipelines/preprocessor.rs", "OVERRIDES", "constant, read from the shaders once"),
     ("crates/scene/src/transfer/label_colors.rs", "COLORS", "constant, computed once"),
     (
         "crates/volume/src/cancellation.rs",

@@ -123,7 +123,7 @@ fn optical_depth(opacity: f64) -> f64 {
 /// Colour and opacity of a transfer function at a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TransferSample {
-    /// Linear RGB.
+    /// Colour in linear RGB, without opacity.
     pub color: [f64; 3],
     /// Optical depth per opacity unit.
     pub depth: f64,

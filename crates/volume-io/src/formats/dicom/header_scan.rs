@@ -14,13 +14,6 @@ use chiaroscuro_volume::LoadContext;
 /// Maximum number of files in a folder that are examined for slices of the same series.
 const MAX_FILES_BESIDE: usize = 1 << 16;
 
-/// Maximum number of files of the folders beside a file's own that are examined: more than the slices of most scans,
-/// and few enough to be looked at in a second where these folders hold something else.
-const MAX_FILES_IN_SIBLINGS: usize = 1 << 13;
-
-/// Maximum number of files in such a folder: others hold whole series.
-const MAX_FILES_PER_SIBLING: usize = 16;
-
 /// Number of bytes from a file's beginning that are examined for the magic bytes.
 const START_BYTES: u64 = 1024;
 
@@ -109,41 +102,4 @@ pub(super) fn files_beside(path: &Path) -> Vec<PathBuf> {
     // Directory listings have no defined order.
     files.sort();
     files
-}
-
-/// Returns the files in the folders beside a file's own, where archives export each slice into a folder of its own.
-/// Folders within these, hidden ones, links, and folders with many files are left out; ends silently at a maximum.
-pub(super) fn files_in_sibling_folders(
-    path: &Path,
-    control: &LoadControl,
-) -> Result<Vec<PathBuf>, LoadError> {
-    let mut files = Vec::new();
-    // Relative paths lack the names of the folders above.
-    let Ok(path) = std::path::absolute(path) else { return Ok(files) };
-    let Some(own) = path.parent() else { return Ok(files) };
-    let Some(entries) = own.parent().and_then(|above| std::fs::read_dir(above).ok()) else {
-        return Ok(files);
-    };
-    for entry in entries.flatten().take(MAX_FILES_IN_SIBLINGS) {
-        control.check()?;
-        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
-        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        if is_hidden || !is_folder || entry.path() == own {
-            continue;
-        }
-        let Ok(within) = std::fs::read_dir(entry.path()) else { continue };
-        let within: Vec<PathBuf> =
-            within.flatten().take(MAX_FILES_PER_SIBLING + 1).map(|entry| entry.path()).collect();
-        if within.len() > MAX_FILES_PER_SIBLING {
-            continue;
-        }
-        let is_visible = |path: &PathBuf| {
-            !path.file_name().unwrap_or_default().to_string_lossy().starts_with('.') && path.is_file()
-        };
-        files.extend(within.into_iter().filter(is_visible));
-        if files.len() >= MAX_FILES_IN_SIBLINGS {
-            break;
-        }
-    }
-    Ok(files)
 }

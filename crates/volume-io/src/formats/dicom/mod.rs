@@ -29,10 +29,10 @@ use super::{LoadControl, LoadError, LoadOptions};
 use chiaroscuro_files::natural_sort_key;
 use chiaroscuro_volume::{LoadContext, Volume};
 use header::{DicomHeader, is_dicom};
-use header_scan::{HeaderScan, files_beside, files_in_sibling_folders, scan_headers};
+use header_scan::{HeaderScan, files_beside, scan_headers};
 use image_groups::{group_images, omission_remark};
 use object_class::ObjectClass;
-use series_selection::{NamedFile, SeriesSelection, SlicePlace};
+use series_selection::SeriesSelection;
 
 /// Action that error messages name for a single file.
 const READ_FILE: &str = "read the DICOM file";
@@ -61,8 +61,7 @@ pub(crate) fn series_uid(path: &Path, control: &LoadControl) -> Option<String> {
     Some(header.values.series_uid).filter(|series| is_slice && !series.is_empty())
 }
 
-/// Loads a DICOM file; if it is one slice of a series, the other slices in its folder as well, or, where it is alone
-/// there, those in the folders beside it.
+/// Loads a DICOM file; if it is one slice of a series, the other slices in its folder as well.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
     let context = LoadContext { operation: READ_FILE, path };
@@ -89,22 +88,12 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let found = &header.values;
     let is_another =
         |other: &DicomHeader| other.values.series_uid == found.series_uid && other.frame_count() == 1;
-    let mut others: Vec<DicomHeader> = others.into_iter().filter(is_another).collect();
-    let mut place = SlicePlace::SameFolder;
-    if others.is_empty() {
-        let files = files_in_sibling_folders(path, control)?;
-        others.extend(scan_headers(&files, control)?.headers.into_iter().filter(is_another));
-        place = SlicePlace::SiblingFolders;
-    }
+    let others: Vec<DicomHeader> = others.into_iter().filter(is_another).collect();
     let mut headers = vec![header];
     headers.extend(others);
     let mut remarks = drop_copies(&mut headers);
-    // Without any other order, that of the file names counts, after that of their folders.
-    let order = |path: &Path| {
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        natural_sort_key(&whole.to_string_lossy())
-    };
-    headers.sort_by_cached_key(|header| order(&header.path));
+    // Without any other order, that of the file names counts.
+    headers.sort_by_cached_key(|header| natural_sort_key(&file_name(&header.path)));
     let main = headers.iter().position(|header| header.path == path);
     remarks.extend(
         first_error
@@ -115,8 +104,8 @@ fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         // Other files of the series may be readable, but the named one is not.
         return Err(grouping.unreadable.swap_remove(wrong).error);
     }
-    let named_file = main.map(|index| NamedFile { index, place });
-    SeriesSelection { context, path, headers: &headers, named_file, options, control }.load(grouping, remarks)
+    SeriesSelection { context, path, headers: &headers, named_file: main, options, control }
+        .load(grouping, remarks)
 }
 
 /// Loads a series from a folder's files; `None` if none is a DICOM file. `remarks` holds earlier remarks on the
@@ -151,6 +140,11 @@ pub(super) fn load_folder(
 /// Counts the DICOM files that have pixels.
 pub(super) fn count_pictures(files: &[PathBuf], control: &LoadControl) -> Result<usize, LoadError> {
     scan_headers(files, control).map(|scan| scan.headers.len())
+}
+
+/// Returns the file name of a path, as text.
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Makes the error for a file without pixels, which tells what the file is.

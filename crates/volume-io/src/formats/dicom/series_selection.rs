@@ -18,30 +18,14 @@ use chiaroscuro_volume::{FileDimension, LoadContext, Volume};
 /// failure, so that more attempts are needed only if files change meanwhile.
 const MAX_ATTEMPTS: usize = 3;
 
-/// File that the user named.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct NamedFile {
-    /// Index of its header.
-    pub(super) index: usize,
-    pub(super) place: SlicePlace,
-}
-
-/// Place where the other slices of a named file's series were found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum SlicePlace {
-    SameFolder,
-    /// Folders beside its own, which has no other slice.
-    SiblingFolders,
-}
-
 /// Files from which one volume is opened.
 pub(super) struct SeriesSelection<'a> {
     pub(super) context: LoadContext<'a>,
     /// File or folder that the user named.
     pub(super) path: &'a Path,
     pub(super) headers: &'a [DicomHeader],
-    /// File that the user named; it selects the volume.
-    pub(super) named_file: Option<NamedFile>,
+    /// Index of the header of the file that the user named; it selects the volume.
+    pub(super) named_file: Option<usize>,
     pub(super) options: &'a LoadOptions,
     pub(super) control: &'a LoadControl,
 }
@@ -59,7 +43,7 @@ impl SeriesSelection<'_> {
         }
         let mut series = DicomSeries::from_groups(grouping, self.headers);
         let all: usize = series.iter().map(DicomSeries::image_count).sum();
-        if let Some(NamedFile { index: main, .. }) = self.named_file {
+        if let Some(main) = self.named_file {
             // The named file selects the volume, unless it was dropped for another at the same position.
             if series.iter().any(|series| series.volume_with_file(main).is_some()) {
                 series.retain(|series| series.volume_with_file(main).is_some());
@@ -72,16 +56,14 @@ impl SeriesSelection<'_> {
         };
         let series = series.swap_remove(chosen);
         // A single file may hold several slices of its own.
-        if let Some(NamedFile { place, .. }) = self.named_file
-            && self.headers.len() > 1
-        {
-            remarks.extend(named_file_remarks(series.image_count(), all, place));
+        if self.named_file.is_some() && self.headers.len() > 1 {
+            remarks.extend(named_file_remarks(series.image_count(), all));
         }
         let of_series = series.first_file().map(|file| self.headers[file].values.series_uid.as_str());
         remarks.extend(self.unreadable_remarks(&unreadable, of_series.unwrap_or_default()));
         remarks.extend(series.stack.remarks.iter().cloned());
         let mut choice = self.options.choice.clone();
-        if let (Some(NamedFile { index: main, .. }), None) = (self.named_file, choice.frame)
+        if let (Some(main), None) = (self.named_file, choice.frame)
             && let Some(volume) = series.volume_with_file(main)
         {
             choice = choice.with_selected(FileDimension::Frame, &volume.to_string());
@@ -109,8 +91,7 @@ impl SeriesSelection<'_> {
                     Err(VolumeReadError::Load(error)) => return Err(error),
                     Err(VolumeReadError::Unreadable { pictures, total, why }) => (pictures, total, why),
                 };
-            let named_file = self.named_file.map(|named| named.index);
-            let is_named_file = |at: &usize| Some(request.volume.slices[*at].file) == named_file;
+            let is_named_file = |at: &usize| Some(request.volume.slices[*at].file) == self.named_file;
             if pictures.iter().any(is_named_file) {
                 return Err(why);
             }
@@ -166,12 +147,9 @@ impl SeriesSelection<'_> {
 }
 
 /// Returns remarks for the user if one file was named: how many images of its series are shown.
-fn named_file_remarks(count: usize, all: usize, place: SlicePlace) -> Vec<String> {
-    let place = match place {
-        SlicePlace::SameFolder => "in the same folder",
-        SlicePlace::SiblingFolders => "in this folder and those beside it",
-    };
-    let shown = (count > 1).then(|| format!("the {count} slices of its series {place} are shown with it"));
+fn named_file_remarks(count: usize, all: usize) -> Vec<String> {
+    let shown =
+        (count > 1).then(|| format!("the {count} slices of its series in the same folder are shown with it"));
     let left = (all > count).then(|| {
         format!("{} images of the series are not shown: their size or direction differs", all - count)
     });

@@ -58,34 +58,6 @@ fn each_slice_may_have_a_folder() {
 }
 
 #[test]
-fn a_slice_alone_in_its_folder_has_its_series_beside_it() {
-    let at = TempDir::new().unwrap();
-    for z in 0..5 {
-        write(&at, &format!("{z}/IM"), z, |set| set);
-        write(&at, &format!("{z}/OTHER"), z, other_series);
-    }
-    // Not one of them: deeper, hidden, among many files, or a copy.
-    write(&at, "4/deeper/IM", 7, |set| set);
-    write(&at, ".hidden/IM", 8, |set| set);
-    write(&at, "many/IM", 9, |set| set);
-    for n in 0..16 {
-        std::fs::write(at.path().join(format!("many/{n}")), "x").unwrap();
-    }
-    std::fs::write(at.path().join("3/notes.txt"), "x").unwrap();
-    let expected: Vec<u16> = (0..5).map(|z| 100 * z).collect();
-    let volume = load_path(&at.path().join("3/IM"), VolumeChoice::default()).unwrap();
-    assert_eq!(volume.samples(), &Samples::U16(ramp_values(&expected)));
-    assert_remark(&volume, "the 5 slices of its series in this folder and those beside it");
-    // With another slice in its own folder, that folder has the series.
-    write(&at, "3/IM2", 4, |set| set);
-    let volume = load_path(&at.path().join("3/IM"), VolumeChoice::default()).unwrap();
-    assert_eq!(volume.samples(), &Samples::U16(ramp_values(&[300, 400])));
-    assert_remark(&volume, "in the same folder");
-    let only = load_path(&at.path().join("4/deeper/IM"), VolumeChoice::default()).unwrap();
-    assert_eq!((only.dims(), only.remarks().len()), ([4, 3, 1], 0), "{:?}", only.remarks());
-}
-
-#[test]
 fn folders_of_other_things_change_nothing() {
     let at = TempDir::new().unwrap();
     let picture = |name: &str| {
