@@ -3,8 +3,8 @@
 //
 // [a, 1 − 2a, a] along an axis is the mean of two linear fetches at ± 2a from the voxel.
 //
-// Where voxels are missing, presence is the second channel, the fraction of the blur on existing voxels, so that one
-// fetch has both.
+// If voxels are missing, the second channel is presence: the fraction of the blur that falls on existing voxels. One
+// fetch returns density and presence.
 #import "volume/resample.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<TARGET_FORMAT, write>;

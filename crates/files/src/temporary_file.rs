@@ -21,7 +21,7 @@ const ABANDONED_AFTER: Duration = Duration::from_hours(24);
 const TERMINATION_WAIT: Duration = Duration::from_millis(500);
 
 /// Temporary files that this process is writing. They stay static: the panic hook and the handler of termination remove
-/// them, whoever writes.
+/// those of all threads.
 static TEMPORARY_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Temporary file that does not have its final name yet. Dropping it removes it.

@@ -44,12 +44,13 @@ impl CancelToken {
         Self(Some(Arc::default()))
     }
 
-    /// Creates the token of work that nobody can cancel.
+    /// Creates a token that can never be cancelled.
     pub const fn never() -> Self {
         Self(None)
     }
 
-    /// Returns the token under which this thread [runs](Self::run), or that of work that nobody can cancel.
+    /// Returns the token under which this thread [runs](Self::run), or one that can never be
+    /// cancelled.
     ///
     /// The loops over all voxels use it. They lie below constructors and accessors (statistics are computed when they
     /// are first asked for) that a hundred callers use without any thought of cancelling; an argument would burden

@@ -163,7 +163,7 @@ impl TransferTable {
 }
 
 /// Tables of both transfer functions of the settings.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct TransferTables {
     /// Table of the eye's transfer function.
     pub eye: TransferTable,
@@ -239,19 +239,10 @@ impl TransferTables {
         if let Some(CacheEntry { product: tables, .. }) = previous {
             let is_same = |a: &TransferTable, b: &TransferTable| Arc::ptr_eq(&a.distances, &b.distances);
             if is_same(&eye, &tables.eye) && is_same(&lighting, &tables.lighting) {
-                let (eye_distances, light_distances) =
-                    (tables.eye_distances.clone(), tables.light_distances.clone());
-                let (shown, needed) = (Arc::clone(&tables.occupied_distances), tables.needed_cells.clone());
-                let tables = Self {
-                    eye,
-                    lighting,
-                    colors,
-                    eye_distances,
-                    light_distances,
-                    occupied_distances: shown,
-                    needed_cells: needed,
-                };
-                return Ok(TableBakeResult { tables, baked });
+                return Ok(TableBakeResult {
+                    tables: Self { eye, lighting, colors, ..tables.clone() },
+                    baked,
+                });
             }
         }
         let shown = if Arc::ptr_eq(&eye.distances, &lighting.distances) {
@@ -276,7 +267,6 @@ impl TransferTables {
             &pairs,
             wgpu::TextureFormat::Rg8Unorm,
         )?;
-        let needed = RefCell::default();
         let tables = Self {
             eye,
             lighting,
@@ -284,7 +274,7 @@ impl TransferTables {
             eye_distances,
             light_distances,
             occupied_distances: shown,
-            needed_cells: needed,
+            needed_cells: RefCell::default(),
         };
         Ok(TableBakeResult { tables, baked })
     }

@@ -44,8 +44,8 @@ struct SharedJobs {
 
 /// Registry of the running jobs of a window, and of the windows that it replaces after the loss of a device.
 ///
-/// The window's context carries it, as it carries the request to repaint that each job makes at its end: so whoever
-/// has the context can start a job, and none can escape the registry.
+/// The window's context holds it as a plugin. Every job needs the context to request a repaint when it ends, so that
+/// no job can start without being listed here.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Jobs(Arc<SharedJobs>);
 

@@ -271,7 +271,7 @@ fn an_affine_beside_a_volume_places_it() {
         assert_eq!(volume.dims(), [6, 5, 8]);
         assert_eq!(columns(&volume), [2.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.5, 4.0, -7.0, -8.0, 9.0]);
         assert!(volume.is_anatomical() && !volume.has_unknown_scale() && volume.remarks().is_empty());
-        // The same place of the array, whatever its order in memory.
+        // Both memory orders place a voxel of given indices at the same point.
         let volume = load(affine, "False", "(6, 5, 8)");
         assert_eq!(volume.dims(), [8, 5, 6]);
         assert_eq!(columns(&volume), [0.0, 0.5, 4.0, 0.0, 3.0, 0.0, 2.0, 0.0, 0.0, -7.0, -8.0, 9.0]);

@@ -10,7 +10,7 @@ use chiaroscuro_volume::{LoadContext, LoadError, ValueMetadata, VolumeChoice};
 
 /// Pages that are slices: those that match the first page that is not a thumbnail or mask.
 pub(super) struct UsablePages {
-    /// Their indices in the file.
+    /// Indices of the slices among the pages of the file.
     pub(super) pages: Vec<usize>,
     /// Remark on masks and smaller versions that are left out.
     pub(super) auxiliary_remark: Option<String>,
