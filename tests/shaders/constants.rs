@@ -141,6 +141,12 @@ fn statements(source: &str) -> String {
 #[test]
 fn workgroups_have_the_size_that_the_dispatches_count_on() {
     let expected = [
+        ("diffusion/coarser_stencil.wgsl", [4, 4, 4]),
+        ("diffusion/coarsest.wgsl", [4, 4, 4]),
+        ("diffusion/relax.wgsl", [4, 4, 4]),
+        ("diffusion/restrict.wgsl", [4, 4, 4]),
+        ("diffusion/right_side.wgsl", [4, 4, 4]),
+        ("diffusion/stencil.wgsl", [4, 4, 4]),
         ("eye/eye_pass.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
         ("light/area_light.wgsl", [8, 8, 4]),
@@ -163,7 +169,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scatter/splat.wgsl", [8, 8, 4]),
         ("scattered_light/blocks.wgsl", [64, 1, 1]),
         ("scattered_light/gather.wgsl", [64, 1, 1]),
-        ("scattered_light/ratio.wgsl", [256, 1, 1]),
+        ("scattered_light/mixing.wgsl", [256, 1, 1]),
         ("scattered_light/result.wgsl", [64, 1, 1]),
         ("scattered_light/single_scattering.wgsl", [4, 4, 4]),
         ("scattered_light/source.wgsl", [4, 4, 4]),

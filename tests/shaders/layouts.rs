@@ -262,6 +262,10 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             "eye/eye_pass.wgsl",
             layout!(ScatteredLightUniform { lookup, lookup_distance, share, pad0, pad1, pad2 }),
         ),
+        (
+            "diffusion/relax.wgsl",
+            layout!(DiffusionLevelUniform { dims, first, coarser_dims, coarser_first, edges, share }),
+        ),
         ("scattered_light/gather.wgsl", layout!(BounceUniform { dims, share, color, min_extinction })),
         (
             "scattered_light/single_scattering.wgsl",

@@ -196,7 +196,7 @@ fn pictures_with_light_that_bounces() {
 }
 
 /// All light within material, scattered or not. Random walks are independent of rays through blocks, bounces and
-/// their extrapolation.
+/// diffusion.
 #[test]
 fn light_agrees_with_random_walks() {
     const WALKS: u32 = 20_000;

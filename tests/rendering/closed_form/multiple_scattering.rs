@@ -8,9 +8,10 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{context, render};
+use crate::against_reference::mutations::assert_in_shader;
+use crate::common::{context, damaged_renderer, render};
 use crate::scenes::{self, linear_extinction};
-use crate::thresholds::{FURNACE, HALF_SPACE};
+use crate::thresholds::{FURNACE, HALF_SPACE, PICTURED_FURNACE, PICTURED_FURNACE_CONVERGED};
 
 /// Volume with densities given by `full`.
 fn volume(dims: [usize; 3], full: impl Fn([usize; 3]) -> f64) -> Volume {
@@ -65,6 +66,75 @@ fn what_absorbs_nothing_vanishes_in_a_white_furnace() {
         println!("light in a white furnace: {least:.4} to {most:.4}");
         assert!(least >= 1.0 - FURNACE && most <= 1.0 + FURNACE, "{least} to {most}");
     }
+}
+
+/// White cube that absorbs nothing, 26 voxels wide, of an optical depth, under a white sky.
+fn white_cube(depth: f64, bounces: u32) -> (Dataset, Settings) {
+    const BORDER: usize = 3;
+    const N: usize = 32;
+    let cube =
+        volume([N; 3], |at| if at.iter().all(|c| (BORDER..N - BORDER).contains(c)) { 1.0 } else { 0.0 });
+    let scattering = ScatteringSettings { bounces, albedo: 1.0, ..ScatteringSettings::default() };
+    let mut settings = Settings { scattering, lights: Vec::new(), ..scenes::look() }
+        .with_transfer(linear_extinction(depth / (N - 2 * BORDER) as f64))
+        .with_range(DensityRange::Full);
+    scenes::make_isotropic(&mut settings);
+    settings.sky = SkySettings { mode: SkyMode::White, intensity: 1.0, ..SkySettings::default() };
+    (Dataset::new(cube), settings)
+}
+
+/// Darkest and brightest light of a picture over its opacity, where that is more than a fifth.
+fn extremes(renderer: &mut Renderer, (loaded, settings): &(Dataset, Settings)) -> (f64, f64) {
+    let picture = render(renderer, loaded, settings, [40, 40]).linear;
+    let seen = picture.iter().filter(|texel| texel[3] > 0.2);
+    let light = seen.map(|texel| f64::from(texel[0] / texel[3]));
+    light.fold((f64::MAX, f64::MIN), |(least, most), light| (least.min(light), most.max(light)))
+}
+
+/// However dense it is, and with few bounces: what later ones bring diffuses.
+#[test]
+fn dense_white_cubes_vanish_in_a_white_furnace() {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut failures = Vec::new();
+    for depth in [3.0, 8.0, 18.0, 40.0] {
+        for (bounces, limit) in
+            [(4, PICTURED_FURNACE), (6, PICTURED_FURNACE), (12, PICTURED_FURNACE_CONVERGED)]
+        {
+            let (least, most) = extremes(&mut renderer, &white_cube(depth, bounces));
+            println!("depth {depth}, {bounces} bounces: {least:.4} to {most:.4}");
+            if least < 1.0 - limit || most > 1.0 + limit {
+                failures.push(format!("depth {depth}, {bounces} bounces: {least} to {most}"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn mistakes_in_the_furnace_are_noticed() {
+    let mistakes = [
+        ("scattered_light/source.wgsl", "- last[at].rgb + solution[at].rgb", "- last[at].rgb"),
+        (
+            "diffusion/relax.wgsl",
+            "own.sink + own.faces.x + own.faces.y + own.faces.z",
+            "own.sink + own.faces.x",
+        ),
+        ("diffusion/coarser_stencil.wgsl", "0.5 * stencil.faces", "stencil.faces"),
+        ("diffusion/restrict.wgsl", "vec4f(sum / 8.0, 0.0)", "vec4f(0.0)"),
+        ("diffusion/stencil.wgsl", "(3.0 * sigma)", "(6.0 * sigma)"),
+    ];
+    for (shader, from, to) in mistakes {
+        assert_in_shader(shader, from);
+        let (least, most) = extremes(&mut damaged_renderer(from, to), &white_cube(40.0, 4));
+        println!("{shader}, {to:?}: {least:.4} to {most:.4}");
+        assert!(
+            least < 1.0 - PICTURED_FURNACE || most > 1.0 + PICTURED_FURNACE,
+            "{shader}: {to:?} is not noticed: {least} to {most}"
+        );
+    }
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let (least, most) = extremes(&mut renderer, &white_cube(40.0, 1));
+    assert!(least < 1.0 - PICTURED_FURNACE, "one bounce alone is not noticed: {least} to {most}");
 }
 
 /// Chandrasekhar's H function of isotropic scattering (Radiative Transfer 1950, §39), at μ = 1, by its integral

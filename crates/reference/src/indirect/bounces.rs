@@ -2,11 +2,14 @@
 //!
 //! For each block, ϖ is its scattering coefficient for each colour, and φ the mean of the light there over all
 //! directions. φ₀ is that of lights and sky; bounced light is ψ = ⟨L⟩, the mean over directions of the light along
-//! rays through blocks that emit S = ϖ (φ₀ + ψ).
+//! rays through blocks that emit S = ϖ (φ₀ + ψ). Each sweep's change of ψ diffuses, which gives what later bounces bring
+//! of it.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::diffusion::DiffusionGrid;
+use super::series::SeriesStep;
 use super::sky::interpolate_with_zero_border;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
@@ -16,9 +19,6 @@ use chiaroscuro_scene::{LightGeometry, SKY_LOOKUP_DISTANCE, ScatteringSettings, 
 
 /// Maximum number of points for an area light: bounced light shows no edges of shadows.
 const MAX_LIGHT_POINTS: u32 = 8;
-
-/// Maximum ratio of two successive bounces, to which estimates are clamped.
-const MAX_BOUNCE_RATIO: f64 = 0.98;
 
 /// Volume of bounced light.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,30 +108,44 @@ impl Reference<'_> {
         let own = self.settings.shading.emission / scattering.albedo;
         let mut first = self.before_bounces(&medium, &frames_of_a_bounce);
         first.iter_mut().flatten().for_each(|light| *light += own);
-        // Sum of all bounces so far, and its change in the last step.
-        let (mut light, mut change) = (nothing(), nothing());
-        for bounce in 1..=scattering.bounces {
-            let given: [Vec<f64>; 3] = std::array::from_fn(|c| {
-                (0..count).map(|at| medium.scattering[c][at] * (first[c][at] + light[c][at])).collect()
-            });
-            if bounce == scattering.bounces {
-                // The last bounce is the visible one, and has more directions.
-                light = mean_light(&medium, &frames, &given, |_| [0.0; 3]);
-                break;
-            }
-            let next = mean_light(&medium, &frames_of_a_bounce, &given, |_| [0.0; 3]);
-            let more: [Vec<f64>; 3] = std::array::from_fn(|c| {
-                next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect()
-            });
-            // The last bounce but one extrapolates the series to its end, and so does every second one before it.
-            let extrapolates = bounce > 1 && (scattering.bounces - 1 - bounce).is_multiple_of(2);
+        let emitted_by = |light: &[Vec<f64>; 3]| -> [Vec<f64>; 3] {
+            std::array::from_fn(|c| {
+                let of = |at: usize| medium.scattering[c][at] * (first[c][at] + light[c][at]);
+                (0..count).map(of).collect()
+            })
+        };
+        let mut light = nothing();
+        if scattering.bounces > 1 {
+            let grids = self.diffusion_grids(&medium);
+            // Before the first sweep all that blocks scatter or emit diffuses.
+            let given = emitted_by(&light);
             for c in 0..3 {
-                let ratio = if extrapolates { bounce_ratio(&medium, &more[c], &change[c]) } else { 0.0 };
-                let extrapolate =
-                    |(light, more): (&mut f64, &f64)| *light = (*light + more / (1.0 - ratio)).max(0.0);
-                light[c].iter_mut().zip(&more[c]).for_each(extrapolate);
+                light[c] = self.diffuse(&grids[c], &given[c]).iter().map(|light| light.max(0.0)).collect();
             }
-            change = more;
+            let mut before: Option<[SeriesStep; 3]> = None;
+            for _ in 1..scattering.bounces {
+                let next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3]);
+                let steps = std::array::from_fn(|c| {
+                    let change: Vec<f64> =
+                        next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect();
+                    let scattered: Vec<f64> = change
+                        .iter()
+                        .zip(&medium.scattering[c])
+                        .map(|(change, share)| change * share)
+                        .collect();
+                    let later = self.diffuse(&grids[c], &scattered);
+                    SeriesStep::new(&light[c], &change, &later)
+                });
+                for c in 0..3 {
+                    let before = before.as_ref().map(|before| &before[c]);
+                    light[c] = steps[c].mixed_with(before, &medium.extinction);
+                }
+                before = Some(steps);
+            }
+        }
+        if scattering.bounces > 0 {
+            // The last bounce is the visible one, and has more directions.
+            light = mean_light(&medium, &frames, &emitted_by(&light), |_| [0.0; 3]);
         }
         BouncedLight { dims: medium.dims, divisor: medium.divisor, light }
     }
@@ -140,6 +154,24 @@ impl Reference<'_> {
     /// bounces; that of the sky from the given number of directions.
     pub fn unscattered_light(&self, medium: &ScatteringMedium, directions: u32) -> [Vec<f64>; 3] {
         self.before_bounces(medium, &self.frames(medium, directions))
+    }
+
+    /// Creates the diffusion equation of each colour.
+    fn diffusion_grids(&self, medium: &ScatteringMedium) -> [DiffusionGrid; 3] {
+        let shortest = self.scene.smallest_edge();
+        let edges = self.scene.voxel_edges / shortest * medium.divisor as f64;
+        let depths = |of: &[f64]| of.iter().map(|per_unit| per_unit * shortest).collect::<Vec<f64>>();
+        let extinction = depths(&medium.extinction);
+        medium
+            .scattering
+            .each_ref()
+            .map(|of| DiffusionGrid::new(medium.dims, edges, &extinction, &depths(of)))
+    }
+
+    /// Returns the light that all later bounces bring, from the light that blocks scatter per scene unit.
+    fn diffuse(&self, grid: &DiffusionGrid, scattered: &[f64]) -> Vec<f64> {
+        let per_edge: Vec<f64> = scattered.iter().map(|light| light * self.scene.smallest_edge()).collect();
+        grid.solve(&per_edge)
     }
 
     fn before_bounces(&self, medium: &ScatteringMedium, frames: &[SweepFrame]) -> [Vec<f64>; 3] {
@@ -289,16 +321,6 @@ impl Reference<'_> {
         let ahead = self.scene.index_from_scene.transform_vector3(normal * (turned * weight * ahead));
         bounced.at(point + ahead).map(|light| light * scattering.albedo * scattering.strength)
     }
-}
-
-/// Returns the ratio ρ of a bounce to the one before, by least squares over all blocks that scatter light: all
-/// further ones add ρ / (1 − ρ) of the last.
-fn bounce_ratio(medium: &ScatteringMedium, more: &[f64], before: &[f64]) -> f64 {
-    let over = |a: &[f64], b: &[f64]| -> f64 {
-        let products = medium.extinction.iter().zip(a.iter().zip(b));
-        products.filter(|(extinction, _)| **extinction > 0.0).map(|(_, (a, b))| a * b).sum()
-    };
-    (over(more, before) / over(before, before).max(1e-20)).clamp(0.0, MAX_BOUNCE_RATIO)
 }
 
 /// Returns the mean light over directions at every block, from the emission of blocks per scene unit and from light

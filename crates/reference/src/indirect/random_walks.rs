@@ -1,5 +1,5 @@
 //! Random walks that estimate light in a medium, independent of fixed directions, of the number of bounces and of the
-//! extrapolated series.
+//! diffusion of later ones.
 
 use glam::DVec3;
 

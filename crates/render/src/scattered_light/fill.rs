@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::diffusion::DiffusionSolver;
 use super::source_variant::SourceVariant;
 use super::steps::{ScatteringStep, SweepSource, scattering_steps};
 use super::textures::ScatteringTextures;
@@ -49,6 +50,8 @@ pub(crate) struct ScatteredLightFill {
     /// Blocks that pictures look up.
     output_cells: CellList,
     textures: ScatteringTextures,
+    /// Solver for the light of all later bounces, if more than one is wanted.
+    diffusion: Option<DiffusionSolver>,
 }
 
 impl ScatteredLightFill {
@@ -77,6 +80,11 @@ impl ScatteredLightFill {
         let followed = key.bounces().saturating_sub(1) as usize * frames_per_bounce + last;
         let size = sheet_size(frames.iter().flatten(), format, followed);
         let textures = ScatteringTextures::new(gpu.context, volume, size, one_color.is_some())?;
+        let edges = (scene.voxel_edges / scene.smallest_edge()).as_vec3() * volume.blocks.divisor as f32;
+        let share = 1.0 / frames_per_bounce as f32;
+        let diffusion = (key.bounces() > 1)
+            .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share))
+            .transpose()?;
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
         let met =
@@ -98,6 +106,7 @@ impl ScatteredLightFill {
             has_sky: settings.sky.is_on(),
             one_color,
             textures,
+            diffusion,
         })
     }
 
@@ -123,7 +132,8 @@ impl ScatteredLightFill {
 
     /// Returns the size of the temporary resources, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.textures.bytes + self.attenuating_cells.bytes() + self.output_cells.bytes()
+        let diffusion = self.diffusion.as_ref().map_or(0, |diffusion| diffusion.bytes);
+        self.textures.bytes + diffusion + self.attenuating_cells.bytes() + self.output_cells.bytes()
     }
 
     /// Records one step of the filling.
@@ -136,7 +146,12 @@ impl ScatteredLightFill {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         match step {
-            ScatteringStep::Blocks => self.fill_blocks(gpu, look, volume, encoder),
+            ScatteringStep::Blocks => {
+                self.fill_blocks(gpu, look, volume, encoder)?;
+                self.diffusion.iter().try_for_each(|diffusion| {
+                    diffusion.record_stencils(gpu, &self.textures.scattering, encoder)
+                })
+            }
             ScatteringStep::Batch(followed, batch) => {
                 self.fill_batch(gpu, look.settings, volume, followed, batch, encoder)
             }
@@ -145,31 +160,27 @@ impl ScatteredLightFill {
             }
             ScatteringStep::Emission { bounce } => {
                 let shared = self.bounce_uniform(gpu, volume, SweepSource::Bounce);
-                // Extrapolates after the second-last bounce, and after every other one before it, since the ratio
-                // takes two bounces.
-                let extrapolates = bounce > 1 && (self.bounces - 1 - bounce).is_multiple_of(2);
-                if extrapolates {
-                    self.record_block_pass(
-                        gpu,
-                        &SingleVariant("scattered_light/ratio.wgsl"),
-                        &shared,
-                        volume,
-                        encoder,
-                    )?;
+                if let Some(diffusion) = &self.diffusion {
+                    diffusion.record_cycle(gpu, bounce > 0, self.textures.diffusion_inputs(), encoder)?;
                 }
-                let one_color = self.one_color.is_some();
-                let source = SourceVariant { has_bounced: bounce > 0, extrapolates, one_color };
+                // Two steps are mixed.
+                let mixes = bounce > 1;
+                if mixes {
+                    let mixing = SingleVariant("scattered_light/mixing.wgsl");
+                    self.record_block_pass(gpu, &mixing, &shared, volume, encoder)?;
+                }
+                let source = SourceVariant {
+                    has_bounced: bounce > 0,
+                    has_series: self.diffusion.is_some(),
+                    mixes,
+                    one_color: self.one_color.is_some(),
+                };
                 self.record_block_pass(gpu, &source, &shared, volume, encoder)
             }
             ScatteringStep::Result => {
                 let shared = self.bounce_uniform(gpu, volume, SweepSource::LastBounce);
-                self.record_block_pass(
-                    gpu,
-                    &self.color_variant("scattered_light/result.wgsl"),
-                    &shared,
-                    volume,
-                    encoder,
-                )
+                let variant = self.color_variant("scattered_light/result.wgsl");
+                self.record_block_pass(gpu, &variant, &shared, volume, encoder)
             }
         }
     }
@@ -345,40 +356,34 @@ impl ScatteredLightFill {
         volume: &ScatteredLightVolume,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let ScatteringTextures {
-            medium,
-            scattering,
-            single_scattering: first,
-            sums,
-            previous: last,
-            previous_increase: change,
-            ratio,
-            ..
-        } = &self.textures;
         let shader = variant.shader();
+        let textures = &self.textures;
         let mut entries: Vec<NamedResource<'_>> =
-            vec![bind_buffer("bound_bounce", shared), bind_buffer("sums", sums)];
-        match shader {
-            "scattered_light/source.wgsl" => entries.extend([
-                bind_buffer("scattering", scattering),
-                bind_buffer("first", first),
-                bind_buffer("last", last),
-                bind_buffer("change", change),
-                bind_view("medium", medium),
-                bind_buffer("ratio", ratio),
-            ]),
-            "scattered_light/ratio.wgsl" => entries.extend([
-                bind_buffer("scattering", scattering),
-                bind_buffer("last", last),
-                bind_buffer("change", change),
-                bind_buffer("ratio", ratio),
-            ]),
-            _ => entries.extend([bind_view("bounced", &volume.blocks.view), self.output_cells.binding()]),
+            vec![bind_buffer("bound_bounce", shared), bind_buffer("sums", &textures.sums)];
+        if shader == "scattered_light/result.wgsl" {
+            entries.extend([bind_view("bounced", &volume.blocks.view), self.output_cells.binding()]);
+        } else {
+            // One bounce alone has no later ones.
+            let solution = self.diffusion.as_ref().map_or(&textures.mixing, |diffusion| &diffusion.solution);
+            entries.extend([
+                bind_buffer("scattering", &textures.scattering),
+                bind_buffer("last", &textures.previous),
+                bind_buffer("step_before", &textures.previous_step),
+                bind_buffer("solution", solution),
+                bind_buffer("mixing", &textures.mixing),
+            ]);
+        }
+        if shader == "scattered_light/source.wgsl" {
+            entries.extend([
+                bind_buffer("first", &textures.single_scattering),
+                bind_view("medium", &textures.medium),
+                bind_buffer("reached_before", &textures.previously_reached),
+            ]);
         }
         let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
         let groups = match shader {
-            "scattered_light/ratio.wgsl" => [1; 3],
+            "scattered_light/mixing.wgsl" => [1; 3],
             "scattered_light/result.wgsl" => self.output_cells.workgroups(),
             _ => workgroups_over_blocks(volume),
         };

@@ -2,8 +2,9 @@
 //!
 //! Extinction and scattering are averaged over blocks of voxels, for each colour. Blocks scatter the direct light;
 //! that light is swept through the blocks in many directions, like a sky's, and gathered, bounce by bounce. With
-//! three or more bounces, the rest of the series is extrapolated geometrically from two of them.
+//! two or more bounces, a diffusion equation gives what all later ones bring.
 
+mod diffusion;
 pub(super) mod fill;
 mod source_variant;
 pub(super) mod steps;

@@ -7,8 +7,10 @@ use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, flag}
 pub(super) struct SourceVariant {
     /// True if light of an earlier bounce is in the sums.
     pub(super) has_bounced: bool,
-    /// True if the rest of the series is extrapolated after this bounce.
-    pub(super) extrapolates: bool,
+    /// True if more than one bounce is wanted.
+    pub(super) has_series: bool,
+    /// True if this step is mixed with the step before.
+    pub(super) mixes: bool,
     /// True if one colour is followed in place of three.
     pub(super) one_color: bool,
 }
@@ -21,7 +23,8 @@ impl PipelineVariant for SourceVariant {
     fn constants(&self) -> ShaderConstants {
         vec![
             flag("HAS_BOUNCED", self.has_bounced),
-            flag("EXTRAPOLATES", self.extrapolates),
+            flag("HAS_SERIES", self.has_series),
+            flag("MIXES", self.mixes),
             flag("ONE_COLOR", self.one_color),
         ]
     }

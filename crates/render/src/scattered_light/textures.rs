@@ -1,5 +1,6 @@
 //! Temporary textures and buffers for filling a volume of scattered light.
 
+use super::diffusion::DiffusionInputs;
 use super::volume::ScatteredLightVolume;
 use crate::context::pair_format;
 use crate::sky::sheets::RaySheets;
@@ -22,12 +23,14 @@ pub(super) struct ScatteringTextures {
     pub single_scattering: wgpu::Buffer,
     /// Sums of the light that a bounce brings to blocks.
     pub sums: wgpu::Buffer,
-    /// Light that the previous bounce brought.
+    /// Light of which the last sweep followed a bounce.
     pub previous: wgpu::Buffer,
-    /// Increase of the previous bounce's light over the one before it.
-    pub previous_increase: wgpu::Buffer,
-    /// Ratio of successive increases, for the extrapolation.
-    pub ratio: wgpu::Buffer,
+    /// Step towards the limit of the series before this one.
+    pub previous_step: wgpu::Buffer,
+    /// Light that the step before reached.
+    pub previously_reached: wgpu::Buffer,
+    /// Share of the step before that is taken out of a step.
+    pub mixing: wgpu::Buffer,
     pub bytes: u64,
 }
 
@@ -76,10 +79,21 @@ impl ScatteringTextures {
             single_scattering: list("Bounces::first", blocks),
             sums: list("Bounces::sums", blocks),
             previous: list("Bounces::last", blocks),
-            previous_increase: list("Bounces::change", blocks),
-            ratio: list("Bounces::ratio", 1),
-            bytes: texel * texels(medium_size) + sheets.bytes() + SUM_BYTES * (5 * blocks + 1),
+            previous_step: list("Bounces::step", blocks),
+            previously_reached: list("Bounces::reached", blocks),
+            mixing: list("Bounces::mixing", 1),
+            bytes: texel * texels(medium_size) + sheets.bytes() + SUM_BYTES * (6 * blocks + 1),
             sheets,
         })
+    }
+
+    /// Returns the buffers that the diffusion equation refers to.
+    pub(super) fn diffusion_inputs(&self) -> DiffusionInputs<'_> {
+        DiffusionInputs {
+            scattering: &self.scattering,
+            sums: &self.sums,
+            single_scattering: &self.single_scattering,
+            previous: &self.previous,
+        }
     }
 }

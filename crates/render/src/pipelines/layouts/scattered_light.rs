@@ -11,8 +11,46 @@ const BOUNCE: BindingSlot = BindingSlot::uniform::<uniforms::BounceUniform>(3, "
 const SCATTERING: BindingSlot = BindingSlot::storage(4, "scattering", 16, BufferAccess::Read);
 const SUMS: BindingSlot = BindingSlot::storage(5, "sums", 16, BufferAccess::Read);
 
-/// Layouts of the shaders in `shaders/scattered_light`.
+const LAST: BindingSlot = BindingSlot::storage(7, "last", 16, BufferAccess::ReadWrite);
+const STEP_BEFORE: BindingSlot = BindingSlot::storage(8, "step_before", 16, BufferAccess::ReadWrite);
+const SOLUTION_OF_SERIES: BindingSlot = BindingSlot::storage(11, "solution", 16, BufferAccess::Read);
+
+const LEVEL: BindingSlot = BindingSlot::uniform::<uniforms::DiffusionLevelUniform>(0, "bound_level");
+/// Scattering of the blocks, in the shaders of diffusion.
+const DIFFUSION_SCATTERING: BindingSlot = BindingSlot::storage(1, "scattering", 16, BufferAccess::Read);
+/// Bindings of the shaders that balance the solution of the diffusion equation.
+const DIFFUSION: &[BindingSlot] = &[
+    LEVEL,
+    BindingSlot::storage(1, "stencils", 16, BufferAccess::Read),
+    BindingSlot::storage(2, "right_sides", 16, BufferAccess::ReadWrite),
+    BindingSlot::storage(3, "solution", 16, BufferAccess::ReadWrite),
+];
+
+/// Layouts of the shaders in `shaders/scattered_light` and `shaders/diffusion`.
 pub(super) const LAYOUTS: ShaderLayouts = &[
+    (
+        "diffusion/coarser_stencil.wgsl",
+        &[&[LEVEL, BindingSlot::storage(1, "stencils", 16, BufferAccess::ReadWrite)]],
+    ),
+    ("diffusion/coarsest.wgsl", &[DIFFUSION]),
+    ("diffusion/relax.wgsl", &[DIFFUSION]),
+    ("diffusion/restrict.wgsl", &[DIFFUSION]),
+    (
+        "diffusion/right_side.wgsl",
+        &[&[
+            LEVEL,
+            DIFFUSION_SCATTERING,
+            BindingSlot::storage(2, "sums", 16, BufferAccess::Read),
+            BindingSlot::storage(3, "first", 16, BufferAccess::Read),
+            BindingSlot::storage(4, "last", 16, BufferAccess::Read),
+            BindingSlot::storage(5, "right_sides", 16, BufferAccess::ReadWrite),
+            BindingSlot::storage(6, "solution", 16, BufferAccess::ReadWrite),
+        ]],
+    ),
+    (
+        "diffusion/stencil.wgsl",
+        &[&[LEVEL, DIFFUSION_SCATTERING, BindingSlot::storage(2, "stencils", 16, BufferAccess::ReadWrite)]],
+    ),
     (
         "scattered_light/blocks.wgsl",
         &[
@@ -41,14 +79,15 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
-        "scattered_light/ratio.wgsl",
+        "scattered_light/mixing.wgsl",
         &[&[
             BOUNCE,
             SCATTERING,
             SUMS,
-            BindingSlot::storage(7, "last", 16, BufferAccess::Read),
-            BindingSlot::storage(8, "change", 16, BufferAccess::Read),
-            BindingSlot::storage(9, "ratio", 16, BufferAccess::ReadWrite),
+            LAST,
+            STEP_BEFORE,
+            SOLUTION_OF_SERIES,
+            BindingSlot::storage(9, "mixing", 16, BufferAccess::ReadWrite),
         ]],
     ),
     (
@@ -79,10 +118,12 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             SCATTERING,
             SUMS,
             BindingSlot::storage(6, "first", 16, BufferAccess::Read),
-            BindingSlot::storage(7, "last", 16, BufferAccess::ReadWrite),
-            BindingSlot::storage(8, "change", 16, BufferAccess::ReadWrite),
+            LAST,
+            STEP_BEFORE,
+            SOLUTION_OF_SERIES,
             BindingSlot::storage_texture(9, "medium", TextureShape::D3, StorageFormat::Target),
-            BindingSlot::storage(10, "ratio", 16, BufferAccess::Read),
+            BindingSlot::storage(10, "mixing", 16, BufferAccess::Read),
+            BindingSlot::storage(12, "reached_before", 16, BufferAccess::ReadWrite),
         ]],
     ),
     (

@@ -11,7 +11,9 @@ mod scattered_light;
 mod sky;
 
 pub use self::light::{AverageUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform};
-pub use self::scattered_light::{BounceUniform, ScatteredLightUniform, SingleScatteringUniform};
+pub use self::scattered_light::{
+    BounceUniform, DiffusionLevelUniform, ScatteredLightUniform, SingleScatteringUniform,
+};
 pub use self::sky::{
     BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyUniform, SweepRaysUniform, SweepUniform,
 };

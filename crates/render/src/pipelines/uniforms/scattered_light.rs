@@ -26,6 +26,18 @@ pub struct BounceUniform {
     pub min_extinction: f32,
 }
 
+/// Level of the diffusion equation, as declared in `diffusion/level.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct DiffusionLevelUniform {
+    pub dims: [u32; 3],
+    pub first: u32,
+    pub coarser_dims: [u32; 3],
+    pub coarser_first: u32,
+    pub edges: [f32; 3],
+    pub share: f32,
+}
+
 /// Scene of the single-scattering pass, as declared in `scattered_light/single_scattering.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -38,7 +38,7 @@ pub struct BouncesKey {
 /// Maximum number of points for an area light: bounced light shows no edges of shadows.
 const MAX_LIGHT_POINTS: u32 = 8;
 
-/// Maximum number of bounces in previews, with as many directions: the rest of the series is extrapolated from them
+/// Maximum number of bounces in previews, with as many directions: what later ones bring diffuses from them
 /// nearly as well as from more.
 const PREVIEW_BOUNCES: u32 = 3;
 /// Maximum number of directions in previews, see [`PREVIEW_BOUNCES`].

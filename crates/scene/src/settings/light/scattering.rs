@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::LightVolumeResolution;
 
-/// Largest number of simulated bounces; with three or more, the rest of the series is extrapolated geometrically from
-/// the last two.
+/// Largest number of simulated bounces; with two or more, diffusion gives what all later ones bring.
 pub const MAX_BOUNCES: u32 = 12;
 
 /// Largest magnitude of the phase function's anisotropy: beyond it a material acts as a mirror, or is not visible at
@@ -20,7 +19,8 @@ pub const MAX_ANISOTROPY: f64 = 0.9;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ScatteringSettings {
-    /// Number of simulated bounces, at most [`MAX_BOUNCES`]; 0 disables scattering.
+    /// Number of simulated bounces, at most [`MAX_BOUNCES`]; 0 disables scattering, and with two or more all bounces
+    /// count, found the more exactly.
     pub bounces: u32,
     /// Scattering albedo: share of interacting light that is scattered, times the colour; the rest is absorbed.
     pub albedo: f64,

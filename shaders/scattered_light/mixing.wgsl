@@ -1,18 +1,16 @@
-// Ratio of successive bounces for each colour, ρ = ⟨dₙ, dₙ₋₁⟩ / ⟨dₙ₋₁, dₙ₋₁⟩ over all blocks that scatter light. Each
-// further bounce brings ρ times the previous one, in total ρ / (1 − ρ) times the last.
+// Share of the step before that is taken out of each step towards the limit of the series, for each colour:
+// γ = ⟨pₙ − pₙ₋₁, pₙ⟩ / ⟨pₙ − pₙ₋₁, pₙ − pₙ₋₁⟩ over all blocks that scatter light, which makes what is left smallest
+// (Anderson 1965). Steps that come back, or fall short all alike, are so made right.
 #import "scattered_light/bounce.wgsl"
+#import "scattered_light/series.wgsl"
 
-@group(0) @binding(5) var<storage, read> sums: array<vec4f>;
-@group(0) @binding(7) var<storage, read> last: array<vec4f>;
-@group(0) @binding(8) var<storage, read> change: array<vec4f>;
-@group(0) @binding(9) var<storage, read_write> ratio: array<vec4f>;
+@group(0) @binding(9) var<storage, read_write> mixing: array<vec4f>;
 
 // A single workgroup whose threads stride over the blocks, so that the order of summation is always the same.
 const THREADS = 256u;
 
-// Limit of the ratio. Slower decay cannot be distinguished from none: bounces that bring as much as those before say
-// little about the limit.
-const MAX_RATIO = 0.98;
+// Largest magnitude of the share. Beyond it the two steps are so alike that their difference says little.
+const MAX_SHARE = 1.0;
 
 var<workgroup> products: array<vec3f, THREADS>;
 var<workgroup> squares: array<vec3f, THREADS>;
@@ -25,9 +23,10 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var square = vec3f(0.0);
     for (var at = thread; at < count; at += THREADS) {
         if (scattering[at].a > 0.0) {
-            let before = change[at].rgb;
-            product += (sums[at].rgb * bounce.share - last[at].rgb) * before;
-            square += before * before;
+            let step = series_step(at);
+            let change = step - step_before[at].rgb;
+            product += change * step;
+            square += change * change;
         }
     }
     products[thread] = product;
@@ -42,6 +41,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     }
     if (thread == 0u) {
         let found = products[0] / max(squares[0], vec3f(1e-20));
-        ratio[0] = vec4f(clamp(found, vec3f(0.0), vec3f(MAX_RATIO)), 0.0);
+        mixing[0] = vec4f(clamp(found, vec3f(-MAX_SHARE), vec3f(MAX_SHARE)), 0.0);
     }
 }
