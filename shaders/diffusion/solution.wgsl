@@ -8,7 +8,13 @@
 // Set if the coarser level corrects the solution where it is read.
 override CORRECTS: bool = false;
 
+// Set if the solution is 0 so far.
+override STARTS: bool = false;
+
 fn solution_at(at: u32, id: vec3u) -> vec3f {
+    if (STARTS) {
+        return vec3f(0.0);
+    }
     if (CORRECTS) {
         return solution[at].rgb + solution[at_coarser(id / 2u)].rgb;
     }

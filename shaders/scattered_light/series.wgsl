@@ -7,7 +7,14 @@
 @group(0) @binding(8) var<storage, read_write> step_before: array<vec4f>;
 @group(0) @binding(11) var<storage, read> solution: array<vec4f>;
 
+// Set if the change that the last sweep brought has diffused.
+override DIFFUSES: bool = true;
+
 // Step of a block from the light before the last sweep.
 fn series_step(at: u32) -> vec3f {
-    return sums[at].rgb * bounce.share - last[at].rgb + solution[at].rgb;
+    let change = sums[at].rgb * bounce.share - last[at].rgb;
+    if (DIFFUSES) {
+        return change + solution[at].rgb;
+    }
+    return change;
 }

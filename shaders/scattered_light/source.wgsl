@@ -13,8 +13,6 @@
 
 // Set from the first sweep on.
 override HAS_BOUNCED: bool = true;
-// Set if more than one bounce is wanted: all of them, then.
-override HAS_SERIES: bool = true;
 // Set if there is a step before to mix with.
 override MIXES: bool = false;
 
@@ -39,7 +37,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         step_before[at] = vec4f(step, 0.0);
         reached_before[at] = vec4f(reached, 0.0);
-    } else if (HAS_SERIES) {
+    } else if (DIFFUSES) {
         light = solution[at].rgb;
     }
     light = max(light, vec3f(0.0));

@@ -57,7 +57,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let given = emission_of(found);
         let share = slab_emission_share(tau);
         let mean = 1.0 - tau * share;
-        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), level_texel(min(light * mean + given * share, Radiance(MAX_HALF_FLOAT))));
+        let stored = rounded_to_half(level_texel(min(light * mean + given * share, Radiance(MAX_HALF_FLOAT))));
+        textureStore(sheets, vec3u(id.xy, rays.layer + u32(n)), stored);
         light = light * exp(-tau) + given * mean;
     }
 }

@@ -166,9 +166,11 @@ struct ShadingUniform {
     max_optical_depth: f32,
     // Mean cosine of the scattering angle in material without a surface.
     anisotropy: f32,
+    // Share of a light's intensity that material without a surface scatters in each direction on average: ¼ if light
+    // bounces, E/4π of the E/π that a white surface returns which faces the light; else 1.
+    amid: f32,
     pad0: f32,
     pad1: f32,
-    pad2: f32,
 }
 
 // Sample of the volume that is lit.
@@ -247,7 +249,7 @@ fn reflect_light(shading: ShadingUniform, light: LightUniform, surface: Surface,
     // Highlights are one-sided: on the side to which density falls, or opacity if ONE_SIDED.
     let turned = select(1.0, -1.0, ONE_SIDED && surface.side < 0.0);
     let clear = select(1.0, abs(surface.side), ONE_SIDED);
-    let amid = relative_phase_function(shading, surface, to_light);
+    let amid = shading.amid * relative_phase_function(shading, surface, to_light);
     let diffuse = light.color * diffuse_reflectance(light, surface, risen, share, unmissed, amid);
     let half_vector = to_light + surface.to_eye;
     // Avoids pow(0, x), which is NaN on some drivers.

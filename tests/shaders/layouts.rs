@@ -194,9 +194,9 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 ray_step,
                 max_optical_depth,
                 anisotropy,
+                amid,
                 pad0,
-                pad1,
-                pad2
+                pad1
             }),
         ),
         (

@@ -129,13 +129,16 @@ impl<'r> Shader<'r> {
         let outward = surface.normal * self.normal_sign(density);
         let place = scene.scene_from_index.transform_point3(point);
         let to_eye = self.towards_eye(place);
-        let flat = shading.emission + self.reference.settings.flat_ambient();
+        // Where light bounces, the albedo is the share of all light that is scattered.
+        let settings = self.reference.settings;
+        let scattered = if settings.has_bounces() { settings.scattering.albedo } else { 1.0 };
         let side_lit = is_one_sided.then_some(side);
         let openness = self.sky_visibility.as_ref();
         let sky = self.reference.lit_by_sky(openness, point, surface.normal, surface.weight, side_lit);
         let bounced = self.bounced.as_ref();
         let bounced = self.reference.lit_by_bounces(bounced, point, surface.normal, surface.weight, side_lit);
-        let mut diffuse: [f64; 3] = std::array::from_fn(|c| flat + sky[c] + bounced[c]);
+        let mut diffuse: [f64; 3] =
+            std::array::from_fn(|c| scattered * (settings.flat_ambient() + sky[c] + bounced[c]));
         let mut specular = [0.0; 3];
         for shaded_light in &self.lights {
             let has_horizon = is_one_sided && shaded_light.light.casts_shadows;
@@ -156,9 +159,9 @@ impl<'r> Shader<'r> {
             } else {
                 arriving * risen.centre_cosine.abs()
             };
-            // Away from surfaces, light is scattered towards the eye by the phase function.
-            let amid =
-                henyey_greenstein(self.reference.settings.scattering.anisotropy, -to_light.dot(to_eye));
+            // Away from surfaces, light is scattered towards the eye by the phase function: of an irradiance E = π, π/4π.
+            let quarter = if settings.has_bounces() { 0.25 } else { 1.0 };
+            let amid = quarter * henyey_greenstein(settings.scattering.anisotropy, -to_light.dot(to_eye));
             let reflected = arriving * amid * (1.0 - surface.weight) + reflected * surface.weight;
             let half_way = (to_light + to_eye).normalize_or_zero();
             let mirrored = if outward.dot(to_light) > 0.0 {
@@ -169,11 +172,13 @@ impl<'r> Shader<'r> {
                 0.0
             };
             for channel in 0..3 {
-                diffuse[channel] += shaded_light.rgb[channel] * shading.diffuse * reflected;
+                diffuse[channel] += scattered * shaded_light.rgb[channel] * shading.diffuse * reflected;
                 specular[channel] += shaded_light.rgb[channel] * arriving * shading.specular * mirrored;
             }
         }
-        std::array::from_fn(|channel| base[channel] * diffuse[channel] + specular[channel])
+        std::array::from_fn(|channel| {
+            base[channel] * (shading.emission + diffuse[channel]) + specular[channel]
+        })
     }
 
     /// Returns the share of a light that arrives: its attenuation with the cures for darkness (P §4).

@@ -1,5 +1,9 @@
 //! All light against a path tracer: area lights, a sky and multiple scattering, compared with pictures that are
 //! traced without light volumes, sheets, blocks, fixed directions or counted bounces.
+//!
+//! Units: radiance 1 is that of white paper which a light of intensity 1 faces, so that light has the irradiance π, and
+//! matter that scatters in all directions alike returns albedo · colour · π/4π of it. The path tracer itself is compared
+//! with another renderer's figures (`outside_renderer.rs`).
 
 use chiaroscuro_render::{RenderOptions, Renderer, plan::picture_frame};
 use chiaroscuro_scene::{
@@ -74,13 +78,14 @@ struct ScenePathTracer<'a> {
     index_from_scene: glam::DAffine3,
     /// Sample points of each light, and its linear colour.
     lights: Vec<(Vec<SceneLight>, [f64; 3])>,
-    sky: SkyRadiance,
+    sky: Option<SkyRadiance>,
     /// Distance beyond all material, in scene units.
     far: f64,
 }
 
 impl ScenePathTracer<'_> {
-    /// Direct light at an index-space point, from a random point of each light.
+    /// Mean radiance over all directions of the light that arrives directly at an index-space point, from a random
+    /// point of each light: E/4π, with an irradiance E of π times the light's colour.
     fn direct(&self, random: &mut RandomNumbers, point: DVec3) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (points, color) in &self.lights {
@@ -95,7 +100,8 @@ impl ScenePathTracer<'_> {
             };
             let step = self.index_from_scene.transform_vector3(towards);
             let left = self.material.transmittance(random, point, step, distance);
-            (0..3).for_each(|c| sum[c] += color[c] * left);
+            let irradiance = std::f64::consts::PI * left;
+            (0..3).for_each(|c| sum[c] += color[c] * irradiance / (4.0 * std::f64::consts::PI));
         }
         sum
     }
@@ -106,34 +112,26 @@ impl ScenePathTracer<'_> {
             return [0.0; 3];
         };
         let Settings { shading, scattering, .. } = self.settings;
-        let mut weight = self.material.color(point);
+        let mut weight = [1.0; 3];
         let mut sum = [0.0; 3];
-        let direct = self.direct(lots, point);
-        (0..3).for_each(|c| sum[c] += weight[c] * (direct[c] + shading.emission));
-        // The eye sees all direct light of lights and sky at its first interaction; scattered light is a share of
-        // that.
-        let mut is_seen = true;
         loop {
+            // Matter emits `emission` times its colour, and scatters albedo times its colour of what arrives.
+            let color = self.material.color(point);
+            let direct = self.direct(lots, point);
+            for c in 0..3 {
+                let emitted = weight[c] * color[c] * shading.emission;
+                weight[c] *= color[c] * scattering.albedo;
+                sum[c] += emitted + weight[c] * direct[c];
+            }
             let towards = lots.next_direction();
             let step = self.index_from_scene.transform_vector3(towards);
             let Some(next) = self.material.first_interaction(lots, point, step, self.far) else {
                 for c in 0..3 {
-                    sum[c] += weight[c] * (self.sky.mean[c] + self.sky.slope[c].dot(towards)).max(0.0);
+                    sum[c] += weight[c]
+                        * self.sky.map_or(0.0, |sky| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0));
                 }
                 return sum;
             };
-            let color = self.material.color(next);
-            let shares = if is_seen { 2 } else { 1 };
-            is_seen = false;
-            let albedo = scattering.albedo.powi(shares);
-            let direct = self.direct(lots, next);
-            for c in 0..3 {
-                weight[c] *= color[c] * albedo;
-                // A light of 1 gives a surface that faces it as much as a sky of 1 does, and a quarter of that to
-                // material without a side; the eye shows all of it, as if the material faced each light. Emission is
-                // not scattered before.
-                sum[c] += weight[c] * (direct[c] / 4.0 + shading.emission / scattering.albedo);
-            }
             if weight.iter().all(|&weight| weight < MIN_PATH_WEIGHT) {
                 return sum;
             }
@@ -143,7 +141,12 @@ impl ScenePathTracer<'_> {
 }
 
 /// Two unbiased estimates of each pixel, each with half of the paths.
-fn trace_picture(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64; 3]; 2]> {
+pub(super) fn trace_picture(
+    loaded: &Dataset,
+    settings: &Settings,
+    edge: u32,
+    paths: u32,
+) -> Vec<[[f64; 3]; 2]> {
     let scene = loaded.volume().scene();
     let linear = |light: &LightSettings| {
         light.color.map(|c| chiaroscuro_scene::linear_from_srgb(f64::from(c)) * light.intensity)
@@ -155,15 +158,15 @@ fn trace_picture(loaded: &Dataset, settings: &Settings, paths: u32) -> Vec<[[f64
         settings,
         index_from_scene: scene.index_from_scene,
         lights: settings.lights.iter().map(|light| (points(light), linear(light))).collect(),
-        sky: settings.sky.radiance(settings.camera.up).expect("a sky"),
+        sky: settings.sky.radiance(settings.camera.up),
         far: 2.0 * scene.support_radius(),
     };
-    let frame = picture_frame(settings, &scene, [PICTURE_EDGE; 2]);
+    let frame = picture_frame(settings, &scene, [edge; 2]);
     let length = frame.slab * f64::from(frame.slab_count);
-    (0..PICTURE_EDGE * PICTURE_EDGE)
+    (0..edge * edge)
         .into_par_iter()
         .map(|pixel| {
-            let [i, j] = [f64::from(pixel % PICTURE_EDGE), f64::from(pixel / PICTURE_EDGE)];
+            let [i, j] = [f64::from(pixel % edge), f64::from(pixel / edge)];
             let mut lots = RandomNumbers(u64::from(pixel) << 32);
             let (origin, along) = (frame.point(i, j, frame.first_depth), frame.direction.at(i, j));
             [(); 2].map(|()| {
@@ -274,7 +277,7 @@ fn check(name: &str, loaded: &Dataset, paths: u32) {
 
 /// Checks the picture at the finest settings; returns the error of the default settings.
 fn check_finest(name: &str, loaded: &Dataset, paths: u32, settings: &Settings) -> f64 {
-    let truth = trace_picture(loaded, settings, paths);
+    let truth = trace_picture(loaded, settings, PICTURE_EDGE, paths);
     let mean: Vec<_> = truth.iter().map(|[a, b]| std::array::from_fn(|c| 0.5 * (a[c] + b[c]))).collect();
     let truth = [0, 1].map(|half| square_means(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
     let mut renderer = Renderer::new(&context()).expect("a renderer");

@@ -15,6 +15,7 @@ mod kernels;
 mod labels;
 mod lights;
 mod multiple_scattering;
+mod outside_renderer;
 mod path_tracer;
 mod presence;
 mod sky;

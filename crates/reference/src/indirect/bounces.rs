@@ -20,6 +20,9 @@ use chiaroscuro_scene::{LightGeometry, SKY_LOOKUP_DISTANCE, ScatteringSettings, 
 /// Maximum number of points for an area light: bounced light shows no edges of shadows.
 const MAX_LIGHT_POINTS: u32 = 8;
 
+/// Number of last bounces before the visible one whose changes diffuse.
+const DIFFUSED_BOUNCES: u32 = 4;
+
 /// Volume of bounced light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BouncedLight {
@@ -123,8 +126,12 @@ impl Reference<'_> {
                 light[c] = self.diffuse(&grids[c], &given[c]).iter().map(|light| light.max(0.0)).collect();
             }
             let mut before: Option<[SeriesStep; 3]> = None;
-            for _ in 1..scattering.bounces {
+            for bounce in 1..scattering.bounces {
                 let next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3]);
+                if scattering.bounces - bounce > DIFFUSED_BOUNCES {
+                    light = next;
+                    continue;
+                }
                 let steps = std::array::from_fn(|c| {
                     let change: Vec<f64> =
                         next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect();
@@ -304,7 +311,7 @@ impl Reference<'_> {
         light
     }
 
-    /// Returns bounced light on a surface, as a share of its colour; `weight` (0 … 1) is the degree to which the
+    /// Returns bounced light that arrives at a surface; `weight` (0 … 1) is the degree to which the
     /// sample is a surface, and `side` the side that it faces, 1 along the normal and −1 against it.
     pub(crate) fn lit_by_bounces(
         &self,
@@ -319,7 +326,7 @@ impl Reference<'_> {
         let turned = if side.is_some_and(|side| side < 0.0) { -1.0 } else { 1.0 };
         let ahead = SKY_LOOKUP_DISTANCE * bounced.divisor as f64 * self.scene.smallest_edge();
         let ahead = self.scene.index_from_scene.transform_vector3(normal * (turned * weight * ahead));
-        bounced.at(point + ahead).map(|light| light * scattering.albedo * scattering.strength)
+        bounced.at(point + ahead).map(|light| light * scattering.strength)
     }
 }
 

@@ -324,11 +324,12 @@ pub(crate) fn shading_uniform(
     options: &RenderOptions,
 ) -> uniforms::ShadingUniform {
     let (shading, shadows) = (&settings.shading, &settings.shadows);
+    let scattered = settings.scattered_share();
     let unit = settings.layer().opacity_unit.scene_units(scene).max(1e-9);
     uniforms::ShadingUniform {
         emission: shading.emission as f32,
-        ambient: settings.flat_ambient() as f32,
-        diffuse: shading.diffuse as f32,
+        ambient: (settings.flat_ambient() * scattered) as f32,
+        diffuse: (shading.diffuse * scattered) as f32,
         specular: shading.specular as f32,
         shininess: shading.shininess as f32,
         surface_gradient: (shading.surface_gradient / unit) as f32,
@@ -339,8 +340,8 @@ pub(crate) fn shading_uniform(
         ray_step: shadows.ray_step(scene) as f32,
         max_optical_depth: options.switches.max_optical_depth(),
         anisotropy: settings.scattering.anisotropy as f32,
+        amid: settings.light_amid_material() as f32,
         pad0: 0.0,
         pad1: 0.0,
-        pad2: 0.0,
     }
 }

@@ -27,7 +27,8 @@ pub(crate) struct LightLookup<'a> {
     pub ambient: AmbientVolumes<'a>,
 }
 
-/// Builds the uniform of the sky: radiance as a linear function of direction; black if the sky is off.
+/// Builds the uniform of the sky: radiance as a linear function of direction, of which the share that material
+/// scatters; black if the sky is off.
 pub(crate) fn sky_uniform(
     settings: &Settings,
     scene: &SceneSpace,
@@ -35,8 +36,9 @@ pub(crate) fn sky_uniform(
 ) -> uniforms::SkyUniform {
     let blocks = volume.map(|volume| &volume.blocks);
     let radiance = settings.sky.radiance(settings.camera.up);
+    let scattered = settings.scattered_share();
     let color = |c: usize| {
-        let of = |sky: &SkyRadiance| sky.slope[c].extend(sky.mean[c]).as_vec4().into();
+        let of = |sky: &SkyRadiance| (sky.slope[c].extend(sky.mean[c]) * scattered).as_vec4().into();
         radiance.as_ref().map_or([0.0; 4], of)
     };
     uniforms::SkyUniform {

@@ -12,6 +12,15 @@ use crate::{GpuContext, GpuError};
 /// Maximum number of blocks along each axis of the coarsest level: those of a workgroup of `diffusion/coarsest.wgsl`.
 const COARSEST_EDGE: u32 = 4;
 
+/// Number of last bounces before the visible one whose changes diffuse, beside the light before the first: with four
+/// hardly anything is left, and cycles cost as much as sweeps in few directions.
+const DIFFUSED_BOUNCES: u32 = 4;
+
+/// Returns true if the light of later bounces is found before this one, of so many.
+pub(super) fn diffuses(bounces: u32, bounce: u32) -> bool {
+    bounces > 1 && (bounce == 0 || bounces - bounce <= DIFFUSED_BOUNCES)
+}
+
 /// Level of the grid, and its place in the lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct DiffusionLevel {
@@ -132,8 +141,8 @@ impl DiffusionSolver {
         self.record(gpu, 0, &RightSideVariant { has_bounced }, &entries, self.levels[0].dims, encoder)?;
         let coarsest = self.levels.len() - 1;
         for at in 0..coarsest {
-            self.relax(gpu, at, RelaxVariant { parity: 0, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 0, starts: true, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: false }, encoder)?;
             let variant = SingleVariant("diffusion/restrict.wgsl");
             self.record(gpu, at, &variant, &self.entries(), self.levels[at + 1].dims, encoder)?;
         }
@@ -141,10 +150,10 @@ impl DiffusionSolver {
         self.record(gpu, coarsest, &variant, &self.entries(), [1; 3], encoder)?;
         for at in (0..coarsest).rev() {
             // The correction is of even blocks, from which odd ones follow.
-            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: true }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 0, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 0, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: true }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 0, starts: false, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 0, starts: false, corrects: false }, encoder)?;
         }
         Ok(())
     }
@@ -222,6 +231,8 @@ impl PipelineVariant for RightSideVariant {
 struct RelaxVariant {
     /// Parity of the sum of their coordinates.
     parity: u8,
+    /// True if the solution is 0 so far.
+    starts: bool,
     /// True if the coarser level corrects the solution of the other half.
     corrects: bool,
 }
@@ -232,6 +243,6 @@ impl PipelineVariant for RelaxVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![("PARITY", f64::from(self.parity)), flag("CORRECTS", self.corrects)]
+        vec![("PARITY", f64::from(self.parity)), flag("STARTS", self.starts), flag("CORRECTS", self.corrects)]
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::diffusion::DiffusionSolver;
+use super::diffusion::{DiffusionSolver, diffuses};
 use super::source_variant::SourceVariant;
 use super::steps::{ScatteringStep, SweepSource, scattering_steps};
 use super::textures::ScatteringTextures;
@@ -160,18 +160,19 @@ impl ScatteredLightFill {
             }
             ScatteringStep::Emission { bounce } => {
                 let shared = self.bounce_uniform(gpu, volume, SweepSource::Bounce);
-                if let Some(diffusion) = &self.diffusion {
+                let diffusion = self.diffusion.as_ref().filter(|_| diffuses(self.bounces, bounce));
+                if let Some(diffusion) = diffusion {
                     diffusion.record_cycle(gpu, bounce > 0, self.textures.diffusion_inputs(), encoder)?;
                 }
-                // Two steps are mixed.
-                let mixes = bounce > 1;
+                // Two steps of the same kind are mixed.
+                let mixes = bounce > 1 && diffuses(self.bounces, bounce - 1) && diffusion.is_some();
                 if mixes {
                     let mixing = SingleVariant("scattered_light/mixing.wgsl");
                     self.record_block_pass(gpu, &mixing, &shared, volume, encoder)?;
                 }
                 let source = SourceVariant {
                     has_bounced: bounce > 0,
-                    has_series: self.diffusion.is_some(),
+                    diffuses: diffusion.is_some(),
                     mixes,
                     one_color: self.one_color.is_some(),
                 };

@@ -7,8 +7,8 @@ use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, flag}
 pub(super) struct SourceVariant {
     /// True if light of an earlier bounce is in the sums.
     pub(super) has_bounced: bool,
-    /// True if more than one bounce is wanted.
-    pub(super) has_series: bool,
+    /// True if the light of later bounces has diffused.
+    pub(super) diffuses: bool,
     /// True if this step is mixed with the step before.
     pub(super) mixes: bool,
     /// True if one colour is followed in place of three.
@@ -23,7 +23,7 @@ impl PipelineVariant for SourceVariant {
     fn constants(&self) -> ShaderConstants {
         vec![
             flag("HAS_BOUNCED", self.has_bounced),
-            flag("HAS_SERIES", self.has_series),
+            flag("DIFFUSES", self.diffuses),
             flag("MIXES", self.mixes),
             flag("ONE_COLOR", self.one_color),
         ]

@@ -208,6 +208,18 @@ impl Settings {
         bounces > 0 && albedo > 0.0 && strength > 0.0 && self.shadows.algorithm.is_on()
     }
 
+    /// Returns the share of all light that material scatters to the eye: the albedo if light bounces, else all of it.
+    pub fn scattered_share(&self) -> f64 {
+        if self.has_bounces() { self.scattering.albedo } else { 1.0 }
+    }
+
+    /// Returns the share of a light's intensity that material without a surface scatters in each direction, relative
+    /// to a white surface that faces the light: a quarter, E/4π of E/π, if light bounces. Without bounces all of it is
+    /// shown, as if the material faced each light, which stands for the light that would bounce.
+    pub fn light_amid_material(&self) -> f64 {
+        if self.has_bounces() { 0.25 } else { 1.0 }
+    }
+
     /// Returns true if voxels are splatted by the scattering engine. Rays from every sample need the volume, so with
     /// direct shadows the image is gathered with either engine.
     pub fn uses_scattering_engine(&self) -> bool {

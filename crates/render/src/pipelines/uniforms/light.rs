@@ -45,9 +45,9 @@ pub struct ShadingUniform {
     pub ray_step: f32,
     pub max_optical_depth: f32,
     pub anisotropy: f32,
+    pub amid: f32,
     pub pad0: f32,
     pub pad1: f32,
-    pub pad2: f32,
 }
 
 /// Parameters of casting rays from light voxels, as declared in `light/raycast.wgsl`.

@@ -40,7 +40,7 @@ const MAX_LIGHT_POINTS: u32 = 8;
 
 /// Maximum number of bounces in previews, with as many directions: what later ones bring diffuses from them
 /// nearly as well as from more.
-const PREVIEW_BOUNCES: u32 = 3;
+const PREVIEW_BOUNCES: u32 = 2;
 /// Maximum number of directions in previews, see [`PREVIEW_BOUNCES`].
 const PREVIEW_DIRECTIONS: u32 = 14;
 

@@ -15,6 +15,8 @@ pub struct CombinedKey {
     /// Density gradient from which a sample counts as a surface, and the length to which it refers.
     surface_gradient: f64,
     unit: OpacityLength,
+    /// Share of light that material without a surface scatters in each direction.
+    amid: f64,
     /// Eye's table, which decides on the lit side of a surface, if only one side is lit.
     sides: Option<EyeTableKey>,
     /// Visible cuts: their faces have normals of their own.
@@ -37,6 +39,7 @@ impl CombinedKey {
             received: LightLookupKey::new(settings),
             surface_gradient: settings.shading.surface_gradient,
             unit: settings.layer().opacity_unit,
+            amid: settings.light_amid_material(),
             sides: (settings.shading.sides == LitSides::One).then(|| EyeTableKey::new(settings)),
             seen: settings.cuts.visible_part(),
             min_transmittance: options.switches.min_transmittance,
