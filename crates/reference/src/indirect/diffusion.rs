@@ -50,16 +50,16 @@ impl DiffusionGrid {
         let faces = std::array::from_fn(|axis| {
             let edge = edges[axis];
             let mut faces = vec![0.0; count];
-            for at in 0..count {
+            for (at, &own) in extinction.iter().enumerate() {
                 let block = block_at(dims, at);
                 let borders = [block[axis] == 0, block[axis] + 1 == dims[axis]];
                 // Marshak's condition: half a block, and then half of all directions.
-                let outward = 1.0 / (edge * (0.5 * edge / coefficient(extinction[at], edge) + 2.0));
+                let outward = 1.0 / (edge * (0.5 * edge / coefficient(own, edge) + 2.0));
                 sink[at] += outward * borders.map(|is| f64::from(u8::from(is))).iter().sum::<f64>();
                 if !borders[1] {
                     let mut next = block;
                     next[axis] += 1;
-                    let mean = 0.5 * (extinction[at] + extinction[index_of(dims, next)]);
+                    let mean = 0.5 * (own + extinction[index_of(dims, next)]);
                     faces[at] = coefficient(mean, edge) / (edge * edge);
                 }
             }
@@ -105,9 +105,9 @@ impl DiffusionGrid {
         self.relax(&mut found, right, 0);
         self.relax(&mut found, right, 1);
         let mut residual = vec![0.0; coarser.sink.len()];
-        for at in 0..right.len() {
+        for (at, right) in right.iter().enumerate() {
             let (inflow, conductance) = self.balance(&found, at);
-            residual[self.merged_into(coarser, at)] += (right[at] + inflow - conductance * found[at]) / 8.0;
+            residual[self.merged_into(coarser, at)] += (right + inflow - conductance * found[at]) / 8.0;
         }
         let correction = coarser.solve(&residual);
         for (at, found) in found.iter_mut().enumerate() {
@@ -150,10 +150,10 @@ impl DiffusionGrid {
 
     /// Balances all blocks whose coordinates have a sum of this parity.
     fn relax(&self, found: &mut [f64], right: &[f64], parity: usize) {
-        for at in 0..right.len() {
+        for (at, right) in right.iter().enumerate() {
             if block_at(self.dims, at).iter().sum::<usize>() % 2 == parity {
                 let (inflow, conductance) = self.balance(found, at);
-                found[at] = (right[at] + inflow) / conductance;
+                found[at] = (right + inflow) / conductance;
             }
         }
     }

@@ -72,15 +72,7 @@ pub(super) struct DiffusionSolver {
 
 impl DiffusionSolver {
     /// Allocates the buffers for a grid of blocks with these edges, in shortest edges of a voxel.
-    ///
-    /// # Errors
-    /// Returns an error if memory is exhausted.
-    pub(super) fn new(
-        context: &GpuContext,
-        dims: [usize; 3],
-        edges: [f32; 3],
-        share: f32,
-    ) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &GpuContext, dims: [usize; 3], edges: [f32; 3], share: f32) -> Self {
         let levels = DiffusionLevel::all(dims.map(|n| n as u32));
         let blocks: u64 = levels.iter().map(|level| u64::from(level.count())).sum();
         let list = |label| {
@@ -91,7 +83,7 @@ impl DiffusionSolver {
                 mapped_at_creation: false,
             })
         };
-        Ok(Self {
+        Self {
             levels,
             edges,
             share,
@@ -99,7 +91,7 @@ impl DiffusionSolver {
             right_sides: list("Diffusion::right_sides"),
             solution: list("Diffusion::solution"),
             bytes: 3 * SUM_BYTES * blocks,
-        })
+        }
     }
 
     /// Records the conductances of all levels, which follow from the scattering of the blocks.

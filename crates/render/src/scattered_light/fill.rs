@@ -83,8 +83,7 @@ impl ScatteredLightFill {
         let edges = (scene.voxel_edges / scene.smallest_edge()).as_vec3() * volume.blocks.divisor as f32;
         let share = 1.0 / frames_per_bounce as f32;
         let diffusion = (key.bounces() > 1)
-            .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share))
-            .transpose()?;
+            .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share));
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
         let met =
