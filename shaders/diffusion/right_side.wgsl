@@ -1,5 +1,5 @@
-// Right side of the diffusion equation, whose solution starts at 0: what blocks scatter of the light that the last sweep changed; before the first
-// sweep all that they scatter or emit.
+// Right side of the diffusion equation, whose solution starts at 0: what blocks scatter of the light that the last
+// sweep changed; before the first sweep all that they scatter or emit.
 #import "diffusion/level.wgsl"
 
 @group(0) @binding(1) var<storage, read> scattering: array<vec4f>;
