@@ -38,35 +38,71 @@ struct LightUniform {
     pad1: f32,
 }
 
-// Golden ratio minus one.
-const GOLDEN_SHARE = 0.618034;
+// Step and start of the fractions that place the orbits of a ball's points along their chords
+// (crates/scene/src/settings/light/area_light.rs).
+const DEPTH_STEP = 0.68;
+const DEPTH_START = 0.4;
+// Number of points up to which those of a disc are a single orbit.
+const MAX_SINGLE_ORBIT = 8u;
 
-// Point `index` of `count` on a disc of radius 1, arranged in rings.
-fn point_on_disc(index: u32, count: u32) -> vec2f {
+// Point `index` of `count` on a disc of radius 1, arranged in rings of fours, in xy; in z the number of its orbit, which
+// it has in common with its mirror images.
+fn point_on_disc(index: u32, count: u32) -> vec3f {
+    if (count < 2u) {
+        return vec3f(0.0);
+    }
     let all = f32(count);
     let rings = max(floor(sqrt(all) / 2.0 + 0.5), 1.0);
-    let each = all / (rings * rings);
+    let each = all / (4.0 * rings * rings);
     var ring = 1.0;
     var first = 0.0;
-    var end = floor(each + 0.5);
+    var end = 4.0 * floor(each + 0.5);
     while (f32(index) >= end) {
         ring += 1.0;
         first = end;
-        end = floor(each * ring * ring + 0.5);
+        end = 4.0 * floor(each * ring * ring + 0.5);
     }
-    let turn = 6.2831853 * (f32(index) - first + 0.5 * ring) / (end - first);
-    return vec2f(cos(turn), sin(turn)) * sqrt((first + end) / (2.0 * all));
+    let half_steps = 2.0 * (f32(index) - first) + ring;
+    let quarter = 0.5 * (end - first);
+    let within = half_steps - quarter * floor(half_steps / quarter);
+    let orbit = first / 4.0 + floor(min(within, quarter - within) / 2.0);
+    let turn = 3.1415927 * half_steps / (end - first);
+    return vec3f(vec2f(cos(turn), sin(turn)) * sqrt((first + end) / (2.0 * all)), orbit);
+}
+
+// Point `index` of `count` on a rectangle of half-edges 1: points of Hammersley in a quarter of it, and their mirror
+// images at both axes.
+fn point_on_rectangle(index: u32, count: u32) -> vec2f {
+    if (count < 2u) {
+        return vec2f(0.0);
+    }
+    let place = index / 4u;
+    let number = count / 4u;
+    // Number of bits of the places: 0 for a single one.
+    let bits = select(32u - countLeadingZeros(number - 1u), 0u, number == 1u);
+    let reversed = f32(reverseBits(place)) / 4294967296.0 + 0.5 / f32(1u << bits);
+    let corner = vec2f((f32(place) + 0.5) / f32(number), reversed);
+    return corner * (1.0 - 2.0 * vec2f(f32(index & 1u), f32(index >> 1u & 1u)));
+}
+
+// Factors that move points of a wide flat light towards its middle, so that a surface facing it takes the same light
+// from each (crates/scene/src/settings/light/area_light.rs).
+fn closer_to_middle(light: LightUniform, at: vec2f) -> vec2f {
+    let squares = vec2f(dot(light.area_right, light.area_right), dot(light.area_up, light.area_up));
+    let tangents = squares / dot(light.position_or_direction, light.position_or_direction);
+    let inner = 1.0 - select(vec2f(dot(at, at)), at * at, light.shape == 2u);
+    return select(inverseSqrt(1.0 + inner * tangents), vec2f(1.0), light.shape == 3u);
 }
 
 // Point `index` of an area light, as a point light.
 fn area_light_point(light: LightUniform, index: u32) -> LightUniform {
     var one = light;
     if (light.points > 1u) {
-        let number = f32(index);
-        let at = (number + 0.5) / f32(light.points);
-        let spread = fract(number * GOLDEN_SHARE + 0.5);
-        let disc = point_on_disc(index, light.points);
-        let across = select(disc, vec2f(2.0 * at, 2.0 * spread) - 1.0, light.shape == 2u);
+        let in_ring = point_on_disc(index, light.points);
+        let disc = in_ring.xy;
+        let spread = select(fract(in_ring.z * DEPTH_STEP + DEPTH_START), 0.5, light.points <= MAX_SINGLE_ORBIT);
+        let even = select(disc, point_on_rectangle(index, light.points), light.shape == 2u);
+        let across = even * closer_to_middle(light, even);
         let deep = sqrt(1.0 - dot(disc, disc)) * sin(3.1415927 * (spread - 0.5));
         let place = light.position_or_direction + light.area_right * across.x + light.area_up * across.y + light.area_near * deep;
         one.position_or_direction = select(normalize(place), place, light.perspective > 0.5);

@@ -33,7 +33,11 @@ pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIU
 pub use self::settings::label_table::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::OpacityLength;
 pub use self::settings::light::area_light::{
-    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
+    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE, area_light_points,
+};
+pub use self::settings::light::cube_axes::cube_axes;
+pub use self::settings::light::direction_sets::{
+    SKY_DIRECTION_SETS, directions_above, sky_direction_set, sweep_directions,
 };
 pub use self::settings::light::environment_map::ENVIRONMENT_LIGHT_NAME;
 pub use self::settings::light::horizon_clipping::VisibleLight;

@@ -7,7 +7,8 @@ use super::super::text::common::FACTOR_SUFFIX;
 use super::PanelContext;
 use super::controls::{NumberRow, advanced_group};
 use super::shadows::soft_light_resolution;
-use chiaroscuro_scene::{MAX_ANISOTROPY, MAX_BOUNCES, SKY_DIRECTIONS};
+use super::sky_light::directions_row;
+use chiaroscuro_scene::{MAX_ANISOTROPY, MAX_BOUNCES};
 
 /// Shows the rows of multiple scattering in the section "Sky and scattering".
 pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
@@ -28,11 +29,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     anisotropy.show(ui, &mut scattering.anisotropy, defaults.anisotropy);
     ui.add_enabled_ui(scattering.bounces > 0, |ui| {
         advanced_group(ui, "scattering", |ui| {
-            let (least, most) = (f64::from(*SKY_DIRECTIONS.start()), f64::from(*SKY_DIRECTIONS.end()));
-            let mut directions = f64::from(scattering.directions);
-            let number = NumberRow::new(text::scattering::DIRECTIONS, least..=most).decimals(0);
-            number.show(ui, &mut directions, f64::from(defaults.directions));
-            scattering.directions = directions.round().clamp(least, most) as u32;
+            directions_row(ui, text::scattering::DIRECTIONS, &mut scattering.directions);
             let (shadows, dims) = (&panels.settings.shadows, panels.volume.map(|volume| volume.dims));
             let used = |resolution| Some(shadows.soft_resolution(resolution, dims?));
             soft_light_resolution(ui, &mut scattering.resolution, panels.facts.bounces_cost(), used);

@@ -8,7 +8,7 @@ use super::PanelContext;
 use super::controls::{NumberRow, advanced_group, choice_row, color_button, row};
 use super::shadows::soft_light_resolution;
 use crate::app::common::commands::AppCommand;
-use chiaroscuro_scene::{EnvironmentLight, SKY_DIRECTIONS, SkyMode};
+use chiaroscuro_scene::{EnvironmentLight, SKY_DIRECTION_SETS, SkyMode, sky_direction_set};
 
 const MODES: [(SkyMode, ControlText); 4] = [
     (SkyMode::Off, text::sky::OFF),
@@ -16,6 +16,15 @@ const MODES: [(SkyMode, ControlText); 4] = [
     (SkyMode::Gradient, text::sky::GRADIENT),
     (SkyMode::Picture, text::sky::PICTURE),
 ];
+
+/// Shows a choice between the sets of directions; a session may ask for any number, which its nearest set serves.
+pub(super) fn directions_row(ui: &mut Ui, named: ControlText, directions: &mut u32) {
+    let mut served = sky_direction_set(*directions);
+    let options: Vec<_> = SKY_DIRECTION_SETS.into_iter().zip(text::sky::DIRECTION_SETS).collect();
+    if choice_row(ui, named, &mut served, &options) {
+        *directions = served;
+    }
+}
 
 /// Shows the rows of the sky in the section "Sky and scattering".
 pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
@@ -49,11 +58,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
         advanced_group(ui, "sky", |ui| {
             let density = NumberRow::new(text::sky::DENSITY, 0.0..=4.0).unit(FACTOR_SUFFIX);
             density.show(ui, &mut sky.density_scale, defaults.density_scale);
-            let (least, most) = (f64::from(*SKY_DIRECTIONS.start()), f64::from(*SKY_DIRECTIONS.end()));
-            let mut directions = f64::from(sky.directions);
-            let number = NumberRow::new(text::sky::DIRECTIONS, least..=most).decimals(0);
-            number.show(ui, &mut directions, f64::from(defaults.directions));
-            sky.directions = directions.round().clamp(least, most) as u32;
+            directions_row(ui, text::sky::DIRECTIONS, &mut sky.directions);
             let (shadows, dims) = (&panels.settings.shadows, panels.volume.map(|volume| volume.dims));
             let used = |resolution| Some(shadows.soft_resolution(resolution, dims?));
             soft_light_resolution(ui, &mut sky.resolution, panels.facts.sky_cost(), used);

@@ -23,12 +23,12 @@ const fn build(bounces: u32, directions: u32, resolution: LightVolumeResolution)
 }
 
 const BUILDS: [ScatteringBuild; 6] = [
-    build(3, 14, LightVolumeResolution::Quarter),
-    ScatteringBuild { bound: Some(4.0), ..build(8, 14, LightVolumeResolution::Quarter) },
-    ScatteringBuild { bound: Some(2.5), one_color: true, ..build(8, 14, LightVolumeResolution::Quarter) },
-    build(4, 64, LightVolumeResolution::Quarter),
-    build(8, 64, LightVolumeResolution::Quarter),
-    build(4, 64, LightVolumeResolution::Half),
+    build(3, 12, LightVolumeResolution::Quarter),
+    ScatteringBuild { bound: Some(4.0), ..build(8, 12, LightVolumeResolution::Quarter) },
+    ScatteringBuild { bound: Some(2.5), one_color: true, ..build(8, 12, LightVolumeResolution::Quarter) },
+    build(4, 48, LightVolumeResolution::Quarter),
+    build(8, 48, LightVolumeResolution::Quarter),
+    build(4, 48, LightVolumeResolution::Half),
 ];
 
 impl ScatteringBuild {
@@ -79,7 +79,7 @@ impl VolumeBenchmark<'_> {
             }
             ratios.insert(build.name(), found);
         }
-        let mut everything = build(8, 14, LightVolumeResolution::Quarter).look(&lit);
+        let mut everything = build(8, 12, LightVolumeResolution::Quarter).look(&lit);
         everything.sky.mode = SkyMode::Gradient;
         let pair = [lit.clone(), everything];
         let turned =

@@ -11,11 +11,11 @@ use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, ReverseKern
 /// Numbers of directions, and resolutions of the sky's volume, that are timed.
 const BUILDS: [(u32, LightVolumeResolution); 6] = [
     (6, LightVolumeResolution::Quarter),
-    (14, LightVolumeResolution::Quarter),
+    (12, LightVolumeResolution::Quarter),
     (6, LightVolumeResolution::Half),
-    (26, LightVolumeResolution::Half),
-    (64, LightVolumeResolution::Half),
-    (14, LightVolumeResolution::Full),
+    (24, LightVolumeResolution::Half),
+    (48, LightVolumeResolution::Half),
+    (12, LightVolumeResolution::Full),
 ];
 
 impl VolumeBenchmark<'_> {
@@ -53,7 +53,7 @@ impl VolumeBenchmark<'_> {
                 json!({ "measured": round_to_microsecond(samples.sky() / unit), "bound": round_to_microsecond(bound) }),
             );
         }
-        let pair = [lit.clone(), under_a_sky(26, LightVolumeResolution::Half)];
+        let pair = [lit.clone(), under_a_sky(24, LightVolumeResolution::Half)];
         let turned =
             |settings: &mut Settings, frame: usize| settings.camera.azimuth_deg += STEP_DEG * frame as f64;
         let [without, with] = self.time_alternately(&pair, turned)?;

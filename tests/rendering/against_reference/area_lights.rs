@@ -40,7 +40,7 @@ fn look() -> Settings {
             ..light(LightGeometry::Perspective, [1.1, 1.2, -0.4])
         },
     ];
-    settings.shadows.area.samples = 5;
+    settings.shadows.area.samples = 8;
     settings
 }
 
@@ -132,8 +132,9 @@ fn mistakes_in_them_are_noticed() {
     settings.shadows.strength = 0.7;
     assert!(!pictures_differ(&settings, "\u{0}", ""));
     for (from, to) in [
-        ("* sqrt((first + end) / (2.0 * all));", "* ((first + end) / (2.0 * all));"),
-        ("- first + 0.5 * ring)", "- first)"),
+        ("* sqrt((first + end) / (2.0 * all)), orbit", "* ((first + end) / (2.0 * all)), orbit"),
+        ("- first) + ring;", "- first);"),
+        ("1.0 + inner * tangents", "1.0 + 0.5 * inner * tangents"),
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),

@@ -22,7 +22,7 @@ const N: usize = 22;
 
 fn with_scattering(settings: Settings) -> Settings {
     let scattering =
-        ScatteringSettings { bounces: 4, albedo: 0.8, directions: 14, ..ScatteringSettings::default() };
+        ScatteringSettings { bounces: 4, albedo: 0.8, directions: 12, ..ScatteringSettings::default() };
     Settings { scattering, ..settings }
 }
 
@@ -46,7 +46,7 @@ fn look_with_all_light() -> Settings {
         ..scenes::light(LightGeometry::Parallel, [0.3, 0.2, -1.0])
     });
     settings.sky =
-        SkySettings { mode: SkyMode::Gradient, tilt_deg: 20.0, directions: 14, ..SkySettings::default() };
+        SkySettings { mode: SkyMode::Gradient, tilt_deg: 20.0, directions: 12, ..SkySettings::default() };
     settings.shading.emission = 0.2;
     settings
 }
@@ -135,7 +135,7 @@ fn mistakes_are_detected() {
     differs("5 % more is scattered", &|settings| settings.scattering.albedo *= 1.05);
     differs("5 % denser", &|settings| settings.scattering.density_scale *= 1.05);
     differs("one bounce alone", &|settings| settings.scattering.bounces = 1);
-    differs("a direction less", &|settings| settings.scattering.directions -= 1);
+    differs("half of the directions", &|settings| settings.scattering.directions = 6);
     differs("no light of its own", &|settings| settings.shading.emission = 0.0);
     differs("no hood", &|settings| settings.lights[1].hood.on = false);
     differs("a shadow of a light without", &|settings| settings.lights[2].casts_shadows = true);
@@ -214,7 +214,7 @@ fn light_agrees_with_random_walks() {
         settings.scattering = ScatteringSettings {
             bounces: 12,
             albedo,
-            directions: 64,
+            directions: 48,
             resolution: LightVolumeResolution::Full,
             ..ScatteringSettings::default()
         };

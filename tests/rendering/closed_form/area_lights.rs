@@ -42,10 +42,24 @@ fn disc_look(tangent: f64) -> Settings {
     settings
 }
 
-/// Visible share of a disc behind a half-plane, whose edge is at `u` of the disc's radius from its centre.
-fn visible_disc_share(u: f64) -> f64 {
-    let u = u.clamp(-1.0, 1.0);
-    0.5 + (u * (1.0 - u * u).sqrt() + u.asin()) / PI
+/// Share of the light of a disc at infinity, evenly bright with this tangent of its angular radius, that arrives on a
+/// surface facing it behind a half-plane, whose edge is at `u` of that tangent from its centre.
+///
+/// That light is even over the sines of the angles: x and y of the unit vectors towards it. The edge, x = u tan α z,
+/// is half an ellipse there, x = k √(1 − y²) with k = u tan α / √(1 + u² tan² α). Integrated over rows of equal angle.
+fn visible_disc_share(u: f64, tangent: f64) -> f64 {
+    let radius = tangent / (1.0 + tangent * tangent).sqrt();
+    let edge = u * tangent / (1.0 + (u * tangent).powi(2)).sqrt();
+    let rows = 400;
+    let row = |at: i32| {
+        let angle = PI * ((f64::from(at) + 0.5) / f64::from(rows) - 0.5);
+        let (y, half) = (radius * angle.sin(), radius * angle.cos());
+        // dy is proportional to the cosine, as is half of the row.
+        let seen = (edge * (1.0 - y * y).sqrt()).clamp(-half, half) + half;
+        (seen * angle.cos(), 2.0 * half * angle.cos())
+    };
+    let (seen, all) = (0..rows).map(row).fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
+    seen / all
 }
 
 /// Light in the layer `depth` voxels below the plate, along `across`, within `reach` of the edge: positions and
@@ -79,8 +93,7 @@ fn mean_row(volume: &[f32], depth: usize, across: DVec2, reach: usize) -> Vec<f6
     (0..=2 * reach).map(|at| mean_at(at as f64 - reach as f64)).collect()
 }
 
-/// Penumbra of a half-plane under a disc: ½ + (u√(1 − u²) + asin u)/π, u = x/(d tan θ), at every distance, in many
-/// directions. The edge is as soft as a point light's shadow of it, which convolves the penumbra.
+/// Penumbra of a half-plane under a disc at every distance, in many directions. The edge is as soft as a point light's shadow of it, which convolves the penumbra.
 #[test]
 fn penumbrae_widen_with_the_distance() {
     let tangent = 0.4;
@@ -103,7 +116,7 @@ fn penumbrae_widen_with_the_distance() {
                 let place = at as f64 - reach as f64;
                 let blurred = edge.windows(2).enumerate().map(|(at, pair)| {
                     let step = at as f64 + 0.5 - 8.0;
-                    (pair[1] - pair[0]) * visible_disc_share((place - step) / half)
+                    (pair[1] - pair[0]) * visible_disc_share((place - step) / half, tangent)
                 });
                 *worst = worst.max((found - blurred.sum::<f64>()).abs());
             }

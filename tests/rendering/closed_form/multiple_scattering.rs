@@ -51,11 +51,11 @@ fn scattered_light(volume: &Volume, settings: &Settings) -> [Vec<f64>; 2] {
 fn what_absorbs_nothing_vanishes_in_a_white_furnace() {
     let dims = [20, 17, 23];
     let volume = volume(dims, |[x, y, z]| if (x / 3 + y / 4 + z / 5) % 3 == 0 { 1.0 } else { 0.25 });
-    let mut settings = scattering_look(0.3, (12, 1.0, 26));
+    let mut settings = scattering_look(0.3, (12, 1.0, 24));
     settings.sky = SkySettings {
         mode: SkyMode::White,
         intensity: 1.0,
-        directions: 26,
+        directions: 24,
         resolution: LightVolumeResolution::Full,
         ..SkySettings::default()
     };
@@ -165,7 +165,7 @@ fn a_half_space_gives_back_what_chandrasekhar_says() {
     let dims = [33, 33, 27];
     let slab = volume(dims, |[_, _, z]| if z >= EMPTY { 1.0 } else { 0.0 });
     for albedo in [0.8, 0.9] {
-        let mut settings = scattering_look(PER_VOXEL, (12, albedo, 26));
+        let mut settings = scattering_look(PER_VOXEL, (12, albedo, 24));
         settings.lights = vec![scenes::light(LightGeometry::Parallel, [0.0, 0.0, -1.0])];
         let medium = Reference::new(&slab, &settings, ReferenceOptions::default()).medium();
         let edge = slab.scene().smallest_edge();

@@ -77,7 +77,7 @@ fn assert_near(what: &str, found: f64, right: f64, limit: f64) {
 
 #[test]
 fn empty_space_is_open() {
-    for found in visibility_moments([12, 9, 15], (1.0, 64), |_| 0.0, &[[5, 4, 7], [11, 8, 14], [0, 8, 3]]) {
+    for found in visibility_moments([12, 9, 15], (1.0, 48), |_| 0.0, &[[5, 4, 7], [11, 8, 14], [0, 8, 3]]) {
         for at in found {
             assert_near("mean", at.mean, 1.0, SKY_VISIBILITY);
             assert_near("first moment", at.first.length(), 0.0, SKY_VISIBILITY);
@@ -103,7 +103,7 @@ fn a_ball_darkens_towards_its_middle() {
     // Nearer to the surface, the kernel blurs it.
     let depths = [0, 13, 24];
     let at = depths.map(|r| [29 + r, 29, 29]);
-    for found in visibility_moments([59; 3], (EXTINCTION, 64), full, &at) {
+    for found in visibility_moments([59; 3], (EXTINCTION, 48), full, &at) {
         for (found, r) in found.iter().zip(depths) {
             let right = ball_visibility(EXTINCTION, RADIUS, r as f64);
             assert_near(&format!("{r} voxels from the middle"), found.mean, right, SKY_VISIBILITY);
@@ -111,15 +111,15 @@ fn a_ball_darkens_towards_its_middle() {
     }
 }
 
-/// Height above a floor, in voxels, at which the kernel's blur of its surface does not affect rays. Of 64 directions
-/// the lowest fall by a 64th: within 100 voxels they enter that blur, and it stops them. Those that rise clear it.
+/// Height above a floor, in voxels, at which the kernel's blur of its surface does not affect rays. The lowest of 48
+/// directions fall by 15°: within a few voxels they enter that blur, and it stops them. Those that rise clear it.
 const HEIGHT_ABOVE_FLOOR: usize = 2;
 
 /// Above an opaque floor half of the sky is visible: V₀ = ½, V₁ = n/4, and E = π.
 #[test]
 fn a_floor_sees_half_the_sky() {
     let full = |p: DVec3| if p.z < 3.5 { 1.0 } else { 0.0 };
-    for found in visibility_moments([210, 210, 8], (9.0, 64), full, &[[105, 105, 4 + HEIGHT_ABOVE_FLOOR]]) {
+    for found in visibility_moments([210, 210, 8], (9.0, 48), full, &[[105, 105, 4 + HEIGHT_ABOVE_FLOOR]]) {
         assert_near("mean", found[0].mean, 0.5, SKY_VISIBILITY);
         assert_near("first moment", found[0].first.z, 0.25, SKY_VISIBILITY);
         assert_near("across", found[0].first.truncate().length(), 0.0, SKY_VISIBILITY);
@@ -139,7 +139,7 @@ fn a_wall_hides_a_wedge_of_the_sky() {
     };
     let distances = [6, 12, 24];
     let at = distances.map(|x| [3 + x, 100, FLOOR + HEIGHT_ABOVE_FLOOR]);
-    for found in visibility_moments([130, 200, 24], (9.0, 40), full, &at) {
+    for found in visibility_moments([130, 200, 24], (9.0, 48), full, &at) {
         for (found, x) in found.iter().zip(distances) {
             let (x, height) = (x as f64 - 0.5, (TOP - FLOOR - HEIGHT_ABOVE_FLOOR) as f64 - 0.5);
             let wedge = (height / x).atan();

@@ -25,8 +25,9 @@ pub use self::geometry::reach::{
 };
 pub use self::geometry::sheet_frame::{GradientSteps, MAX_STRETCH_LEVEL, PixelLinear, SheetFrame};
 pub use self::geometry::slice_order::SliceOrder;
-pub use self::geometry::sweep::{SlicePosition, SweepFrame, directions_above, sweep_directions};
+pub use self::geometry::sweep::{SlicePosition, SweepFrame};
 pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
+pub use chiaroscuro_scene::{directions_above, sweep_directions};
 pub use keys::{
     ActiveLight, ActiveLights, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey,
     FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,

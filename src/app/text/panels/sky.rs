@@ -34,3 +34,11 @@ pub(crate) const DIRECTIONS: ControlText = control_text(
     "Directions",
     "Number of directions from which light is followed: more is smoother, and takes longer",
 );
+/// Texts of the sets of directions, in the order of their sizes.
+pub(crate) const DIRECTION_SETS: [ControlText; 5] = [
+    control_text("6", "For a first impression: shadows in six directions"),
+    control_text("12", "As in previews"),
+    control_text("24", "Fine for soft material; hollows show a few steps"),
+    control_text("48", "Even on surfaces, too"),
+    control_text("96", "Twice as many steps in the shadows of edges, in twice the time"),
+];

@@ -1,10 +1,10 @@
 //! Sheet frames of a light: one view for a light outside the volume, six (the faces of a cube map) for a perspective
 //! light inside or close by.
 
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::sheet_frame::{ProjectionPlacement, SheetFrame};
-use chiaroscuro_scene::{LightGeometry, SceneLight, ShadowSettings};
+use chiaroscuro_scene::{LightGeometry, SceneLight, ShadowSettings, cube_axes};
 use chiaroscuro_volume::math::SceneSpace;
 
 /// Distance in radii of the volume below which a perspective light is split into six views: beyond it, the volume
@@ -134,7 +134,7 @@ fn outside_view(
     let pixels = scene.support_corners().map(pixel_of);
     // Pixels are aligned with voxels: for light along rows of voxels, each row has a pixel of its own, and none
     // receives light of its neighbours.
-    let row = pixel_of(middle_voxel(scene, shadows.resolution.divisor()));
+    let row = pixel_of(middle_voxel(scene, shadows.resolution.divisor(), forward, edge));
     let low = (pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel)) - row).floor() + row;
     let high = (pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel)) - row).ceil() + row;
     let size = (high - low).round() + 1.0;
@@ -151,12 +151,25 @@ fn outside_view(
     make_view(scene, &place, false)
 }
 
-/// Returns the centre of the light volume's voxel next to the middle, in scene space: half a voxel off if their
-/// number is even.
-fn middle_voxel(scene: &SceneSpace, divisor: usize) -> DVec3 {
-    let index = scene.dims.map(|n| {
-        let voxel = (n as f64 / 2.0 / divisor as f64).floor();
-        (voxel + 0.5) * divisor as f64 - 0.5
+/// Returns the centre of the light volume's voxel next to the middle, in scene space.
+///
+/// Of an even number of voxels it is the one towards the light, so that the mirrored scene has the mirrored pixels.
+/// Where light comes from neither side, a pixel's face lies in the middle: half a pixel of width `edge` off, which is
+/// half a voxel if they are that wide.
+fn middle_voxel(scene: &SceneSpace, divisor: usize, forward: DVec3, edge: f64) -> DVec3 {
+    let towards = -scene.index_from_scene.transform_vector3(forward);
+    let index: [f64; 3] = std::array::from_fn(|axis| {
+        let count = scene.dims[axis].div_ceil(divisor);
+        let middle = count as f64 * divisor as f64 / 2.0 - 0.5;
+        if count % 2 == 1 {
+            return middle;
+        }
+        let half = 0.5 * divisor as f64;
+        if towards[axis].abs() < 1e-9 * towards.abs().max_element() {
+            middle + half.min(0.5 * edge / scene.scene_from_index.matrix3.col(axis).length())
+        } else {
+            middle + half * towards[axis].signum()
+        }
     });
     scene.scene_from_index.transform_point3(DVec3::from(index))
 }
@@ -202,16 +215,11 @@ fn make_view(scene: &SceneSpace, place: &ProjectionPlacement, cube_face: bool) -
     }
 }
 
-/// Returns axes with z along `forward`, by the shortest rotation from straight down. They change continuously with
-/// the light except where it shines straight up, the rarest of directions.
+/// Returns axes with z along `forward` that turn with the scene, so that turned and mirrored scenes have the same
+/// pixels.
 fn axes_along(forward: DVec3) -> DMat3 {
-    let from = DVec3::NEG_Z;
-    let turn = if from.dot(forward) < -1.0 + 1e-12 {
-        DQuat::from_rotation_x(std::f64::consts::PI)
-    } else {
-        DQuat::from_rotation_arc(from, forward)
-    };
-    DMat3::from_cols(turn * DVec3::X, turn * DVec3::NEG_Y, forward)
+    let [right, down] = cube_axes(forward);
+    DMat3::from_cols(right, down, forward)
 }
 
 #[cfg(test)]
@@ -310,7 +318,9 @@ mod tests {
             let axes = axes_along(forward);
             assert!((axes.determinant() - 1.0).abs() < 1e-9 || (axes.determinant() + 1.0).abs() < 1e-9);
             if let Some(previous) = previous {
-                assert!((axes.x_axis - previous.x_axis).length() < 0.05, "at {step} degrees");
+                // Up to quarter turns, which leave the pixels where they are.
+                let aligned = [axes.x_axis, axes.y_axis].map(|axis| axis.dot(previous.x_axis).abs());
+                assert!(aligned[0].max(aligned[1]) > 0.99, "at {step} degrees");
             }
             previous = Some(axes);
         }

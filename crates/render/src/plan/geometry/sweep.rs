@@ -1,49 +1,8 @@
-//! Sweep frames: directions of sky light, and parallel rays in each direction through a grid of blocks.
-
-use std::f64::consts::PI;
+//! Sweep frames: parallel rays in each direction of a sky's light through a grid of blocks.
 
 use glam::{DVec2, DVec3};
 
 use chiaroscuro_volume::math::SceneSpace;
-
-/// Returns unit vectors towards `count` parts of the sphere of equal size.
-///
-/// A Fibonacci sphere, zᵢ = 1 − (2i + 1)/K at the angle iπ(3 − √5), ordered so that each direction is the farthest
-/// from all before it (farthest-point ordering); so the first few are evenly spread, too.
-pub fn sweep_directions(count: u32) -> Vec<DVec3> {
-    let golden = PI * (3.0 - 5f64.sqrt());
-    let direction = |i: u32| {
-        let z = 1.0 - f64::from(2 * i + 1) / f64::from(count);
-        let (sin, cos) = (golden * f64::from(i)).sin_cos();
-        let across = (1.0 - z * z).sqrt();
-        DVec3::new(across * cos, across * sin, z)
-    };
-    let mut left: Vec<DVec3> = (0..count).map(direction).collect();
-    let mut ordered: Vec<DVec3> = Vec::with_capacity(left.len());
-    while !left.is_empty() {
-        // The largest cosine to any direction before: the smaller it is, the farther away.
-        let nearest = |of: &DVec3| ordered.iter().map(|known| known.dot(*of)).fold(-1.0, f64::max);
-        let farthest = (0..left.len()).min_by(|&a, &b| nearest(&left[a]).total_cmp(&nearest(&left[b])));
-        ordered.extend(farthest.map(|at| left.remove(at)));
-    }
-    ordered
-}
-
-/// Returns unit vectors towards `count` parts of the hemisphere above, each of which contributes equally to the
-/// irradiance of a surface that faces `up`.
-///
-/// They are uniform over the disc under the hemisphere, so denser above than near the horizon, as the cosine demands:
-/// a spiral with rᵢ = √((i + ½)/K) at the angle iπ(3 − √5).
-pub fn directions_above(up: DVec3, count: u32) -> Vec<DVec3> {
-    let golden = PI * (3.0 - 5f64.sqrt());
-    let (right, front) = up.any_orthonormal_pair();
-    let direction = |i: u32| {
-        let square = (f64::from(i) + 0.5) / f64::from(count);
-        let (sin, cos) = (golden * f64::from(i)).sin_cos();
-        (right * cos + front * sin) * square.sqrt() + up * (1.0 - square).sqrt()
-    };
-    (0..count).map(direction).collect()
-}
 
 /// Parallel rays through a grid of blocks of voxels. They cross its slices along one axis of the grid at their
 /// middles, so that any position stays between the same four rays during a whole step.
@@ -147,45 +106,13 @@ mod tests {
     use glam::DAffine3;
 
     use super::*;
-    use chiaroscuro_volume::math::SceneSpace;
-
-    #[test]
-    fn directions_are_even_however_few_are_taken() {
-        for count in [6, 14, 26, 64] {
-            let all = sweep_directions(count);
-            assert_eq!(all.len(), count as usize);
-            let mean = all.iter().sum::<DVec3>() / f64::from(count);
-            assert!(mean.length() < 0.04, "{count}: {mean}");
-        }
-        let all = sweep_directions(64);
-        for taken in 6..=64 {
-            let some = &all[..taken];
-            let mean = some.iter().sum::<DVec3>().length() / taken as f64;
-            assert!(mean < 0.25, "{taken}: {mean}");
-            // No direction is more than 80° from all of them.
-            let farthest = all.iter().map(|a| some.iter().map(|b| a.dot(*b)).fold(-1.0, f64::max));
-            assert!(farthest.fold(1.0, f64::min) > 80f64.to_radians().cos(), "{taken}");
-        }
-    }
-
-    #[test]
-    fn directions_above_light_what_faces_up_equally() {
-        for up in [DVec3::Z, DVec3::NEG_Y] {
-            let all = directions_above(up, 64);
-            let mean = all.iter().sum::<DVec3>() / 64.0;
-            // Mean of ω cos θ over π, divided by that of cos θ.
-            assert!((mean - up * 2.0 / 3.0).length() < 0.01, "{mean}");
-            assert!(
-                all.iter().all(|towards| towards.dot(up) > 0.05 && (towards.length() - 1.0).abs() < 1e-12)
-            );
-        }
-    }
+    use chiaroscuro_scene::sweep_directions;
 
     #[test]
     fn every_block_lies_between_rays_that_there_are() {
         let scene = SceneSpace::new([13, 20, 7], DAffine3::from_scale(DVec3::new(1.0, 0.7, 2.0)));
         for divisor in [1, 2, 4] {
-            for towards in sweep_directions(26) {
+            for towards in sweep_directions(24) {
                 let frame = SweepFrame::new(&scene, divisor, towards);
                 assert!(frame.drift.abs().max_element() <= 1.0 + 1e-12, "{frame:?}");
                 let [nx, ny, nz] = frame.dims;

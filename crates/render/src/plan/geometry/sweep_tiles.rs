@@ -84,7 +84,7 @@ mod tests {
 
     fn frames(dims: [usize; 3]) -> Vec<SweepFrame> {
         let scene = SceneSpace::new(dims, DAffine3::from_scale(DVec3::new(1.0, 0.7, 2.0)));
-        sweep_directions(26).into_iter().map(|towards| SweepFrame::new(&scene, 1, towards)).collect()
+        sweep_directions(24).into_iter().map(|towards| SweepFrame::new(&scene, 1, towards)).collect()
     }
 
     /// Returns true if a tile's rays are followed in a slice.

@@ -6,7 +6,9 @@ use super::sky::SkyAppearance;
 use super::table::{EyeTableKey, OpacityKey};
 use super::uniform_light_color::UniformLightColor;
 use crate::plan::{RenderRequest, VolumeKey};
-use chiaroscuro_scene::{ClassificationOrder, ClippedPart, LightVolumeResolution, ScatteringSettings};
+use chiaroscuro_scene::{
+    ClassificationOrder, ClippedPart, LightVolumeResolution, ScatteringSettings, sky_direction_set,
+};
 
 /// Inputs of the volume of bounced light: the material with its colours, and all light.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +44,7 @@ const MAX_LIGHT_POINTS: u32 = 8;
 /// nearly as well as from more.
 const PREVIEW_BOUNCES: u32 = 2;
 /// Maximum number of directions in previews, see [`PREVIEW_BOUNCES`].
-const PREVIEW_DIRECTIONS: u32 = 14;
+const PREVIEW_DIRECTIONS: u32 = 12;
 
 impl BouncesKey {
     /// Creates the key of the volume that a picture needs; `None` if no light bounces.
@@ -80,7 +82,7 @@ impl BouncesKey {
             albedo,
             density_scale,
             bounces,
-            directions,
+            directions: sky_direction_set(directions),
             resolution: settings.shadows.soft_resolution(resolution, request.volume.dims),
             preview_resolution: settings
                 .shadows

@@ -44,7 +44,7 @@ pub struct LightArrival {
 }
 
 /// Number of rays to the sky: a few milliseconds.
-const SKY_DIRECTIONS: u32 = 64;
+const SKY_DIRECTIONS: u32 = 48;
 
 /// Maximum number of rays to each area light: losses are displayed in whole per cent.
 const MAX_LIGHT_POINTS: u32 = 16;

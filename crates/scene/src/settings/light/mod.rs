@@ -1,6 +1,8 @@
 //! Light sources: settings of a light, and lights resolved into scene space.
 
 pub(crate) mod area_light;
+pub(crate) mod cube_axes;
+pub(crate) mod direction_sets;
 pub(crate) mod environment_map;
 pub(crate) mod horizon_clipping;
 pub(crate) mod scattering;

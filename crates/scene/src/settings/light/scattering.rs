@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::direction_sets::sky_direction_set;
 use crate::LightVolumeResolution;
 
 /// Largest number of simulated bounces; with two or more, diffusion gives what all later ones bring.
@@ -32,7 +33,8 @@ pub struct ScatteringSettings {
     pub anisotropy: f64,
     /// Factor for the extinction of bounced light: a lower one lets it in deeper.
     pub density_scale: f64,
-    /// Number of directions of the last bounce, which is the visible one.
+    /// Number of directions of the last bounce, which is the visible one; [`sky_direction_set`] returns the number
+    /// that serves it.
     pub directions: u32,
     /// Resolution of the volume of bounced light.
     pub resolution: LightVolumeResolution,
@@ -42,7 +44,7 @@ impl ScatteringSettings {
     /// Returns the number of directions of all bounces but the last, which has `directions`: the last bounce evens
     /// out their irregularities.
     pub fn inner_bounce_directions(directions: u32) -> u32 {
-        (directions / 4).clamp(6, 14)
+        sky_direction_set(sky_direction_set(directions) / 4)
     }
 }
 
@@ -54,7 +56,7 @@ impl Default for ScatteringSettings {
             strength: 1.0,
             anisotropy: 0.0,
             density_scale: 1.0,
-            directions: 64,
+            directions: 48,
             resolution: LightVolumeResolution::Quarter,
         }
     }

@@ -19,8 +19,8 @@ pub enum SkyMode {
     Picture,
 }
 
-/// Number of directions for the sky's light: fewer look patchy, more look no better.
-pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=64;
+/// Numbers of directions that settings may ask for; [`sky_direction_set`](crate::sky_direction_set) returns the one that serves each.
+pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=96;
 
 /// Distance in front of a surface at which sky visibility is looked up, in blocks of its volume: nearer material is
 /// the surface itself, which the blocks blur.
@@ -53,7 +53,7 @@ pub struct SkySettings {
     pub turn_deg: f64,
     /// Factor for the extinction of material for sky light.
     pub density_scale: f64,
-    /// Number of directions for sky visibility.
+    /// Number of directions for sky visibility; [`sky_direction_set`](crate::sky_direction_set) returns the number that serves it.
     pub directions: u32,
     /// Resolution of the sky visibility volume.
     pub resolution: LightVolumeResolution,
@@ -72,7 +72,7 @@ impl Default for SkySettings {
             tilt_deg: 0.0,
             turn_deg: 0.0,
             density_scale: 1.0,
-            directions: 64,
+            directions: 48,
             resolution: LightVolumeResolution::Half,
         }
     }
