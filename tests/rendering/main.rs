@@ -9,6 +9,7 @@ mod caching;
 mod closed_form;
 mod common;
 mod compare;
+mod metamorphic;
 mod output;
 mod path_tracing;
 mod scenes;
