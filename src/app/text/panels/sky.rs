@@ -38,7 +38,7 @@ pub(crate) const DIRECTIONS: ControlText = control_text(
 pub(crate) const DIRECTION_SETS: [ControlText; 5] = [
     control_text("6", "For a first impression: shadows in six directions"),
     control_text("12", "As in previews"),
-    control_text("24", "Fine for soft material; hollows show a few steps"),
+    control_text("24", "Fine for soft material; on surfaces it shows as a faint weave"),
     control_text("48", "Even on surfaces, too"),
     control_text("96", "Twice as many steps in the shadows of edges, in twice the time"),
 ];

@@ -21,7 +21,7 @@ pub fn cube_axes(forward: DVec3) -> [DVec3; 2] {
     };
     let votes = [DVec3::X, DVec3::Y, DVec3::Z].map(vote);
     let [real, imaginary] = [0, 1].map(|part| votes.iter().map(|vote| vote[part]).sum::<f64>());
-    let first = if real.hypot(imaginary) < ALIKE {
+    let first = if (real * real + imaginary * imaginary).sqrt() < ALIKE {
         forward.cross(DVec3::Z).normalize_or(right)
     } else {
         let (sin, cos) = (imaginary.atan2(real) / 4.0).sin_cos();
@@ -32,7 +32,7 @@ pub fn cube_axes(forward: DVec3) -> [DVec3; 2] {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3Swizzles;
+    use glam::Vec3Swizzles as _;
 
     use super::*;
 

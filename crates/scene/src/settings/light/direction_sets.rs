@@ -13,7 +13,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use glam::{DQuat, DVec3, EulerRot, Vec3Swizzles};
+use glam::{DQuat, DVec3, EulerRot, Vec3Swizzles as _};
 
 /// Numbers of directions for the sky's light, each in a set of its own. Fewer look patchy, more look no better.
 pub const SKY_DIRECTION_SETS: [u32; 5] = [6, 12, 24, 48, 96];
