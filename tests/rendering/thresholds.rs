@@ -255,7 +255,7 @@ pub(crate) const FLOOR_UNDER_A_SKY: ErrorLimit = ErrorLimit { max: 0.01, rmse: 5
 pub(crate) const SKY_VISIBILITY: f64 = 0.01;
 /// Sky visibility beside a wall along an axis, whose edge the directions of a symmetric set cross two by two: each is
 /// 1/48 of the sky.
-pub(crate) const SKY_VISIBILITY_AT_WALL: f64 = 0.045;
+pub(crate) const SKY_VISIBILITY_AT_WALL: f64 = 0.03;
 /// Moments of sky visibility on the GPU against those of the reference: sums over directions with 11 bits, stored
 /// with as many.
 pub(crate) const SKY_MOMENTS: ErrorLimit = ErrorLimit { max: 2e-3, rmse: 3e-4 };

@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::TestScene;
 use crate::scenes;
 
-/// Numbers of a seed, by SplitMix64.
+/// Numbers of a seed, by the generator `SplitMix64`.
 struct SeededNumbers(u64);
 
 impl SeededNumbers {
@@ -150,7 +150,7 @@ fn random_look(numbers: &mut SeededNumbers, seed: u64) -> Settings {
 }
 
 fn random_light(numbers: &mut SeededNumbers, index: usize) -> LightSettings {
-    let is_far = index % 2 == 0;
+    let is_far = index.is_multiple_of(2);
     let shape = [LightShape::Disc, LightShape::Point, LightShape::Rectangle, LightShape::Ball]
         [(index + index / 4) % 4];
     let distance = if is_far { 2.0 } else { numbers.between(5.0, 7.0) };
