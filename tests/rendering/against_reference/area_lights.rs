@@ -138,7 +138,7 @@ fn mistakes_in_them_are_noticed() {
     for (from, to) in [
         ("* sqrt((first + end) / (2.0 * all)), orbit", "* ((first + end) / (2.0 * all)), orbit"),
         ("- first) + ring;", "- first);"),
-        ("1.0 + inner * tangents", "1.0 + 0.5 * inner * tangents"),
+        ("1.0 + inner * tangents", "1.0 + 9.0 * inner * tangents"),
         ("light.area_up * across.y", "light.area_up * across.x"),
         ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
