@@ -68,6 +68,10 @@ fn ray_coordinates(rays: SweepRaysUniform, block: vec3f) -> vec3f {
 
 // Place of a block among the rays of one direction, as texture coordinates of the sheets.
 fn place_in_sheets(rays: SweepRaysUniform, block: vec3f) -> vec3f {
-    let ray = ray_coordinates(rays, block);
+    return place_of_ray(rays, ray_coordinates(rays, block));
+}
+
+// Place of ray coordinates of one direction, as texture coordinates of the sheets.
+fn place_of_ray(rays: SweepRaysUniform, ray: vec3f) -> vec3f {
     return (ray + vec3f(0.5, 0.5, f32(rays.layer) + 0.5)) * sweep.sheet_scale;
 }

@@ -290,6 +290,21 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             layout!(BlocksUniform { dims, voxel_step, level, offset, edge, albedo, shading_cut }),
         ),
         (
+            "sky/surfaces.wgsl",
+            layout!(SurfaceBlocksUniform {
+                dims,
+                has_surfaces,
+                block_scale,
+                pad0,
+                along_x,
+                pad1,
+                along_y,
+                pad2,
+                along_z,
+                pad3
+            }),
+        ),
+        (
             "sky/floor_map.wgsl",
             layout!(FloorSkyMapUniform { origin, share, along_x, size, along_y, pad0, plane }),
         ),

@@ -3,8 +3,8 @@
 use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions, SkyVisibility};
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
-    ClassificationOrder, ClipEffect, CropBox, LightStorage, LightVolumeResolution, LitSides, RenderEngine,
-    Settings, ShadowAlgorithm, SkyMode, SkySettings,
+    ClassificationOrder, ClipEffect, CropBox, LightStorage, LightVolumeResolution, LitSides, OpacityLength,
+    RenderEngine, Settings, ShadowAlgorithm, SkyMode, SkySettings,
 };
 use chiaroscuro_volume::{Dataset, Volume};
 use glam::DVec3;
@@ -15,7 +15,7 @@ use super::presence::{two_lobes, waves};
 use crate::common::{context, damaged_renderer};
 use crate::compare::{channels_f32, compare};
 use crate::scenes;
-use crate::thresholds::SKY_MOMENTS;
+use crate::thresholds::{SKY_MOMENTS, SKY_MOMENTS_AT_SURFACES};
 
 const N: usize = 22;
 
@@ -46,6 +46,18 @@ fn cut() -> Settings {
     settings
 }
 
+/// Look whose material has surfaces in front of which rays start.
+fn dense() -> Settings {
+    under_a_sky(scenes::look()).with_opacity_unit(OpacityLength::Voxels(0.2))
+}
+
+/// The same without surfaces.
+fn fog() -> Settings {
+    let mut settings = dense();
+    settings.shading.surface_gradient = 10.0;
+    settings
+}
+
 /// Sky-visibility moments of a reference in the memory layout of the GPU.
 fn gpu_layout(visibility: &SkyVisibility) -> Vec<f64> {
     let [x, y, z] = &visibility.first_moment;
@@ -66,6 +78,8 @@ fn sky_visibility_agrees_with_the_reference() {
         ("creature", creature(), under_a_sky(scenes::look())),
         ("cut", creature(), cut()),
         ("missing voxels", waves(N, DVec3::ONE, true), under_a_sky(two_lobes())),
+        ("dense", creature(), dense()),
+        ("fog", creature(), fog()),
     ] {
         for resolution in
             [LightVolumeResolution::Full, LightVolumeResolution::Half, LightVolumeResolution::Quarter]
@@ -77,7 +91,9 @@ fn sky_visibility_agrees_with_the_reference() {
                 let expected =
                     Reference::new(&volume, &settings, ReferenceOptions::default()).sky_visibility();
                 let what = format!("{what}, {resolution:?}, {classification:?}");
-                compare(&what, &visibility_moments(&volume, &settings), &gpu_layout(&expected), SKY_MOMENTS)
+                let limit =
+                    if settings.shading.has_surfaces() { SKY_MOMENTS_AT_SURFACES } else { SKY_MOMENTS };
+                compare(&what, &visibility_moments(&volume, &settings), &gpu_layout(&expected), limit)
                     .expect("the same");
             }
         }
@@ -114,6 +130,8 @@ fn mistakes_are_detected() {
 fn mistakes_in_where_rays_are_followed_are_noticed() {
     let (volume, mut settings) = (creature(), under_a_sky(scenes::look()));
     settings.sky.resolution = LightVolumeResolution::Full;
+    // Without surfaces, in front of which rays are followed everywhere in so small a volume.
+    settings.shading.surface_gradient = 10.0;
     let right = visibility_moments(&volume, &settings);
     let mistakes = [
         ("sky/sweep.wgsl", "end - 1.0", "end - 2.0"),
@@ -133,11 +151,36 @@ fn mistakes_in_where_rays_are_followed_are_noticed() {
 }
 
 #[test]
+fn mistakes_in_surfaces_are_noticed() {
+    let (volume, settings) = (creature(), dense());
+    let right = visibility_moments(&volume, &settings);
+    let mistakes = [
+        ("sky/surfaces.wgsl", "0.5 * (f32(k - CENTRE)", "0.5 * (f32(k + 1 - CENTRE)"),
+        ("sky/surfaces.wgsl", "b + 1.5 * side", "b + 1.0 * side"),
+        ("sky/surfaces.wgsl", "depths[k] - 0.5 * most", "depths[k] - 0.6 * most"),
+        ("sky/surfaces.wgsl", "SURFACE_DEPTH = 1.5", "SURFACE_DEPTH = 1.7"),
+        ("sky/moments.wgsl", "MAX_START_SLICES = 2.0", "MAX_START_SLICES = 1.5"),
+        ("sky/moments.wgsl", "1.5 * dot(abs(normal)", "1.4 * dot(abs(normal)"),
+        ("sky/moments.wgsl", "2.0 * cosine - 4.0", "2.0 * cosine - 3.9"),
+        ("sky/moments.wgsl", "saturate(2.0 *", "saturate(0.0 *"),
+        ("sky/moments.wgsl", "geometry.along_z, n", "geometry.along_y, n"),
+    ];
+    for (shader, from, to) in mistakes {
+        assert_in_shader(shader, from);
+        let mut renderer = damaged_renderer(from, to);
+        let found =
+            renderer.sky_visibility(&Dataset::new(volume.clone()), &settings).expect("moments are read back");
+        assert!(compare(to, &channels_f32(&found), &right, SKY_MOMENTS).is_err(), "{to:?} is not noticed");
+    }
+}
+
+#[test]
 fn pictures_under_a_sky() {
     let check = |what: &str, settings: &Settings| check_volume(what, creature(), settings, None);
     let lit = under_a_sky(scenes::look());
     check("under a sky", &lit);
     check("cut", &cut());
+    check("dense", &dense());
     let mut white = lit.clone();
     white.sky.mode = SkyMode::White;
     white.shading.sides = LitSides::Two;

@@ -19,6 +19,7 @@ mod outside_renderer;
 mod path_tracer;
 mod presence;
 mod sky;
+mod sky_on_surfaces;
 
 pub(crate) fn renderer() -> Renderer {
     Renderer::new(&context().with_full_precision()).expect("a renderer")

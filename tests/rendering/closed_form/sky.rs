@@ -46,9 +46,11 @@ fn visibility_moments(
     // So that the values span their range.
     values[0] = 255 - values[0];
     let volume = Volume::with_spacing("sky", dims, DVec3::ONE, Samples::U8(values)).expect("a volume");
-    let settings = Settings { sky: white_sky(directions), ..scenes::look() }
+    let mut settings = Settings { sky: white_sky(directions), ..scenes::look() }
         .with_transfer(linear_extinction(per_voxel))
         .with_range(chiaroscuro_scene::DensityRange::Full);
+    // Blocks hold what reaches them, not what reaches the surface that they belong to.
+    scenes::make_isotropic(&mut settings);
     let index = |[x, y, z]: [usize; 3]| x + nx * (y + ny * z);
     let openness = Reference::new(&volume, &settings, ReferenceOptions::default()).sky_visibility();
     let reference = at

@@ -5,3 +5,4 @@ mod diffusion;
 mod random_walks;
 mod series;
 pub(super) mod sky;
+mod sky_surfaces;

@@ -45,6 +45,7 @@ impl Reference<'_> {
     pub fn sky_visibility_from(&self, directions: &[DVec3], divisor: usize) -> SkyVisibility {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let extinction = self.sky_blocks(dims, divisor);
+        let surfaces = self.surfaces_of_blocks(dims, divisor, &extinction);
         let count: usize = dims.iter().product();
         let mut sums = vec![[0.0; 4]; count];
         for &towards in directions {
@@ -52,8 +53,11 @@ impl Reference<'_> {
             let deposits = march(&frame, &extinction);
             sums.par_iter_mut().enumerate().for_each(|(at, sum)| {
                 let block = [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])];
-                let passed = light_in_block(&frame, &deposits, DVec3::from(block.map(|at| at as f64)));
-                let moments = towards.extend(1.0) * passed;
+                let block = DVec3::from(block.map(|at| at as f64));
+                let surface = surfaces[at].as_ref();
+                let start = surface.map_or(block, |surface| surface.ray_start(block, &frame));
+                let weights = surface.map_or(towards.extend(1.0), |surface| surface.moment_weights(towards));
+                let moments = weights * light_at(&frame, &deposits, start);
                 sum.iter_mut().zip(moments.to_array()).for_each(|(sum, moment)| *sum += moment);
             });
         }
@@ -275,10 +279,19 @@ pub(crate) fn interpolate_with_zero_border(dims: [usize; 3], values: &[f64], at:
     (0..8).map(corner).sum()
 }
 
-/// Returns the share of light that reaches a block, interpolated between the four rays around it.
-fn light_in_block(frame: &SweepFrame, deposits: &[f64], block: DVec3) -> f64 {
-    let SlicePosition { slice, across: ray } = frame.ray_position(block);
-    interpolate_rays(frame, ray, |ray| deposits[ray * frame.slices() + slice as usize])
+/// Returns the share of light that reaches a position in blocks, interpolated between the rays and slices around it;
+/// outside the grid light is unattenuated.
+fn light_at(frame: &SweepFrame, deposits: &[f64], start: DVec3) -> f64 {
+    let SlicePosition { slice, across } = frame.ray_position(start);
+    let slice = slice.clamp(0.0, frame.slices() as f64 - 1.0);
+    let share = slice.fract();
+    let next = (slice.ceil() as usize).min(frame.slices() - 1);
+    let in_slice =
+        |n: usize| interpolate_rays(frame, across.max(DVec2::ZERO), |ray| deposits[ray * frame.slices() + n]);
+    let passed = in_slice(slice as usize) * (1.0 - share) + in_slice(next) * share;
+    let end = DVec3::from(frame.dims.map(|n| n as f64 - 0.5));
+    let outside = (-0.5 - start).max(start - end).max_element();
+    passed + (1.0 - passed) * (2.0 * outside).clamp(0.0, 1.0)
 }
 
 /// Returns the share of light that reaches a position of the floor in blocks, which may be outside the grid.

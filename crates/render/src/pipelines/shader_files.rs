@@ -93,6 +93,8 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "sky/moments.wgsl",
     "sky/places.wgsl",
     "sky/rays.wgsl",
+    "sky/surface_block.wgsl",
+    "sky/surfaces.wgsl",
     "sky/sweep.wgsl",
     "sky/swept_ray.wgsl",
     "volume/downsample.wgsl",

@@ -6,6 +6,7 @@ use super::direction_batches::{DirectionBatches, sheet_size};
 use super::extinction_blocks::{self, BlocksPass};
 use super::floor_map::FloorSkyMap;
 use super::sheets::RaySheets;
+use super::surfaces::{START_REACH, SurfaceBlocks};
 use super::sweep::{SweepGatherVariant, SweepPass};
 use super::volume::{SUM_BYTES, SkyVolume};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
@@ -27,6 +28,8 @@ pub(crate) struct SkyFill {
     upper_directions: DirectionBatches,
     /// Factor applied to extinction.
     density_scale: f64,
+    /// `true` if dense material has surfaces that face the sky.
+    has_surfaces: bool,
     /// Blocks in which something may attenuate light.
     attenuating_cells: CellList,
     /// Blocks that pictures look up.
@@ -41,6 +44,8 @@ struct SkyTextures {
     blocks: wgpu::TextureView,
     /// Transmittance along rays.
     sheets: RaySheets,
+    /// Surfaces of the blocks that pictures look up.
+    surfaces: SurfaceBlocks,
     /// Sums of the moments over the batches so far.
     sums: wgpu::Buffer,
     /// Temporary resources for the floor's map.
@@ -80,7 +85,11 @@ impl SkyFill {
         let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
         let met =
             extinction_blocks::attenuating_cells(tables, options, volume.blocks.dims, volume.blocks.divisor);
-        let read = boxes_around(&met.union(&volume.filled_cells));
+        // Rays start in front of surfaces.
+        let reach = if key.has_surfaces() { START_REACH } else { 0.0 };
+        let mut read = boxes_around(&volume.filled_cells);
+        read.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - reach, *high + reach));
+        read.extend(boxes_around(&met));
         let size = sheet_size(around.iter(), gpu.context.storage_format, around.len());
         let around = DirectionBatches::new(around, size[2], &read);
         let above = DirectionBatches::with_end_layers(above, &boxes_around(&met));
@@ -90,6 +99,7 @@ impl SkyFill {
             all_directions: around,
             upper_directions: above,
             density_scale: key.density_scale(),
+            has_surfaces: key.has_surfaces(),
             attenuating_cells: met,
             output_cells: looked_up,
             textures,
@@ -128,7 +138,9 @@ impl SkyFill {
             tables,
             settings,
         };
-        pass.record(gpu, &[bind_view("extinction", &self.textures.blocks)], encoder)
+        pass.record(gpu, &[bind_view("extinction", &self.textures.blocks)], encoder)?;
+        let SkyTextures { blocks, surfaces, .. } = &self.textures;
+        surfaces.find(gpu, &volume.blocks, blocks, &self.output_cells, self.has_surfaces, encoder)
     }
 
     /// Sweeps the directions of a batch, and adds their transmittance to the moments.
@@ -143,7 +155,7 @@ impl SkyFill {
         if let Some(batch) = batch.checked_sub(self.all_directions.count()) {
             return self.fill_floor(gpu, volume, batch, encoder);
         }
-        let SkyTextures { blocks, sheets, sums, .. } = &self.textures;
+        let SkyTextures { blocks, sheets, surfaces, sums, .. } = &self.textures;
         let pass = SweepPass {
             shader: "sky/sweep.wgsl",
             one_color: false,
@@ -157,11 +169,14 @@ impl SkyFill {
         let uniform = pass.record(gpu, &entries, |_| DVec3::ZERO, encoder)?;
         let gather = SweepGatherVariant::with_mean("sky/moments.wgsl", &self.all_directions, batch);
         let gather = gpu.shaders.pipeline(&gather)?;
+        let geometry = SurfaceBlocks::geometry(gpu, &volume.blocks, self.has_surfaces);
         let entries = [
             bind_buffer("bound_sweep", &uniform),
             bind_view("sheets", &sheets.view),
             sampler("clamped", &gpu.volume.clamped),
             bind_buffer("sums", sums),
+            bind_buffer("surfaces", &surfaces.buffer),
+            bind_buffer("bound_geometry", &geometry),
             bind_view("moments", &volume.blocks.view),
             self.output_cells.binding(),
         ];
@@ -252,13 +267,15 @@ impl SkyTextures {
         };
         let floor = volume.floor.as_ref().map(of_floor).transpose()?;
         let sums = sums("Sky::sums", looked_up);
+        let surfaces = SurfaceBlocks::new(context, looked_up)?;
         let of_floor = floor.as_ref().map_or(0, |floor| floor.transmittance.bytes() + floor.sums.size());
         let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
         let block_bytes = texel * block_size.iter().map(|&n| n as u64).product::<u64>();
         Ok(Self {
             blocks: blocks.create_view(&wgpu::TextureViewDescriptor::default()),
-            bytes: block_bytes + sheets.bytes() + sums.size() + of_floor,
+            bytes: block_bytes + sheets.bytes() + sums.size() + surfaces.buffer.size() + of_floor,
             sheets,
+            surfaces,
             sums,
             floor,
         })

@@ -11,5 +11,6 @@ pub(super) mod extinction_blocks;
 pub(super) mod fill;
 pub(super) mod floor_map;
 pub(super) mod sheets;
+pub(super) mod surfaces;
 pub(super) mod sweep;
 pub(super) mod volume;

@@ -117,6 +117,15 @@ pub struct PhongShading {
     pub sides: LitSides,
 }
 
+impl PhongShading {
+    /// Returns `true` if some samples are more surface than homogeneous material.
+    ///
+    /// A threshold of a full range per opacity unit makes even the steepest edges of volumes homogeneous.
+    pub fn has_surfaces(&self) -> bool {
+        self.surface_gradient < 1.0
+    }
+}
+
 impl Default for PhongShading {
     fn default() -> Self {
         Self {

@@ -19,6 +19,13 @@ pub(super) const BLOCK_SAMPLER: BindingSlot = BindingSlot::bind_sampler(2, "clam
 /// Sums of the moments over the batches of directions.
 const SUMS: BindingSlot = BindingSlot::storage(3, "sums", 16, BufferAccess::ReadWrite);
 
+/// Own surface of each listed block.
+const SURFACES: BindingSlot = BindingSlot::storage(6, "surfaces", 16, BufferAccess::Read);
+
+/// Geometry of blocks, for their surfaces.
+const SURFACE_BLOCKS: BindingSlot =
+    BindingSlot::uniform::<uniforms::SurfaceBlocksUniform>(7, "bound_geometry");
+
 const FLOOR_PLACE: BindingSlot = BindingSlot::uniform::<uniforms::FloorSkyMapUniform>(5, "bound_map");
 
 /// Declares the texture of moments that is written.
@@ -73,6 +80,18 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             SUMS,
             moments_slot(4),
             BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
+            SURFACES,
+            SURFACE_BLOCKS,
+        ]],
+    ),
+    (
+        "sky/surfaces.wgsl",
+        &[&[
+            BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
+            BLOCK_SAMPLER,
+            BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
+            BindingSlot::storage(6, "surfaces", 16, BufferAccess::ReadWrite),
+            SURFACE_BLOCKS,
         ]],
     ),
     (

@@ -63,6 +63,22 @@ pub struct SweepUniform {
     pub rays: [SweepRaysUniform; MAX_BATCH_DIRECTIONS],
 }
 
+/// Geometry of blocks of voxels, as declared in `sky/surface_block.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SurfaceBlocksUniform {
+    pub dims: [u32; 3],
+    pub has_surfaces: u32,
+    pub block_scale: [f32; 3],
+    pub pad0: f32,
+    pub along_x: [f32; 3],
+    pub pad1: f32,
+    pub along_y: [f32; 3],
+    pub pad2: f32,
+    pub along_z: [f32; 3],
+    pub pad3: f32,
+}
+
 /// Position of the floor's sky map, as declared in `sky/floor_place.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -14,6 +14,8 @@ pub struct SkyKey {
     classification: ClassificationOrder,
     shading_cut: ClippedPart,
     density_scale: f64,
+    /// `true` if dense material has surfaces that face the sky.
+    has_surfaces: bool,
     directions: u32,
     resolution: LightVolumeResolution,
     /// Resolution of a preview's volume.
@@ -34,6 +36,7 @@ impl SkyKey {
             classification: settings.classification(),
             shading_cut: settings.cuts.shadowing_part(),
             density_scale: settings.sky.density_scale,
+            has_surfaces: settings.shading.has_surfaces(),
             directions: sky_direction_set(settings.sky.directions),
             resolution: settings.shadows.soft_resolution(settings.sky.resolution, request.volume.dims),
             preview_resolution: settings
@@ -57,6 +60,11 @@ impl SkyKey {
     /// Returns the resolution of the volume.
     pub fn resolution(&self) -> LightVolumeResolution {
         self.resolution
+    }
+
+    /// Returns `true` if dense material has surfaces that face the sky.
+    pub fn has_surfaces(&self) -> bool {
+        self.has_surfaces
     }
 
     /// Returns the factor of the extinction.

@@ -136,6 +136,8 @@ fn every_setting_causes_what_the_design_says() {
         ("shading.specular", "0.1", ChangeEffect::Eye),
         ("shading.shininess", "10", ChangeEffect::Eye),
         ("shading.surface_gradient", "0.1", ChangeEffect::Eye),
+        // Without surfaces, all material is lit by the sky like fog.
+        ("shading.surface_gradient", "1.5", ChangeEffect::Sky),
         ("shading.sides", "two", ChangeEffect::Eye),
         ("shadows.algorithm", "off", ChangeEffect::Eye),
         ("shadows.algorithm", "direct", ChangeEffect::Eye),

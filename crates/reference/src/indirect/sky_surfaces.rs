@@ -1,0 +1,117 @@
+//! Surfaces of dense material near blocks of voxels, which the sky lights from in front of them.
+
+use glam::{DMat3, DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::sky::interpolate_with_zero_border;
+use crate::Reference;
+use chiaroscuro_render::plan::SweepFrame;
+
+/// Optical depth per shortest edge of a voxel up to which material is fog.
+const FOG: f64 = 0.5;
+/// Optical depth per shortest edge of a voxel from which material has a surface.
+const SOLID: f64 = 1.5;
+/// Places along the normal, in halves of a block from the block's centre.
+const PLACES: std::ops::RangeInclusive<i32> = -5..=3;
+/// Maximum number of slices between a surface and the start of a ray.
+const FARTHEST_START: f64 = 2.0;
+
+/// Surface near a block of voxels; lengths and angles are those of block coordinates unless said otherwise.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearbySurface {
+    /// Unit vector out of the material.
+    normal: DVec3,
+    /// Unit vector out of the material, in scene space.
+    scene_normal: DVec3,
+    /// Height of the block above the surface.
+    height: f64,
+    /// Degree to which the block belongs to the surface rather than to fog.
+    share: f64,
+}
+
+impl NearbySurface {
+    /// Returns the start of a ray from the surface to the sky: where the ray is clear of the surface's own blocks.
+    pub(super) fn ray_start(&self, block: DVec3, frame: &SweepFrame) -> DVec3 {
+        let origin = frame.block_position(1.0, glam::DVec2::ZERO);
+        let per_slice = frame.block_position(0.0, -frame.drift) - origin;
+        let clear = 0.75 + 1.5 * self.normal.abs().element_sum();
+        let rise = self.normal.dot(per_slice);
+        if rise <= 0.0 {
+            return block;
+        }
+        let slices = (clear / rise).min(FARTHEST_START);
+        let along = per_slice * slices;
+        let start =
+            block - self.normal * self.height + along + self.normal * (clear - self.normal.dot(along));
+        block.lerp(start, self.share)
+    }
+
+    /// Returns the factors of transmittance in V₁ and, in the last component, V₀.
+    ///
+    /// On a surface they yield the irradiance 4 ⟨T cos θ⟩ = V₀ + 2 n · V₁.
+    pub(super) fn moment_weights(&self, towards: DVec3) -> DVec4 {
+        let cosine = self.scene_normal.dot(towards).max(0.0);
+        let across = towards - self.scene_normal * cosine;
+        let first = 4.0 * cosine * across + self.scene_normal * (2.0 * cosine * (3.0 * cosine - 2.0));
+        let of_surface = first.extend(12.0 * cosine * (1.0 - cosine));
+        towards.extend(1.0).lerp(of_surface, self.share)
+    }
+}
+
+impl Reference<'_> {
+    /// Finds the surface near each block in the extinction of all blocks; `None` for fog.
+    pub(super) fn surfaces_of_blocks(
+        &self,
+        dims: [usize; 3],
+        divisor: usize,
+        extinction: &[f64],
+    ) -> Vec<Option<NearbySurface>> {
+        let count = dims.iter().product();
+        if !self.settings.shading.has_surfaces() {
+            return vec![None; count];
+        }
+        let edge = self.scene.smallest_edge();
+        let scene_from_gradient = self.scene.index_from_scene.matrix3.transpose() / divisor as f64;
+        let depth = |at: DVec3| edge * interpolate_with_zero_border(dims, extinction, at);
+        let of_block = |block: usize| {
+            let at = [block % dims[0], block / dims[0] % dims[1], block / (dims[0] * dims[1])];
+            nearest_surface(DVec3::from(at.map(|at| at as f64)), scene_from_gradient, depth)
+        };
+        (0..count).into_par_iter().map(of_block).collect()
+    }
+}
+
+/// Finds the surface near a block, from optical depths per edge at positions in blocks.
+fn nearest_surface(
+    block: DVec3,
+    scene_from_gradient: DMat3,
+    depth: impl Fn(DVec3) -> f64,
+) -> Option<NearbySurface> {
+    let opacity = |at: DVec3| 1.0 - (-depth(at)).exp();
+    let signs = [-1.0, 1.0];
+    let corners = signs.iter().flat_map(|x| signs.iter().flat_map(move |y| signs.map(|z| [*x, *y, z])));
+    let mut falling: DVec3 =
+        corners.map(|corner| DVec3::from(corner) / 2.0).map(|way| -way * opacity(block + way)).sum();
+    for axis in DVec3::AXES {
+        falling += axis * (opacity(block - 1.5 * axis) - opacity(block + 1.5 * axis));
+    }
+    let clarity = (20.0 * falling.length()).min(1.0);
+    let normal = falling.try_normalize()?;
+    let depths: Vec<f64> = PLACES.map(|at| depth(block + normal * (f64::from(at) / 2.0))).collect();
+    let most = depths.iter().copied().fold(0.0, f64::max);
+    let falls = depths.windows(2).zip(PLACES).filter_map(|(pair, at)| {
+        let [inner, outer] = [pair[0] - most / 2.0, pair[1] - most / 2.0];
+        (inner >= 0.0 && outer < 0.0).then(|| (f64::from(at) + inner / (inner - outer)) / 2.0)
+    });
+    let surface = falls.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+    let solid = ((most - FOG) / (SOLID - FOG)).clamp(0.0, 1.0);
+    let [first, last] = [PLACES.start(), PLACES.end()].map(|at| f64::from(*at) / 2.0);
+    let nearness = (2.0 * (surface - first).min(last - surface)).min(1.0);
+    let share = solid * solid * (3.0 - 2.0 * solid) * nearness * clarity;
+    (share > 0.0).then(|| NearbySurface {
+        normal,
+        scene_normal: (scene_from_gradient * normal).normalize(),
+        height: -surface,
+        share,
+    })
+}

@@ -1,0 +1,58 @@
+// Surface of dense material near a block of voxels: rays from the block to the sky start in front of it, so that the
+// material does not hide the sky from its own surface.
+
+struct SurfaceBlocksUniform {
+    // Number of blocks along x, y and z.
+    dims: vec3u,
+    // 1 if dense material has surfaces, 0 if all of it is fog.
+    has_surfaces: u32,
+    // One over the size of the block texture, including its border.
+    block_scale: vec3f,
+    pad0: f32,
+    // Change of the position in blocks along x, y and z of scene space.
+    along_x: vec3f,
+    pad1: f32,
+    along_y: vec3f,
+    pad2: f32,
+    along_z: vec3f,
+    pad3: f32,
+}
+
+@group(0) @binding(7) var<uniform> bound_geometry: SurfaceBlocksUniform;
+var<private> geometry: SurfaceBlocksUniform;
+
+// Surface near a block; lengths and right angles are those of block coordinates.
+struct BlockSurface {
+    // Unit vector out of the material.
+    normal: vec3f,
+    // Height of the block's centre above the surface.
+    height: f32,
+    // Degree to which the block belongs to the surface, 0 … 1; else it is fog.
+    share: f32,
+}
+
+fn pack_surface(surface: BlockSurface) -> vec4u {
+    let rest = pack2x16float(vec2f(surface.height, surface.share));
+    return vec4u(pack2x16float(surface.normal.xy), pack2x16float(vec2f(surface.normal.z, 0.0)), rest, 0u);
+}
+
+fn unpack_surface(packed: vec4u) -> BlockSurface {
+    let normal = vec3f(unpack2x16float(packed.x), unpack2x16float(packed.y).x);
+    let rest = unpack2x16float(packed.z);
+    return BlockSurface(normal, rest.x, rest.y);
+}
+
+// Unit normal in scene space.
+fn scene_normal(surface: BlockSurface) -> vec3f {
+    let n = surface.normal;
+    return normalize(vec3f(dot(geometry.along_x, n), dot(geometry.along_y, n), dot(geometry.along_z, n)));
+}
+
+// Height above a surface at which its own material hides nothing.
+//
+// Extinction is interpolated between blocks, and transmittance between rays that are a block apart; each spreads a
+// surface by one block along each axis, |nx| + |ny| + |nz| along the normal. Three quarters of both keep the level of
+// balls within half a percent, and the rest covers the tails of soft curves.
+fn clearance(normal: vec3f) -> f32 {
+    return 0.75 + 1.5 * dot(abs(normal), vec3f(1.0));
+}
