@@ -101,7 +101,7 @@ fn nearest_surface(
     let most = depths.iter().copied().fold(0.0, f64::max);
     let falls = depths.windows(2).zip(PLACES).filter_map(|(pair, at)| {
         let [inner, outer] = [pair[0] - most / 2.0, pair[1] - most / 2.0];
-        (inner >= 0.0 && outer < 0.0).then(|| (f64::from(at) + inner / (inner - outer)) / 2.0)
+        (inner >= 0.0 && outer < 0.0).then(|| 0.5 * (f64::from(at) + inner / (inner - outer)))
     });
     let surface = falls.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
     let solid = ((most - FOG) / (SOLID - FOG)).clamp(0.0, 1.0);

@@ -88,7 +88,10 @@ impl SkyFill {
         // Rays start in front of surfaces.
         let reach = if key.has_surfaces() { START_REACH } else { 0.0 };
         let mut read = boxes_around(&volume.filled_cells);
-        read.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - reach, *high + reach));
+        for [low, high] in &mut read {
+            *low -= reach;
+            *high += reach;
+        }
         read.extend(boxes_around(&met));
         let size = sheet_size(around.iter(), gpu.context.storage_format, around.len());
         let around = DirectionBatches::new(around, size[2], &read);
@@ -267,7 +270,7 @@ impl SkyTextures {
         };
         let floor = volume.floor.as_ref().map(of_floor).transpose()?;
         let sums = sums("Sky::sums", looked_up);
-        let surfaces = SurfaceBlocks::new(context, looked_up)?;
+        let surfaces = SurfaceBlocks::new(context, looked_up);
         let of_floor = floor.as_ref().map_or(0, |floor| floor.transmittance.bytes() + floor.sums.size());
         let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
         let block_bytes = texel * block_size.iter().map(|&n| n as u64).product::<u64>();

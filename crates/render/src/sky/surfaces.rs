@@ -25,17 +25,14 @@ pub(crate) struct SurfaceBlocks {
 
 impl SurfaceBlocks {
     /// Allocates surfaces for a number of blocks.
-    ///
-    /// # Errors
-    /// Returns an error if memory is exhausted.
-    pub(crate) fn new(context: &GpuContext, blocks: u64) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &GpuContext, blocks: u64) -> Self {
         let buffer = context.uninitialised_buffer(&wgpu::BufferDescriptor {
             label: Some("Sky::surfaces"),
             size: SURFACE_BYTES * blocks.max(1),
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        Ok(Self { buffer })
+        Self { buffer }
     }
 
     /// Uploads the geometry of blocks.
