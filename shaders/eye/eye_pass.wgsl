@@ -5,11 +5,12 @@
 #import "common/sizes.wgsl"
 #import "density/slab_material.wgsl"
 #import "shading/shadow_ray.wgsl"
+#import "shading/integrated_ray.wgsl"
 #import "shading/shade.wgsl"
 #import "shading/near_light.wgsl"
 #import "density/kernel_gradient.wgsl"
 #import "sheets/tiles.wgsl"
-#import "eye/slabs_by_need.wgsl"
+#import "eye/adaptive_slabs.wgsl"
 #import "eye/preintegrated_slabs.wgsl"
 
 // r: distance to the nearest cell that is visible to the eye.
@@ -19,7 +20,7 @@
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
 
 #option DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3)
-#option BY_NEED: slabs are subdivided by need (slabs_by_need.wgsl)
+#option BY_NEED: slabs are integrated between their faces, and halved by need (adaptive_slabs.wgsl)
 #option PREINTEGRATED: opacity is integrated through steps that are shaded together (preintegrated_slabs.wgsl)
 
 // Takes gradients from differences of neighbouring sheets.
@@ -52,8 +53,12 @@ fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface
         let way = to_light(one, surface.position);
         let direction = index_from_scene_vector(eye.space, way.direction);
         let reach = way.distance - s.bias;
-        sum += shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.max_optical_depth, cut)
-            * cone_attenuation(one, way.direction);
+#if BY_NEED
+        let passed = integrated_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.max_optical_depth, cut);
+#else
+        let passed = shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.max_optical_depth, cut);
+#endif
+        sum += passed * cone_attenuation(one, way.direction);
     }
     return sum / f32(light.points);
 #else
@@ -96,7 +101,7 @@ fn shade_slab(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
 // Light from material with the gradient `volume_slope` in scene space; `rising` is the gradient of presence.
 fn shade_material(p: vec3f, level: f32, volume_slope: vec3f, rising: vec3f, found: SlabSample) -> vec3f {
     let slope = volume_slope + face_slope(p, level, found.field, rising);
-    return shade(VolumeSample(p, slope, found.field, level), found.material.color);
+    return shade(VolumeSample(p, slope, found.field, level, volume_slope), found.material.color);
 }
 
 // Next slab, from `first` on, in a cell that may be visible; beyond the last if there is none.

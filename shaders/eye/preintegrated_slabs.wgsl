@@ -16,9 +16,6 @@ const SOFT_OPTICAL_DEPTH = 0.5;
 // Share of the ray from which the steps of a layer are counted: 16 of 255, too little to be shaded separately.
 const MIN_COUNTED_SHARE = 0.0625;
 
-// Optical depth of an empty step: a thousandth of the smallest that 8 bits can show.
-const EMPTY_OPTICAL_DEPTH = 4e-6;
-
 // End point of a step.
 struct StepEnd {
     density: f32,

@@ -33,8 +33,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     }
     let p = (vec3f(voxel) + 0.5) * combine.voxel_step - 0.5;
     let field = pyramid_field(p, 0.0);
-    let slope = gradient_to_scene(eye.space, index_gradient(p, normal_level(0.0)))
-        + face_slope(p, 0.0, field, presence_gradient(p, 0.0));
-    let found = VolumeSample(p, slope, field, 0.0);
+    let gradient = gradient_to_scene(eye.space, index_gradient(p, normal_level(0.0)));
+    let slope = gradient + face_slope(p, 0.0, field, presence_gradient(p, 0.0));
+    let found = VolumeSample(p, slope, field, 0.0, gradient);
     textureStore(combined, voxel, vec4f(shadowed_light_sum(surface_of(found)).diffuse, 1.0));
 }

@@ -114,14 +114,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let field = Field(sheet_value(pixel, k));
             let share = slab_fraction_inside(span_within(eye.visible_cut, ray), met.depth, met.thickness);
             let opacity = 1.0 - exp(-share * material.extinction * met.thickness * ray.obliquity);
-            var slope: vec3f;
+            var gradient: vec3f;
             if (SHEET_GRADIENTS) {
-                slope = gradient_between_sheets(pixel, k, met);
+                gradient = gradient_between_sheets(pixel, k, met);
             } else {
-                slope = gradient_to_scene(eye.space, volume_gradient(p, level));
+                gradient = gradient_to_scene(eye.space, volume_gradient(p, level));
             }
-            slope += face_slope(p, level, field, presence_gradient(p, level));
-            let rgb = shade(VolumeSample(p, slope, field, level), material.color);
+            let slope = gradient + face_slope(p, level, field, presence_gradient(p, level));
+            let rgb = shade(VolumeSample(p, slope, field, level, gradient), material.color);
             rays[at] = before + transmittance * opacity * vec4f(rgb, 1.0);
         }
     }

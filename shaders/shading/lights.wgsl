@@ -224,15 +224,13 @@ struct Surface {
     side: f32,
     // Pyramid level for the stretch of the sample's kernel.
     level: f32,
+    // Density at the point, and the gradient of the volume in scene space, without faces: where near-field rays begin.
+    density: f32,
+    gradient: vec3f,
 }
 
 // Shadowed lights light only the side of a surface to which opacity falls; highlights appear on that side, too.
 override ONE_SIDED: bool = false;
-
-// Lengths of the near-field steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
-fn near_step_length(step: u32) -> f32 {
-    return 0.5 * f32(1u + (step >> 1u));
-}
 
 struct ReflectedLight {
     diffuse: vec3f,

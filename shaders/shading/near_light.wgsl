@@ -1,11 +1,89 @@
 // Near-field rays: short rays from samples towards lights (P eq. 8 for the first voxels), in front of the light
 // volumes.
+//
+// Extinction is integrated between the ends of steps: at a surface that is opaque within a fraction of a voxel, the
+// middle of a step is no measure of it. The ray begins with the density of the sample itself, and goes on with the
+// kernel of the eye, or it would see another surface than the eye does.
 #import "density/cut.wgsl"
 #import "volume/material.wgsl"
 #import "shading/shade.wgsl"
 
 // Maximum number of near-field steps (crates/scene/src/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
+// Set if the first step is divided into two, of which both ends have the kernel of the eye.
+override NEAR_HALVES: bool = false;
+
+// Lengths of the steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
+fn near_step_length(step: u32) -> f32 {
+    return 0.5 * f32(1u + (step >> 1u));
+}
+
+// End of a step.
+struct NearStepEnd {
+    field: LightingField,
+    presence: f32,
+    integral: LightIntegralPlace,
+}
+
+fn near_step_end(field: LightingField, presence: f32) -> NearStepEnd {
+    return NearStepEnd(field, presence, light_integral_place(field));
+}
+
+// End of a step within the first voxel, where the kernel of the eye is needed.
+fn sharp_step_end(p: vec3f, level: f32) -> NearStepEnd {
+#if PRECLASSIFY
+    return near_step_end(lighting_field(p, level), 1.0);
+#else
+    return near_step_end(field_at(p, level), lighting_presence(p, level));
+#endif
+}
+
+fn soft_step_end(p: vec3f, level: f32) -> NearStepEnd {
+    return near_step_end(lighting_field(p, level), lighting_presence(p, level));
+}
+
+#if PRECLASSIFY
+alias FieldNumber = Transmittance;
+
+fn number_of(field: LightingField) -> FieldNumber {
+    return field;
+}
+
+fn field_of(number: FieldNumber) -> LightingField {
+    return number;
+}
+#else
+alias FieldNumber = f32;
+
+fn number_of(field: LightingField) -> FieldNumber {
+    return field.density;
+}
+
+fn field_of(number: FieldNumber) -> LightingField {
+    return Field(number);
+}
+#endif
+
+// Value half way along the first step, of the parabola with this value and slope (per step) at its begin and that
+// value at its end.
+fn after_slope(begin: FieldNumber, slope: FieldNumber, end: FieldNumber) -> FieldNumber {
+    return 0.75 * begin + 0.25 * end + 0.25 * slope;
+}
+
+// Value half way along the second of two steps, of the parabola through their ends; `ratio` is the length of the
+// second relative to the first.
+fn after_step(first: FieldNumber, second: FieldNumber, third: FieldNumber, ratio: f32) -> FieldNumber {
+    let sum = 1.0 + ratio;
+    let reach = 1.0 + 0.5 * ratio;
+    return -0.25 * ratio * ratio / sum * first + 0.5 * reach * second + 0.5 * reach / sum * third;
+}
+
+// Optical depth of a step per length and unit density of the light, in two halves that meet at a value.
+fn curved_step(begin: NearStepEnd, middle: FieldNumber, end: NearStepEnd) -> Transmittance {
+    let half = light_integral_place(field_of(middle));
+    return 0.25 * (begin.presence + end.presence)
+        * (mean_light_extinction(begin.integral, half) + mean_light_extinction(half, end.integral));
+}
 
 // Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
 // or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
@@ -14,26 +92,70 @@ override NEAR_STEPS: u32 = 0u;
 // (crates/render/src/plan/geometry/near_field_cells.rs).
 fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     let forward = index_from_scene_vector(eye.space, towards.direction);
-    var way = 0.0;
-    var depth = Transmittance(0.0);
-    var step = 0u;
+    let own = near_step_end(
+#if PRECLASSIFY
+        lighting_field(surface.point, surface.level),
+        1.0,
+    );
+    let rise = FieldNumber(0.0);
+#else
+        Field(surface.density),
+        lighting_presence(surface.point, surface.level),
+    );
+    let rise = dot(surface.gradient, towards.direction);
+#endif
+    let edge = eye.voxel_edge;
+    // First step, or its first half.
+    var length = min(select(0.5, 0.25, NEAR_HALVES) * edge, towards.distance);
+    var way = length;
+    var before = own;
+    var end: NearStepEnd;
+    if (NEAR_HALVES) {
+        end = sharp_step_end(surface.point + forward * way, surface.level);
+    } else {
+        end = soft_step_end(surface.point + forward * way, surface.level);
+    }
+    let curve = after_slope(number_of(own.field), rise * length, number_of(end.field));
+    var share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * length));
+    var depth = share * length * curved_step(own, curve, end);
+    if (NEAR_HALVES) {
+        before = own;
+        let first = end;
+        length = min(0.25 * edge, max(towards.distance - way, 0.0));
+        share = shading_fraction(eye.shading_cut, surface.point + forward * (way + 0.5 * length));
+        way += length;
+        end = sharp_step_end(surface.point + forward * way, surface.level);
+        let next = after_step(number_of(before.field), number_of(first.field), number_of(end.field), 1.0);
+        depth += share * length * curved_step(first, next, end);
+    }
+    // Value at the begin of the last step, and length of that step.
+    var earlier = before;
+    var earlier_length = 0.5 * edge;
+    var step = 1u;
     loop {
         // Excess steps have length 0: drivers unroll a loop with a known end.
         let is_taken = select(0.0, 1.0, step < light.near_steps);
         let width =
-            is_taken * near_step_length(step) * eye.voxel_edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
-        let length = min(width, max(towards.distance - way, 0.0));
-        let p = surface.point + forward * (way + 0.5 * length);
-        let extinction = nearest_lighting_extinction(lighting_field(p, surface.level));
-        depth += extinction * shading_fraction(eye.shading_cut, p) * lighting_presence(p, surface.level) * length;
+            is_taken * near_step_length(step) * edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
+        length = min(width, max(towards.distance - way, 0.0));
+        share = shading_fraction(eye.shading_cut, surface.point + forward * (way + 0.5 * length));
         way += length;
+        let begin = end;
+        end = soft_step_end(surface.point + forward * way, surface.level);
+        // Densities bend over lengths of a voxel; farther steps are too long for a parabola.
+        if (step == 1u) {
+            let bent = after_step(number_of(earlier.field), number_of(begin.field), number_of(end.field), length / earlier_length);
+            depth += share * length * curved_step(begin, bent, end);
+        } else {
+            depth += share * length * 0.5 * (begin.presence + end.presence) * mean_light_extinction(begin.integral, end.integral);
+        }
         step += 1u;
         if (step >= NEAR_STEPS) {
             break;
         }
     }
-    let end = surface.point + forward * way;
-    return exp(-depth * light.extinction_scale) * lookup_attenuation(light, volume, end);
+    let last = surface.point + forward * way;
+    return exp(-depth * light.extinction_scale) * lookup_attenuation(light, volume, last);
 }
 
 // Attenuation of a light that has a volume.

@@ -33,7 +33,8 @@ struct EyeUniform {
     voxel_edge: f32,
     // Scale from index space to texture coordinates of the combined light volume.
     combined_lookup: vec3f,
-    pad0: f32,
+    // Share of the visible light above which an adaptive slab is halved.
+    max_undivided_share: f32,
     // Region that is visible.
     visible_cut: CutUniform,
     // Region that is visible, limited to the grid: the faces of solids.
@@ -76,12 +77,17 @@ fn lookup_attenuation(light: LightUniform, volume: texture_3d<f32>, p: vec3f) ->
     return stored_transmittance(textureSampleLevel(volume, clamped, (p + 0.5) * light.lookup, 0.0));
 }
 
+// Light of a shadowed light, with its attenuation.
+fn attenuated_light(light: LightUniform, surface: Surface, risen: HorizonClip, attenuation: Transmittance) -> ReflectedLight {
+    let share = apply_shadow_cures(eye.shading, attenuation);
+    // With weaker shadows, light below the horizon counts in part.
+    return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
+}
+
 fn light_from(index: u32, volume: texture_3d<f32>, surface: Surface) -> ReflectedLight {
     let light = eye.lights[index];
     let risen = light_above_surface(light, surface);
-    let share = apply_shadow_cures(eye.shading, attenuation_at(light, volume, surface, risen.towards));
-    // With weaker shadows, light below the horizon counts in part.
-    return reflect_light(eye.shading, light, surface, risen, share, 1.0 - eye.shading.strength);
+    return attenuated_light(light, surface, risen, attenuation_at(light, volume, surface, risen.towards));
 }
 
 fn add_light(a: ReflectedLight, b: ReflectedLight) -> ReflectedLight {
@@ -97,6 +103,8 @@ struct VolumeSample {
     field: Field,
     // Pyramid level for the stretch of the sample's kernel.
     level: f32,
+    // Gradient of the volume in scene space, without faces.
+    gradient: vec3f,
 }
 
 // Gradient, in scene space, of the faces of the visible region, including those of the grid: into the solid, in the
@@ -134,6 +142,8 @@ fn surface_of(found: VolumeSample) -> Surface {
         away * (1.0 / max(length(away), 1e-9)),
         select(1.0, side_of(found.field), ONE_SIDED),
         found.level,
+        found.field.density,
+        found.gradient,
     );
 }
 
@@ -202,15 +212,25 @@ fn scattered_light(surface: Surface) -> vec3f {
 
 // Light from a sample towards the eye.
 fn shade(found: VolumeSample, material: vec3f) -> vec3f {
-    let s = eye.shading;
-    let p = found.point;
     let surface = surface_of(found);
     var lit: ReflectedLight;
     if (COMBINED) {
-        lit = ReflectedLight(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
+        lit = combined_light(found.point);
     } else {
         lit = shadowed_light_sum(surface);
     }
+    return shade_surface(surface, lit, material);
+}
+
+// Diffuse light of all lights that cast shadows, from the combined volume.
+fn combined_light(p: vec3f) -> ReflectedLight {
+    return ReflectedLight(textureSampleLevel(attenuation_0, clamped, (p + 0.5) * eye.combined_lookup, 0.0).rgb, vec3f(0.0));
+}
+
+// Light from a surface towards the eye, with the light of those lights that cast shadows.
+fn shade_surface(surface: Surface, shadowed: ReflectedLight, material: vec3f) -> vec3f {
+    let s = eye.shading;
+    var lit = shadowed;
     for (var i = SHADOWED; i < LIGHTS; i += 1u) {
         // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let light = bound_eye.lights[i];

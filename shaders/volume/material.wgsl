@@ -13,8 +13,9 @@ struct TransferTable {
     // Maximum extinction of 2^n entries from each entry on, for each power of two up to the table's size (sparse
     // table).
     peaks: array<f32, 11264>,
-    // Integral of extinction over densities from 0 to each entry's, with a spacing of 1 between entries.
-    integrals: array<f32, 1024>,
+    // Integrals over densities from 0 to each entry's, with a spacing of 1 between entries: of colour × extinction in
+    // rgb, of extinction in a.
+    integrals: array<vec4f, 1024>,
 }
 
 @group(0) @binding(1) var<storage, read> table: TransferTable;
@@ -22,6 +23,9 @@ struct TransferTable {
 @group(0) @binding(26) var<storage, read> lighting_table: TransferTable;
 // Transfer function of the eye, where `table` is that of light.
 @group(0) @binding(27) var<storage, read> look_table: TransferTable;
+
+// Optical depth of what is taken for empty: a thousandth of the smallest that 8 bits can show.
+const EMPTY_OPTICAL_DEPTH = 4e-6;
 
 // Matter at a point, or its mean over a slab. What it emits is not its own: a setting of the picture, the same
 // everywhere.
@@ -101,7 +105,34 @@ fn largest_extinction(low: f32, high: f32) -> f32 {
 // Integral of extinction over densities from 0 to a position in the table.
 fn extinction_integral(at: f32) -> f32 {
     let low = min(u32(at), TABLE_SIZE - 2u);
-    return mix(table.integrals[low], table.integrals[low + 1u], at - f32(low));
+    return mix(table.integrals[low].a, table.integrals[low + 1u].a, at - f32(low));
+}
+
+// Distance of two positions in a table below which the mean over their entries is taken: the rounding of integrals of up
+// to 1023 entries is then below 1/2000 of the largest extinction.
+const MIN_INTEGRATED_DISTANCE = 0.125;
+
+// Integral of extinction over densities up to a position in the table.
+struct IntegralPlace {
+    position: f32,
+    integral: f32,
+    // Mean over the entry of the position.
+    mean: f32,
+}
+
+fn integral_place(density: f32) -> IntegralPlace {
+    let at = table_position(density);
+    let low = min(u32(at), TABLE_SIZE - 2u);
+    let first = table.integrals[low].a;
+    let mean = table.integrals[low + 1u].a - first;
+    return IntegralPlace(at, first + mean * (at - f32(low)), mean);
+}
+
+// Mean extinction over the densities between two.
+fn mean_extinction(a: IntegralPlace, b: IntegralPlace) -> f32 {
+    let distance = b.position - a.position;
+    let is_near = abs(distance) < MIN_INTEGRATED_DISTANCE;
+    return select((b.integral - a.integral) / select(distance, 1.0, is_near), 0.5 * (a.mean + b.mean), is_near);
 }
 
 // Side of a surface to which opacity falls: 1 where density falls, −1 where it rises; in between where it changes
@@ -187,4 +218,41 @@ fn nearest_lighting_extinction(met: LightingField) -> Transmittance {
 #else
     return entry_extinction(lighting_table.entries[nearest_entry(met.density)]);
 #endif
+}
+
+// Integral of the extinction of light up to what the field holds at a point; with pre-classification, extinction there.
+struct LightIntegralPlace {
+    position: f32,
+    integral: Transmittance,
+    mean: Transmittance,
+}
+
+#if PRECLASSIFY
+fn light_integral_place(met: LightingField) -> LightIntegralPlace {
+    let extinction = lighting_extinction(met);
+    return LightIntegralPlace(0.0, extinction, extinction);
+}
+#else
+fn light_integral_place(met: LightingField) -> LightIntegralPlace {
+    let at = table_position(met.density);
+    let low = min(u32(at), TABLE_SIZE - 2u);
+#if COLORED
+    let first = lighting_table.integrals[low].rgb;
+    let mean = lighting_table.integrals[low + 1u].rgb - first;
+#else
+    let first = lighting_table.integrals[low].a;
+    let mean = lighting_table.integrals[low + 1u].a - first;
+#endif
+    return LightIntegralPlace(at, first + mean * (at - f32(low)), mean);
+}
+#endif
+
+// Mean extinction of light where the field changes linearly from one place to another.
+fn mean_light_extinction(a: LightIntegralPlace, b: LightIntegralPlace) -> Transmittance {
+    let distance = b.position - a.position;
+    let is_near = abs(distance) < MIN_INTEGRATED_DISTANCE;
+    if (is_near) {
+        return 0.5 * (a.mean + b.mean);
+    }
+    return (b.integral - a.integral) / distance;
 }

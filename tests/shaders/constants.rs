@@ -28,7 +28,7 @@ fn constants_are_the_same_in_rust_and_in_the_shaders() {
     let expected: [(&str, f64, &[&str]); 6] = [
         ("MAX_LIGHTS", MAX_LIGHTS as f64, &["eye/eye_pass.wgsl"]),
         ("TABLE_SIZE", LUT_SIZE as f64, &["eye/eye_pass.wgsl", "light/march.wgsl"]),
-        ("THIN_SLABS", f64::from(MAX_SLAB_PARTS), &["eye/eye_pass.wgsl"]),
+        ("STEP_SLABS", f64::from(MAX_SLAB_PARTS), &["eye/eye_pass.wgsl"]),
         ("MIN_KERNEL_VOXELS", MIN_KERNEL_VOXELS, &["light/backproject.wgsl"]),
         ("MAX_KERNEL_PIXELS", MAX_KERNEL_PIXELS, &["light/backproject.wgsl"]),
         ("MAX_STRETCH_LEVEL", MAX_STRETCH_LEVEL, &["eye/eye_pass.wgsl", "light/march.wgsl"]),

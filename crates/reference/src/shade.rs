@@ -4,18 +4,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::back_project::AttenuationVolume;
-use super::extent::cut::UncutRegion;
 use super::field::classified::TransferSide;
 use super::field::pyramid::MAX_LEVEL;
 use super::indirect::bounces::BouncedLight;
 use super::indirect::sky::SkyVisibility;
-use super::kernel::KernelProfile;
+use super::near_field::NearField;
 use super::shadow_ray::ShadowRays;
 use super::{Reference, ReferenceFault, gather, linear_from_srgb};
 use chiaroscuro_render::plan::MAX_STRETCH_LEVEL;
 use chiaroscuro_scene::{
-    BakedTransfer, LightGeometry, LightSettings, LitSides, NearFieldRay, Projection, ReconstructionKernel,
-    SceneLight, ShadowAlgorithm,
+    BakedTransfer, LightGeometry, LightSettings, LitSides, NearFieldRay, Projection, SceneLight,
+    ShadowAlgorithm, VisibleLight,
 };
 
 /// Shader of one picture: its lights and its eye.
@@ -24,11 +23,7 @@ pub(super) struct Shader<'r> {
     lights: Vec<ShadedLight<'r>>,
     /// Opacity unit in scene units, to which gradients refer.
     opacity_unit: f64,
-    /// Lookup table of the transfer function of lights.
-    lighting: BakedTransfer,
-    /// Kernel of fetches from the pyramid.
-    profile: KernelProfile,
-    remaining: UncutRegion,
+    near: NearField<'r>,
     /// Sky visibility, if there is a sky that material attenuates.
     sky_visibility: Option<SkyVisibility>,
     /// Bounced light, if any light bounces.
@@ -42,8 +37,10 @@ pub(super) struct ShadedSample {
     /// Position in index space.
     pub(super) point: DVec3,
     pub(super) density: f64,
-    /// Gradient in scene space.
+    /// Gradient in scene space, with that of the ends of solids.
     pub(super) gradient: DVec3,
+    /// Gradient of the volume alone.
+    pub(super) volume_gradient: DVec3,
     /// Pyramid level that corresponds to the kernel's stretch.
     pub(super) level: f64,
 }
@@ -85,12 +82,8 @@ impl<'r> Shader<'r> {
                 // Shadow rays use the picture's own reconstruction, set up once for all rays (P §3.3).
                 _ if algorithm == ShadowAlgorithm::Direct && light.needs_volume() => {
                     let sampling = &settings.sampling;
-                    LightAttenuation::Rays(Box::new(ShadowRays::new(
-                        reference,
-                        index,
-                        sampling.kernel,
-                        sampling.quadrature,
-                    )))
+                    let rays = ShadowRays::new(reference, index, sampling.kernel, sampling.quadrature);
+                    LightAttenuation::Rays(Box::new(rays.integrated(settings.has_adaptive_slabs())))
                 }
                 Some(Some(volume)) if shadows_on && light.casts_shadows => LightAttenuation::Volume(volume),
                 _ => LightAttenuation::None,
@@ -106,9 +99,7 @@ impl<'r> Shader<'r> {
                 .map(shaded_light)
                 .collect(),
             opacity_unit: settings.layer().opacity_unit.scene_units(&reference.scene).max(1e-9),
-            lighting: reference.gathered_table(TransferSide::Lighting),
-            profile: reference.profile(ReconstructionKernel::Prefiltered),
-            remaining: reference.attenuating_region(),
+            near: NearField::new(reference),
             sky_visibility: settings.has_sky_volume().then(|| reference.sky_visibility()),
             bounced: settings.has_bounces().then(|| reference.bounced_light()),
             sides: opacity_sides(&reference.gathered_table(TransferSide::Eye)),
@@ -119,6 +110,16 @@ impl<'r> Shader<'r> {
     /// C_l·k_d·r) + Σ C_l·k_s·(N·H)^n_s`, where r is |N·L| for two-sided surfaces, and max(N·L, 0) for one-sided ones
     /// with the normal N towards falling opacity.
     pub(super) fn color(&self, sample: &ShadedSample, base: [f64; 3]) -> [f64; 3] {
+        self.color_with(sample, base, &self.attenuations(sample))
+    }
+
+    /// Returns [`Self::color`] with given attenuations of the lights.
+    pub(super) fn color_with(
+        &self,
+        sample: &ShadedSample,
+        base: [f64; 3],
+        attenuations: &[Option<f64>],
+    ) -> [f64; 3] {
         let &ShadedSample { point, density, gradient, .. } = sample;
         let shading = &self.reference.settings.shading;
         let scene = &self.reference.scene;
@@ -140,13 +141,17 @@ impl<'r> Shader<'r> {
         let mut diffuse: [f64; 3] =
             std::array::from_fn(|c| scattered * (settings.flat_ambient() + sky[c] + bounced[c]));
         let mut specular = [0.0; 3];
-        for shaded_light in &self.lights {
+        for (shaded_light, attenuation) in self.lights.iter().zip(attenuations) {
             let has_horizon = is_one_sided && shaded_light.light.casts_shadows;
-            let horizon = if has_horizon { side.abs() * surface.weight } else { 0.0 };
-            let risen =
-                self.reference.with_sampled_area(shaded_light.light).above_horizon(place, outward, horizon);
+            let risen = self.above_horizon(shaded_light, sample);
             let to_light = risen.direction;
-            let arriving = self.arriving_share(shaded_light, sample, to_light);
+            let arriving = match attenuation {
+                Some(attenuation) => self.reference.apply_cures(*attenuation),
+                None => {
+                    let cone = shaded_light.light.cone();
+                    cone.attenuation(-cone.axis.dot(to_light))
+                }
+            };
             let reflected = if has_horizon {
                 let before = 0.5 + 0.5 * side.abs();
                 // The part below the horizon does not count, even where shadows have no effect.
@@ -181,60 +186,69 @@ impl<'r> Shader<'r> {
         })
     }
 
-    /// Returns the share of a light that arrives: its attenuation with the cures for darkness (P §4).
-    fn arriving_share(&self, shaded_light: &ShadedLight<'_>, sample: &ShadedSample, to_light: DVec3) -> f64 {
-        let point = sample.point;
+    /// Returns the part of a light above the horizon of a sample.
+    fn above_horizon(&self, shaded_light: &ShadedLight<'_>, sample: &ShadedSample) -> VisibleLight {
+        let surface = self.surface(sample.gradient);
+        let is_one_sided = self.reference.settings.shading.sides == LitSides::One;
+        let side = if is_one_sided { self.side_of(sample.density) } else { 1.0 };
+        let has_horizon = is_one_sided && shaded_light.light.casts_shadows;
+        let horizon = if has_horizon { side.abs() * surface.weight } else { 0.0 };
+        let place = self.reference.scene.scene_from_index.transform_point3(sample.point);
+        let outward = surface.normal * self.normal_sign(sample.density);
+        self.reference.with_sampled_area(shaded_light.light).above_horizon(place, outward, horizon)
+    }
+
+    /// Returns the attenuation of each light at a sample, before the cures for darkness; `None` for lights without.
+    pub(super) fn attenuations(&self, sample: &ShadedSample) -> Vec<Option<f64>> {
+        self.lights
+            .iter()
+            .map(|light| self.attenuation(light, sample, self.above_horizon(light, sample).direction))
+            .collect()
+    }
+
+    fn attenuation(
+        &self,
+        shaded_light: &ShadedLight<'_>,
+        sample: &ShadedSample,
+        to_light: DVec3,
+    ) -> Option<f64> {
         let shadows = &self.reference.settings.shadows;
         let scene = &self.reference.scene;
         let bias = to_light * (scene.smallest_edge() * shadows.bias_voxels);
-        let place = point + scene.index_from_scene.transform_vector3(bias);
-        let looked_up = match &shaded_light.attenuated {
-            LightAttenuation::None => {
-                let cone = shaded_light.light.cone();
-                return cone.attenuation(-cone.axis.dot(to_light));
-            }
+        let place = sample.point + scene.index_from_scene.transform_vector3(bias);
+        match &shaded_light.attenuated {
+            LightAttenuation::None => None,
             LightAttenuation::Volume(volume)
                 if self.reference.settings.effective_near_field() != NearFieldRay::Off =>
             {
-                self.near_field(shaded_light, volume, sample, to_light)
+                Some(self.near_field(&shaded_light.light, volume, sample, to_light))
             }
-            LightAttenuation::Volume(volume) => volume.at(place),
-            LightAttenuation::Rays(rays) => rays.attenuation(place),
-        };
-        self.reference.apply_cures(looked_up)
+            LightAttenuation::Volume(volume) => Some(volume.at(place)),
+            LightAttenuation::Rays(rays) => Some(rays.attenuation(place)),
+        }
     }
 
     /// Returns e^(−τ) over the steps of a near-field ray, the last of which is half a voxel of the light volume
     /// longer, times the volume's value at its end. No step reaches beyond the light.
     fn near_field(
         &self,
-        shaded_light: &ShadedLight<'_>,
+        light: &SceneLight,
         volume: &AttenuationVolume,
         sample: &ShadedSample,
         to_light: DVec3,
     ) -> f64 {
         let scene = &self.reference.scene;
-        let distance = match shaded_light.light.kind {
+        let distance = match light.kind {
             LightGeometry::Parallel => f64::INFINITY,
-            LightGeometry::Perspective => DVec3::from(shaded_light.light.position)
-                .distance(scene.scene_from_index.transform_point3(sample.point)),
+            LightGeometry::Perspective => {
+                DVec3::from(light.position).distance(scene.scene_from_index.transform_point3(sample.point))
+            }
         };
-        let at = |way: f64| sample.point + scene.index_from_scene.transform_vector3(to_light * way);
-        let steps = shaded_light.light.near_field_steps(self.reference.settings.effective_near_field());
-        let mut way = 0.0;
-        let mut depth = 0.0;
-        for step in 0..steps {
-            let ahead = if step + 1 == steps { 0.5 * volume.divisor as f64 } else { 0.0 };
-            let width = (NearFieldRay::width_voxels(step) + ahead) * scene.smallest_edge();
-            let length = width.min(distance - way);
-            let middle = at(way + 0.5 * length);
-            let density = self.reference.gathered_pyramid(TransferSide::Lighting).fetch(middle, sample.level);
-            let extinction = self.lighting.sample(density)[3];
-            let there = self.reference.gathered_presence(&self.profile, middle, sample.level);
-            depth += there * extinction * self.reference.attenuating_share(&self.remaining, middle) * length;
-            way += length;
-        }
-        (-depth * shaded_light.light.density_scale).exp() * volume.at(at(way))
+        let steps = light.near_field_steps(self.reference.settings.effective_near_field());
+        let extension = 0.5 * volume.divisor as f64 * scene.smallest_edge();
+        let (depth, way) = self.near.optical_depth(sample, to_light, steps, extension, distance);
+        let end = sample.point + scene.index_from_scene.transform_vector3(to_light * way);
+        (-depth * light.density_scale).exp() * volume.at(end)
     }
 
     /// Returns −1 if opacity falls as density rises and surfaces are one-sided; otherwise 1.
@@ -378,7 +392,8 @@ mod tests {
             let shader = Shader::new(&reference, &attenuations);
             let middle = DVec3::splat(7.5);
             let gradient = shader.gradient(middle, 0.0);
-            let sample = ShadedSample { point: middle, density: 0.5, gradient, level: 0.0 };
+            let sample =
+                ShadedSample { point: middle, density: 0.5, gradient, volume_gradient: gradient, level: 0.0 };
             let found = shader.color(&sample, [1.0, 0.5, 0.0]);
             let diffuse = 0.1 + 0.15 + 2.0 * arriving * 0.85 * (1.0 - weight + weight * 0.6);
             // The half-vector of (0.6, 0.8, 0) and (1, 0, 0): cos² = (1 + 0.6)/2.

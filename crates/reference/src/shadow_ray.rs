@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::back_project::AttenuationVolume;
 use super::extent::cut::UncutRegion;
 use super::field::classified::TransferSide;
+use super::integrated_table::IntegratedTable;
 use super::kernel::KernelProfile;
 use super::{Reference, gather};
 use chiaroscuro_scene::{
@@ -22,6 +23,8 @@ pub(super) struct ShadowRays<'r> {
     quadrature: SlabQuadrature,
     table: BakedTransfer,
     remaining: UncutRegion,
+    /// True if extinction is integrated between the ends of steps, instead of taken in their middle.
+    is_integrated: bool,
 }
 
 impl<'r> ShadowRays<'r> {
@@ -47,7 +50,13 @@ impl<'r> ShadowRays<'r> {
             quadrature,
             table: reference.gathered_table(TransferSide::Lighting),
             remaining: reference.attenuating_region(),
+            is_integrated: false,
         }
+    }
+
+    /// Sets if extinction is integrated between the ends of steps.
+    pub(super) fn integrated(self, is_integrated: bool) -> Self {
+        Self { is_integrated, ..self }
     }
 
     /// Returns the transmittance of the light at an index-space point: the mean over its points.
@@ -96,6 +105,10 @@ impl<'r> ShadowRays<'r> {
         let begin_of = |k: u32| (f64::from(k) + first - 0.5) * step;
         // The last step is shortened to the remaining distance.
         let count = (end / step - first + 0.5).ceil().max(0.0) as u32;
+        if self.is_integrated {
+            let depth = self.integrated_depth(point, forward, step, end) * light.density_scale;
+            return (-depth).exp() * cone.attenuation(-cone.axis.dot(towards));
+        }
         let support = reference.scene.support_in_index();
         let optical_depth: f64 = (0..count)
             .map(|k| {
@@ -121,6 +134,30 @@ impl<'r> ShadowRays<'r> {
             })
             .sum();
         (-optical_depth).exp() * cone.attenuation(-cone.axis.dot(towards))
+    }
+
+    /// Returns the optical depth over a length of `end` scene units from an index-space point, integrated between the
+    /// ends of steps; `forward` is a scene unit in index space.
+    fn integrated_depth(&self, point: DVec3, forward: DVec3, step: f64, end: f64) -> f64 {
+        let reference = self.reference;
+        let table = IntegratedTable::new(self.table.clone());
+        let sampled = |way: f64| {
+            let at = point + forward * way + reference.kernel_shift();
+            let density = gather::density(reference, TransferSide::Lighting, &self.profile, at, 0.0);
+            (density, reference.gathered_presence(&self.profile, at, 0.0))
+        };
+        let mut before = sampled(0.0);
+        let mut depth = 0.0;
+        for k in 0..(end / step).ceil().max(0.0) as u32 {
+            let (begin, stop) = (f64::from(k) * step, (f64::from(k + 1) * step).min(end));
+            let behind = sampled(stop);
+            let there = 0.5 * (before.1 + behind.1);
+            let share =
+                reference.attenuating_share(&self.remaining, point + forward * (0.5 * (begin + stop)));
+            depth += there * share * table.mean_between(before.0, behind.0)[3] * (stop - begin);
+            before = behind;
+        }
+        depth
     }
 }
 

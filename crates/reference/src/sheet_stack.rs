@@ -213,13 +213,6 @@ impl<'r> SheetStack<'r> {
         reference.slab_mean_presence(frame, *quadrature, at, share).max(MIN_PRESENCE)
     }
 
-    /// Returns true if cuts leave any part of slab `k` on a pixel's ray.
-    pub(super) fn is_uncut(&self, pixel: u32, k: u32) -> bool {
-        let [i, j] = self.pixel_position(pixel);
-        let at = [i, j, f64::from(k)];
-        self.material_at(at).is_some_and(|point| self.uncut_length(at, 1.0, point) > 0.0)
-    }
-
     /// Returns the density with the GPU's weights in the middle of slab `k` on the ray of pixel (i, j); 0 outside the
     /// volume's support.
     pub(super) fn density_at(&self, at: [f64; 3]) -> f64 {
@@ -235,6 +228,34 @@ impl<'r> SheetStack<'r> {
         gather::slab_mean(reference, frame, *quadrature, at, |point, level| {
             gather::density(reference, *side, profile, point, level)
         })
+    }
+
+    /// Returns the density with the GPU's weights, and the presence, at an index-space point.
+    pub(super) fn sampled_at(&self, point: DVec3, level: f64) -> (f64, f64) {
+        let Self { reference, side, profile, .. } = self;
+        let at = point + reference.kernel_shift();
+        let density = gather::density(reference, *side, profile, at, level);
+        let presence = match reference.settings.sampling.classification {
+            ClassificationOrder::Post => reference.presence(profile, at, level),
+            // Already part of the spread extinction of classified voxels.
+            ClassificationOrder::Pre => 1.0,
+        };
+        (density, presence)
+    }
+
+    /// Returns the depth on a pixel's ray that is nearest to `depth` and not cut.
+    pub(super) fn depth_within_cut(&self, [i, j]: [f64; 2], depth: f64) -> f64 {
+        let CutTreatment::Visible(remaining) = &self.remaining else { return depth };
+        let first = self.frame.depth_of(-0.5);
+        let last = self.frame.depth_of(f64::from(self.frame.slab_count) - 0.5);
+        let end = |depth| self.frame.point(i, j, depth);
+        match self.reference.uncut_span(remaining, end(first), end(last)) {
+            Some([begin, stop]) => {
+                let at = |share: f64| first + (last - first) * share;
+                depth.clamp(at(begin), at(stop))
+            }
+            None => first,
+        }
     }
 
     /// Returns the uncut length of a ray between the middles of two neighbouring slabs, in scene units; 0 if the

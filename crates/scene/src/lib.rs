@@ -51,8 +51,9 @@ pub use self::settings::light::{
 };
 pub use self::settings::quality::QualityPreset;
 pub use self::settings::sampling::{
-    ClassificationOrder, GradientSource, MAX_SLAB_PARTS, PREINTEGRATED_STEPS, ReconstructionKernel,
-    RenderEngine, SamplingSettings, SheetOrder, SlabMode, SlabQuadrature,
+    ClassificationOrder, FINE_UNDIVIDED_SHARE, GradientSource, MAX_SLAB_PARTS, PREINTEGRATED_STEPS,
+    ReconstructionKernel, RenderEngine, STANDARD_UNDIVIDED_SHARE, SamplingSettings, SheetOrder, SlabMode,
+    SlabQuadrature,
 };
 pub use self::settings::saved_entries::{
     DIGIT_KEYS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES, SavedContent, SavedEntry, SavedLook,

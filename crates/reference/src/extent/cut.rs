@@ -102,21 +102,27 @@ impl Reference<'_> {
         shares.product()
     }
 
-    /// Returns the uncut share of a segment between two points of index space.
+    /// Returns the share of the way between two index-space points that is not cut.
     pub(crate) fn uncut_share(&self, remaining: &UncutRegion, from: DVec3, to: DVec3) -> f64 {
+        let share = self.uncut_span(remaining, from, to).map_or(0.0, |[begin, end]| end - begin);
+        if self.options.fault == ReferenceFault::WholeSlabs { share.ceil() } else { share }
+    }
+
+    /// Returns where the part of the way between two index-space points that is not cut begins and ends, as shares of
+    /// the way; `None` if all of it is cut.
+    pub(crate) fn uncut_span(&self, remaining: &UncutRegion, from: DVec3, to: DVec3) -> Option<[f64; 2]> {
         let [from, to] = [from, to].map(|point| self.scene.scene_from_index.transform_point3(point));
         let (mut begin, mut end) = (0.0_f64, 1.0_f64);
         for &(normal, offset) in &remaining.bounds {
             // Signed distances of both ends outside the half-space.
             let [a, b] = [from, to].map(|point| normal.dot(point) - offset);
             match (a > 0.0, b > 0.0) {
-                (true, true) => return 0.0,
+                (true, true) => return None,
                 (true, false) => begin = begin.max(a / (a - b)),
                 (false, true) => end = end.min(a / (a - b)),
                 (false, false) => {}
             }
         }
-        let share = (end - begin).max(0.0);
-        if self.options.fault == ReferenceFault::WholeSlabs { share.ceil() } else { share }
+        (end > begin).then_some([begin, end])
     }
 }

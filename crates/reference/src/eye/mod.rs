@@ -1,5 +1,6 @@
 //! Eye pass: sheets composited front to back as seen from the eye (P eq. 9).
 
+mod adaptive;
 mod preintegrated;
 
 use std::ops::Range;
@@ -11,15 +12,8 @@ use super::Reference;
 use super::back_project::AttenuationVolume;
 use super::extent::cut::UncutRegion;
 use super::shade::{ShadedSample, Shader};
-use super::sheet_stack::{CutTreatment, SheetStack, SlabContribution};
+use super::sheet_stack::{CutTreatment, SheetStack};
 use chiaroscuro_render::plan::{GradientSteps, SheetFrame, picture_frame};
-use chiaroscuro_scene::{BakedTransfer, MAX_SLAB_PARTS};
-
-/// Share of what is visible along a ray above which a slab is divided.
-const MAX_SLAB_SHARE: f64 = 1.0 / 8.0;
-
-/// Safety factor of the density's expected change across a slab over that of the gradient at its middle.
-const CHANGE_SAFETY: f64 = 1.25;
 
 /// Number of slabs held in memory at once.
 const SLABS_IN_MEMORY: u32 = 32;
@@ -45,7 +39,7 @@ impl Reference<'_> {
         let faces = self.visible_faces();
         let shader = Shader::new(self, attenuations);
         if self.settings.has_adaptive_slabs() {
-            return self.picture_by_need(&stack, &shader);
+            return self.picture_adaptive(&stack, &shader);
         }
         if self.settings.has_preintegrated_slabs() {
             return self.picture_preintegrated(&stack, &shader);
@@ -73,10 +67,12 @@ impl Reference<'_> {
                     };
                     let density = sheets.at(k)[pixel];
                     // Normals of faces point out of the solid, whichever way opacity changes with density.
+                    let volume_gradient = gradient;
                     let gradient = gradient
                         + self.end_gradient(&faces, sample.point, level) * shader.normal_sign(density);
-                    let color = shader
-                        .color(&ShadedSample { point: sample.point, density, gradient, level }, sample.rgb);
+                    let point = sample.point;
+                    let shaded = ShadedSample { point, density, gradient, volume_gradient, level };
+                    let color = shader.color(&shaded, sample.rgb);
                     let opacity = -(-sample.optical_depth).exp_m1();
                     for channel in 0..3 {
                         ray[channel] += ray[3] * opacity * color[channel];
@@ -102,105 +98,6 @@ impl Reference<'_> {
             sampling.quadrature,
             CutTreatment::Visible(self.visible_region()),
         )
-    }
-}
-
-/// State of a ray during compositing.
-struct CompositedRay {
-    pixel: u32,
-    /// Linear, premultiplied RGB, and the transmittance.
-    color_and_transmittance: [f64; 4],
-}
-
-impl Reference<'_> {
-    /// Renders [`Self::picture`] with slabs by need: four slabs of the stack at a time where that suffices.
-    pub(super) fn picture_by_need(&self, stack: &SheetStack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
-        let table = self.settings.bake_eye(self.range, &self.scene);
-        let seen = |pixel: usize| {
-            let mut ray =
-                CompositedRay { pixel: pixel as u32, color_and_transmittance: [0.0, 0.0, 0.0, 1.0] };
-            for first in (0..stack.frame.slab_count).step_by(MAX_SLAB_PARTS as usize) {
-                if self.needs_no_division(stack, shader, &table, &ray, first) {
-                    self.add_slab(stack, shader, &table, &mut ray, first, MAX_SLAB_PARTS);
-                } else {
-                    (first..first + MAX_SLAB_PARTS)
-                        .for_each(|k| self.add_slab(stack, shader, &table, &mut ray, k, 1));
-                }
-            }
-            let [r, g, b, transmittance] = ray.color_and_transmittance;
-            [r, g, b, 1.0 - transmittance]
-        };
-        (0..stack.pixel_count()).into_par_iter().map(seen).collect()
-    }
-
-    /// Returns true if one sample suffices for the undivided slab that begins at slab `first` of the stack.
-    fn needs_no_division(
-        &self,
-        stack: &SheetStack<'_>,
-        shader: &Shader<'_>,
-        table: &BakedTransfer,
-        ray: &CompositedRay,
-        first: u32,
-    ) -> bool {
-        let is_whole = (first..first + MAX_SLAB_PARTS).all(|k| stack.is_uncut(ray.pixel, k));
-        let frame = stack.frame;
-        let [i, j] = stack.pixel_position(ray.pixel);
-        let middle = f64::from(first) + 0.5 * f64::from(MAX_SLAB_PARTS - 1);
-        let depth = frame.depth_of(middle);
-        let point = frame.point(i, j, depth);
-        let thickness = f64::from(MAX_SLAB_PARTS) * frame.slab;
-        let density = stack.density_at([i, j, middle]);
-        // Scene space contains the obliquity: one unit of depth is 1 / cos θ long there.
-        let along = self.scene.scene_from_index.transform_vector3(frame.direction.at(i, j));
-        let change = shader.prefiltered_gradient(point, frame.stretch_level(depth)).dot(along).abs();
-        let change = 0.5 * CHANGE_SAFETY * thickness * change;
-        // Presence is not evaluated where the middle shows nothing.
-        let is_asked = table.sample(density)[3] > 0.0;
-        let most_there = if is_asked { self.max_presence(stack, along, [i, j, middle]) } else { 1.0 };
-        let largest = most_there * table.max_extinction_in(density - change, density + change);
-        let share = ray.color_and_transmittance[3] * -(-largest * thickness * frame.obliquity(i, j)).exp_m1();
-        is_whole && share <= MAX_SLAB_SHARE
-    }
-
-    /// Returns an upper bound of the presence within the undivided slab around `k`, near missing voxels.
-    fn max_presence(&self, stack: &SheetStack<'_>, along: DVec3, [i, j, k]: [f64; 3]) -> f64 {
-        // The presence of classified voxels is part of their spread extinction.
-        if self.presence.is_none() || self.classified.is_some() {
-            return 1.0;
-        }
-        let frame = stack.frame;
-        let depth = frame.depth_of(k);
-        let rise =
-            self.missing_gradient(frame.point(i, j, depth), frame.stretch_level(depth)).dot(along).abs();
-        let thickness = f64::from(MAX_SLAB_PARTS) * frame.slab;
-        (stack.presence_at([i, j, k]) + 0.5 * CHANGE_SAFETY * thickness * rise).min(1.0)
-    }
-
-    /// Composites a slab that is `width` slabs of the stack thick.
-    fn add_slab(
-        &self,
-        stack: &SheetStack<'_>,
-        shader: &Shader<'_>,
-        table: &BakedTransfer,
-        ray: &mut CompositedRay,
-        first: u32,
-        width: u32,
-    ) {
-        let [i, j] = stack.pixel_position(ray.pixel);
-        let middle = f64::from(first) + 0.5 * f64::from(width - 1);
-        let density = stack.density_at([i, j, middle]);
-        let found = stack.sample_of(ray.pixel, middle, f64::from(width), table.sample(density));
-        let Some(SlabContribution { point, rgb, optical_depth }) = found else { return };
-        let level = stack.frame.stretch_level(stack.frame.depth_of(middle));
-        let faces: DVec3 = self.end_gradient(&self.visible_faces(), point, level);
-        let gradient = shader.gradient(point, level) + faces * shader.normal_sign(density);
-        let color = shader.color(&ShadedSample { point, density, gradient, level }, rgb);
-        let opacity = -(-optical_depth).exp_m1();
-        let left = ray.color_and_transmittance[3];
-        for (seen, color) in ray.color_and_transmittance.iter_mut().zip(color) {
-            *seen += left * opacity * color;
-        }
-        ray.color_and_transmittance[3] = left * (-optical_depth).exp();
     }
 }
 

@@ -55,14 +55,14 @@ struct HalfStep {
     density: f64,
 }
 
-/// Transfer function with its integrated extinction.
-struct IntegratedTable {
+/// Transfer function with its extinction integrated between entries, for steps.
+struct StepTable {
     table: BakedTransfer,
     /// Integrals from the first entry to each, with a distance of 1 between entries.
     integrals: Vec<f64>,
 }
 
-impl IntegratedTable {
+impl StepTable {
     fn new(table: BakedTransfer) -> Self {
         let mut sum = 0.0;
         let steps = table.entries.windows(2).map(|pair| {
@@ -94,7 +94,7 @@ impl IntegratedTable {
 impl Reference<'_> {
     /// Renders [`Self::picture`] in layers of pre-integrated steps.
     pub(super) fn picture_preintegrated(&self, stack: &SheetStack<'_>, shader: &Shader<'_>) -> Vec<[f64; 4]> {
-        let integrated = IntegratedTable::new(self.settings.bake_eye(self.range, &self.scene));
+        let integrated = StepTable::new(self.settings.bake_eye(self.range, &self.scene));
         let seen = |pixel: usize| self.layers(stack, shader, &integrated, pixel as u32);
         (0..stack.pixel_count()).into_par_iter().map(seen).collect()
     }
@@ -104,7 +104,7 @@ impl Reference<'_> {
         &self,
         stack: &SheetStack<'_>,
         shader: &Shader<'_>,
-        integrated: &IntegratedTable,
+        integrated: &StepTable,
         pixel: u32,
     ) -> [f64; 4] {
         let [i, j] = stack.pixel_position(pixel);
@@ -132,7 +132,7 @@ impl Reference<'_> {
     }
 
     /// Returns the halves of a step from the middle of slab `k` to that of the next.
-    fn halves(stack: &SheetStack<'_>, integrated: &IntegratedTable, [i, j, k]: [f64; 3]) -> [HalfStep; 2] {
+    fn halves(stack: &SheetStack<'_>, integrated: &StepTable, [i, j, k]: [f64; 3]) -> [HalfStep; 2] {
         let ends = [[i, j, k], [i, j, k + 1.0]];
         let length = stack.length_between(ends);
         let [a, b] = ends.map(|end| stack.density_around(end));
@@ -149,7 +149,7 @@ impl Reference<'_> {
         &self,
         stack: &SheetStack<'_>,
         shader: &Shader<'_>,
-        integrated: &IntegratedTable,
+        integrated: &StepTable,
         [i, j]: [f64; 2],
         layer: &ShadingLayer,
     ) -> DVec3 {
@@ -157,8 +157,10 @@ impl Reference<'_> {
         let density = layer.weighted_densities / layer.share;
         let (point, level) = (stack.frame.point(i, j, depth), stack.frame.stretch_level(depth));
         let ends = self.end_gradient(&self.visible_faces(), point, level);
-        let gradient = shader.gradient(point, level) + ends * shader.normal_sign(density);
+        let volume_gradient = shader.gradient(point, level);
+        let gradient = volume_gradient + ends * shader.normal_sign(density);
         let [r, g, b, _] = integrated.table.sample(density);
-        DVec3::from(shader.color(&ShadedSample { point, density, gradient, level }, [r, g, b])) * layer.share
+        let sample = ShadedSample { point, density, gradient, volume_gradient, level };
+        DVec3::from(shader.color(&sample, [r, g, b])) * layer.share
     }
 }

@@ -18,7 +18,7 @@ use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{
-    ClassificationOrder, DepositMode, MAX_LIGHTS, Projection, Settings, ShadowAlgorithm,
+    ClassificationOrder, DepositMode, MAX_LIGHTS, NearFieldRay, Projection, Settings, ShadowAlgorithm,
 };
 use chiaroscuro_volume::math::{Aabb, SceneSpace};
 
@@ -84,7 +84,7 @@ impl EyePass {
             runs: 1,
             voxel_edge: scene.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
-            pad0: 0.0,
+            max_undivided_share: settings.sampling.max_undivided_share as f32,
             visible_cut: uniforms::CutUniform::new(&visible_region.region(scene)),
             face_cut: uniforms::CutUniform::new(
                 &visible_region.region(scene).intersection(&Aabb::of_grid(scene.dims, 0.0)),
@@ -227,6 +227,8 @@ pub(crate) struct SamplingVariant {
     has_gradient_texture: bool,
     /// Number of steps of near-field rays; 0 without a near field.
     near_steps: u32,
+    /// `true` if the first step of near-field rays is halved.
+    has_near_halves: bool,
 }
 
 impl SamplingVariant {
@@ -236,6 +238,7 @@ impl SamplingVariant {
             flag("SHEET_GRADIENTS", self.has_sheet_gradients),
             flag("GRADIENT_TEXTURE", self.has_gradient_texture),
             ("NEAR_STEPS", f64::from(self.near_steps)),
+            flag("NEAR_HALVES", self.has_near_halves),
         ]
     }
 }
@@ -246,7 +249,9 @@ impl EyeVariant {
     pub(crate) fn from_settings(settings: &Settings, lights: LightCount, is_stretched: bool) -> Self {
         let Settings { sampling, shadows, cuts, shading, .. } = settings;
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
-        let near_steps = if lights.shadowed > 0 { settings.effective_near_field().step_count() } else { 0 };
+        let near_field =
+            if lights.shadowed > 0 { settings.effective_near_field() } else { NearFieldRay::Off };
+        let near_steps = near_field.step_count();
         Self {
             reconstruction: ReconstructionVariant::new(settings.eye_kernel(), sampling.quadrature),
             is_stretched,
@@ -254,6 +259,7 @@ impl EyeVariant {
                 has_sheet_gradients: settings.has_sheet_gradients(),
                 has_gradient_texture: false,
                 near_steps,
+                has_near_halves: near_field.halves_first_step(),
             },
             has_kernel_gradients: settings.has_kernel_gradients(),
             has_adaptive_slabs: settings.has_adaptive_slabs(),

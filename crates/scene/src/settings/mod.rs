@@ -266,17 +266,19 @@ impl Settings {
         if looks_up { self.shadows.near_field } else { NearFieldRay::Off }
     }
 
-    /// Returns true if the eye's slabs have adaptive thickness. A slab is divided where the gradient indicates that
-    /// it contributes much: not if gradients come from sheets or voxels are classified first; and not with two-point
-    /// quadrature, which does not need it.
+    /// Returns true if the eye's slabs have adaptive thickness, and are integrated between samples at their faces: not
+    /// if gradients come from sheets, nor with two-point quadrature, whose samples are means over even slabs.
     pub fn has_adaptive_slabs(&self) -> bool {
         self.sampling.slabs == SlabMode::ByNeed && self.samples_points()
     }
 
     /// Returns true if opacity is pre-integrated over the eye's slabs, from the densities at both ends of their
-    /// steps, under the conditions of [`Self::has_adaptive_slabs`]; otherwise slabs are even.
+    /// steps, under the conditions of [`Self::has_adaptive_slabs`], and if voxels are not classified before;
+    /// otherwise slabs are even.
     pub fn has_preintegrated_slabs(&self) -> bool {
-        self.sampling.slabs == SlabMode::Preintegrated && self.samples_points()
+        self.sampling.slabs == SlabMode::Preintegrated
+            && self.samples_points()
+            && self.classification() == ClassificationOrder::Post
     }
 
     /// Returns true if point samples of density determine the image.
@@ -285,7 +287,6 @@ impl Settings {
         !self.uses_scattering_engine()
             && quadrature == SlabQuadrature::One
             && gradients != GradientSource::Sheets
-            && self.classification() == ClassificationOrder::Post
     }
 
     /// Returns the kernel with which the eye's samples are gathered: the prefiltered one if voxels are classified

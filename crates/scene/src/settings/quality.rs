@@ -1,8 +1,8 @@
 //! Quality levels: presets of slab thickness, shadow algorithm, kernels and near field.
 
 use crate::{
-    GradientSource, NearFieldRay, ReconstructionKernel, ReverseKernel, SamplingSettings, Settings,
-    ShadowAlgorithm, ShadowSettings, SlabMode,
+    FINE_UNDIVIDED_SHARE, GradientSource, NearFieldRay, ReconstructionKernel, ReverseKernel,
+    STANDARD_UNDIVIDED_SHARE, SamplingSettings, Settings, ShadowAlgorithm, ShadowSettings, SlabMode,
 };
 
 impl Settings {
@@ -76,6 +76,7 @@ struct QualitySettings {
     /// Thickness of the eye's slabs, in smallest voxel edges; the largest if they are adaptive.
     slab: f64,
     slabs: SlabMode,
+    max_undivided_share: f64,
     /// Slab thickness of the light pass or step of shadow rays, in smallest voxel edges.
     shadow_slab: f64,
     /// Kernel of the light pass or of shadow rays.
@@ -93,6 +94,7 @@ impl QualityPreset {
             near_field,
             slab,
             slabs,
+            max_undivided_share: STANDARD_UNDIVIDED_SHARE,
             shadow_slab: 1.0,
             // Its blur beyond the B-spline's is less than that of a light volume, at a sixth of the fetches.
             shadow_kernel: ReconstructionKernel::Prefiltered,
@@ -102,16 +104,18 @@ impl QualityPreset {
             Self::Fast => splat(NearFieldRay::Off, SlabMode::Even, 0.5),
             // Even slabs of this thickness show as wood grain on steep surfaces.
             Self::Standard => splat(NearFieldRay::Short, SlabMode::ByNeed, 1.0),
-            // Thinner slabs do not get closer to the converged image.
             Self::Fine => QualitySettings {
+                max_undivided_share: FINE_UNDIVIDED_SHARE,
                 gradients: GradientSource::Kernel,
                 ..splat(NearFieldRay::Long, SlabMode::ByNeed, 1.0)
             },
             Self::Exact => QualitySettings {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearFieldRay::Short,
-                slab: 0.25,
-                slabs: SlabMode::Even,
+                slab: 1.0,
+                slabs: SlabMode::ByNeed,
+                // Every slab is halved.
+                max_undivided_share: 0.0,
                 shadow_slab: 0.25,
                 shadow_kernel: ReconstructionKernel::BSpline,
                 gradients: GradientSource::Kernel,
@@ -121,13 +125,15 @@ impl QualityPreset {
 
     /// Applies all settings of the level. Disabled shadows stay disabled.
     pub fn apply(self, settings: &mut Settings) {
-        let QualitySettings { algorithm, near_field, slab, slabs, shadow_slab, shadow_kernel, gradients } =
-            self.settings();
-        (settings.sampling.slab, settings.sampling.slabs) = (slab, slabs);
-        settings.sampling.gradients = gradients;
+        let level = self.settings();
+        let algorithm = level.algorithm;
+        let sampling = &mut settings.sampling;
+        (sampling.slab, sampling.slabs) = (level.slab, level.slabs);
+        sampling.max_undivided_share = level.max_undivided_share;
+        sampling.gradients = level.gradients;
         let shadows = &mut settings.shadows;
-        (shadows.slab, shadows.kernel) = (shadow_slab, shadow_kernel);
-        shadows.near_field = near_field;
+        (shadows.slab, shadows.kernel) = (level.shadow_slab, level.shadow_kernel);
+        shadows.near_field = level.near_field;
         shadows.reverse_kernel = ReverseKernel::Tent;
         if shadows.algorithm.is_on() {
             shadows.algorithm = algorithm;

@@ -257,6 +257,7 @@ fn sanitise_sampling(sampling: &mut SamplingSettings, default: &SamplingSettings
         kernel,
         slab,
         slabs: _,
+        max_undivided_share,
         quadrature: _,
         gradients: _,
         classification: _,
@@ -264,6 +265,7 @@ fn sanitise_sampling(sampling: &mut SamplingSettings, default: &SamplingSettings
         order: _,
     } = sampling;
     clamp_number(slab, 0.25, 2.0, default.slab);
+    clamp_number(max_undivided_share, 0.0, 1.0, default.max_undivided_share);
     clamp_kernel(kernel);
 }
 

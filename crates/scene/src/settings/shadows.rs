@@ -137,6 +137,11 @@ impl NearFieldRay {
         }
     }
 
+    /// Returns true if the first step is divided into two, which resolves what lies within half a voxel.
+    pub fn halves_first_step(self) -> bool {
+        self == Self::Long
+    }
+
     /// Returns the number of steps that lead no farther than `length_voxels` smallest voxel edges; at least two,
     /// because a light volume does not resolve what lies within one voxel.
     pub fn steps_within(self, length_voxels: f64) -> u32 {

@@ -13,8 +13,9 @@ pub struct BakedTransfer {
     /// Range maxima of extinction: for each power of two up to [`LUT_SIZE`] and each entry, the largest of that many
     /// entries from there on.
     pub range_maxima: Vec<f32>,
-    /// Integrals of extinction over densities from 0 to each entry, in units of the entries' spacing.
-    pub integrals: Vec<f32>,
+    /// Integrals over densities from 0 to each entry, in units of the entries' spacing: of linear RGB times extinction,
+    /// and of extinction.
+    pub integrals: Vec<[f32; 4]>,
 }
 
 /// Decay length, in entries, of a change's influence on `sides`: one step of 8-bit data.
@@ -56,23 +57,45 @@ fn range_maxima(entries: &[[f32; 4]]) -> Vec<f32> {
     runs
 }
 
-/// Returns the integrals of extinction, linear between entries, from the first entry to each.
-fn integrals(entries: &[[f32; 4]]) -> Vec<f32> {
-    let mut sum = 0.0_f64;
-    let steps = entries.windows(2).map(|pair| {
-        sum += 0.5 * (f64::from(pair[0][3]) + f64::from(pair[1][3]));
-        sum as f32
+/// Returns colour times extinction, and extinction.
+fn weighted([r, g, b, extinction]: [f32; 4]) -> [f64; 4] {
+    [r * extinction, g * extinction, b * extinction, extinction].map(f64::from)
+}
+
+/// Returns the means between each entry and the next, of colour times extinction and of extinction, for a function
+/// that is linear there.
+fn linear_means(entries: &[[f32; 4]]) -> Vec<[f64; 4]> {
+    let mean = |pair: &[[f32; 4]]| {
+        let (a, b) = (weighted(pair[0]), weighted(pair[1]));
+        std::array::from_fn(|i| 0.5 * (a[i] + b[i]))
+    };
+    entries.windows(2).map(mean).collect()
+}
+
+/// Returns the integrals from the first entry to each.
+fn integrals(means: &[[f64; 4]]) -> Vec<[f32; 4]> {
+    let mut sum = [0.0_f64; 4];
+    let steps = means.iter().map(|mean| {
+        (0..4).for_each(|i| sum[i] += mean[i]);
+        sum.map(|sum| sum as f32)
     });
-    std::iter::once(0.0).chain(steps).collect()
+    std::iter::once([0.0; 4]).chain(steps).collect()
 }
 
 impl BakedTransfer {
-    /// Creates a table from [`LUT_SIZE`] entries.
+    /// Creates a table from [`LUT_SIZE`] entries between which the function is linear.
     pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
+        let means = linear_means(&entries);
+        Self::with_means(entries, &means)
+    }
+
+    /// Creates a table from [`LUT_SIZE`] entries and the function's means between each and the next, of colour times
+    /// extinction and of extinction.
+    pub(super) fn with_means(entries: Vec<[f32; 4]>, means: &[[f64; 4]]) -> Self {
         Self {
             slope_signs: slope_signs(&entries),
             range_maxima: range_maxima(&entries),
-            integrals: integrals(&entries),
+            integrals: integrals(means),
             entries,
         }
     }
@@ -87,7 +110,8 @@ impl BakedTransfer {
     /// Returns all numbers in the order of the shaders' declaration (`volume/material.wgsl`).
     pub fn to_f32s(&self) -> Vec<f32> {
         let Self { entries, slope_signs: sides, range_maxima: peaks, integrals } = self;
-        entries.iter().flatten().chain(sides).chain(peaks).chain(integrals).copied().collect()
+        let (entries, integrals) = (entries.iter().flatten(), integrals.iter().flatten());
+        entries.chain(sides).chain(peaks).chain(integrals).copied().collect()
     }
 
     /// Returns the largest extinction of any density, per scene unit.

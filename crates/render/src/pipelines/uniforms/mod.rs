@@ -287,7 +287,8 @@ pub struct EyeUniform {
     pub runs: u32,
     pub voxel_edge: f32,
     pub combined_lookup: [f32; 3],
-    pub pad0: f32,
+    /// Share of the visible light above which an adaptive slab is halved.
+    pub max_undivided_share: f32,
     pub visible_cut: CutUniform,
     pub face_cut: CutUniform,
     pub shading_cut: CutUniform,

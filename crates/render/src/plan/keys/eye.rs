@@ -58,6 +58,8 @@ struct SamplingKey {
     kernel: ReconstructionKernel,
     slab: f64,
     slabs: SlabMode,
+    /// Share above which adaptive slabs are halved, if slabs are adaptive.
+    max_undivided_share: Option<f64>,
     quadrature: SlabQuadrature,
     gradients: GradientSource,
     classification: ClassificationOrder,
@@ -77,11 +79,31 @@ struct ShadowRaysKey {
 
 impl SamplingKey {
     fn new(settings: &Settings) -> Self {
-        let SamplingSettings { kernel, slab, slabs, quadrature, gradients, classification: _, engine, order } =
-            settings.sampling;
+        let SamplingSettings {
+            kernel,
+            slab,
+            slabs,
+            max_undivided_share,
+            quadrature,
+            gradients,
+            classification: _,
+            engine,
+            order,
+        } = settings.sampling;
+        let max_undivided_share = settings.has_adaptive_slabs().then_some(max_undivided_share);
         let classification = settings.classification();
         let order = settings.uses_scattering_engine().then_some(order);
-        Self { kernel, slab, slabs, quadrature, gradients, classification, engine, order }
+        Self {
+            kernel,
+            slab,
+            slabs,
+            max_undivided_share,
+            quadrature,
+            gradients,
+            classification,
+            engine,
+            order,
+        }
     }
 }
 

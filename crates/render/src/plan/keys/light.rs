@@ -100,6 +100,7 @@ impl LightKey {
                     kernel: _,
                     slab: _,
                     slabs: _,
+                    max_undivided_share: _,
                     quadrature: _,
                     gradients: _,
                     classification: _,
