@@ -215,7 +215,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 runs,
                 voxel_edge,
                 combined_lookup,
-                pad0,
+                max_undivided_share,
                 visible_cut,
                 face_cut,
                 shading_cut,

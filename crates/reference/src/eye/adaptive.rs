@@ -18,7 +18,7 @@ const UNDIVIDED_SLABS: u32 = 2;
 
 /// Visible share above which a segment ends, and below which light does not change in it, relative to that above which
 /// slabs are halved.
-const SEGMENT_SHARE: f64 = 2.5;
+const SEGMENT_SHARE: f64 = 1.0;
 const FAINT_SHARE: f64 = 0.25;
 
 /// Optical depth of a segment that shows nothing.
