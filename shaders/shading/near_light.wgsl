@@ -2,16 +2,15 @@
 // volumes.
 //
 // Extinction is integrated between the ends of steps: at a surface that is opaque within a fraction of a voxel, the
-// middle of a step is no measure of it. The ray begins with the density of the sample itself, and goes on with the
-// kernel of the eye, or it would see another surface than the eye does.
+// middle of a step is no measure of it. The ray begins with the density of the sample itself, or it would see another
+// surface than the eye does; for the same reason the ends of halved steps have the kernel of the eye.
 #import "density/cut.wgsl"
 #import "volume/material.wgsl"
 #import "shading/shade.wgsl"
 
 // Maximum number of near-field steps (crates/scene/src/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
-// Set if the first step is divided into two, of which both ends have the kernel of the eye.
-override NEAR_HALVES: bool = false;
+#option NEAR_HALVES: the first step is divided into two, of which both ends have the kernel of the eye
 
 // Lengths of the steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
 fn near_step_length(step: u32) -> f32 {
@@ -27,15 +26,6 @@ struct NearStepEnd {
 
 fn near_step_end(field: LightingField, presence: f32) -> NearStepEnd {
     return NearStepEnd(field, presence, light_integral_place(field));
-}
-
-// End of a step within the first voxel, where the kernel of the eye is needed.
-fn sharp_step_end(p: vec3f, level: f32) -> NearStepEnd {
-#if PRECLASSIFY
-    return near_step_end(lighting_field(p, level), 1.0);
-#else
-    return near_step_end(field_at(p, level), lighting_presence(p, level));
-#endif
 }
 
 fn soft_step_end(p: vec3f, level: f32) -> NearStepEnd {
@@ -85,6 +75,17 @@ fn curved_step(begin: NearStepEnd, middle: FieldNumber, end: NearStepEnd) -> Tra
         * (mean_light_extinction(begin.integral, half) + mean_light_extinction(half, end.integral));
 }
 
+#if NEAR_HALVES
+// End of a step within the first voxel, seen with the kernel of the eye.
+fn sharp_step_end(p: vec3f, level: f32) -> NearStepEnd {
+#if PRECLASSIFY
+    return near_step_end(lighting_field(p, level), 1.0);
+#else
+    return near_step_end(field_at(p, level), lighting_presence(p, level));
+#endif
+}
+#endif
+
 // Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
 // or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
 // where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
@@ -92,62 +93,53 @@ fn curved_step(begin: NearStepEnd, middle: FieldNumber, end: NearStepEnd) -> Tra
 // (crates/render/src/plan/geometry/near_field_cells.rs).
 fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     let forward = index_from_scene_vector(eye.space, towards.direction);
-    let own = near_step_end(
-#if PRECLASSIFY
-        lighting_field(surface.point, surface.level),
-        1.0,
-    );
-    let rise = FieldNumber(0.0);
-#else
-        Field(surface.density),
-        lighting_presence(surface.point, surface.level),
-    );
-    let rise = dot(surface.gradient, towards.direction);
-#endif
     let edge = eye.voxel_edge;
-    // First step, or its first half.
-    var length = min(select(0.5, 0.25, NEAR_HALVES) * edge, towards.distance);
-    var way = length;
-    var before = own;
-    var end: NearStepEnd;
-    if (NEAR_HALVES) {
-        end = sharp_step_end(surface.point + forward * way, surface.level);
-    } else {
-        end = soft_step_end(surface.point + forward * way, surface.level);
-    }
-    let curve = after_slope(number_of(own.field), rise * length, number_of(end.field));
-    var share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * length));
-    var depth = share * length * curved_step(own, curve, end);
-    if (NEAR_HALVES) {
-        before = own;
-        let first = end;
-        length = min(0.25 * edge, max(towards.distance - way, 0.0));
-        share = shading_fraction(eye.shading_cut, surface.point + forward * (way + 0.5 * length));
-        way += length;
-        end = sharp_step_end(surface.point + forward * way, surface.level);
-        let next = after_step(number_of(before.field), number_of(first.field), number_of(end.field), 1.0);
-        depth += share * length * curved_step(first, next, end);
-    }
-    // Value at the begin of the last step, and length of that step.
-    var earlier = before;
-    var earlier_length = 0.5 * edge;
+#if NEAR_HALVES
+    let half = min(0.25 * edge, towards.distance);
+    let between = sharp_step_end(surface.point + forward * half, surface.level);
+    var way = min(0.5 * edge, towards.distance);
+    var end = sharp_step_end(surface.point + forward * way, surface.level);
+#else
+    let half = min(0.5 * edge, towards.distance);
+    var way = half;
+    var end = soft_step_end(surface.point + forward * way, surface.level);
+    let between = end;
+#endif
+    // Half way to the first end.
+#if PRECLASSIFY
+    let own = near_step_end(lighting_field(surface.point, surface.level), 1.0);
+    let middle = 0.5 * (own.field + between.field);
+#else
+    let own = near_step_end(Field(surface.density), lighting_presence(surface.point, surface.level));
+    let rise = half * dot(surface.gradient, towards.direction);
+    let middle = after_slope(own.field.density, rise, between.field.density);
+#endif
+    var share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * half));
+    var depth = share * half * curved_step(own, middle, between);
+#if NEAR_HALVES
+    let next = after_step(number_of(own.field), number_of(between.field), number_of(end.field), 1.0);
+    share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * (half + way)));
+    depth += share * (way - half) * curved_step(between, next, end);
+#endif
     var step = 1u;
     loop {
         // Excess steps have length 0: drivers unroll a loop with a known end.
         let is_taken = select(0.0, 1.0, step < light.near_steps);
         let width =
             is_taken * near_step_length(step) * edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
-        length = min(width, max(towards.distance - way, 0.0));
+        let length = min(width, max(towards.distance - way, 0.0));
         share = shading_fraction(eye.shading_cut, surface.point + forward * (way + 0.5 * length));
         way += length;
         let begin = end;
         end = soft_step_end(surface.point + forward * way, surface.level);
         // Densities bend over lengths of a voxel; farther steps are too long for a parabola.
         if (step == 1u) {
-            let bent = after_step(number_of(earlier.field), number_of(begin.field), number_of(end.field), length / earlier_length);
+            let ratio = length / (0.5 * edge);
+            let bent = after_step(number_of(own.field), number_of(begin.field), number_of(end.field), ratio);
             depth += share * length * curved_step(begin, bent, end);
         } else {
-            depth += share * length * 0.5 * (begin.presence + end.presence) * mean_light_extinction(begin.integral, end.integral);
+            let present = 0.5 * (begin.presence + end.presence);
+            depth += share * length * present * mean_light_extinction(begin.integral, end.integral);
         }
         step += 1u;
         if (step >= NEAR_STEPS) {

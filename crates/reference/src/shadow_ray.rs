@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use super::back_project::AttenuationVolume;
 use super::extent::cut::UncutRegion;
 use super::field::classified::TransferSide;
-use super::integrated_table::IntegratedTable;
 use super::kernel::KernelProfile;
 use super::{Reference, gather};
+use crate::field::integrated_table::IntegratedTable;
 use chiaroscuro_scene::{
     BakedTransfer, DepositMode, LightGeometry, ReconstructionKernel, SceneLight, SlabQuadrature,
 };

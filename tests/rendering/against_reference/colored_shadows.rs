@@ -231,7 +231,12 @@ fn mistakes_are_detected() {
             "textureLoad(green, voxel, 0)",
             "textureLoad(blue, voxel, 0)",
         ),
-        (&settings, "eye/eye_pass.wgsl", "return entry.rgb * entry.a;", "return vec3f(entry.a);"),
+        (
+            &settings,
+            "eye/eye_pass.wgsl",
+            "let mean = lighting_table.integrals[low + 1u].rgb - first;",
+            "let mean = lighting_table.integrals[low + 1u].aaa - lighting_table.integrals[low].aaa;",
+        ),
         (&settings, "eye/eye_pass.wgsl", "return texel.rgb;", "return texel.rrr;"),
         (&classified, "light/march.wgsl", "[EXTINCTION_CHANNEL]", "[EXTINCTION_CHANNEL - 1u]"),
         (&classified, "eye/eye_pass.wgsl", "return texel.gba;", "return texel.rrr;"),

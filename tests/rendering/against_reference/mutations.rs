@@ -218,10 +218,10 @@ sided_mutation!(
     "1.0"
 );
 sided_mutation!(
-    rays_nearby_sampled_at_the_ends_of_steps,
+    rays_nearby_that_begin_without_a_slope,
     "eye/eye_pass.wgsl",
-    "way + 0.5 * length",
-    "way + length"
+    "after_slope(own.field.density, rise, between.field.density)",
+    "after_slope(own.field.density, 0.0, between.field.density)"
 );
 sided_mutation!(
     rays_nearby_through_the_eyes_material,
@@ -282,18 +282,28 @@ fn undamaged_slabs_by_need_agree() {
 #[test]
 fn damaged_slabs_by_need_are_noticed() {
     let damages = [
-        // As dense as thin slabs.
-        ("found.material.extinction * f32(width)", "found.material.extinction"),
-        // Sampled at their front.
-        ("f32(start) + 0.5 * f32(width - 1)", "f32(start)"),
-        // Subdivided behind occluding material.
-        ("var share = t * (1.0 - exp", "var share = (1.0 - exp"),
-        ("const MAX_UNDIVIDED_SHARE = 0.125", "const MAX_UNDIVIDED_SHARE = 0.25"),
-        ("const GRADIENT_SAFETY = 1.25", "const GRADIENT_SAFETY = 0.5"),
-        // Ignoring material between this sample and a denser one.
+        // Extinction at the ends of parts.
         (
-            "found.field.density - change, found.field.density + change",
-            "found.field.density, found.field.density",
+            "select((b.integral - a.integral) / select(distance, 1.0, is_near), 0.5 * (a.mean + b.mean), is_near)",
+            "0.5 * (a.mean + b.mean)",
+        ),
+        // Halves without curvature.
+        (
+            "0.375 * front.value + 0.75 * found.value - 0.125 * back.value",
+            "0.5 * (front.value + found.value)",
+        ),
+        // Light in front of a segment for all of it.
+        ("let x = tau + log(near / far)", "let x = tau"),
+        // Parts at their front.
+        ("place + at * length", "place"),
+        // Halved behind occluding material.
+        ("t * (1.0 - sum.opacity) * opacity <=", "opacity <="),
+        ("const SEGMENT_SHARE = 1.0", "const SEGMENT_SHARE = 8.0"),
+        ("const FAINT_SHARE = 0.25", "const FAINT_SHARE = 2.0"),
+        // The first of two densities for what lies between them.
+        (
+            "min(density_of(a), density_of(b)), max(density_of(a), density_of(b))",
+            "density_of(a), density_of(a)",
         ),
     ];
     for (from, to) in damages {

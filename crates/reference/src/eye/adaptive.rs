@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::Reference;
 use crate::field::classified::TransferSide;
-use crate::integrated_table::IntegratedTable;
+use crate::field::integrated_table::IntegratedTable;
 use crate::shade::{ShadedSample, Shader};
 use crate::sheet_stack::SheetStack;
 
@@ -259,12 +259,12 @@ mod tests {
 
     #[test]
     fn light_and_opacity_are_integrated_together() {
-        for (a, b, tau) in [(1.0, 1.0, 0.3), (0.8, 0.05, 2.0), (0.1, 0.9, 5.0), (0.4, 0.4, 1e-7)] {
+        for (a, b, tau) in [(1.0_f64, 1.0, 0.3), (0.8, 0.05, 2.0), (0.1, 0.9, 5.0), (0.4, 0.4, 1e-7)] {
             let steps = 20_000;
             let (mut lit, mut opaque) = (0.0, 0.0);
             for step in 0..steps {
                 let t = tau * (f64::from(step) + 0.5) / f64::from(steps);
-                lit += (-t).exp() * a * (b / a as f64).powf(t / tau);
+                lit += (-t).exp() * a * (b / a).powf(t / tau);
                 opaque += (-t).exp();
             }
             assert!((mean_attenuation(a, b, tau) - lit / opaque).abs() < 1e-6, "{a} {b} {tau}");

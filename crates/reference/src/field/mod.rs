@@ -1,6 +1,7 @@
 //! Density field on a grid, as the renderer stores it, and trilinear interpolation in any grid.
 
 pub(crate) mod classified;
+pub(crate) mod integrated_table;
 pub(crate) mod pyramid;
 
 use glam::DVec3;

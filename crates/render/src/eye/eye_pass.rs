@@ -135,10 +135,11 @@ impl EyePass {
         self.variant.shading
     }
 
-    /// Returns the sampling part of the pipeline variant, for the scattering engine; `has_gradients` tells if there
-    /// is a gradient texture.
+    /// Returns the sampling part of the pipeline variant, for the scattering engine, which has no kernel at points;
+    /// `has_gradients` tells if there is a gradient texture.
     pub(crate) fn sampling_variant(&self, has_gradients: bool) -> SamplingVariant {
-        SamplingVariant { has_gradient_texture: has_gradients, ..self.variant.sampling }
+        let sampling = self.variant.sampling;
+        SamplingVariant { has_gradient_texture: has_gradients, has_near_halves: false, ..sampling }
     }
 
     /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified

@@ -112,9 +112,9 @@ impl QualityPreset {
             Self::Exact => QualitySettings {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearFieldRay::Short,
-                slab: 1.0,
+                // Every slab is halved, and shaded by itself: light in steps of a quarter of a voxel.
+                slab: 0.5,
                 slabs: SlabMode::ByNeed,
-                // Every slab is halved.
                 max_undivided_share: 0.0,
                 shadow_slab: 0.25,
                 shadow_kernel: ReconstructionKernel::BSpline,

@@ -359,9 +359,8 @@ fn another_range_changes_every_key() {
 #[test]
 fn a_table_of_labels_shows_another_volume_and_settings_as_drawn_have_its_keys() {
     let before = request_with_labels();
-    assert_eq!((keys(&before).volume.density_mapping, keys(&request()).volume.density_mapping), {
-        (DensityMapping::Labels, DensityMapping::Range(ValueRange::UNIT))
-    });
+    let mapping = [&before, &request()].map(|request| keys(request).volume.density_mapping);
+    assert_eq!(mapping, [DensityMapping::Labels, DensityMapping::Range(ValueRange::UNIT)]);
     assert_ne!(keys(&before).tables, keys(&request()).tables);
     let samples = chiaroscuro_volume::Samples::U8(vec![0, 1, 2]);
     let volume = chiaroscuro_volume::Volume::with_spacing("t", [3, 1, 1], glam::DVec3::ONE, samples).unwrap();

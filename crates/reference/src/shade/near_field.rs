@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::Reference;
-use super::extent::cut::UncutRegion;
-use super::field::classified::TransferSide;
-use super::gather;
-use super::integrated_table::IntegratedTable;
-use super::kernel::KernelProfile;
-use super::shade::ShadedSample;
+use super::ShadedSample;
+use crate::Reference;
+use crate::extent::cut::UncutRegion;
+use crate::field::classified::TransferSide;
+use crate::field::integrated_table::IntegratedTable;
+use crate::gather;
+use crate::kernel::KernelProfile;
 use chiaroscuro_scene::{NearFieldRay, ReconstructionKernel};
 
 /// Sampler of near-field rays.
@@ -65,7 +65,10 @@ impl<'r> NearField<'r> {
         distance: f64,
     ) -> (f64, f64) {
         let edge = self.reference.scene.smallest_edge();
-        let halves = self.reference.settings.effective_near_field().halves_first_step();
+        let settings = self.reference.settings;
+        // The scattering engine has no kernel at points.
+        let halves =
+            settings.effective_near_field().halves_first_step() && !settings.uses_scattering_engine();
         let nominal = (0..steps).map(|step| {
             let extension = if step + 1 == steps { extension } else { 0.0 };
             NearFieldRay::width_voxels(step) * edge + extension
@@ -95,13 +98,13 @@ impl<'r> NearField<'r> {
                 continue;
             }
             let middle = if step == 0 {
-                // Parabola with the sample's own slope; shares of classified voxels are taken without.
-                let slope = if self.reference.classified.is_some() {
-                    0.0
+                if self.reference.classified.is_some() {
+                    0.5 * (begin.density + end.density)
                 } else {
-                    sample.volume_gradient.dot(to_light)
-                };
-                0.75 * begin.density + 0.25 * end.density + 0.25 * slope * length
+                    // Parabola with the sample's own slope.
+                    let slope = sample.volume_gradient.dot(to_light);
+                    0.75 * begin.density + 0.25 * end.density + 0.25 * slope * length
+                }
             } else if step == 1 || (step == 2 && halves) {
                 parabola(begin.way + 0.5 * length, [ends[0], begin, end])
             } else {

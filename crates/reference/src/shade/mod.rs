@@ -1,20 +1,23 @@
 //! Shading of a sample: P eq. 2 – 4 with the light of the attenuation volumes.
 
-use glam::DVec3;
-use rayon::prelude::*;
+mod near_field;
+mod opacity_sides;
 
-use super::back_project::AttenuationVolume;
-use super::field::classified::TransferSide;
-use super::field::pyramid::MAX_LEVEL;
-use super::indirect::bounces::BouncedLight;
-use super::indirect::sky::SkyVisibility;
-use super::near_field::NearField;
-use super::shadow_ray::ShadowRays;
-use super::{Reference, ReferenceFault, gather, linear_from_srgb};
+use glam::DVec3;
+
+use self::near_field::NearField;
+use self::opacity_sides::opacity_sides;
+use crate::back_project::AttenuationVolume;
+use crate::field::classified::TransferSide;
+use crate::field::pyramid::MAX_LEVEL;
+use crate::indirect::bounces::BouncedLight;
+use crate::indirect::sky::SkyVisibility;
+use crate::shadow_ray::ShadowRays;
+use crate::{Reference, ReferenceFault, gather, linear_from_srgb};
 use chiaroscuro_render::plan::MAX_STRETCH_LEVEL;
 use chiaroscuro_scene::{
-    BakedTransfer, LightGeometry, LightSettings, LitSides, NearFieldRay, Projection, SceneLight,
-    ShadowAlgorithm, VisibleLight,
+    LightGeometry, LightSettings, LitSides, NearFieldRay, Projection, SceneLight, ShadowAlgorithm,
+    VisibleLight,
 };
 
 /// Shader of one picture: its lights and its eye.
@@ -332,24 +335,6 @@ impl<'r> Shader<'r> {
 /// Returns the Henyey–Greenstein phase function relative to isotropic scattering; `mean` is its mean cosine.
 fn henyey_greenstein(mean: f64, cosine: f64) -> f64 {
     (1.0 - mean * mean) / (1.0 + mean * mean - 2.0 * mean * cosine).powf(1.5)
-}
-
-/// Returns for each entry of a table the balance of rises and falls of extinction around it, each weighted by
-/// e^(−distance / 4 entries): 1 where it rises, −1 where it falls.
-fn opacity_sides(table: &BakedTransfer) -> Vec<f64> {
-    let balance = |entry: usize| {
-        let (mut rises, mut falls) = (0.0, 0.0);
-        for (at, pair) in table.entries.windows(2).enumerate() {
-            // Whole entries between this entry and the nearer end of the step.
-            let distance = if at >= entry { at - entry } else { entry - at - 1 };
-            let step = f64::from(pair[1][3]) - f64::from(pair[0][3]);
-            let share = (-(distance as f64) / 4.0).exp();
-            rises += share * step.max(0.0);
-            falls += share * (-step).max(0.0);
-        }
-        if rises + falls > 0.0 { (rises - falls) / (rises + falls) } else { 1.0 }
-    };
-    (0..table.entries.len()).into_par_iter().map(balance).collect()
 }
 
 #[cfg(test)]
