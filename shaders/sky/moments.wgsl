@@ -31,6 +31,10 @@ override IS_LAST: bool = true;
 // above the surface instead.
 const MAX_START_SLICES = 2.0;
 
+// Maximum distance from a block, in blocks along an axis, at which its rays start; crates/render/src/sky/surfaces.rs
+// provides sheets a block farther around. Only blocks well inside material would need more, which nothing looks up.
+const MAX_START_DISTANCE = 3.0;
+
 // Start of a ray in front of a surface, relative to the point at that height on the normal: on the ray from the
 // surface itself, so that nothing shifts against the surroundings, unless that is too far away.
 fn ray_start(rays: SweepRaysUniform, normal: vec3f, height: f32) -> vec3f {
@@ -69,7 +73,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         let cosine = max(dot(normal, to_light), 0.0);
         // Rays from below are inside the material, where fog is looked up as ever.
         let share = select(0.0, surface.share, cosine > 0.0);
-        let start = vec3f(id) + share * (above + ray_start(rays, surface.normal, height));
+        let way = above + ray_start(rays, surface.normal, height);
+        let start = vec3f(id) + share * clamp(way, vec3f(-MAX_START_DISTANCE), vec3f(MAX_START_DISTANCE));
         let of_surface = cosine * vec4f(4.0 * to_light + normal * (2.0 * cosine - 4.0), 12.0 - 12.0 * cosine);
         let of_direction = mix(vec4f(to_light, 1.0), of_surface, surface.share);
         sum += rays.weight * transmittance_from(rays, start) * of_direction;

@@ -15,6 +15,8 @@ const SOLID: f64 = 1.5;
 const PLACES: std::ops::RangeInclusive<i32> = -5..=3;
 /// Maximum number of slices between a surface and the start of a ray.
 const FARTHEST_START: f64 = 2.0;
+/// Maximum distance between a block and a start, in blocks along an axis.
+const FARTHEST_AWAY: f64 = 3.0;
 
 /// Surface near a block of voxels; lengths and angles are those of block coordinates unless said otherwise.
 #[derive(Debug, Clone, Copy)]
@@ -41,9 +43,8 @@ impl NearbySurface {
         }
         let slices = (clear / rise).min(FARTHEST_START);
         let along = per_slice * slices;
-        let start =
-            block - self.normal * self.height + along + self.normal * (clear - self.normal.dot(along));
-        block.lerp(start, self.share)
+        let way = along + self.normal * (clear - self.normal.dot(along) - self.height);
+        block + way.clamp(DVec3::splat(-FARTHEST_AWAY), DVec3::splat(FARTHEST_AWAY)) * self.share
     }
 
     /// Returns the factors of transmittance in V₁ and, in the last component, V₀.

@@ -13,9 +13,10 @@ use glam::DVec3;
 /// Size of a block's packed surface, in bytes.
 const SURFACE_BYTES: u64 = 16;
 
-/// Distance from the cells that pictures look up, in blocks along an axis, within which rays start: they do so 2 ¼
-/// blocks above a surface, and up to two slices beside it, and pictures look up 1 ¾ blocks above it.
-pub(crate) const START_REACH: f64 = 2.0;
+/// Distance from the cells that pictures look up, in blocks along an axis, within which rays must be followed: they
+/// start up to three blocks from a block (`MAX_START_DISTANCE` in `shaders/sky/moments.wgsl`), and are interpolated
+/// over another.
+pub(crate) const START_REACH: f64 = 4.0;
 
 /// Surface of each listed block: its normal, its distance, and the height above it that is free of its own material.
 #[derive(Debug)]
