@@ -25,7 +25,7 @@ use chiaroscuro_volume::{Corrections, ValueRanges, VolumeChoice};
 const CORRECTIONS: &str = "volume";
 
 /// Latest schema that changed images: later ones only move settings.
-const PICTURE_SCHEMA: u64 = 2;
+const PICTURE_SCHEMA: u64 = 3;
 
 /// Reference to the volume of a look.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
