@@ -202,24 +202,6 @@ fn lighting_extinction(met: LightingField) -> Transmittance {
 #endif
 }
 
-// Extinction of light from the nearest table entry, without interpolation.
-fn nearest_lighting_extinction(met: LightingField) -> Transmittance {
-#if PRECLASSIFY
-#if COLORED
-    // Tables of relative extinction have no colours.
-    return vec3f(
-        lighting_table.entries[nearest_entry(met.r)].a,
-        lighting_table.entries[nearest_entry(met.g)].a,
-        lighting_table.entries[nearest_entry(met.b)].a,
-    );
-#else
-    return lighting_table.entries[nearest_entry(met)].a;
-#endif
-#else
-    return entry_extinction(lighting_table.entries[nearest_entry(met.density)]);
-#endif
-}
-
 // Integral of the extinction of light up to what the field holds at a point; with pre-classification, extinction there.
 struct LightIntegralPlace {
     position: f32,
@@ -227,14 +209,8 @@ struct LightIntegralPlace {
     mean: Transmittance,
 }
 
-#if PRECLASSIFY
-fn light_integral_place(met: LightingField) -> LightIntegralPlace {
-    let extinction = lighting_extinction(met);
-    return LightIntegralPlace(0.0, extinction, extinction);
-}
-#else
-fn light_integral_place(met: LightingField) -> LightIntegralPlace {
-    let at = table_position(met.density);
+fn integral_up_to(density: f32) -> LightIntegralPlace {
+    let at = table_position(density);
     let low = min(u32(at), TABLE_SIZE - 2u);
 #if COLORED
     let first = lighting_table.integrals[low].rgb;
@@ -244,6 +220,16 @@ fn light_integral_place(met: LightingField) -> LightIntegralPlace {
     let mean = lighting_table.integrals[low + 1u].a - first;
 #endif
     return LightIntegralPlace(at, first + mean * (at - f32(low)), mean);
+}
+
+#if PRECLASSIFY
+fn light_integral_place(met: LightingField) -> LightIntegralPlace {
+    let extinction = lighting_extinction(met);
+    return LightIntegralPlace(0.0, extinction, extinction);
+}
+#else
+fn light_integral_place(met: LightingField) -> LightIntegralPlace {
+    return integral_up_to(met.density);
 }
 #endif
 
