@@ -8,11 +8,9 @@
 const STEP_SLABS = 4;
 const UNDIVIDED_SLABS = 2;
 
-// Share of the visible light above which a segment ends before a whole step, and below which it takes the light of the
-// face in front of it; both relative to the share above which slabs are halved. With 2.5 instead of 1, oblique plates
-// show stripes of 1 % in place of 0.5 %; below a quarter, light changes by less than 8 bits show.
+// Share of the visible light above which a segment ends before a whole step, relative to that above which slabs are
+// halved. With 2.5 instead of 1, oblique plates show stripes of 1 % in place of 0.5 %.
 const SEGMENT_SHARE = 1.0;
-const FAINT_SHARE = 0.25;
 
 // Next face, from `first` on, in a cell that may be visible; beyond the last if there is none.
 fn next_visible_face(walk: CellRay, first: i32, last: i32) -> i32 {
@@ -127,11 +125,10 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
         }
         let is_visible = sum.depth > EMPTY_OPTICAL_DEPTH;
         if (is_visible) {
-            let is_faint = t * sum.opacity <= FAINT_SHARE * eye.max_undivided_share;
             var front_light = light;
             // Light in front of the segment, if it is the first, and behind it.
             for (var side = 0; side < 2; side += 1) {
-                if (!is_lit || (side == 1 && !is_faint)) {
+                if (side == 1 || !is_lit) {
                     var face = begin;
                     if (side == 1) {
                         face = front;

@@ -303,7 +303,6 @@ fn damaged_slabs_by_need_are_noticed() {
         // Halved behind occluding material.
         ("t * (1.0 - sum.opacity) * opacity <=", "opacity <="),
         ("const SEGMENT_SHARE = 1.0", "const SEGMENT_SHARE = 8.0"),
-        ("const FAINT_SHARE = 0.25", "const FAINT_SHARE = 2.0"),
         // The first of two densities for what lies between them.
         (
             "min(density_of(a), density_of(b)), max(density_of(a), density_of(b))",

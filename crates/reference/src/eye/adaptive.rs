@@ -16,10 +16,8 @@ const STEP_SLABS: u32 = 4;
 /// Number of the stack's slabs in an undivided slab.
 const UNDIVIDED_SLABS: u32 = 2;
 
-/// Visible share above which a segment ends, and below which light does not change in it, relative to that above which
-/// slabs are halved.
+/// Visible share above which a segment ends, relative to that above which slabs are halved.
 const SEGMENT_SHARE: f64 = 1.0;
-const FAINT_SHARE: f64 = 0.25;
 
 /// Optical depth of a segment that shows nothing.
 const EMPTY_DEPTH: f64 = 4e-6;
@@ -47,7 +45,6 @@ impl Face {
 }
 
 /// Light at a face.
-#[derive(Clone)]
 struct FaceLight {
     /// Gradient in scene space.
     gradient: DVec3,
@@ -169,12 +166,8 @@ impl AdaptiveRay<'_, '_> {
             self.transmittance *= 1.0 - segment.opacity;
             return;
         }
-        let is_faint = shown <= FAINT_SHARE * self.reference.settings.sampling.max_undivided_share;
-        let (near, far) = match known {
-            Some(light) if is_faint => (light.clone(), light),
-            Some(light) => (light, self.light_at(&end)),
-            None => (self.light_at(&segment.begin), self.light_at(&end)),
-        };
+        let near = known.unwrap_or_else(|| self.light_at(&segment.begin));
+        let far = self.light_at(&end);
         let attenuations: Vec<_> = near
             .attenuations
             .iter()
