@@ -96,34 +96,33 @@ fn face_light(ray: Ray, face: SlabFace) -> FaceLight {
     let slope = gradient + face_slope(p, level, field, presence_gradient(p, level));
     var light: FaceLight;
     light.slope = slope;
-#if COMBINED
-#else
-    let surface = surface_of(VolumeSample(p, slope, field, level, gradient));
+    if (!COMBINED) {
+        let surface = surface_of(VolumeSample(p, slope, field, level, gradient));
 #if SHADOWED > 0
-    light.shares.light_0 = attenuation_of(0u, attenuation_0, surface);
+        light.shares.light_0 = attenuation_of(0u, attenuation_0, surface);
 #endif
 #if SHADOWED > 1
-    light.shares.light_1 = attenuation_of(1u, attenuation_1, surface);
+        light.shares.light_1 = attenuation_of(1u, attenuation_1, surface);
 #endif
 #if SHADOWED > 2
-    light.shares.light_2 = attenuation_of(2u, attenuation_2, surface);
+        light.shares.light_2 = attenuation_of(2u, attenuation_2, surface);
 #endif
 #if SHADOWED > 3
-    light.shares.light_3 = attenuation_of(3u, attenuation_3, surface);
+        light.shares.light_3 = attenuation_of(3u, attenuation_3, surface);
 #endif
 #if SHADOWED > 4
-    light.shares.light_4 = attenuation_of(4u, attenuation_4, surface);
+        light.shares.light_4 = attenuation_of(4u, attenuation_4, surface);
 #endif
 #if SHADOWED > 5
-    light.shares.light_5 = attenuation_of(5u, attenuation_5, surface);
+        light.shares.light_5 = attenuation_of(5u, attenuation_5, surface);
 #endif
 #if SHADOWED > 6
-    light.shares.light_6 = attenuation_of(6u, attenuation_6, surface);
+        light.shares.light_6 = attenuation_of(6u, attenuation_6, surface);
 #endif
 #if SHADOWED > 7
-    light.shares.light_7 = attenuation_of(7u, attenuation_7, surface);
+        light.shares.light_7 = attenuation_of(7u, attenuation_7, surface);
 #endif
-#endif
+    }
     return light;
 }
 
@@ -214,34 +213,34 @@ fn shade_segment(ray: Ray, front: f32, back: f32, a: FaceLight, b: FaceLight, su
     let slope = mix(a.slope, b.slope, at);
     let surface = surface_of(VolumeSample(p, slope, field, kernel_level(eye.frame, depth), slope));
     var lit = ReflectedLight(vec3f(0.0), vec3f(0.0));
-#if COMBINED
-    lit = combined_light(p);
-#else
-    let tau = sum.depth;
+    if (COMBINED) {
+        lit = combined_light(p);
+    } else {
+        let tau = sum.depth;
 #if SHADOWED > 0
-    lit = add_light(lit, slab_light(0u, surface, a.shares.light_0, b.shares.light_0, tau));
+        lit = add_light(lit, slab_light(0u, surface, a.shares.light_0, b.shares.light_0, tau));
 #endif
 #if SHADOWED > 1
-    lit = add_light(lit, slab_light(1u, surface, a.shares.light_1, b.shares.light_1, tau));
+        lit = add_light(lit, slab_light(1u, surface, a.shares.light_1, b.shares.light_1, tau));
 #endif
 #if SHADOWED > 2
-    lit = add_light(lit, slab_light(2u, surface, a.shares.light_2, b.shares.light_2, tau));
+        lit = add_light(lit, slab_light(2u, surface, a.shares.light_2, b.shares.light_2, tau));
 #endif
 #if SHADOWED > 3
-    lit = add_light(lit, slab_light(3u, surface, a.shares.light_3, b.shares.light_3, tau));
+        lit = add_light(lit, slab_light(3u, surface, a.shares.light_3, b.shares.light_3, tau));
 #endif
 #if SHADOWED > 4
-    lit = add_light(lit, slab_light(4u, surface, a.shares.light_4, b.shares.light_4, tau));
+        lit = add_light(lit, slab_light(4u, surface, a.shares.light_4, b.shares.light_4, tau));
 #endif
 #if SHADOWED > 5
-    lit = add_light(lit, slab_light(5u, surface, a.shares.light_5, b.shares.light_5, tau));
+        lit = add_light(lit, slab_light(5u, surface, a.shares.light_5, b.shares.light_5, tau));
 #endif
 #if SHADOWED > 6
-    lit = add_light(lit, slab_light(6u, surface, a.shares.light_6, b.shares.light_6, tau));
+        lit = add_light(lit, slab_light(6u, surface, a.shares.light_6, b.shares.light_6, tau));
 #endif
 #if SHADOWED > 7
-    lit = add_light(lit, slab_light(7u, surface, a.shares.light_7, b.shares.light_7, tau));
+        lit = add_light(lit, slab_light(7u, surface, a.shares.light_7, b.shares.light_7, tau));
 #endif
-#endif
+    }
     return shade_surface(surface, lit, material);
 }

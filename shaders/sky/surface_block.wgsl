@@ -31,15 +31,18 @@ struct BlockSurface {
     share: f32,
 }
 
+// Largest height that is packed, in blocks: places end 2.5 blocks from a block's centre (sky/surfaces.wgsl).
+const MAX_HEIGHT = 4.0;
+
 fn pack_surface(surface: BlockSurface) -> vec4u {
-    let rest = pack2x16float(vec2f(surface.height, surface.share));
-    return vec4u(pack2x16float(surface.normal.xy), pack2x16float(vec2f(surface.normal.z, 0.0)), rest, 0u);
+    let rest = pack2x16snorm(vec2f(surface.height / MAX_HEIGHT, surface.share));
+    return vec4u(pack2x16snorm(surface.normal.xy), pack2x16snorm(vec2f(surface.normal.z, 0.0)), rest, 0u);
 }
 
 fn unpack_surface(packed: vec4u) -> BlockSurface {
-    let normal = vec3f(unpack2x16float(packed.x), unpack2x16float(packed.y).x);
-    let rest = unpack2x16float(packed.z);
-    return BlockSurface(normal, rest.x, rest.y);
+    let normal = vec3f(unpack2x16snorm(packed.x), unpack2x16snorm(packed.y).x);
+    let rest = unpack2x16snorm(packed.z);
+    return BlockSurface(normal, rest.x * MAX_HEIGHT, rest.y);
 }
 
 // Unit normal in scene space.

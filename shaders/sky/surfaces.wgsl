@@ -77,11 +77,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         return;
     }
     var surface = BlockSurface(vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
-    if (geometry.has_surfaces == 1u) {
-        let nearest = nearest_surface(vec3f(id));
-        if (nearest.share > 0.0) {
-            surface = nearest;
-        }
+    let nearest = nearest_surface(vec3f(id));
+    // Not a branch on the uniform alone, which software drivers compile anew for each dispatch.
+    if (nearest.share * f32(geometry.has_surfaces) > 0.0) {
+        surface = nearest;
     }
     surfaces[listed_voxel(listed_cell(group, lane), lane)] = pack_surface(surface);
 }

@@ -148,12 +148,11 @@ impl<'r> Shader<'r> {
             let has_horizon = is_one_sided && shaded_light.light.casts_shadows;
             let risen = self.above_horizon(shaded_light, sample);
             let to_light = risen.direction;
-            let arriving = match attenuation {
-                Some(attenuation) => self.reference.apply_cures(*attenuation),
-                None => {
-                    let cone = shaded_light.light.cone();
-                    cone.attenuation(-cone.axis.dot(to_light))
-                }
+            let arriving = if let Some(attenuation) = attenuation {
+                self.reference.apply_cures(*attenuation)
+            } else {
+                let cone = shaded_light.light.cone();
+                cone.attenuation(-cone.axis.dot(to_light))
             };
             let reflected = if has_horizon {
                 let before = 0.5 + 0.5 * side.abs();

@@ -109,8 +109,10 @@ pub enum SlabMode {
 /// Number of steps per slab along a ray with pre-integrated opacity.
 pub const PREINTEGRATED_STEPS: u32 = 2;
 
-/// Share of a ray's light above which adaptive slabs are halved at the quality *Standard*. Halving itself shows as a
-/// ripple of 0.2 % of the light there, and of 0.1 % at [`FINE_UNDIVIDED_SHARE`], at 1.05 times the samples.
+/// Share of a ray's light above which adaptive slabs are halved at the quality *Standard*.
+///
+/// Halving itself shows as a ripple of 0.2 % of the light, and of 0.1 % at [`FINE_UNDIVIDED_SHARE`], which takes 1.05
+/// times the samples.
 pub const STANDARD_UNDIVIDED_SHARE: f64 = 1.0 / 8.0;
 
 /// Share of a ray's light above which adaptive slabs are halved at the quality *Fine*.

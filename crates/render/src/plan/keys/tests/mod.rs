@@ -201,6 +201,7 @@ fn every_setting_causes_what_the_design_says() {
         ("sampling.slab", "0.5", ChangeEffect::Eye),
         ("sampling.slabs", "by_need", ChangeEffect::Eye),
         ("sampling.slabs", "preintegrated", ChangeEffect::Eye),
+        ("sampling.max_undivided_share", "0.5", ChangeEffect::Nothing),
         ("sampling.quadrature", "two", ChangeEffect::Eye),
         ("sampling.gradients", "sheets", ChangeEffect::Eye),
         ("sampling.classification", "pre", ChangeEffect::AllLights),
@@ -234,8 +235,7 @@ fn every_setting_causes_what_the_design_says() {
         ("labels.1.visible", "false", ChangeEffect::AllLights),
         ("labels", r#"{"1": {}, "2": {"visible": false}}"#, ChangeEffect::Nothing),
         ("labels", r#"{"1": {}, "2": {}}"#, ChangeEffect::AllLights),
-        // A hidden label has no opacity.
-        ("labels.2.opacity", "0.5", ChangeEffect::Nothing),
+        ("labels.2.opacity", "0.5", ChangeEffect::Nothing), // A hidden label has no opacity.
         ("labels", "{}", ChangeEffect::AllLights),
         // Settings without effect while there is a table of labels.
         ("range", "full", ChangeEffect::Nothing),
