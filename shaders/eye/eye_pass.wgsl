@@ -42,6 +42,15 @@ fn light_distance(cell: vec3f) -> i32 {
     return cell_distances(light_distances, cell).y;
 }
 
+// Field for rays towards lights, with the kernel of the eye.
+fn sharp_lighting_field(p: vec3f, level: f32) -> LightingField {
+#if PRECLASSIFY
+    return lighting_field(p, level);
+#else
+    return field_at(p, level);
+#endif
+}
+
 fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
 #if DIRECT
     let p = biased_point(surface, towards);

@@ -15,6 +15,11 @@
 // Takes gradients from neighbouring sheets.
 override SHEET_GRADIENTS: bool = true;
 
+// Field for rays towards lights: the sheets hold no densities at points.
+fn sharp_lighting_field(p: vec3f, level: f32) -> LightingField {
+    return lighting_field(p, level);
+}
+
 fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     return shadowed_light(light, volume, surface, towards);
 }

@@ -4,6 +4,8 @@
 // Extinction is integrated between the ends of steps: at a surface that is opaque within a fraction of a voxel, the
 // middle of a step is no measure of it. The ray begins with the density of the sample itself, or it would see another
 // surface than the eye does; for the same reason the ends of halved steps have the kernel of the eye.
+//
+// The importing shader provides the field at a point with the kernel of the eye, as sharp_lighting_field().
 #import "density/cut.wgsl"
 #import "volume/material.wgsl"
 #import "shading/shade.wgsl"
@@ -78,11 +80,7 @@ fn curved_step(begin: NearStepEnd, middle: FieldNumber, end: NearStepEnd) -> Tra
 #if NEAR_HALVES
 // End of a step within the first voxel, seen with the kernel of the eye.
 fn sharp_step_end(p: vec3f, level: f32) -> NearStepEnd {
-#if PRECLASSIFY
-    return near_step_end(lighting_field(p, level), 1.0);
-#else
-    return near_step_end(field_at(p, level), lighting_presence(p, level));
-#endif
+    return near_step_end(sharp_lighting_field(p, level), lighting_presence(p, level));
 }
 #endif
 

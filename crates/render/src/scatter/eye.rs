@@ -184,7 +184,6 @@ impl EyeScatter {
                 1,
                 &[
                     bind_buffer("bound_grid", &grid),
-                    bind_view("density_texture", &volume.density_view),
                     bind_view("pyramid_texture", eye.levels().choose(tables.eye.pyramid(volume))),
                     bind_view("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
                     bind_view("presence_texture", gpu.presence(eye.levels())),

@@ -25,10 +25,15 @@ const PRESENCE_TEXTURE: BindingSlot = BindingSlot::sampled_texture(9, "presence_
 
 const LIGHTING_PYRAMID: BindingSlot = BindingSlot::sampled_texture(10, "lighting_pyramid", TextureShape::D3);
 
-const DENSITY_TEXTURE: BindingSlot = BindingSlot::sampled_texture(1, "density_texture", TextureShape::D3);
-
 /// Density texture, with the pyramid for kernels that perspective stretches.
-const VOLUME: &[BindingSlot] = &[GRID, DENSITY_TEXTURE, PYRAMID_TEXTURE, CLAMPED, NEAREST, PRESENCE_TEXTURE];
+const VOLUME: &[BindingSlot] = &[
+    GRID,
+    BindingSlot::sampled_texture(1, "density_texture", TextureShape::D3),
+    PYRAMID_TEXTURE,
+    CLAMPED,
+    NEAREST,
+    PRESENCE_TEXTURE,
+];
 
 /// Density and pyramid as in [`VOLUME`], with the pyramid that near-field rays read.
 const VOLUME_AND_LIGHTING: &[BindingSlot] =
@@ -181,17 +186,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 LIGHTING_TABLE,
                 GRADIENTS,
             ],
-            &[
-                GRID,
-                DENSITY_TEXTURE,
-                PYRAMID_TEXTURE,
-                CLAMPED,
-                SCATTER,
-                SHEETS,
-                RAYS,
-                PRESENCE_TEXTURE,
-                LIGHTING_PYRAMID,
-            ],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, RAYS, PRESENCE_TEXTURE, LIGHTING_PYRAMID],
             LIGHTS_AND_AMBIENT,
         ],
     ),
