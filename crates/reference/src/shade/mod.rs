@@ -31,7 +31,7 @@ pub(super) struct Shader<'r> {
     sky_visibility: Option<SkyVisibility>,
     /// Bounced light, if any light bounces.
     bounced: Option<BouncedLight>,
-    /// Result of [`opacity_sides`], evenly spaced over densities 0 … 1.
+    /// Result of [`opacity_sides()`], evenly spaced over densities 0 … 1.
     sides: Vec<f64>,
 }
 
@@ -259,7 +259,7 @@ impl<'r> Shader<'r> {
         if is_one_sided && self.side_of(density) < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Returns the side of a surface to which opacity falls at a density, interpolated in [`opacity_sides`].
+    /// Returns the side of a surface to which opacity falls at a density, interpolated in [`opacity_sides()`].
     fn side_of(&self, density: f64) -> f64 {
         let last = self.sides.len() - 1;
         let at = density.clamp(0.0, 1.0) * last as f64;
