@@ -12,26 +12,10 @@ const UNDIVIDED_SLABS = 2;
 // halved. With 2.5 instead of 1, oblique plates show stripes of 1 % in place of 0.5 %.
 const SEGMENT_SHARE = 1.0;
 
-// Next face, from `first` on, in a cell that may be visible; beyond the last if there is none.
-fn next_visible_face(walk: CellRay, first: i32, last: i32) -> i32 {
-    var k = first;
-    loop {
-        if (k > last) {
-            break;
-        }
-        let cell = cell_at(walk, k);
-        let empty = cell_distances(distances, cell).x - grid.dilation;
-        if (empty <= 0) {
-            break;
-        }
-        k = skip_empty_cells(walk, k, cell, empty);
-    }
-    return k;
-}
-
-// First face of the next step, from face `first` on, that reaches into a cell that may be visible.
+// First face of the next step, from face `first` on, that reaches into a cell that may be visible. `walk` counts faces
+// in place of slabs.
 fn next_step(walk: CellRay, first: i32, last: i32) -> i32 {
-    let face = next_visible_face(walk, first, last);
+    let face = next_visible_slab(walk, first, last);
     return select(max(face - 1, first) & ~(STEP_SLABS - 1), face, face > last);
 }
 

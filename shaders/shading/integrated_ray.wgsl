@@ -1,26 +1,14 @@
 // Integrated shadow ray: ray marching from a point of the volume towards a light (P eq. 7 and 8), with extinction
 // integrated between the ends of steps instead of taken in their middle, as between the faces of slabs
-// (eye/slab_faces.wgsl). The importing shader provides cell distances as light_distance(cell).
+// (eye/slab_faces.wgsl).
 #import "common/transmittance.wgsl"
-#import "density/cells.wgsl"
 #import "density/cut.wgsl"
+#import "shading/shadow_ray.wgsl"
 #import "volume/material.wgsl"
 
-// Next step, from `first` on, of which an end lies in a cell that may attenuate light.
+// Next step, from `first` on, with an end in a cell that may attenuate light. `walk` counts ends in place of slabs.
 fn next_attenuating_step(walk: CellRay, first: i32, last: i32) -> i32 {
-    var k = first;
-    loop {
-        if (k > last) {
-            break;
-        }
-        let cell = cell_at(walk, k);
-        let empty = light_distance(cell) - grid.dilation;
-        if (empty <= 0) {
-            break;
-        }
-        k = skip_empty_cells(walk, k, cell, empty);
-    }
-    return max(k - 1, first);
+    return max(next_attenuating_slab(walk, first, last) - 1, first);
 }
 
 // Field of light at an end of a step.

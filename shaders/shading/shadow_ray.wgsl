@@ -8,6 +8,23 @@
 // first step.
 override DEPOSIT_FRONT: bool = false;
 
+// Next slab, from `first` on, in a cell that may attenuate light; beyond the last if there is none.
+fn next_attenuating_slab(walk: CellRay, first: i32, last: i32) -> i32 {
+    var k = first;
+    loop {
+        if (k > last) {
+            break;
+        }
+        let cell = cell_at(walk, k);
+        let empty = light_distance(cell) - grid.dilation;
+        if (empty <= 0) {
+            break;
+        }
+        k = skip_empty_cells(walk, k, cell, empty);
+    }
+    return k;
+}
+
 // Transmittance from the point p to `reach` scene units along `direction`, a unit vector of the scene given in index
 // space. Extinction is multiplied by `scale` and limited to `cut`; the ray ends at the optical depth `dark`.
 fn shadow_ray(
@@ -33,18 +50,7 @@ fn shadow_ray(
     var k = inside.x;
     var depth = Transmittance(0.0);
     loop {
-        // A loop of its own for empty-space skipping, as in the eye pass.
-        loop {
-            if (k > inside.y) {
-                break;
-            }
-            let cell = cell_at(walk, k);
-            let empty = light_distance(cell) - grid.dilation;
-            if (empty <= 0) {
-                break;
-            }
-            k = skip_empty_cells(walk, k, cell, empty);
-        }
+        k = next_attenuating_slab(walk, k, inside.y);
         if (k > inside.y) {
             break;
         }

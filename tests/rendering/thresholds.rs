@@ -261,7 +261,7 @@ pub(crate) const SKY_VISIBILITY_AT_WALL: f64 = 0.03;
 /// Open plates under a white sky, against 1: of 48 directions the lowest, with 4 % of the light, can meet the plate
 /// beside the place, and sums over cosines err by up to 2 %.
 pub(crate) const OPEN_PLATE_UNDER_SKY: f64 = 0.05;
-/// The same at full resolution, where blocks are no larger than what kernels blur: tilted plates lose up to a tenth.
+/// Open plates at full resolution, where blocks are no larger than what kernels blur: tilted ones lose up to a tenth.
 pub(crate) const OPEN_PLATE_AT_FULL_RESOLUTION: f64 = 0.1;
 /// Mean and deviation of convex bodies under a white sky: sums of cosines over 48 directions deviate by up to 2 %.
 pub(crate) const CONVEX_BODY_UNDER_SKY: f64 = 0.025;
@@ -276,7 +276,7 @@ pub(crate) const SKY_AT_HALF_OF_FULL: f64 = 0.035;
 /// Moments of sky visibility on the GPU against those of the reference: sums over directions with 11 bits, stored
 /// with as many.
 pub(crate) const SKY_MOMENTS: ErrorLimit = ErrorLimit { max: 2e-3, rmse: 3e-4 };
-/// The same where blocks belong to surfaces: their normals and distances come from extinction with 11 bits, and of
+/// Moments of sky visibility as in [`SKY_MOMENTS`], for blocks of surfaces: their normals and distances come from extinction with 11 bits, and of
 /// two surfaces that are nearly as near, single blocks find the other one (up to 0.12 in a few of 10 648). At half of the
 /// resolution there are an eighth as many blocks, of which as many differ (2.0e-3).
 pub(crate) const SKY_MOMENTS_AT_SURFACES: ErrorLimit = ErrorLimit { max: 0.2, rmse: 3e-3 };

@@ -51,7 +51,7 @@ fn dense() -> Settings {
     under_a_sky(scenes::look()).with_opacity_unit(OpacityLength::Voxels(0.2))
 }
 
-/// The same without surfaces.
+/// Look as of [`dense`], whose material has no surfaces.
 fn fog() -> Settings {
     let mut settings = dense();
     settings.shading.surface_gradient = 10.0;

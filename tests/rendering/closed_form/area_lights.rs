@@ -45,7 +45,7 @@ fn disc_look(tangent: f64) -> Settings {
 /// Share of the light of a disc at infinity, evenly bright with this tangent of its angular radius, that arrives on a
 /// surface facing it behind a half-plane, whose edge is at `u` of that tangent from its centre.
 ///
-/// That light is even over the sines of the angles: x and y of the unit vectors towards it. The edge, x = u tan α z,
+/// The light is even over the sines of the angles: x and y of the unit vectors towards it. Its edge, x = u tan α z,
 /// is half an ellipse there, x = k √(1 − y²) with k = u tan α / √(1 + u² tan² α). Integrated over rows of equal angle.
 fn visible_disc_share(u: f64, tangent: f64) -> f64 {
     let radius = tangent / (1.0 + tangent * tangent).sqrt();

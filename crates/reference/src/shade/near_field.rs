@@ -78,7 +78,7 @@ impl<'r> NearField<'r> {
         } else {
             nominal.collect()
         };
-        // Of halves, the ends are seen with the kernel of the eye.
+        // Ends of halved steps are seen with the kernel of the eye.
         let sharp_ends = if halves { 2 } else { 0 };
         let own = self.end(sample, to_light, 0.0, true);
         let own = StepEnd {

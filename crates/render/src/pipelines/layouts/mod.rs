@@ -10,8 +10,7 @@ use super::uniforms;
 
 /// Size of a lookup table in bytes: [`chiaroscuro_scene::LUT_SIZE`] times twenty floats.
 ///
-/// Four are the entry, one its side, eleven the maximum extinctions of runs, and one the integral of extinction up to
-/// it.
+/// Four are the entry, one its side, eleven the maximum extinctions of runs, and four the integrals up to it.
 const TABLE_BYTES: u64 = chiaroscuro_scene::LUT_SIZE as u64 * 20 * 4;
 
 /// Size of a footprint table in bytes: 512 pairs of floats, as `scatter/footprint.wgsl` declares it.

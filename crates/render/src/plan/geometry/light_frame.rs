@@ -153,8 +153,8 @@ fn outside_view(
 
 /// Returns the centre of the light volume's voxel next to the middle, in scene space.
 ///
-/// Of an even number of voxels it is the one towards the light, so that the mirrored scene has the mirrored pixels.
-/// Where light comes from neither side, a pixel's face lies in the middle: half a pixel of width `edge` off, which is
+/// If the number of voxels is even it is the one towards the light, so that the mirrored scene has the mirrored pixels;
+/// if light comes from neither side, a pixel's face lies in the middle: half a pixel of width `edge` off, which is
 /// half a voxel if they are that wide.
 fn middle_voxel(scene: &SceneSpace, divisor: usize, forward: DVec3, edge: f64) -> DVec3 {
     let towards = -scene.index_from_scene.transform_vector3(forward);
