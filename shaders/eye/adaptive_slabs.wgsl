@@ -8,10 +8,6 @@
 const STEP_SLABS = 4;
 const UNDIVIDED_SLABS = 2;
 
-// Share of the visible light above which a segment ends before a whole step, relative to that above which slabs are
-// halved. With 2.5 instead of 1, oblique plates show stripes of 1 % in place of 0.5 %.
-const SEGMENT_SHARE = 1.0;
-
 // First face of the next step, from face `first` on, that reaches into a cell that may be visible. `walk` counts faces
 // in place of slabs.
 fn next_step(walk: CellRay, first: i32, last: i32) -> i32 {
@@ -61,7 +57,7 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
         var begin = front;
         var back: SlabFace;
         var task = select(SAMPLE_FIRST, SAMPLE_END, is_known);
-        var end = (k & ~(STEP_SLABS - 1)) + STEP_SLABS;
+        var end = k + STEP_SLABS;
         // Next segment with material. All lanes of a vector wait for the slowest, but shading takes as long as several
         // samples.
         loop {
@@ -72,29 +68,24 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
                 begin = found;
                 task = SAMPLE_END;
             } else {
-                var middle = 0.5 * (front.value + found.value);
                 var is_complete = true;
                 if (task == SAMPLE_END) {
                     back = found;
                     let length = (found.depth - front.depth) * ray.obliquity;
                     let opacity = 1.0 - exp(-extinction_bound(front.value, found.value) * length);
                     is_complete = t * (1.0 - sum.opacity) * opacity <= eye.max_undivided_share;
-                    task = select(SAMPLE_MIDDLE, SAMPLE_END, is_complete);
-                } else {
-                    // Values at the quarters are those of the parabola through the three faces.
-                    let quarter = 0.375 * front.value + 0.75 * found.value - 0.125 * back.value;
-                    middle = 0.375 * back.value + 0.75 * found.value - 0.125 * front.value;
-                    sum = with_slab(sum, front, quarter, found, ray.obliquity);
-                    front = found;
-                    task = SAMPLE_END;
                 }
+                // The same instructions add a whole slab, or both halves of one: software drivers run either branch.
+                let is_halved = task == SAMPLE_MIDDLE;
+                task = select(SAMPLE_MIDDLE, SAMPLE_END, is_complete);
                 if (is_complete) {
-                    sum = with_slab(sum, front, middle, back, ray.obliquity);
+                    sum = with_slab(sum, front, found, ray.obliquity, 1.0);
+                    sum = with_slab(sum, found, back, ray.obliquity, select(0.0, 1.0, is_halved));
                     front = back;
                     k += UNDIVIDED_SLABS;
                 }
             }
-            if (k >= end && sum.depth <= EMPTY_OPTICAL_DEPTH) {
+            if ((k & (STEP_SLABS - 1)) == 0 && task == SAMPLE_END && sum.depth <= EMPTY_OPTICAL_DEPTH) {
                 let next = next_step(walk, k, last);
                 task = select(SAMPLE_FIRST, SAMPLE_END, next == k);
                 begin = front;
@@ -102,7 +93,7 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
                 k = next;
                 end = k + STEP_SLABS;
             }
-            let is_much = task == SAMPLE_END && t * sum.opacity > SEGMENT_SHARE * eye.max_undivided_share;
+            let is_much = task == SAMPLE_END && t * sum.opacity > eye.max_undivided_share;
             if (k >= end || k >= last || is_much) {
                 break;
             }
@@ -110,18 +101,20 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
         let is_visible = sum.depth > EMPTY_OPTICAL_DEPTH;
         if (is_visible) {
             var front_light = light;
-            // Light in front of the segment, if it is the first, and behind it.
-            for (var side = 0; side < 2; side += 1) {
-                if (side == 1 || !is_lit) {
-                    var face = begin;
-                    if (side == 1) {
-                        face = front;
-                    }
-                    light = face_light(ray, face);
-                    if (side == 0) {
-                        front_light = light;
-                    }
+            // Light in front of the segment, if it is the first, and behind it. As a loop, because software drivers run
+            // the body of a branch for lanes that do not take it: lanes that know the light in front turn once.
+            var is_behind = is_lit;
+            loop {
+                var face = begin;
+                if (is_behind) {
+                    face = front;
                 }
+                light = face_light(ray, face);
+                if (is_behind) {
+                    break;
+                }
+                front_light = light;
+                is_behind = true;
             }
             color += t * sum.opacity * shade_segment(ray, begin.depth, front.depth, front_light, light, sum);
         }

@@ -110,7 +110,7 @@ fn shade_slab(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
 // Light from material with the gradient `volume_slope` in scene space; `rising` is the gradient of presence.
 fn shade_material(p: vec3f, level: f32, volume_slope: vec3f, rising: vec3f, found: SlabSample) -> vec3f {
     let slope = volume_slope + face_slope(p, level, found.field, rising);
-    return shade(VolumeSample(p, slope, found.field, level, volume_slope), found.material.color);
+    return shade(VolumeSample(p, slope, found.field, level), found.material.color);
 }
 
 // Next slab, from `first` on, in a cell that may be visible; beyond the last if there is none.

@@ -1,6 +1,7 @@
 // Slabs between two faces: the field is sampled at the faces that neighbouring slabs share, the light at those between
-// segments of one or more slabs, and what a segment shows is integrated between them. Samples in the middle of slabs show as wood grain on steep surfaces, because
-// the amount of opacity and of light that one sample stands for depends on where the surface cuts the slab.
+// segments of one or more slabs, and what a segment shows is integrated between them. Samples in the middle of slabs
+// show as wood grain on steep surfaces, because the amount of opacity and of light that one sample stands for depends
+// on where the surface cuts the slab.
 #import "density/slab_material.wgsl"
 #import "density/kernel_gradient.wgsl"
 #import "common/slab_mean.wgsl"
@@ -97,7 +98,7 @@ fn face_light(ray: Ray, face: SlabFace) -> FaceLight {
     var light: FaceLight;
     light.slope = slope;
     if (!COMBINED) {
-        let surface = surface_of(VolumeSample(p, slope, field, level, gradient));
+        let surface = surface_of(VolumeSample(p, slope, field, level));
 #if SHADOWED > 0
         light.shares.light_0 = attenuation_of(0u, attenuation_0, surface);
 #endif
@@ -150,20 +151,16 @@ fn with_part(sum: SlabSum, tau: f32, place: f32, length: f32, a: FaceValue, b: F
     return SlabSum(depth, opacity, sum.places + share * (place + at * length), sum.values + share * mix(a, b, at));
 }
 
-// Adds the material between two faces, where the field is linear from the first to `middle`, and on to the second.
-fn with_slab(sum: SlabSum, before: SlabFace, middle: FaceValue, behind: SlabFace, obliquity: f32) -> SlabSum {
-    let length = 0.5 * (behind.depth - before.depth);
+// Adds the material between two faces, between which the field is linear; none of it if `share` is 0.
+fn with_slab(sum: SlabSum, before: SlabFace, behind: SlabFace, obliquity: f32, share: f32) -> SlabSum {
+    let length = share * (behind.depth - before.depth);
     let present = 0.5 * length * obliquity * (before.presence + behind.presence);
 #if PRECLASSIFY
-    let near = extinction_of(Field(0.5 * (before.value.r + middle.r)));
-    let far = extinction_of(Field(0.5 * (middle.r + behind.value.r)));
+    let extinction = extinction_of(Field(0.5 * (before.value.r + behind.value.r)));
 #else
-    let at = integral_place(middle);
-    let near = mean_extinction(before.integral, at);
-    let far = mean_extinction(at, behind.integral);
+    let extinction = mean_extinction(before.integral, behind.integral);
 #endif
-    let half = with_part(sum, near * present, before.depth, length, before.value, middle);
-    return with_part(half, far * present, before.depth + length, length, middle, behind.value);
+    return with_part(sum, extinction * present, before.depth, length, before.value, behind.value);
 }
 
 // Attenuation below which a light is gone: between the faces of a segment it may still count, because light decreases
@@ -172,8 +169,8 @@ const MIN_SHARE = 1e-12;
 
 // Mean attenuation over the visible material of a segment of optical depth τ, of light that changes exponentially with
 // the eye's optical depth, from a to b: with λ = ln(a/b) it is ∫ a e^(−t(1 + λ/τ)) dt / ∫ e^−t dt over 0 … τ,
-// = a φ(τ + λ)/φ(τ), φ(x) = (1 − e^−x)/x.
-fn mean_attenuation(a: Transmittance, b: Transmittance, tau: f32) -> Transmittance {
+// = a φ(τ + λ)/φ(τ), φ(x) = (1 − e^−x)/x; 1/φ(τ) is `depth_per_opacity`.
+fn mean_attenuation(a: Transmittance, b: Transmittance, tau: f32, depth_per_opacity: f32) -> Transmittance {
     let near = max(a, Transmittance(MIN_SHARE));
     let far = max(b, Transmittance(MIN_SHARE));
     let x = tau + log(near / far);
@@ -182,7 +179,7 @@ fn mean_attenuation(a: Transmittance, b: Transmittance, tau: f32) -> Transmittan
 #else
     let mean = exponential_mean(x);
 #endif
-    return near * mean / exponential_mean(tau);
+    return near * mean * depth_per_opacity;
 }
 
 // φ(x) = (1 − e^−x)/x for any x.
@@ -193,9 +190,10 @@ fn exponential_mean(x: f32) -> f32 {
     return select((1.0 - exp(-x)) / select(x, 1.0, is_small), series, is_small);
 }
 
-fn slab_light(index: u32, surface: Surface, a: Transmittance, b: Transmittance, tau: f32) -> ReflectedLight {
+fn slab_light(index: u32, surface: Surface, a: Transmittance, b: Transmittance, sum: SlabSum) -> ReflectedLight {
     let light = eye.lights[index];
-    return attenuated_light(light, surface, light_above_surface(light, surface), mean_attenuation(a, b, tau));
+    let attenuation = mean_attenuation(a, b, sum.depth, sum.depth / sum.opacity);
+    return attenuated_light(light, surface, light_above_surface(light, surface), attenuation);
 }
 
 // Light from the material between two depths towards the eye.
@@ -211,35 +209,34 @@ fn shade_segment(ray: Ray, front: f32, back: f32, a: FaceLight, b: FaceLight, su
 #endif
     let field = Field(density_of(value));
     let slope = mix(a.slope, b.slope, at);
-    let surface = surface_of(VolumeSample(p, slope, field, kernel_level(eye.frame, depth), slope));
+    let surface = surface_of(VolumeSample(p, slope, field, kernel_level(eye.frame, depth)));
     var lit = ReflectedLight(vec3f(0.0), vec3f(0.0));
     if (COMBINED) {
         lit = combined_light(p);
     } else {
-        let tau = sum.depth;
 #if SHADOWED > 0
-        lit = add_light(lit, slab_light(0u, surface, a.shares.light_0, b.shares.light_0, tau));
+        lit = add_light(lit, slab_light(0u, surface, a.shares.light_0, b.shares.light_0, sum));
 #endif
 #if SHADOWED > 1
-        lit = add_light(lit, slab_light(1u, surface, a.shares.light_1, b.shares.light_1, tau));
+        lit = add_light(lit, slab_light(1u, surface, a.shares.light_1, b.shares.light_1, sum));
 #endif
 #if SHADOWED > 2
-        lit = add_light(lit, slab_light(2u, surface, a.shares.light_2, b.shares.light_2, tau));
+        lit = add_light(lit, slab_light(2u, surface, a.shares.light_2, b.shares.light_2, sum));
 #endif
 #if SHADOWED > 3
-        lit = add_light(lit, slab_light(3u, surface, a.shares.light_3, b.shares.light_3, tau));
+        lit = add_light(lit, slab_light(3u, surface, a.shares.light_3, b.shares.light_3, sum));
 #endif
 #if SHADOWED > 4
-        lit = add_light(lit, slab_light(4u, surface, a.shares.light_4, b.shares.light_4, tau));
+        lit = add_light(lit, slab_light(4u, surface, a.shares.light_4, b.shares.light_4, sum));
 #endif
 #if SHADOWED > 5
-        lit = add_light(lit, slab_light(5u, surface, a.shares.light_5, b.shares.light_5, tau));
+        lit = add_light(lit, slab_light(5u, surface, a.shares.light_5, b.shares.light_5, sum));
 #endif
 #if SHADOWED > 6
-        lit = add_light(lit, slab_light(6u, surface, a.shares.light_6, b.shares.light_6, tau));
+        lit = add_light(lit, slab_light(6u, surface, a.shares.light_6, b.shares.light_6, sum));
 #endif
 #if SHADOWED > 7
-        lit = add_light(lit, slab_light(7u, surface, a.shares.light_7, b.shares.light_7, tau));
+        lit = add_light(lit, slab_light(7u, surface, a.shares.light_7, b.shares.light_7, sum));
 #endif
     }
     return shade_surface(surface, lit, material);

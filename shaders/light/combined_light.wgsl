@@ -35,6 +35,6 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let field = pyramid_field(p, 0.0);
     let gradient = gradient_to_scene(eye.space, index_gradient(p, normal_level(0.0)));
     let slope = gradient + face_slope(p, 0.0, field, presence_gradient(p, 0.0));
-    let found = VolumeSample(p, slope, field, 0.0, gradient);
+    let found = VolumeSample(p, slope, field, 0.0);
     textureStore(combined, voxel, vec4f(shadowed_light_sum(surface_of(found)).diffuse, 1.0));
 }

@@ -126,7 +126,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 gradient = gradient_to_scene(eye.space, volume_gradient(p, level));
             }
             let slope = gradient + face_slope(p, level, field, presence_gradient(p, level));
-            let rgb = shade(VolumeSample(p, slope, field, level, gradient), material.color);
+            let rgb = shade(VolumeSample(p, slope, field, level), material.color);
             rays[at] = before + transmittance * opacity * vec4f(rgb, 1.0);
         }
     }

@@ -93,9 +93,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     atomicAdd(&splats, 1u);
     let stretch = stretch_of(at.z);
     let level = log2(max(stretch, 1.0));
-    let gradient = gradient_of(vec3i(voxel));
-    let slope = gradient + face_slope(centre, level, field, presence_gradient(centre, level));
-    let rgb = shade(VolumeSample(centre, slope, field, 0.0, gradient), material.color);
+    let slope = gradient_of(vec3i(voxel)) + face_slope(centre, level, field, presence_gradient(centre, level));
+    let rgb = shade(VolumeSample(centre, slope, field, 0.0), material.color);
     for (var j = box.first.y; j <= box.last.y; j += 1.0) {
         for (var i = box.first.x; i <= box.last.x; i += 1.0) {
             let ray = ray_of(scatter.frame, vec2f(i, j));

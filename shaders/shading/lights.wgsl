@@ -224,9 +224,8 @@ struct Surface {
     side: f32,
     // Pyramid level for the stretch of the sample's kernel.
     level: f32,
-    // Density at the point, and the gradient of the volume in scene space, without faces: where near-field rays begin.
+    // Density at the point, where near-field rays begin.
     density: f32,
-    gradient: vec3f,
 }
 
 // Shadowed lights light only the side of a surface to which opacity falls; highlights appear on that side, too.

@@ -3,7 +3,7 @@
 //
 // Extinction is integrated between the ends of steps: at a surface that is opaque within a fraction of a voxel, the
 // middle of a step is no measure of it. The ray begins with the density of the sample itself, or it would see another
-// surface than the eye does; for the same reason the ends of halved steps have the kernel of the eye.
+// surface than the eye does; for the same reason the end of the first step has the kernel of the eye.
 //
 // The importing shader provides the field at a point with the kernel of the eye, as sharp_lighting_field().
 #import "density/cut.wgsl"
@@ -12,7 +12,7 @@
 
 // Maximum number of near-field steps (crates/scene/src/settings/shadows.rs), or 0. Area lights take fewer.
 override NEAR_STEPS: u32 = 0u;
-#option NEAR_HALVES: the first step is divided into two, of which both ends have the kernel of the eye
+#option NEAR_HALVES: the first step is divided into two, both with the kernel of the eye
 
 // Lengths of the steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
 fn near_step_length(step: u32) -> f32 {
@@ -56,10 +56,11 @@ fn field_of(number: FieldNumber) -> LightingField {
 }
 #endif
 
-// Value half way along the first step, of the parabola with this value and slope (per step) at its begin and that
-// value at its end.
-fn after_slope(begin: FieldNumber, slope: FieldNumber, end: FieldNumber) -> FieldNumber {
-    return 0.75 * begin + 0.25 * end + 0.25 * slope;
+// Mean of the straight line from the sample to the end of the step and of the parabola that also meets the end of the
+// second, half way along the step: a surface bends more than the one and less than the other. The slope at the sample
+// is no help, because stored gradients are differences over two voxels, 40 % too small at a sharp surface.
+fn bend_of(own: FieldNumber, end: FieldNumber, behind: FieldNumber) -> FieldNumber {
+    return 0.4375 * own + 0.625 * end - 0.0625 * behind;
 }
 
 // Value half way along the second of two steps, of the parabola through their ends; `ratio` is the length of the
@@ -77,68 +78,65 @@ fn curved_step(begin: NearStepEnd, middle: FieldNumber, end: NearStepEnd) -> Tra
         * (mean_light_extinction(begin.integral, half) + mean_light_extinction(half, end.integral));
 }
 
-#if NEAR_HALVES
-// End of a step within the first voxel, seen with the kernel of the eye.
+// End within the first step, seen with the kernel of the eye.
 fn sharp_step_end(p: vec3f, level: f32) -> NearStepEnd {
     return near_step_end(sharp_lighting_field(p, level), lighting_presence(p, level));
+}
+
+// Length of step `step`, 0 if the light takes fewer. The last step extends half a voxel of the light volume further,
+// where the trilinear fetch contains little of the material that the ray has already passed.
+fn taken_step_length(light: LightUniform, step: u32) -> f32 {
+    let nominal = select(0.0, near_step_length(step) * eye.voxel_edge, step < light.near_steps);
+    return nominal + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
+}
+
+#if NEAR_HALVES
+// Optical depth of the first step, from the sample to `end`, per unit density of the light, in two halves.
+fn halved_step(surface: Surface, forward: vec3f, own: NearStepEnd, end: NearStepEnd, length: f32) -> Transmittance {
+    let half = 0.5 * length;
+    let between = sharp_step_end(surface.point + forward * half, surface.level);
+    let middle = bend_of(number_of(own.field), number_of(between.field), number_of(end.field));
+    let next = after_step(number_of(own.field), number_of(between.field), number_of(end.field), 1.0);
+    return half * (curved_step(own, middle, between) + curved_step(between, next, end));
 }
 #endif
 
 // Transmittance of a near-field ray, times the attenuation at its end: a light volume blurs what lies within a voxel
-// or two, which is where a surface shadows itself. The last step extends half a voxel of the light volume further,
-// where the trilinear fetch contains little of the material that the ray has already passed; no part of the path is
-// omitted. All samples look up light at the same distance, so that light volumes need no larger extent
-// (crates/render/src/plan/geometry/near_field_cells.rs).
+// or two, which is where a surface shadows itself. No part of the path is omitted. All samples look up light at the
+// same distance, so that light volumes need no larger extent (crates/render/src/plan/geometry/near_field_cells.rs).
 fn near_field_attenuation(light: LightUniform, volume: texture_3d<f32>, surface: Surface, towards: LightDirection) -> Transmittance {
     let forward = index_from_scene_vector(eye.space, towards.direction);
-    let edge = eye.voxel_edge;
-#if NEAR_HALVES
-    let half = min(0.25 * edge, towards.distance);
-    let between = sharp_step_end(surface.point + forward * half, surface.level);
-    var way = min(0.5 * edge, towards.distance);
-    var end = sharp_step_end(surface.point + forward * way, surface.level);
-#else
-    let half = min(0.5 * edge, towards.distance);
-    var way = half;
-    var end = soft_step_end(surface.point + forward * way, surface.level);
-    let between = end;
-#endif
-    // Half way to the first end.
+    let first = min(0.5 * eye.voxel_edge, towards.distance);
+    var way = min(first + taken_step_length(light, 1u), towards.distance);
 #if PRECLASSIFY
     let own = near_step_end(lighting_field(surface.point, surface.level), 1.0);
-    let middle = 0.5 * (own.field + between.field);
 #else
     let own = near_step_end(Field(surface.density), lighting_presence(surface.point, surface.level));
-    let rise = half * dot(surface.gradient, towards.direction);
-    let middle = after_slope(own.field.density, rise, between.field.density);
 #endif
-    var share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * half));
-    var depth = share * half * curved_step(own, middle, between);
+    var begin = sharp_step_end(surface.point + forward * first, surface.level);
+    var end = soft_step_end(surface.point + forward * way, surface.level);
 #if NEAR_HALVES
-    let next = after_step(number_of(own.field), number_of(between.field), number_of(end.field), 1.0);
-    share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * (half + way)));
-    depth += share * (way - half) * curved_step(between, next, end);
+    var depth = halved_step(surface, forward, own, begin, first);
+#else
+    let bend = bend_of(number_of(own.field), number_of(begin.field), number_of(end.field));
+    var depth = first * curved_step(own, bend, begin);
 #endif
-    var step = 1u;
+    depth *= shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * first));
+    // Densities bend over lengths of a voxel; farther steps are too long for a parabola.
+    let ratio = (way - first) / max(first, 1e-9);
+    let bent = after_step(number_of(own.field), number_of(begin.field), number_of(end.field), ratio);
+    var share = shading_fraction(eye.shading_cut, surface.point + forward * (0.5 * (first + way)));
+    depth += share * (way - first) * curved_step(begin, bent, end);
+    var step = 2u;
     loop {
         // Excess steps have length 0: drivers unroll a loop with a known end.
-        let is_taken = select(0.0, 1.0, step < light.near_steps);
-        let width =
-            is_taken * near_step_length(step) * edge + select(0.0, light.last_step_extension, step + 1u == light.near_steps);
-        let length = min(width, max(towards.distance - way, 0.0));
+        let length = min(taken_step_length(light, step), max(towards.distance - way, 0.0));
         share = shading_fraction(eye.shading_cut, surface.point + forward * (way + 0.5 * length));
         way += length;
-        let begin = end;
+        begin = end;
         end = soft_step_end(surface.point + forward * way, surface.level);
-        // Densities bend over lengths of a voxel; farther steps are too long for a parabola.
-        if (step == 1u) {
-            let ratio = length / (0.5 * edge);
-            let bent = after_step(number_of(own.field), number_of(begin.field), number_of(end.field), ratio);
-            depth += share * length * curved_step(begin, bent, end);
-        } else {
-            let present = 0.5 * (begin.presence + end.presence);
-            depth += share * length * present * mean_light_extinction(begin.integral, end.integral);
-        }
+        let present = 0.5 * (begin.presence + end.presence);
+        depth += share * length * present * mean_light_extinction(begin.integral, end.integral);
         step += 1u;
         if (step >= NEAR_STEPS) {
             break;

@@ -103,8 +103,6 @@ struct VolumeSample {
     field: Field,
     // Pyramid level for the stretch of the sample's kernel.
     level: f32,
-    // Gradient of the volume in scene space, without faces.
-    gradient: vec3f,
 }
 
 // Gradient, in scene space, of the faces of the visible region, including those of the grid: into the solid, in the
@@ -143,7 +141,6 @@ fn surface_of(found: VolumeSample) -> Surface {
         select(1.0, side_of(found.field), ONE_SIDED),
         found.level,
         found.field.density,
-        found.gradient,
     );
 }
 

@@ -14,4 +14,5 @@ mod output;
 mod path_tracing;
 mod scenes;
 mod settings;
+mod surfaces;
 mod thresholds;

@@ -222,10 +222,10 @@ sided_mutation!(
     "1.0"
 );
 sided_mutation!(
-    rays_nearby_that_begin_without_a_slope,
+    rays_nearby_that_begin_without_a_bend,
     "eye/eye_pass.wgsl",
-    "0.75 * begin + 0.25 * end + 0.25 * slope",
-    "0.75 * begin + 0.25 * end"
+    "0.4375 * own + 0.625 * end - 0.0625 * behind",
+    "0.5 * own + 0.5 * end"
 );
 sided_mutation!(
     rays_nearby_through_the_eyes_material,

@@ -16,9 +16,6 @@ const STEP_SLABS: u32 = 4;
 /// Number of the stack's slabs in an undivided slab.
 const UNDIVIDED_SLABS: u32 = 2;
 
-/// Visible share above which a segment ends, relative to that above which slabs are halved.
-const SEGMENT_SHARE: f64 = 1.0;
-
 /// Optical depth of a segment that shows nothing.
 const EMPTY_DEPTH: f64 = 4e-6;
 
@@ -34,14 +31,6 @@ struct Face {
     /// Colour times share of classified voxels.
     rgb: DVec3,
     presence: f64,
-}
-
-impl Face {
-    /// Returns the face's values in the sum of three faces, with weights.
-    fn blend(parts: [(f64, &Self); 3]) -> FieldValues {
-        let density = parts.iter().map(|(weight, face)| weight * face.density).sum();
-        (density, parts.iter().map(|(weight, face)| face.rgb * *weight).sum())
-    }
 }
 
 /// Light at a face.
@@ -68,9 +57,6 @@ impl Segment {
         Self { begin, depth: 0.0, opacity: 0.0, places: 0.0, densities: 0.0, colors: DVec3::ZERO }
     }
 }
-
-/// Values of the field: density and, of classified voxels, colour.
-type FieldValues = (f64, DVec3);
 
 /// Ray of a pixel while it is composited.
 struct AdaptiveRay<'a, 'r> {
@@ -104,13 +90,18 @@ impl<'r> Reference<'r> {
                 light: None,
             };
             ray.segment = Segment::new(ray.face(0));
+            let mut begin = 0;
             for first in (0..stack.frame.slab_count).step_by(UNDIVIDED_SLABS as usize) {
                 ray.add_slab(first);
                 let behind = first + UNDIVIDED_SLABS;
                 let shown = ray.transmittance * ray.segment.opacity;
-                let is_much = shown > SEGMENT_SHARE * self.settings.sampling.max_undivided_share;
-                if is_much || behind.is_multiple_of(STEP_SLABS) || behind >= stack.frame.slab_count {
+                let is_much = shown > self.settings.sampling.max_undivided_share;
+                // Segments begin where steps do, or behind another.
+                let is_empty = ray.segment.depth <= EMPTY_DEPTH && behind.is_multiple_of(STEP_SLABS);
+                let is_last = behind >= stack.frame.slab_count;
+                if is_much || is_empty || is_last || behind - begin >= STEP_SLABS {
                     ray.end_segment(behind, shown);
+                    begin = behind;
                 }
             }
             [ray.color.x, ray.color.y, ray.color.z, 1.0 - ray.transmittance]
@@ -127,33 +118,28 @@ impl AdaptiveRay<'_, '_> {
         let largest = self.table.max_between(a.density, b.density);
         let left = self.transmittance * (1.0 - self.segment.opacity);
         if left * -(-largest * length).exp_m1() > self.reference.settings.sampling.max_undivided_share {
-            // Values at the quarters, of the parabola through the three faces.
-            self.add_between(&a, Face::blend([(0.375, &a), (0.75, &m), (-0.125, &b)]), &m);
-            self.add_between(&m, Face::blend([(-0.125, &a), (0.75, &m), (0.375, &b)]), &b);
+            self.add_between(&a, &m);
+            self.add_between(&m, &b);
         } else {
-            self.add_between(&a, Face::blend([(0.5, &a), (0.0, &m), (0.5, &b)]), &b);
+            self.add_between(&a, &b);
         }
     }
 
-    /// Adds what lies between two faces, where the field is linear from the first to the values of its middle and on
-    /// to the second.
-    fn add_between(&mut self, a: &Face, middle: FieldValues, b: &Face) {
-        let length = 0.5 * (b.depth - a.depth);
+    /// Adds the material between two faces, between which the field is linear.
+    fn add_between(&mut self, a: &Face, b: &Face) {
+        let length = b.depth - a.depth;
         let present = 0.5 * (a.presence + b.presence) * length * self.obliquity();
-        let parts = [(a.depth, (a.density, a.rgb), middle), (a.depth + length, middle, (b.density, b.rgb))];
-        for (place, from, to) in parts {
-            let tau = present * self.extinction_between(from, to);
-            let segment = &mut self.segment;
-            segment.depth += tau;
-            let opacity = -(-segment.depth).exp_m1();
-            let share = opacity - segment.opacity;
-            segment.opacity = opacity;
-            // Approximates 1/τ − 1/(e^τ − 1), the mean place of visible light in a homogeneous medium.
-            let at = (6.0 + tau) / (12.0 + tau * (4.0 + tau));
-            segment.places += share * (place + at * length);
-            segment.densities += share * (from.0 + (to.0 - from.0) * at);
-            segment.colors += share * from.1.lerp(to.1, at);
-        }
+        let tau = present * self.extinction_between(a.density, b.density);
+        let segment = &mut self.segment;
+        segment.depth += tau;
+        let opacity = -(-segment.depth).exp_m1();
+        let share = opacity - segment.opacity;
+        segment.opacity = opacity;
+        // Approximates 1/τ − 1/(e^τ − 1), the mean place of visible light in a homogeneous medium.
+        let at = (6.0 + tau) / (12.0 + tau * (4.0 + tau));
+        segment.places += share * (a.depth + at * length);
+        segment.densities += share * (a.density + (b.density - a.density) * at);
+        segment.colors += share * a.rgb.lerp(b.rgb, at);
     }
 
     /// Shades and composites the segment, which ends in front of slab `behind` of the stack and shows a share of the
@@ -188,7 +174,6 @@ impl AdaptiveRay<'_, '_> {
             point: self.stack.frame.point(self.pixel[0], self.pixel[1], depth),
             density,
             gradient,
-            volume_gradient: gradient,
             level: self.stack.frame.stretch_level(depth),
         };
         let color = self.shader.color_with(&sample, rgb.to_array(), &attenuations);
@@ -217,8 +202,8 @@ impl AdaptiveRay<'_, '_> {
         Face { depth, density, rgb, presence }
     }
 
-    /// Returns the mean extinction between two values.
-    fn extinction_between(&self, (a, _): FieldValues, (b, _): FieldValues) -> f64 {
+    /// Returns the mean extinction between two densities.
+    fn extinction_between(&self, a: f64, b: f64) -> f64 {
         if self.reference.classified(TransferSide::Eye).is_some() {
             return self.table.extinction_at(0.5 * (a + b));
         }
@@ -230,10 +215,9 @@ impl AdaptiveRay<'_, '_> {
         let [i, j] = self.pixel;
         let point = self.stack.frame.point(i, j, face.depth);
         let level = self.stack.frame.stretch_level(face.depth);
-        let volume_gradient = self.shader.gradient(point, level);
         let ends = self.reference.end_gradient(&self.reference.visible_faces(), point, level);
-        let gradient = volume_gradient + ends * self.shader.normal_sign(face.density);
-        let sample = ShadedSample { point, density: face.density, gradient, volume_gradient, level };
+        let gradient = self.shader.gradient(point, level) + ends * self.shader.normal_sign(face.density);
+        let sample = ShadedSample { point, density: face.density, gradient, level };
         FaceLight { gradient, attenuations: self.shader.attenuations(&sample) }
     }
 }

@@ -67,11 +67,10 @@ impl Reference<'_> {
                     };
                     let density = sheets.at(k)[pixel];
                     // Normals of faces point out of the solid, whichever way opacity changes with density.
-                    let volume_gradient = gradient;
                     let gradient = gradient
                         + self.end_gradient(&faces, sample.point, level) * shader.normal_sign(density);
                     let point = sample.point;
-                    let shaded = ShadedSample { point, density, gradient, volume_gradient, level };
+                    let shaded = ShadedSample { point, density, gradient, level };
                     let color = shader.color(&shaded, sample.rgb);
                     let opacity = -(-sample.optical_depth).exp_m1();
                     for channel in 0..3 {

@@ -157,10 +157,9 @@ impl Reference<'_> {
         let density = layer.weighted_densities / layer.share;
         let (point, level) = (stack.frame.point(i, j, depth), stack.frame.stretch_level(depth));
         let ends = self.end_gradient(&self.visible_faces(), point, level);
-        let volume_gradient = shader.gradient(point, level);
-        let gradient = volume_gradient + ends * shader.normal_sign(density);
+        let gradient = shader.gradient(point, level) + ends * shader.normal_sign(density);
         let [r, g, b, _] = integrated.table.sample(density);
-        let sample = ShadedSample { point, density, gradient, volume_gradient, level };
+        let sample = ShadedSample { point, density, gradient, level };
         DVec3::from(shader.color(&sample, [r, g, b])) * layer.share
     }
 }

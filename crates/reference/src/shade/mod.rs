@@ -42,8 +42,6 @@ pub(super) struct ShadedSample {
     pub(super) density: f64,
     /// Gradient in scene space, with that of the ends of solids.
     pub(super) gradient: DVec3,
-    /// Gradient of the volume alone.
-    pub(super) volume_gradient: DVec3,
     /// Pyramid level that corresponds to the kernel's stretch.
     pub(super) level: f64,
 }
@@ -376,8 +374,7 @@ mod tests {
             let shader = Shader::new(&reference, &attenuations);
             let middle = DVec3::splat(7.5);
             let gradient = shader.gradient(middle, 0.0);
-            let sample =
-                ShadedSample { point: middle, density: 0.5, gradient, volume_gradient: gradient, level: 0.0 };
+            let sample = ShadedSample { point: middle, density: 0.5, gradient, level: 0.0 };
             let found = shader.color(&sample, [1.0, 0.5, 0.0]);
             let diffuse = 0.1 + 0.15 + 2.0 * arriving * 0.85 * (1.0 - weight + weight * 0.6);
             // The half-vector of (0.6, 0.8, 0) and (1, 0, 0): cos² = (1 + 0.6)/2.

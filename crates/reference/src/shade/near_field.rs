@@ -31,8 +31,9 @@ struct StepEnd {
     presence: f64,
 }
 
-/// Returns the value at `x` of the parabola through three ends.
-fn parabola(x: f64, ends: [StepEnd; 3]) -> f64 {
+/// Returns the density half way between two ends of steps, of the parabola through them and another.
+fn bent([a, b]: [StepEnd; 2], other: StepEnd) -> f64 {
+    let (x, ends) = (0.5 * (a.way + b.way), [a, b, other]);
     (0..3)
         .map(|i| {
             let others = (0..3).filter(|&j| j != i);
@@ -40,6 +41,14 @@ fn parabola(x: f64, ends: [StepEnd; 3]) -> f64 {
             weight * ends[i].density
         })
         .sum()
+}
+
+/// Returns the density half way along a first step: the mean of the straight line to its end and of the parabola that
+/// also meets the end of a second step as long.
+fn bent_first(own: f64, end: f64, behind: f64) -> f64 {
+    let line = 0.5 * (own + end);
+    let parabola = 0.375 * own + 0.75 * end - 0.125 * behind;
+    0.5 * (line + parabola)
 }
 
 impl<'r> NearField<'r> {
@@ -67,60 +76,58 @@ impl<'r> NearField<'r> {
         let edge = self.reference.scene.smallest_edge();
         let settings = self.reference.settings;
         // The scattering engine has no kernel at points.
-        let halves =
-            settings.effective_near_field().halves_first_step() && !settings.uses_scattering_engine();
-        let nominal = (0..steps).map(|step| {
+        let is_sharp = !settings.uses_scattering_engine();
+        let width = |step: u32| {
             let extension = if step + 1 == steps { extension } else { 0.0 };
             NearFieldRay::width_voxels(step) * edge + extension
-        });
-        let widths: Vec<f64> = if halves {
-            [0.25 * edge; 2].into_iter().chain(nominal.skip(1)).collect()
-        } else {
-            nominal.collect()
         };
-        // Ends of halved steps are seen with the kernel of the eye.
-        let sharp_ends = if halves { 2 } else { 0 };
-        let own = self.end(sample, to_light, 0.0, true);
         let own = StepEnd {
-            density: if self.reference.classified.is_some() { own.density } else { sample.density },
-            presence: self.presence(sample, to_light, 0.0),
-            ..own
-        };
-        let mut ends = vec![own];
-        let mut depth = 0.0;
-        for (step, width) in widths.into_iter().enumerate() {
-            let begin = ends[step];
-            let way = (begin.way + width).min(distance.max(begin.way));
-            let end = self.end(sample, to_light, way, step < sharp_ends);
-            ends.push(end);
-            let length = way - begin.way;
-            if length <= 0.0 {
-                continue;
-            }
-            let middle = if step == 0 {
-                if self.reference.classified.is_some() {
-                    0.5 * (begin.density + end.density)
-                } else {
-                    // Parabola with the sample's own slope.
-                    let slope = sample.volume_gradient.dot(to_light);
-                    0.75 * begin.density + 0.25 * end.density + 0.25 * slope * length
-                }
-            } else if step == 1 || (step == 2 && halves) {
-                parabola(begin.way + 0.5 * length, [ends[0], begin, end])
+            way: 0.0,
+            density: if self.reference.classified.is_some() {
+                self.end(sample, to_light, 0.0, true).density
             } else {
-                0.5 * (begin.density + end.density)
-            };
-            let mean = 0.5
-                * (self.lighting.mean_between(begin.density, middle)[3]
-                    + self.lighting.mean_between(middle, end.density)[3]);
-            let at = self.point(sample, to_light, begin.way + 0.5 * length);
-            depth += 0.5
-                * (begin.presence + end.presence)
-                * mean
-                * length
-                * self.reference.attenuating_share(&self.remaining, at);
+                sample.density
+            },
+            presence: self.presence(sample, to_light, 0.0),
+        };
+        let mut begin = self.end(sample, to_light, (0.5 * edge).min(distance), is_sharp);
+        let mut end = self.end(sample, to_light, (begin.way + width(1)).min(distance), false);
+        let first = if is_sharp && settings.effective_near_field().halves_first_step() {
+            let between = self.end(sample, to_light, 0.5 * begin.way, true);
+            let middle = bent_first(own.density, between.density, begin.density);
+            0.5 * self.curved(own, middle, between)
+                + 0.5 * self.curved(between, bent([between, begin], own), begin)
+        } else {
+            self.curved(own, bent_first(own.density, begin.density, end.density), begin)
+        };
+        let mut depth = first * begin.way * self.attenuating_share(sample, to_light, 0.5 * begin.way);
+        for step in 1..steps {
+            let length = end.way - begin.way;
+            if length > 0.0 {
+                let mean = if step == 1 {
+                    self.curved(begin, bent([begin, end], own), end)
+                } else {
+                    self.curved(begin, 0.5 * (begin.density + end.density), end)
+                };
+                depth += mean * length * self.attenuating_share(sample, to_light, begin.way + 0.5 * length);
+            }
+            if step + 1 < steps {
+                begin = end;
+                end = self.end(sample, to_light, (begin.way + width(step + 1)).min(distance), false);
+            }
         }
-        (depth, ends[ends.len() - 1].way)
+        (depth, end.way)
+    }
+
+    /// Returns the mean extinction between two ends, in two halves that meet at a density.
+    fn curved(&self, begin: StepEnd, middle: f64, end: StepEnd) -> f64 {
+        let between = |a, b| self.lighting.mean_between(a, b)[3];
+        0.25 * (begin.presence + end.presence)
+            * (between(begin.density, middle) + between(middle, end.density))
+    }
+
+    fn attenuating_share(&self, sample: &ShadedSample, to_light: DVec3, way: f64) -> f64 {
+        self.reference.attenuating_share(&self.remaining, self.point(sample, to_light, way))
     }
 
     fn point(&self, sample: &ShadedSample, to_light: DVec3, way: f64) -> DVec3 {

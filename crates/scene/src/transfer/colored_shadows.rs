@@ -38,7 +38,10 @@ impl BakedTransfer {
 
     /// Returns the extinction table for one colour of light, from a table of shares.
     pub fn for_light_color(&self, color: usize) -> Self {
-        Self::new(self.entries.iter().map(|&entry| [1.0, 1.0, 1.0, entry[3] * entry[color]]).collect())
+        let entries = self.entries.iter().map(|&entry| [1.0, 1.0, 1.0, entry[3] * entry[color]]).collect();
+        // Integrals of the curve itself keep peaks that are narrower than an entry.
+        let integrals = self.integrals.iter().map(|integral| [integral[color]; 4]).collect();
+        Self { integrals, ..Self::new(entries) }
     }
 }
 
