@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::plate_oracle::PlateOracle;
 use crate::common::{context, damaged_renderer, render};
 use crate::scenes::{self, axis_camera};
-use crate::thresholds::{FLAT_STANDARD, PLATE_EXACT, PLATE_FINE, PlateLimit, TILTED_STANDARD};
+use crate::thresholds::{FLAT_EXACT, FLAT_STANDARD, PLATE_FINE, PlateLimit, TILTED_EXACT, TILTED_STANDARD};
 
 /// Size of pictures: a pixel is half a voxel wide.
 const SIZE: [usize; 2] = [160, 80];
@@ -209,10 +209,11 @@ fn plates_have_no_grain_and_the_right_level() {
     let mut failures = Vec::new();
     for_all_plates(|scene| {
         let expected = scene.expected();
+        let is_flat = scene.tilt_deg == 0.0;
         let levels = [
-            (QualityPreset::Standard, if scene.tilt_deg == 0.0 { FLAT_STANDARD } else { TILTED_STANDARD }),
+            (QualityPreset::Standard, if is_flat { FLAT_STANDARD } else { TILTED_STANDARD }),
             (QualityPreset::Fine, PLATE_FINE),
-            (QualityPreset::Exact, PLATE_EXACT),
+            (QualityPreset::Exact, if is_flat { FLAT_EXACT } else { TILTED_EXACT }),
         ];
         for (quality, limit) in levels {
             let found = deviation(&scene.pictured(&mut renderer, quality), &expected);

@@ -113,9 +113,9 @@ impl QualityPreset {
             Self::Exact => QualitySettings {
                 algorithm: ShadowAlgorithm::Direct,
                 near_field: NearFieldRay::Short,
-                // Every slab is halved, and shaded by itself: light in steps of 3/20 of a voxel. With a fifth, surfaces
-                // that cross the voxels at 20° ripple by 0.3 % instead of 0.2 %.
-                slab: 0.3,
+                // Every slab is halved, and shaded by itself: light in steps of a fifth of a voxel. With a quarter the
+                // difference from the limit is 0.4 steps of 8 bits where details are a voxel wide.
+                slab: 0.4,
                 slabs: SlabMode::ByNeed,
                 max_undivided_share: 0.0,
                 shadow_slab: 0.25,
