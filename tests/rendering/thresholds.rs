@@ -320,6 +320,10 @@ pub(crate) const PENUMBRA: f64 = 0.02;
 /// quarter.
 pub(crate) const PENUMBRA_WIDTH: f64 = 0.03;
 
+/// Distance, in voxels, of the middle of a wide light's penumbra from the closed form, 27 voxels behind the edge: half
+/// of what 64 points, normals of blocks of four voxels and a light volume at half the resolution allow for.
+pub(crate) const PENUMBRA_MIDDLE: f64 = 0.5;
+
 /// Difference in the loss of light behind a small occluder between an area light and a point light, as a share of the
 /// unoccluded light.
 pub(crate) const PENUMBRA_ENERGY: f64 = 0.005;

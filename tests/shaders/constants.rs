@@ -152,11 +152,13 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("light/area_light.wgsl", [8, 8, 4]),
         // Size given by LANES, which the parser leaves open.
         ("light/backproject.wgsl", [1, 1, 1]),
+        ("light/block_normals.wgsl", [64, 1, 1]),
         ("light/clear_margin.wgsl", [8, 8, 4]),
         ("light/colored_shadows.wgsl", [8, 8, 4]),
         ("light/combined_light.wgsl", [8, 8, 4]),
         ("light/floor_shadow.wgsl", [8, 8, 1]),
         ("light/march.wgsl", [8, 8, 1]),
+        ("light/opacity_blocks.wgsl", [64, 1, 1]),
         ("light/raycast.wgsl", [8, 8, 4]),
         ("output/display.wgsl", [8, 8, 1]),
         ("output/display_deep.wgsl", [8, 8, 1]),

@@ -109,7 +109,25 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 shading_cut,
             }),
         ),
-        ("light/area_light.wgsl", layout!(AverageUniform { dims, bricks, share, pad0, pad1, pad2 })),
+        (
+            "light/area_light.wgsl",
+            layout!(AverageUniform {
+                dims,
+                bricks,
+                place,
+                perspective,
+                right,
+                share,
+                up,
+                voxel_step,
+                to_right,
+                to_top,
+                lookup,
+                pad0,
+                space,
+            }),
+        ),
+        ("light/block_normals.wgsl", layout!(BlockNormalsUniform { space, dims, pad0, opacity_scale, pad1 })),
         (
             "light/floor_shadow.wgsl",
             layout!(FloorShadowUniform {

@@ -21,7 +21,7 @@ const TABLE_NAMES: [&str; 5] = ["TransferTable", "TABLE_SIZE", "TableEntry", "ta
 
 /// Variables that hold no voxels: three-dimensional textures that are read, with what other passes store of light, of
 /// extinction, or of distances to cells.
-const OTHER_TEXTURES: [&str; 25] = [
+const OTHER_TEXTURES: [&str; 27] = [
     "attenuation_0",
     "attenuation_1",
     "attenuation_2",
@@ -38,6 +38,8 @@ const OTHER_TEXTURES: [&str; 25] = [
     "green",
     "light_distances",
     "medium",
+    "normals",
+    "opacity",
     "point_0",
     "point_1",
     "point_2",

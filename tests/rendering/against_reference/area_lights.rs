@@ -121,6 +121,30 @@ fn mistakes_in_them_are_noticed() {
             "{to:?} for {from:?} is not noticed"
         );
     }
+    for (shader, from, to) in [
+        (volume, "dot(slope, average.up) * average.to_top", "dot(slope, average.up) * average.to_right"),
+        (volume, "normal / divisor - towards", "-towards"),
+        (volume, "smoothstep(0.6666667, 1.0, lowest)", "smoothstep(0.2, 0.3, lowest)"),
+        ("light/block_normals.wgsl", "const SPREAD = 1.25;", "const SPREAD = 0.25;"),
+        ("light/block_normals.wgsl", "vec3f(MIDDLE_FACTOR)", "vec3f(0.3)"),
+        ("light/opacity_blocks.wgsl", "* blocks.edge", "* blocks.edge * 0.1"),
+    ] {
+        assert_in_shader(shader, from);
+        assert!(
+            differs_in_look(&settings, N, from, to, ReferenceFault::None),
+            "{to:?} for {from:?} is not noticed"
+        );
+    }
+    // A lamp, which voxels beside its axis see aslant.
+    let lamp = Settings { lights: vec![look().lights[1].clone()], ..settings.clone() };
+    assert!(!differs_in_look(&lamp, N, "\u{0}", "", ReferenceFault::None));
+    for (from, to) in [
+        ("normal / divisor - towards", "normal / divisor + towards"),
+        ("average.perspective * scene_from_index", "0.0 * scene_from_index"),
+    ] {
+        assert_in_shader(volume, from);
+        assert!(differs_in_look(&lamp, N, from, to, ReferenceFault::None), "{to:?} for {from:?} is not noticed");
+    }
     // A single ring, of which half a step is 45°.
     settings.shadows.area.samples = 4;
     settings.lights[0].angle_deg = 80.0;

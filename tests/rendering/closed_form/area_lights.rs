@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
     LightGeometry, LightSettings, LightShape, LightVolumeResolution, LitSides, NearFieldRay, RenderEngine,
     Settings, ShadowAlgorithm,
@@ -10,9 +11,9 @@ use chiaroscuro_volume::{Samples, Volume};
 use glam::{DVec2, DVec3};
 
 use super::{base, renderer};
-use crate::common::{Dataset, full_attenuation, render};
+use crate::common::{Dataset, damaged_renderer, full_attenuation, render};
 use crate::scenes;
-use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_WIDTH, TERMINATOR};
+use crate::thresholds::{F16_STEP, PENUMBRA, PENUMBRA_ENERGY, PENUMBRA_MIDDLE, PENUMBRA_WIDTH, TERMINATOR};
 
 /// Number of voxels along x, y and z.
 const GRID_DIMS: [usize; 3] = [124, 124, 84];
@@ -145,6 +146,118 @@ fn twice_as_far_is_twice_as_wide() {
     let [near, far] = [30, 60].map(|depth| width(depth) / (depth as f64 + 0.5));
     println!("widths per distance: {near:.4}, {far:.4}");
     assert!((far / near - 1.0).abs() <= PENUMBRA_WIDTH, "{near}, {far}");
+}
+
+/// Grid of a plane with a plate above it.
+const PLANE_DIMS: [usize; 3] = [100, 48, 52];
+/// Number of layers that the plane fills.
+const PLANE_LAYERS: usize = 16;
+/// Lower of the plate's two layers.
+const PLATE_ABOVE: usize = 45;
+/// Number of columns that the plate covers.
+const PLATE_COLUMNS: usize = 80;
+/// Layer of a light volume at half the resolution that is measured: three voxels above the plane, where pictures look it
+/// up, and 27 below the plate.
+const MEASURED_LAYER: usize = 9;
+const PLATE_HEIGHT: f64 = 27.0;
+
+/// Opaque plane, and a plate above it that covers its left part.
+fn plane_below_plate(has_plate: bool) -> Dataset {
+    let [nx, ny, nz] = PLANE_DIMS;
+    let value = |at: usize| {
+        let [x, z] = [at % nx, at / (nx * ny)];
+        let is_plate = has_plate && (PLATE_ABOVE..PLATE_ABOVE + 2).contains(&z) && x < PLATE_COLUMNS;
+        if z < PLANE_LAYERS || is_plate { 255 } else { 0 }
+    };
+    let values = (0..nx * ny * nz).map(value).collect();
+    Dataset::new(
+        Volume::with_spacing("plane", PLANE_DIMS, DVec3::ONE, Samples::U8(values)).expect("a volume"),
+    )
+}
+
+/// Position along x of the middle of the plate's penumbra, just above the plane: there, half of the light arrives that
+/// does without the plate.
+fn middle_of_penumbra(renderer: &mut Renderer, settings: &Settings) -> f64 {
+    let [nx, ny] = [PLANE_DIMS[0] / 2, PLANE_DIMS[1] / 2];
+    let mut row = |has_plate: bool| -> Vec<f64> {
+        let volume = full_attenuation(renderer, &plane_below_plate(has_plate), settings, 0);
+        let at = |x: usize, y: usize| f64::from(volume[x + nx * (y + ny * MEASURED_LAYER)]);
+        (0..nx).map(|x| (ny / 2 - 2..ny / 2 + 2).map(|y| at(x, y)).sum()).collect()
+    };
+    let (behind, open) = (row(true), row(false));
+    let shares: Vec<f64> = behind.iter().zip(&open).map(|(behind, open)| behind / open).collect();
+    let left = shares.windows(2).position(|pair| pair[0] < 0.5 && pair[1] >= 0.5).expect("a penumbra");
+    let between = (0.5 - shares[left]) / (shares[left + 1] - shares[left]);
+    2.0 * (left as f64 + between)
+}
+
+/// Distance along x of the middle of a penumbra from the shadow's edge under the middle of the light. `tangents` are
+/// even points of the light, in the plane at distance 1 across the direction to its middle, each of which gives the
+/// same to a surface that faces it. The light is tilted by an angle towards x.
+fn shift_of_penumbra(tangents: impl Iterator<Item = f64>, tilt_deg: f64) -> f64 {
+    let (sin, cos) = tilt_deg.to_radians().sin_cos();
+    // Place of the edge's shadow, and what the plane takes of the point.
+    let place_and_share = |t: f64| (-PLATE_HEIGHT * (cos * t + sin) / (cos - sin * t), cos - sin * t);
+    let mut edges: Vec<_> = tangents.map(place_and_share).collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = edges.iter().map(|(_, share)| share).sum::<f64>() / 2.0;
+    let mut sum = 0.0;
+    let middle = edges.iter().find(|(_, share)| {
+        sum += share;
+        sum >= half
+    });
+    middle.expect("points").0 + PLATE_HEIGHT * sin / cos
+}
+
+/// Middles of the penumbrae of wide lights on a plane that they meet at several angles: low parts of a light give less
+/// than high ones.
+#[test]
+fn middles_of_penumbrae_follow_the_cosines() {
+    let half = 20_f64.to_radians();
+    let even = |at: i32| (f64::from(at) + 0.5) / 200.0 - 1.0;
+    let disc = || {
+        let sines = (0..160_000).map(|at| DVec2::new(even(at % 400), even(at / 400)));
+        let inside = sines.filter(|at| at.length_squared() < 1.0).map(|at| at * half.sin());
+        inside.map(|at| at.x / (1.0 - at.length_squared()).sqrt()).collect::<Vec<_>>()
+    };
+    // Points of rectangles are even over the sine along each axis alone.
+    let rectangle = (0..400).map(|at| (even(at) * half.sin()).asin().tan()).collect::<Vec<_>>();
+    let settings = |kind, shape, tilt_deg: f64, samples| {
+        let (sin, cos) = tilt_deg.to_radians().sin_cos();
+        // Far away, so that light from its middle is parallel.
+        let away = 20.0;
+        let mut settings = base(RenderEngine::Gather, 8.0);
+        settings.shading.surface_gradient = 0.02;
+        settings.shadows.area.samples = samples;
+        settings.lights = vec![LightSettings {
+            shape,
+            angle_deg: 40.0,
+            size: 2.0 * away * half.tan(),
+            aspect: 1.0,
+            ..scenes::light(kind, [sin * away, 0.0, cos * away])
+        }];
+        settings
+    };
+    let (from, to) = ("return slope * (share", "return slope * (0.0 * share");
+    crate::against_reference::mutations::assert_in_shader("light/area_light.wgsl", from);
+    for (kind, shape, tangents) in [
+        (LightGeometry::Parallel, LightShape::Disc, disc()),
+        (LightGeometry::Perspective, LightShape::Rectangle, rectangle),
+    ] {
+        for tilt_deg in [0.0, 20.0, 30.0, 45.0] {
+            let look = |samples| settings(kind, shape, tilt_deg, samples);
+            let edge = middle_of_penumbra(&mut renderer(), &look(1));
+            let found = middle_of_penumbra(&mut renderer(), &look(64)) - edge;
+            let right = shift_of_penumbra(tangents.iter().copied(), tilt_deg);
+            println!("{shape:?}, {tilt_deg}°: {found:.2}, closed form {right:.2}");
+            assert!((found - right).abs() <= PENUMBRA_MIDDLE, "{shape:?}, {tilt_deg}°: {found}, not {right}");
+            if tilt_deg > 40.0 {
+                let equal = middle_of_penumbra(&mut damaged_renderer(from, to), &look(64)) - edge;
+                println!("with equal weights {equal:.2}");
+                assert!((equal - right).abs() > 2.0 * PENUMBRA_MIDDLE, "{shape:?}: equal weights: {equal}");
+            }
+        }
+    }
 }
 
 /// A small occluder takes as much of an area light as of a point light; it is only spread.

@@ -5,6 +5,7 @@ use super::step::{FrameProduct, LightStep, RaycastStep, RenderStep};
 use crate::GpuError;
 use crate::light::area_light::AreaLightAverage;
 use crate::light::backproject::ChunkSchedule;
+use crate::light::block_normals::BlockNormals;
 use crate::light::colored_shadows::ColorVolumes;
 use crate::light::light_volume::{LightVolume, back_projected_bricks};
 use crate::light::march::{LightSheets, SLABS_PER_TEXEL};
@@ -15,6 +16,7 @@ use crate::scatter::eye::SLABS_PER_STEP;
 use crate::scatter::light::LightScatterer;
 use crate::volume::GpuVolume;
 use crate::volume::brick_list::{BrickEntry, brick_entry};
+use crate::volume::transfer_tables::TransferTables;
 use chiaroscuro_scene::{LIGHT_COLORS, SceneLight, ShadowAlgorithm, ShadowSettings};
 
 /// Range of slabs per chunk of the light march: enough to be worth a dispatch, few enough for a short one.
@@ -79,7 +81,7 @@ impl LightFill {
     /// Returns an error if memory is exhausted.
     pub(super) fn new(
         ProductRequest { context, request, options, .. }: ProductRequest<'_>,
-        volume: &GpuVolume,
+        (volume, tables): (&GpuVolume, &TransferTables),
         index: usize,
         key: &LightKey,
         fresh: &LightVolume,
@@ -106,7 +108,11 @@ impl LightFill {
             let view = move |geometry| LightFillView { point, chunk: chunk(&geometry), geometry };
             geometries.into_iter().map(view)
         };
-        let average = (points.len() > 1).then(|| AreaLightAverage::new(context, fresh, points.len()));
+        let normals = || BlockNormals::new(context, volume, tables, options, fresh);
+        let average = (points.len() > 1).then(|| {
+            let normals = key.has_weighted_points().then(normals).transpose()?;
+            AreaLightAverage::new(context, &light, key.samples(), fresh, normals)
+        });
         let reverse_reach = reverse_reach(&all, &volume.scene, fresh.divisor);
         Ok(Self {
             light_index: index,

@@ -120,7 +120,7 @@ impl LoadedVolume {
                 recyclable.extend(lights.evict_oldest(max_cached, is_needed));
                 let extent = needs.extent(&key, aheads);
                 let fresh = LightVolume::new(context, volume, &key, extent, recyclable)?;
-                builds.push(LightFill::new(wanted, volume, index, &key, &fresh)?);
+                builds.push(LightFill::new(wanted, (volume, &tables.product), index, &key, &fresh)?);
                 lights.insert(key, fresh, now)
             };
             *claimed = Some(lights.claim(slot, now));

@@ -4,6 +4,7 @@ use crate::GpuError;
 use crate::frame::light_fill::{LightFill, LightFillView, MarchState};
 use crate::frame::render_job::RenderJob;
 use crate::frame::step::{LightStep, RaycastStep};
+use crate::light::area_light::AreaLightAverage;
 use crate::light::backproject::{ChunkSchedule, backproject};
 use crate::light::fill_inputs::{LightTables, LightWithSettings};
 use crate::light::floor_shadow::PointView;
@@ -219,6 +220,12 @@ impl RenderJob<'_> {
         let loaded = &self.loaded.product;
         let whole = &loaded.lights[build.cache_index].product;
         let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let is_first = color.unwrap_or(0) == 0 && AreaLightAverage::is_in_first_batch(point);
+        if let Some(normals) = average.normals.as_ref().filter(|_| is_first) {
+            let settings = &self.request.settings;
+            let density_scale = settings.lights[build.light_index].density_scale;
+            normals.fill(gpu, &loaded.tables.product, settings, density_scale, encoder)?;
+        }
         average.add_batch(gpu, build.color_volume(color, whole), point, &build.bricks, encoder)
     }
 

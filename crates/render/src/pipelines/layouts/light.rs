@@ -1,6 +1,7 @@
 //! Bind-group layouts of the shaders for light volumes.
 
-use super::{EYE, LIGHTS, PYRAMID, ShaderLayouts, TABLE, VOLUME};
+use super::sky::{BLOCK_SAMPLER, CELLS};
+use super::{CLAMPED, EYE, GRID, LIGHTS, PYRAMID, PYRAMID_TEXTURE, ShaderLayouts, TABLE, VOLUME};
 use crate::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::pipelines::uniforms;
 
@@ -23,6 +24,8 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 StorageFormat::Fixed(wgpu::TextureFormat::R32Float),
             ),
             BindingSlot::storage_texture(8, "attenuation", TextureShape::D3, StorageFormat::Target),
+            BindingSlot::sampled_texture(9, "normals", TextureShape::D3),
+            BindingSlot::bind_sampler(10, "clamped"),
         ]],
     ),
     (
@@ -33,6 +36,21 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             BindingSlot::sampled_texture(2, "ring", TextureShape::D2Array),
             BindingSlot::bind_sampler(3, "ring_sampler"),
             BindingSlot::storage_texture(4, "attenuation", TextureShape::D3, StorageFormat::Target),
+        ]],
+    ),
+    (
+        "light/block_normals.wgsl",
+        &[&[
+            BindingSlot::uniform::<uniforms::BlockNormalsUniform>(0, "bound_near"),
+            BindingSlot::sampled_texture(1, "opacity", TextureShape::D3),
+            BLOCK_SAMPLER,
+            BindingSlot::storage(3, "cells", 4, BufferAccess::Read),
+            BindingSlot::storage_texture(
+                4,
+                "normals",
+                TextureShape::D3,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
+            ),
         ]],
     ),
     (
@@ -93,6 +111,18 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage(5, "tiles", 4, BufferAccess::Read),
             ],
             VOLUME,
+        ],
+    ),
+    (
+        "light/opacity_blocks.wgsl",
+        &[
+            &[
+                BindingSlot::uniform::<uniforms::BlocksUniform>(0, "bound_blocks"),
+                TABLE,
+                CELLS,
+                BindingSlot::storage_texture(3, "opacity", TextureShape::D3, StorageFormat::Storage),
+            ],
+            &[GRID, PYRAMID_TEXTURE, CLAMPED],
         ],
     ),
     (

@@ -71,10 +71,28 @@ pub struct RaycastUniform {
 pub struct AverageUniform {
     pub dims: [u32; 3],
     pub bricks: u32,
+    pub place: [f32; 3],
+    pub perspective: f32,
+    pub right: [f32; 3],
     pub share: f32,
+    pub up: [f32; 3],
+    pub voxel_step: f32,
+    pub to_right: [f32; 4],
+    pub to_top: [f32; 4],
+    pub lookup: [f32; 3],
+    pub pad0: f32,
+    pub space: SpaceUniform,
+}
+
+/// Parameters of finding normals near blocks of voxels, as declared in `light/block_normals.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct BlockNormalsUniform {
+    pub space: SpaceUniform,
+    pub dims: [u32; 3],
     pub pad0: u32,
-    pub pad1: u32,
-    pub pad2: u32,
+    pub opacity_scale: [f32; 3],
+    pub pad1: f32,
 }
 
 /// Parameters of a floor shadow map, as declared in `light/floor_shadow.wgsl`.

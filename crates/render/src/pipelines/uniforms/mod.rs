@@ -10,7 +10,9 @@ mod light;
 mod scattered_light;
 mod sky;
 
-pub use self::light::{AverageUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform};
+pub use self::light::{
+    AverageUniform, BlockNormalsUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform,
+};
 pub use self::scattered_light::{
     BounceUniform, DiffusionLevelUniform, ScatteredLightUniform, SingleScatteringUniform,
 };

@@ -20,6 +20,8 @@ pub struct LightKey {
     transmission: Option<TransmissionKey>,
     resolution: LightVolumeResolution,
     shading_cut: ClippedPart,
+    /// `true` if points on the light are weighted by their cosines to surfaces.
+    has_weighted_points: bool,
 }
 
 /// Position and extent of a light, without its colour.
@@ -67,6 +69,11 @@ impl LightKey {
         self.light.area.map_or(1, |(_, samples)| samples)
     }
 
+    /// Returns true if points on the light are weighted by their cosines to surfaces.
+    pub fn has_weighted_points(&self) -> bool {
+        self.has_weighted_points
+    }
+
     /// Returns true if there is a transmittance for each colour channel.
     pub fn has_colors(&self) -> bool {
         self.transmission.is_some()
@@ -89,7 +96,7 @@ impl LightKey {
             camera,
             lights,
             layers,
-            shading: _,
+            shading,
             shadows,
             sky: _,
             scattering: _,
@@ -138,6 +145,7 @@ impl LightKey {
                 light.volume_resolution(shadows, request.volume.dims)
             },
             shading_cut: cuts.shadowing_part(),
+            has_weighted_points: shading.has_surfaces() && light.has_weighted_points(),
         })
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod cube_axes;
 pub(crate) mod direction_sets;
 pub(crate) mod environment_map;
 pub(crate) mod horizon_clipping;
+pub(crate) mod point_weights;
 pub(crate) mod scattering;
 pub(crate) mod sky;
 

@@ -43,6 +43,18 @@ fn the_size_of_a_light_is_part_of_its_volume_alone() {
 }
 
 #[test]
+fn wide_lights_depend_on_whether_there_are_surfaces() {
+    let mut before = request();
+    before.settings.sky.mode = SkyMode::Off;
+    before.settings.lights[1].shape = LightShape::Disc;
+    for (angle_deg, expected) in [(5.0, ChangeEffect::Eye), (20.0, ChangeEffect::OneLight)] {
+        before.settings.lights[1].angle_deg = angle_deg;
+        assert_eq!(effect_of(&before, "shading.surface_gradient", "1.5"), expected, "{angle_deg}°");
+        assert_eq!(effect_of(&before, "shading.surface_gradient", "0.1"), ChangeEffect::Eye, "{angle_deg}°");
+    }
+}
+
+#[test]
 fn a_light_that_is_off_may_move() {
     let mut before = request();
     before.settings.lights[1].on = false;
