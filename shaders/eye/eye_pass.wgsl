@@ -56,7 +56,10 @@ fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface
     let p = biased_point(surface, towards);
     let s = eye.shading;
     let cut = eye.shading_cut;
+    let centre = to_light(light, surface.position).direction;
+    let slope = point_slope(light, surface.position, surface.normal, surface.surfaceness);
     var sum = Transmittance(0.0);
+    var weights = 0.0;
     for (var i = 0u; i < light.points; i += 1u) {
         let one = area_light_point(light, i);
         let way = to_light(one, surface.position);
@@ -67,9 +70,11 @@ fn attenuation_at(light: LightUniform, volume: texture_3d<f32>, surface: Surface
 #else
         let passed = shadow_ray(p, direction, reach, s.ray_step, light.extinction_scale, s.max_optical_depth, cut);
 #endif
-        sum += passed * cone_attenuation(one, way.direction);
+        let weight = point_weight(slope, centre, way.direction);
+        sum += passed * (weight * cone_attenuation(one, way.direction));
+        weights += weight;
     }
-    return sum / f32(light.points);
+    return sum / weights;
 #else
     return shadowed_light(light, volume, surface, towards);
 #endif

@@ -111,10 +111,15 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
     let s = floor_disc.shading;
     var transmittance = Transmittance(0.0);
     if (shadowed) {
+        let centre = to_light(light, place).direction;
+        let slope = point_slope(light, place, floor_disc.up, 1.0);
+        var weights = 0.0;
         for (var i = 0u; i < light.points; i += 1u) {
             let one = area_light_point(light, i);
             let way = to_light(one, place);
-            let share = cone_attenuation(one, way.direction);
+            let weight = point_weight(slope, centre, way.direction);
+            weights += weight;
+            let share = weight * cone_attenuation(one, way.direction);
             if (dot(floor_disc.up, way.direction) > 0.0 && share > 0.0) {
                 let direction = index_from_scene_vector(floor_disc.space, way.direction);
                 let cut = floor_disc.shading_cut;
@@ -122,7 +127,7 @@ fn floor_irradiance(slot: u32, light: LightUniform, p: vec3f, place: vec3f) -> F
                 transmittance += share * shadow_ray(p, direction, way.distance, s.ray_step, scale, s.max_optical_depth, cut);
             }
         }
-        transmittance /= max(f32(light.points), 1.0);
+        transmittance /= max(weights, 1e-6);
         if (light.points == 0u) {
             transmittance = Transmittance(map_transmittance(slot, map_coordinates(place)));
         }

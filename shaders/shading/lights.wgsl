@@ -1,5 +1,6 @@
 // Phong's illumination model with attenuated light (P eq. 2–4).
 #import "common/transmittance.wgsl"
+#import "shading/point_weights.wgsl"
 
 const MAX_LIGHTS = 8;
 
@@ -125,6 +126,17 @@ fn to_light(light: LightUniform, position: vec3f) -> LightDirection {
     let distance = length(away);
     let per_length = 1.0 / max(distance, 1e-9);
     return LightDirection(away * per_length, select(1e6, distance, light.perspective > 0.5), per_length);
+}
+
+// Change of the weights of a light's points on a surface (shading/point_weights.wgsl), relative to unit directions.
+fn point_slope(light: LightUniform, position: vec3f, normal: vec3f, share: f32) -> vec3f {
+    let towards = light.position_or_direction - position * light.perspective;
+    return weight_slope(towards, light.area_right, light.area_up, normal, share) * length(towards);
+}
+
+// Weight of a point in a direction, for a slope that is 0 along the direction to the centre.
+fn point_weight(slope: vec3f, centre: vec3f, direction: vec3f) -> f32 {
+    return max(1.0 + dot(slope, direction) / max(dot(centre, direction), 0.1), 0.0);
 }
 
 // Squared sine of half the angular width of a light; 0 for a point light.

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::extent::point_weights::PointWeights;
 use super::extent::surface_normals::SurfaceNormals;
 use super::field::trilinear;
 use super::footprint::SlabSlice;
@@ -11,7 +12,7 @@ use super::kernel::KernelProfile;
 use super::light_march::ViewSheets;
 use super::{Reference, ReferenceFault, ReferenceWeights};
 use chiaroscuro_render::plan::SheetPosition;
-use chiaroscuro_scene::{LightGeometry, ReconstructionKernel, ReverseKernel, SceneLight, ShadowAlgorithm};
+use chiaroscuro_scene::{ReconstructionKernel, ReverseKernel, SceneLight, ShadowAlgorithm};
 
 /// Attenuation volume of a light, as in the paper: the share that arrives in each voxel.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,55 +64,20 @@ impl Reference<'_> {
             (is_weighted && points.len() > 1).then(|| self.surface_normals(divisor, light.density_scale));
         for point in &points {
             let values = of_point(point).values;
-            let weighted = |(voxel, value): (usize, f64)| {
+            let weight = |voxel: usize| {
                 let place = mean.voxel_centre(voxel);
-                value
-                    * normals.as_ref().map_or(1.0, |normals| self.point_weight(&light, point, normals, place))
+                let scene = self.scene.scene_from_index.transform_point3(place);
+                let on_surface = |normals: &SurfaceNormals| {
+                    PointWeights::new(&light, scene, normals.at(place)).by_offset(point)
+                };
+                normals.as_ref().map_or(1.0, on_surface)
             };
-            let weighted: Vec<f64> = values.into_iter().enumerate().map(weighted).collect();
-            mean.values.iter_mut().zip(weighted).for_each(|(sum, value)| *sum += value / points.len() as f64);
+            let weights: Vec<f64> = (0..values.len()).map(weight).collect();
+            for ((sum, value), weight) in mean.values.iter_mut().zip(values).zip(weights) {
+                *sum += value * weight / points.len() as f64;
+            }
         }
         mean
-    }
-
-    /// Returns the weight of a point of a wide light at an index-space point: its share of the light on the surface near
-    /// there, relative to that on a surface which faces the middle of the light.
-    ///
-    /// Points are even over the sines of their angles to the middle l, so that each gives the same to a facing surface;
-    /// one with the normal n takes n·ω / ((n·l) (l·ω)) of that. If o is the offset of the point from the middle, at a
-    /// distance r, this is 1 + (n·o / n·l − l·o) / r.
-    fn point_weight(
-        &self,
-        light: &SceneLight,
-        point: &SceneLight,
-        normals: &SurfaceNormals,
-        place: DVec3,
-    ) -> f64 {
-        let Some(area) = &light.area else { return 1.0 };
-        let normal = normals.at(place);
-        let middle = match light.kind {
-            LightGeometry::Parallel => light.direction(),
-            LightGeometry::Perspective => {
-                DVec3::from(light.position) - self.scene.scene_from_index.transform_point3(place)
-            }
-        };
-        let centre = match light.kind {
-            LightGeometry::Parallel => light.direction(),
-            LightGeometry::Perspective => light.position.into(),
-        };
-        let towards = middle.normalize_or_zero();
-        let cosine = normal.dot(towards);
-        if cosine == 0.0 {
-            return 1.0;
-        }
-        let change = |offset: DVec3| (normal.dot(offset) / cosine - towards.dot(offset)) / middle.length();
-        // Points on balls are those of a disc, moved along their chords.
-        let offset = DVec3::from(point.position) - centre;
-        let across = offset.reject_from(light.direction());
-        let nearest = change(area.right).hypot(change(area.up));
-        let t = (3.0 * nearest - 2.0).clamp(0.0, 1.0);
-        let above_horizon = 1.0 - t * t * (3.0 - 2.0 * t);
-        1.0 + normal.length() * above_horizon * change(across)
     }
 
     /// Computes the attenuation volumes of all lights that have one.

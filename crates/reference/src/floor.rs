@@ -60,7 +60,7 @@ impl Reference<'_> {
             let cone = light.cone();
             let hood = cone.attenuation(-cone.axis.dot(risen.direction)) * risen.visible_share;
             let of_rays = |rays: &ShadowRays<'_>| {
-                self.apply_cures(rays.attenuation_above(index, up))
+                self.apply_cures(rays.attenuation_above(light, index, up))
                     - self.shadowed_share() * (1.0 - risen.visible_share)
             };
             let arriving = rays.as_ref().map_or(hood, of_rays);

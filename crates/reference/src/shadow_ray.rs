@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::back_project::AttenuationVolume;
 use super::extent::cut::UncutRegion;
+use super::extent::point_weights::PointWeights;
 use super::field::classified::TransferSide;
 use super::kernel::KernelProfile;
 use super::{Reference, gather};
@@ -61,22 +62,34 @@ impl<'r> ShadowRays<'r> {
 
     /// Returns the transmittance of the light at an index-space point: the mean over its points.
     pub(super) fn attenuation(&self, point: DVec3) -> f64 {
-        self.attenuation_above(point, DVec3::ZERO)
+        let of_points = self.points.iter().map(|light| self.attenuation_of(light, point));
+        of_points.sum::<f64>() / self.points.len() as f64
     }
 
-    /// Returns the transmittance at a surface that receives light only from above, in direction `up`; from everywhere
-    /// if `up` is zero.
-    pub(super) fn attenuation_above(&self, point: DVec3, up: DVec3) -> f64 {
+    /// Returns the transmittance of a light at an index-space point, with the points of the light weighted.
+    pub(super) fn weighted_attenuation(&self, point: DVec3, weights: &PointWeights<'_>) -> f64 {
+        let of_points = self.points.iter().map(|light| {
+            let weight = weights.by_direction(light);
+            (weight * self.attenuation_of(light, point), weight)
+        });
+        let (sum, all) = of_points.fold((0.0, 0.0), |(sum, all), (a, b)| (sum + a, all + b));
+        sum / all
+    }
+
+    /// Returns the transmittance of `whole` at a surface that receives light only from above, in direction `up`.
+    pub(super) fn attenuation_above(&self, whole: &SceneLight, point: DVec3, up: DVec3) -> f64 {
         let place = self.reference.scene.scene_from_index.transform_point3(point);
         let is_above = |light: &&SceneLight| {
             let towards = match light.kind {
                 LightGeometry::Parallel => light.direction(),
                 LightGeometry::Perspective => DVec3::from(light.position) - place,
             };
-            up == DVec3::ZERO || towards.dot(up) > 0.0
+            towards.dot(up) > 0.0
         };
+        let weights = PointWeights::new(whole, place, up);
+        let all: f64 = self.points.iter().map(|light| weights.by_direction(light)).sum();
         let seen = self.points.iter().filter(is_above);
-        seen.map(|light| self.attenuation_of(light, point)).sum::<f64>() / self.points.len() as f64
+        seen.map(|light| weights.by_direction(light) * self.attenuation_of(light, point)).sum::<f64>() / all
     }
 
     /// Returns ∏ (1 − α(s + r·k·Δs)) over the samples between an index-space point and a point light, times the share

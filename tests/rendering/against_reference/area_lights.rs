@@ -143,7 +143,10 @@ fn mistakes_in_them_are_noticed() {
         ("average.perspective * scene_from_index", "0.0 * scene_from_index"),
     ] {
         assert_in_shader(volume, from);
-        assert!(differs_in_look(&lamp, N, from, to, ReferenceFault::None), "{to:?} for {from:?} is not noticed");
+        assert!(
+            differs_in_look(&lamp, N, from, to, ReferenceFault::None),
+            "{to:?} for {from:?} is not noticed"
+        );
     }
     // A single ring, of which half a step is 45°.
     settings.shadows.area.samples = 4;
@@ -164,7 +167,7 @@ fn mistakes_in_them_are_noticed() {
         ("- first) + ring;", "- first);"),
         ("1.0 + inner * tangents", "1.0 + 9.0 * inner * tangents"),
         ("light.area_up * across.y", "light.area_up * across.x"),
-        ("return sum / f32(light.points);", "return sum / f32(light.points + 1u);"),
+        ("return sum / weights;", "return sum / (weights + 1.0);"),
         ("shading.shininess * width / 16.0", "shading.shininess * width / 4.0"),
         // The visible part of the light shines as if from the centre; the rest counts where shadows are weak.
         ("disc.y * half_width, disc.x", "max(facing, 0.0), disc.x"),
@@ -174,6 +177,20 @@ fn mistakes_in_them_are_noticed() {
         assert_in_shader("eye/eye_pass.wgsl", from);
         assert!(pictures_differ(&settings, from, to), "{to:?} for {from:?} is not noticed");
     }
+}
+
+/// Rays from samples to a light that is wide, but above the horizon of most surfaces, with points that count alike.
+#[test]
+fn equal_weights_of_rays_are_noticed() {
+    let mut settings = look();
+    settings.lights.truncate(1);
+    settings.lights[0].angle_deg = 40.0;
+    settings.shadows.area.samples = 8;
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    let (from, to) = ("let weight = point_weight(slope, centre, way.direction);", "let weight = 1.0;");
+    assert_in_shader("eye/eye_pass.wgsl", from);
+    assert!(!pictures_differ(&settings, "\u{0}", ""));
+    assert!(pictures_differ(&settings, from, to));
 }
 
 /// Returns true if the picture of a damaged shader differs from the reference's.

@@ -1,5 +1,6 @@
 //! Extent of the material: cuts, the faces of the grid, missing voxels, and normals of its surfaces.
 
 pub(super) mod cut;
+pub(super) mod point_weights;
 mod presence;
 pub(super) mod surface_normals;

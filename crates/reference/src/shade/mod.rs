@@ -8,6 +8,7 @@ use glam::DVec3;
 use self::near_field::NearField;
 use self::opacity_sides::opacity_sides;
 use crate::back_project::AttenuationVolume;
+use crate::extent::point_weights::PointWeights;
 use crate::field::classified::TransferSide;
 use crate::field::pyramid::MAX_LEVEL;
 use crate::indirect::bounces::BouncedLight;
@@ -224,7 +225,13 @@ impl<'r> Shader<'r> {
                 Some(self.near_field(&shaded_light.light, volume, sample, to_light))
             }
             LightAttenuation::Volume(volume) => Some(volume.at(place)),
-            LightAttenuation::Rays(rays) => Some(rays.attenuation(place)),
+            LightAttenuation::Rays(rays) => {
+                let surface = self.surface(sample.gradient);
+                let on_surface = scene.scene_from_index.transform_point3(sample.point);
+                let normal = surface.normal * surface.weight;
+                let weights = PointWeights::new(&shaded_light.light, on_surface, normal);
+                Some(rays.weighted_attenuation(place, &weights))
+            }
         }
     }
 

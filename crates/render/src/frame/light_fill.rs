@@ -29,6 +29,8 @@ pub(crate) struct LightFill {
     pub light_index: usize,
     /// Index of the volume among the cached ones.
     pub cache_index: usize,
+    /// Light in the scene.
+    pub light: SceneLight,
     /// Point lights on an area light; the light itself if it has no size.
     pub points: Vec<SceneLight>,
     /// Temporary volumes for averaging, if there are several points.
@@ -118,6 +120,7 @@ impl LightFill {
             light_index: index,
             cache_index: 0,
             is_coarse,
+            light,
             points,
             average: average.transpose()?,
             colors: fresh.has_colors().then(|| ColorVolumes::new(context, fresh)).transpose()?,

@@ -40,6 +40,8 @@ pub(crate) struct FloorShadowMap {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PointView<'a> {
     pub point: &'a SceneLight,
+    /// Light on which the point lies.
+    pub whole: &'a SceneLight,
     pub geometry: &'a LightView,
     /// Index of the view, and the number of views of all points.
     pub index: usize,
@@ -122,7 +124,7 @@ impl FloorShadowMap {
         sheets: &LightSheets,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let PointView { point, geometry, index, count, points } = of;
+        let PointView { point, whole: light, geometry, index, count, points } = of;
         let variant = FloorShadowVariant { is_first: index == 0, is_last: index + 1 == count };
         let pipeline = gpu.shaders.pipeline(&variant)?;
         let FloorTexels { origin, along: [right, front] } = self.extent.texels(self.edge);
@@ -134,6 +136,15 @@ impl FloorShadowMap {
             LightGeometry::Parallel => (point.direction(), 0.0),
             LightGeometry::Perspective => (point.position.into(), 1.0),
         };
+        let centre = match light.kind {
+            LightGeometry::Parallel => light.direction(),
+            LightGeometry::Perspective => light.position.into(),
+        };
+        let [offset, to_right, to_top] = light.area.map_or([DVec3::ZERO; 3], |area| {
+            // The points of balls count like those of a disc.
+            let offset = (DVec3::from(point.position) - centre).reject_from(light.direction());
+            [offset, area.right, area.up]
+        });
         let pitch = 1.0 / geometry.frame.pitch;
         let to_light = DMat3::from_diagonal(DVec3::new(pitch, pitch, 1.0)) * geometry.axes.transpose();
         let light_from_scene = DAffine3 { matrix3: to_light, translation: -(to_light * geometry.anchor) };
@@ -149,6 +160,14 @@ impl FloorShadowMap {
             perspective,
             place: vec3(place),
             pad0: 0.0,
+            centre: vec3(centre),
+            pad1: 0.0,
+            offset: vec3(offset),
+            pad2: 0.0,
+            right: vec3(to_right),
+            pad3: 0.0,
+            top: vec3(to_top),
+            pad4: 0.0,
             light_from_scene_x,
             light_from_scene_y,
             light_from_scene_z,

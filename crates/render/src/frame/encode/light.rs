@@ -156,6 +156,7 @@ impl RenderJob<'_> {
         if let Some(floor) = light_volume.floor.as_ref().filter(|_| ends_view) {
             let point_view = PointView {
                 point: &build.points[*point],
+                whole: &build.light,
                 geometry,
                 index: view,
                 count: build.views.len(),
@@ -222,9 +223,8 @@ impl RenderJob<'_> {
         let gpu = VolumeContext::new(self.tools, &loaded.volume);
         let is_first = color.unwrap_or(0) == 0 && AreaLightAverage::is_in_first_batch(point);
         if let Some(normals) = average.normals.as_ref().filter(|_| is_first) {
-            let settings = &self.request.settings;
-            let density_scale = settings.lights[build.light_index].density_scale;
-            normals.fill(gpu, &loaded.tables.product, settings, density_scale, encoder)?;
+            let (tables, settings) = (&loaded.tables.product, &self.request.settings);
+            normals.fill(gpu, tables, settings, build.light.density_scale, encoder)?;
         }
         average.add_batch(gpu, build.color_volume(color, whole), point, &build.bricks, encoder)
     }
