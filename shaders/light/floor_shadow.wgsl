@@ -20,15 +20,11 @@ struct FloorShadowUniform {
     // Unit direction towards a parallel light, or position of a perspective one, in scene space.
     place: vec3f,
     pad0: f32,
-    // Place of the centre of the light, offset of the point from there, and vectors to the light's borders.
-    centre: vec3f,
-    pad1: f32,
-    offset: vec3f,
-    pad2: f32,
-    right: vec3f,
-    pad3: f32,
-    top: vec3f,
-    pad4: f32,
+    // Place of the centre of the light; vectors from there to its right and its upper border, and in w the coordinate
+    // of the point between the centre and the border.
+    centre: vec4f,
+    right: vec4f,
+    top: vec4f,
     // Scene space to light axes at the anchor, x and y in pixels of the anchor plane, z in scene units: three rows of
     // an affine map.
     light_from_scene_x: vec4f,
@@ -80,8 +76,11 @@ fn main(@builtin(global_invocation_id) global: vec3u) {
     let far = mix(transmittance_behind(low + vec2f(0.0, 1.0)), transmittance_behind(low + vec2f(1.0, 1.0)), f.x);
     let at = id.y * floor_map.size + id.x;
     var missing = select(0.0, 1.0 - select(0.0, mix(near, far, f.y), is_lit), is_owned);
-    let towards = floor_map.centre - place * floor_map.perspective;
-    missing *= 1.0 + dot(weight_slope(towards, floor_map.right, floor_map.top, floor_map.up, 1.0), floor_map.offset);
+    let towards = floor_map.centre.xyz - place * floor_map.perspective;
+    let right = floor_map.right;
+    let top = floor_map.top;
+    let slope = weight_slope(towards, right.xyz, top.xyz, floor_map.up, 1.0);
+    missing *= 1.0 + dot(slope, right.xyz * right.w + top.xyz * top.w);
     if (!IS_FIRST) {
         missing += sums[at];
     }

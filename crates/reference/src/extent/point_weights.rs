@@ -3,7 +3,7 @@
 //! Points are even over the sines of their angles to the middle l of the light, so that each gives the same to a
 //! surface that faces it; one with the normal n takes n·ω / ((n·l) (l·ω)) of that from a point in direction ω.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use chiaroscuro_scene::{LightGeometry, SceneLight};
 
@@ -42,7 +42,7 @@ impl<'a> PointWeights<'a> {
         if let Some(area) = &light.area
             && weights.normal.dot(weights.middle) != 0.0
         {
-            let lowest = weights.change(area.right).hypot(weights.change(area.up));
+            let lowest = DVec2::new(weights.change(area.right), weights.change(area.up)).length();
             let t = (3.0 * lowest - 2.0).clamp(0.0, 1.0);
             weights.share = normal.length() * (1.0 - t * t * (3.0 - 2.0 * t));
         }

@@ -13,7 +13,7 @@ use crate::plan::{FloorPlane, FloorTexels, LightView};
 use crate::resources::pass;
 use crate::volume::{VolumeContext, texture_3d};
 use crate::{GpuContext, GpuError};
-use chiaroscuro_scene::{LightGeometry, SceneLight};
+use chiaroscuro_scene::{LightArea, LightGeometry, SceneLight};
 
 /// Range of the map's texels along an edge; within it, texels are as large as the blocks of the light volume.
 ///
@@ -140,11 +140,11 @@ impl FloorShadowMap {
             LightGeometry::Parallel => light.direction(),
             LightGeometry::Perspective => light.position.into(),
         };
-        let [offset, to_right, to_top] = light.area.map_or([DVec3::ZERO; 3], |area| {
-            // The points of balls count like those of a disc.
-            let offset = (DVec3::from(point.position) - centre).reject_from(light.direction());
-            [offset, area.right, area.up]
-        });
+        let way = DVec3::from(point.position) - centre;
+        let border = |of: fn(&LightArea) -> DVec3| {
+            let border = light.area.as_ref().map_or(DVec3::X, of);
+            border.extend(way.dot(border) / border.length_squared()).as_vec4().into()
+        };
         let pitch = 1.0 / geometry.frame.pitch;
         let to_light = DMat3::from_diagonal(DVec3::new(pitch, pitch, 1.0)) * geometry.axes.transpose();
         let light_from_scene = DAffine3 { matrix3: to_light, translation: -(to_light * geometry.anchor) };
@@ -160,14 +160,9 @@ impl FloorShadowMap {
             perspective,
             place: vec3(place),
             pad0: 0.0,
-            centre: vec3(centre),
-            pad1: 0.0,
-            offset: vec3(offset),
-            pad2: 0.0,
-            right: vec3(to_right),
-            pad3: 0.0,
-            top: vec3(to_top),
-            pad4: 0.0,
+            centre: centre.extend(0.0).as_vec4().into(),
+            right: border(|area| area.right),
+            top: border(|area| area.up),
             light_from_scene_x,
             light_from_scene_y,
             light_from_scene_z,
