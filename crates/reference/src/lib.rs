@@ -18,6 +18,7 @@
 //! | crop box and clip plane | `extent/cut` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | march of light | `light_march` | [`Reference::light_sheets`] |
 //! | reverse splat | `back_project` | [`Reference::back_project`], [`Reference::attenuation`] |
+//! | weights of points on surfaces | `extent/point_weights`, `extent/surface_normals` | [`Reference::attenuation`] |
 //! | rays to the light | `shadow_ray` | [`Reference::attenuation`], [`Reference::picture`] |
 //! | sky visibility and light | `indirect/sky` | [`Reference::sky_visibility`], [`Reference::picture`] |
 //! | bounced light | `indirect/bounces` | [`Reference::bounced_light`], [`Reference::picture`] |
