@@ -1,5 +1,7 @@
 // Eye pass (P §2, §3.5, eq. 9): one thread per pixel walks through the eye's sheets front to back, sums density,
-// classifies it, shades it with attenuated light and composites.
+// classifies it, shades it with attenuated light and composites: along the ray through its middle, or along one of
+// several in pixels with edges, which edges.wgsl has listed. One pipeline does both, since compiling another would take
+// longer than most edges; and each dispatch has one ray, since a loop around it costs a tenth of the time.
 //
 // The result is linear, premultiplied and not yet tone-mapped.
 #import "common/sizes.wgsl"
@@ -16,8 +18,25 @@
 // r: distance to the nearest cell that is visible to the eye.
 @group(0) @binding(2) var distances: texture_3d<f32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba32float, write>;
+// Workgroups for the pixels with edges, their number, and each with its column in the low half and its row in the high.
+@group(0) @binding(4) var<storage, read> edge_list: array<u32>;
 // For rays to lights: g is the distance in cells to the nearest that attenuates light.
 @group(0) @binding(5) var light_distances: texture_3d<f32>;
+@group(0) @binding(6) var<uniform> bound_pixel_ray: PixelRayUniform;
+var<private> pixel_ray: PixelRayUniform;
+// Weighted sum of the rays of earlier dispatches.
+@group(0) @binding(7) var earlier: texture_2d<f32>;
+
+struct PixelRayUniform {
+    // Place of the ray in pixels right and down of the middle (xy), shift of its slabs in scene units (z), and weight.
+    place: vec4f,
+    // 1 if only the listed pixels are drawn.
+    is_listed: u32,
+    // 1 if the ray is added to earlier ones.
+    is_added: u32,
+    pad0: u32,
+    pad1: u32,
+}
 
 #option DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3)
 #option BY_NEED: slabs are integrated between their faces, and halved by need (adaptive_slabs.wgsl)
@@ -101,13 +120,13 @@ fn gradient_between_sheets(pixel: vec2f, k: f32) -> vec3f {
 }
 
 // Light from the material of slab k, where the ray crosses it.
-fn shade_slab(ray: Ray, pixel: vec2u, k: i32, found: SlabSample) -> vec3f {
+fn shade_slab(ray: Ray, pixel: vec2f, k: i32, found: SlabSample) -> vec3f {
     let depth = depth_of(eye.frame, f32(k));
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
     let rising = presence_gradient(p, level);
     if (SHEET_GRADIENTS) {
-        return shade_material(p, level, gradient_between_sheets(vec2f(pixel), f32(k)), rising, found);
+        return shade_material(p, level, gradient_between_sheets(pixel, f32(k)), rising, found);
     }
     return shade_material(p, level, gradient_to_scene(eye.space, gradient_at(p, level)), rising, found);
 }
@@ -178,7 +197,7 @@ struct RayResult {
     transmittance: f32,
 }
 
-fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> RayResult {
+fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2f) -> RayResult {
     let walk = cell_ray(eye.frame, ray);
     var at = next_sample(ray, walk, span, inside.x, inside.y);
     var color = vec3f(0.0);
@@ -209,19 +228,9 @@ fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2u) -> RayResult {
     return RayResult(color, t);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_id) local: vec3u,
-) {
-    eye = bound_eye;
-    grid = bound_grid;
-    let pixel = tile_of(group, groups.y, eye.runs) * TILE_EDGE + in_tile(local.xy) + vec2u(0u, eye.first_row);
-    if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
-        return;
-    }
-    let ray = ray_of(eye.frame, vec2f(pixel));
+// Linear, premultiplied light and opacity along the ray through a place on the picture, in pixels.
+fn light_along_ray(place: vec2f) -> vec4f {
+    let ray = ray_of(eye.frame, place);
     let span = span_within(eye.visible_cut, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
 #if BY_NEED
@@ -230,8 +239,37 @@ fn main(
 #if PREINTEGRATED
     let result = preintegrated_slabs(ray, span, inside);
 #else
-    let result = even_slabs(ray, span, inside, pixel);
+    let result = even_slabs(ray, span, inside, place);
 #endif
 #endif
-    textureStore(picture, pixel, vec4f(result.color, 1.0 - result.transmittance));
+    return vec4f(result.color, 1.0 - result.transmittance);
+}
+
+// Pixel of an entry of the list; outside of the picture behind its end.
+fn listed_pixel(entry: u32) -> vec2u {
+    let packed = edge_list[min(entry + 4u, arrayLength(&edge_list) - 1u)];
+    return select(vec2u(0xffffffffu), vec2u(packed & 0xffffu, packed >> 16u), entry < edge_list[3]);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
+    eye = bound_eye;
+    grid = bound_grid;
+    pixel_ray = bound_pixel_ray;
+    let tile = tile_of(group, groups.y, eye.runs);
+    let in_order = tile * TILE_EDGE + in_tile(local.xy) + vec2u(0u, eye.first_row);
+    let entry = (tile.y * groups.x + tile.x) * TILE_EDGE * TILE_EDGE + index;
+    let pixel = select(in_order, listed_pixel(entry), pixel_ray.is_listed != 0u);
+    if (pixel.x >= eye.frame.size.x || pixel.y >= eye.end_row) {
+        return;
+    }
+    eye.frame.first_depth += pixel_ray.place.z;
+    let light = pixel_ray.place.w * light_along_ray(vec2f(pixel) + pixel_ray.place.xy);
+    let sum = select(vec4f(0.0), textureLoad(earlier, pixel, 0), pixel_ray.is_added != 0u);
+    textureStore(picture, pixel, sum + light);
 }

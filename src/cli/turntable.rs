@@ -70,7 +70,7 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         .with_choice(loaded.volume().contents().choice());
     let image_spec = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = ImageRecord::new(image_spec, context.description());
-    let options = RenderOptions::for_image(&image_spec);
+    let options = RenderOptions::for_image(&image_spec, &settings);
     let mut is_empty = true;
     for frame in 0..args.frames {
         let settings = settings.at_turntable_angle(light, f64::from(frame) / f64::from(args.frames));

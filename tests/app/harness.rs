@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
 use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
-use chiaroscuro_scene::{LookRecord, Settings};
+use chiaroscuro_scene::{ImageSpec, LookRecord, Settings};
 use chiaroscuro_volume::{Dataset, LoadControl, ValueRanges};
 use chiaroscuro_volume_io::{LoadOptions, open};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
@@ -192,9 +192,9 @@ pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
     (bytes, size)
 }
 
-/// Renders the window's settings with a renderer on another device.
+/// Renders the window's settings with a renderer on another device, as in an export.
 pub(crate) fn render(harness: &Harness<'_, App>, size: [u32; 2]) -> RenderedPicture {
-    render_with(harness, size, &RenderOptions::default())
+    render_with(harness, size, &RenderOptions::for_image(&ImageSpec::new(size), harness.state().settings()))
 }
 
 pub(crate) fn render_with(

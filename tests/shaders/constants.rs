@@ -69,7 +69,7 @@ fn workgroups_fill_bricks_and_tiles() {
     let (brick, tile) = (BRICK_EDGE as u32, TILE_EDGE);
     let half_bricks =
         ["light/clear_margin", "light/combined_light", "light/raycast", "scatter/normalise", "scatter/splat"];
-    let tiles = ["eye/floor", "eye/eye_pass", "light/march"];
+    let tiles = ["eye/edges", "eye/floor", "eye/eye_pass", "light/march"];
     for (names, size) in [(&half_bricks[..], [brick, brick, brick / 2]), (&tiles, [tile, tile, 1])] {
         for name in names {
             let module =
@@ -112,7 +112,7 @@ const SIZES: [(&str, usize, usize, &[&str]); 9] = [
         "TILE_EDGE",
         TILE_EDGE as usize,
         4,
-        &["scattered_light/sweep", "eye/floor", "eye/eye_pass", "light/march"],
+        &["scattered_light/sweep", "eye/edges", "eye/floor", "eye/eye_pass", "light/march"],
     ),
     ("TILE_ROW_BIT", TILE_ROW_BIT as usize, 14, &["light/march"]),
     ("TILE_FIRST_BIT", TILE_FIRST_BIT as usize, 30, &["light/march"]),
@@ -147,6 +147,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("diffusion/restrict.wgsl", [4, 4, 4]),
         ("diffusion/right_side.wgsl", [4, 4, 4]),
         ("diffusion/stencil.wgsl", [4, 4, 4]),
+        ("eye/edges.wgsl", [8, 8, 1]),
         ("eye/eye_pass.wgsl", [8, 8, 1]),
         ("eye/floor.wgsl", [8, 8, 1]),
         ("light/area_light.wgsl", [8, 8, 4]),

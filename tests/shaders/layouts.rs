@@ -246,6 +246,11 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             }),
         ),
         (
+            "eye/edges.wgsl",
+            layout!(EdgesUniform { size, first_row, end_row, min_contrast, pad0, pad1, pad2 }),
+        ),
+        ("eye/eye_pass.wgsl", layout!(PixelRayUniform { place, is_listed, is_added, pad0, pad1 })),
+        (
             "scatter/splat.wgsl",
             layout!(ScatterSlabUniform {
                 frame,

@@ -86,7 +86,8 @@ pub use light_direction::LightDirection;
 pub use lighting_rig::{LightingRig, key_and_fill};
 pub use object_rotation::{CameraLightRotation, ObjectRotation};
 pub use settings::{
-    Background, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading, SCHEMA, Settings, ToneMap,
+    ANTIALIASING_RAYS, Background, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading,
+    SCHEMA, Settings, ToneMap,
 };
 pub use transfer::{
     ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,

@@ -90,6 +90,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (row(sections::SHADING, text::shading::SIDES), text::synonyms::SIDES),
     (row(sections::SHADING, text::shading::EXPOSURE), text::synonyms::BRIGHTNESS),
     (row(sections::SHADING, text::shading::TONE_MAP), text::synonyms::TONE_MAP),
+    (row(sections::SHADING, text::shading::ANTIALIASING), text::synonyms::ANTIALIASING),
     (row(sections::SHADING, text::shading::BACKGROUND), text::synonyms::BACKGROUND),
     (row(sections::CUTS, text::cuts::CROP), text::synonyms::CROP),
     (row_named(sections::CUTS, text::cuts::AXES[0]), text::synonyms::CROP_ALONG),

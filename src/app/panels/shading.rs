@@ -1,4 +1,5 @@
-//! Section "Shading" of the side panel: reflection of the material, exposure, tone map and background.
+//! Section "Shading" of the side panel: reflection of the material, exposure, tone map,
+//! antialiasing and background.
 
 use eframe::egui::Ui;
 
@@ -10,6 +11,13 @@ use chiaroscuro_scene::{LitSides, MAX_EXPOSURE, MIN_EXPOSURE, ToneMap};
 
 const TONE_MAPS: [(ToneMap, ControlText); 2] =
     [(ToneMap::Neutral, text::shading::NEUTRAL), (ToneMap::Clip, text::shading::CLIP)];
+
+const ANTIALIASING: [(u32, ControlText); 4] = [
+    (1, text::shading::NO_ANTIALIASING),
+    (4, text::shading::FOUR_RAYS),
+    (8, text::shading::EIGHT_RAYS),
+    (16, text::shading::SIXTEEN_RAYS),
+];
 
 const SIDES: [(LitSides, ControlText); 2] =
     [(LitSides::One, text::shading::ONE_SIDE), (LitSides::Two, text::shading::BOTH_SIDES)];
@@ -38,6 +46,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
         .logarithmic();
     exposure.show(ui, &mut output.exposure, panels.first_look.output.exposure);
     choice_row(ui, text::shading::TONE_MAP, &mut output.tone_map, &TONE_MAPS);
+    choice_row(ui, text::shading::ANTIALIASING, &mut output.antialiasing, &ANTIALIASING);
     row(ui, text::shading::BACKGROUND, |ui| {
         color_button(ui, text::shading::BACKGROUND_TOP, &mut output.background.top);
         color_button(ui, text::shading::BACKGROUND_BOTTOM, &mut output.background.bottom);

@@ -217,10 +217,11 @@ impl Viewport {
         self.is_device_lost
     }
 
-    /// Returns true if the full-quality picture of these looks is on screen and no cross-fade is running.
+    /// Returns true if the final picture of these looks is on screen and no cross-fade is running.
     pub(super) fn is_idle(&self, looks: &ComparedLooks) -> bool {
-        let is_full = self.displayed.as_ref().is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
-        is_full && self.fading.is_none() && self.displays(looks)
+        let is_final =
+            self.displayed.as_ref().is_some_and(|(shown, quality)| *quality == shown.final_quality());
+        is_final && self.fading.is_none() && self.displays(looks)
     }
 
     /// Returns true if a picture of these looks is on screen, be it a preview.
@@ -228,6 +229,11 @@ impl Viewport {
         let (Some(dataset), Some((shown, _))) = (&self.dataset, &self.displayed) else { return false };
         let request = FrameRequest::new(self.generation, dataset, looks.clone(), shown.size);
         *shown == request && self.frame_request.as_ref().is_some_and(|requested| requested == shown)
+    }
+
+    /// Returns true if a full-quality picture of these looks is on screen, which may yet be antialiased.
+    pub(super) fn displays_full_quality(&self, looks: &ComparedLooks) -> bool {
+        self.displayed.as_ref().is_some_and(|(_, quality)| quality.is_full()) && self.displays(looks)
     }
 
     /// Requests a picture of the looks from the render thread and takes finished ones. To be called once per frame,
@@ -281,18 +287,22 @@ impl Viewport {
         self.dataset = Some(dataset);
         // Pixel for pixel if the sizes match.
         let exact = image.size == frame_request.size.map(|n| n as usize);
-        // A preview of the same request fades out; any other picture is replaced at once.
-        let is_same = self
-            .displayed
-            .as_ref()
-            .is_some_and(|(shown, before)| *shown == frame_request && *before != quality);
-        self.fading =
-            self.textures[0].take_if(|_| is_same && other.is_none()).map(|picture| (picture, self.now_s));
+        // A preview of the same request fades out; any other picture is replaced at once. Antialiasing changes a
+        // picture only at its edges, and leaves a preview that still fades out to fade.
+        let before = self.displayed.as_ref().filter(|(shown, _)| *shown == frame_request);
+        let before = before.map(|(_, before)| *before);
+        let keeps_fading = other.is_none() && before.is_some_and(QualityLevel::is_full);
+        let is_same = before.is_some_and(|before| before != quality);
+        if !keeps_fading {
+            self.fading =
+                self.textures[0].take_if(|_| is_same && other.is_none()).map(|picture| (picture, self.now_s));
+        }
         if self.fading.is_some() {
             ctx.request_repaint();
         }
         self.upload_texture(0, &image, exact);
-        self.finished_image = (quality == QualityLevel::FULL && other.is_none()).then(|| Arc::new(image));
+        let is_final = quality == frame_request.final_quality();
+        self.finished_image = (is_final && other.is_none()).then(|| Arc::new(image));
         match other {
             Some((right, difference)) => {
                 self.difference = Some(difference.distance);

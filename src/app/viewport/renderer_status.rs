@@ -159,7 +159,7 @@ impl Viewport {
             RendererActivity::DeviceLost
         } else if self.dataset.is_none() {
             RendererActivity::Idle
-        } else if self.is_idle(looks) {
+        } else if self.is_idle(looks) || refining.is_none() && self.displays_full_quality(looks) {
             RendererActivity::FullQuality
         } else if self.failed_request.is_some() && self.failed_request == self.frame_request {
             RendererActivity::Failed

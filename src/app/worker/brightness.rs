@@ -126,7 +126,7 @@ impl BrightnessTracker {
 /// Returns true for previews whose brightness is compensated; comparisons are excluded, since their difference
 /// matters.
 fn is_compensated(frame_request: &FrameRequest, quality: QualityLevel) -> bool {
-    quality != QualityLevel::FULL && frame_request.looks.right.is_none()
+    !quality.is_full() && frame_request.looks.right.is_none()
 }
 
 /// Returns true if two looks differ only in the camera and the positions of lights.

@@ -30,12 +30,26 @@ pub(crate) struct QualityLevel {
     pub prefiltered_eye: bool,
     /// True if the light pass uses the prefiltered kernel.
     pub prefiltered_light: bool,
+    /// True if edges are antialiased, as the look says.
+    pub antialiased: bool,
 }
 
 impl QualityLevel {
-    /// Full quality, as in exports.
-    pub(crate) const FULL: Self =
-        Self { scale: 1, light_resolution: None, prefiltered_eye: false, prefiltered_light: false };
+    /// Full quality, except that edges are not antialiased.
+    pub(crate) const FULL: Self = Self {
+        scale: 1,
+        light_resolution: None,
+        prefiltered_eye: false,
+        prefiltered_light: false,
+        antialiased: false,
+    };
+    /// Full quality with antialiased edges, as in exports.
+    pub(crate) const ANTIALIASED: Self = Self { antialiased: true, ..Self::FULL };
+
+    /// Returns true for full quality, whether or not edges are antialiased.
+    pub(crate) fn is_full(self) -> bool {
+        Self { antialiased: false, ..self } == Self::FULL
+    }
 
     /// Returns the number of pixels to render for a viewport, along each axis.
     pub(crate) fn size(self, viewport: [u32; 2]) -> [u32; 2] {
@@ -45,7 +59,7 @@ impl QualityLevel {
     /// Returns the settings with which a look is rendered at this level.
     pub(crate) fn settings(self, look: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
         let mut settings = look.clone();
-        if self != Self::FULL {
+        if !self.is_full() {
             // The scattering engine is too slow during interaction.
             settings.sampling.engine = RenderEngine::Gather;
         }
@@ -158,17 +172,13 @@ impl QualityController {
     /// Returns the number of pieces into which a chunk of the light pass is divided.
     pub(crate) fn light_parts(&self, quality: QualityLevel) -> u32 {
         // On a software adapter, half a chunk of a 256³ volume takes about 20 ms.
-        if quality == QualityLevel::FULL && self.software { 2 } else { 1 }
+        if quality.is_full() && self.software { 2 } else { 1 }
     }
 
     /// Returns the number of rows per band for a picture of the given size.
     pub(crate) fn band_rows(&self, quality: QualityLevel, [width, height]: [u32; 2]) -> u32 {
         // Previews run to completion, so they need no bands.
-        let whole = if self.software && quality == QualityLevel::FULL {
-            height.div_ceil(SOFTWARE_BANDS)
-        } else {
-            height
-        };
+        let whole = if self.software && quality.is_full() { height.div_ceil(SOFTWARE_BANDS) } else { height };
         whole.min(BAND_PIXELS / width.max(1)).max(1)
     }
 
@@ -241,6 +251,7 @@ impl QualityController {
             light_resolution: coarse.or((missing.count == 0).then_some(fallback)),
             prefiltered_eye: quick_eye,
             prefiltered_light: quick_light,
+            antialiased: false,
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Scheduling of the render thread: a preview at once, full quality when nothing has changed for a moment.
+//! Scheduling of the render thread: a preview at once, full quality when nothing has changed for a moment, and
+//! antialiased edges after another one.
 
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,8 @@ pub(super) enum RenderPurpose {
     Preview,
     /// Full quality at rest; it is dropped when something else is requested.
     Refinement,
+    /// Antialiased edges of the full-quality picture; dropped likewise.
+    Antialiasing,
 }
 
 /// Time at which the next picture is due.
@@ -116,13 +119,13 @@ impl RenderSchedule {
     /// belongs to an outdated request.
     pub(super) fn is_obsolete(&self, purpose: RenderPurpose, frame_request: &FrameRequest) -> bool {
         let is_other =
-            purpose == RenderPurpose::Refinement && Some(frame_request) != self.frame_request.as_ref();
+            purpose != RenderPurpose::Preview && Some(frame_request) != self.frame_request.as_ref();
         self.is_closed || self.next_scene.is_some() || self.next_dataset.is_some() || is_other
     }
 
     /// Returns true if a picture waits until the look has changed; its light volumes are filled meanwhile.
     pub(super) fn is_on_hold(&self, purpose: RenderPurpose) -> bool {
-        purpose == RenderPurpose::Refinement && self.holds_refinement
+        purpose != RenderPurpose::Preview && self.holds_refinement
     }
 
     /// Records that everything a picture needs before it is drawn is complete.
@@ -134,7 +137,7 @@ impl RenderSchedule {
     pub(super) fn due(&self) -> NextRender {
         let Some(frame_request) = &self.frame_request else { return NextRender::OnMailboxChange };
         let shown = self.published.as_ref().filter(|(shown, _)| shown == frame_request);
-        let is_finished = shown.is_some_and(|(_, quality)| *quality == QualityLevel::FULL);
+        let is_finished = shown.is_some_and(|(shown, quality)| *quality == shown.final_quality());
         let waits =
             shown.is_some() && self.holds_refinement && self.prepared_request.as_ref() == Some(frame_request);
         if is_finished || waits || self.failed_request.as_ref() == Some(frame_request) {
@@ -145,7 +148,9 @@ impl RenderSchedule {
             // A first picture takes precedence over the pause.
             NextRender::Now(RenderPurpose::Preview, Box::new(frame_request.clone()))
         } else if rest.is_zero() {
-            NextRender::Now(RenderPurpose::Refinement, Box::new(frame_request.clone()))
+            let is_full = shown.is_some_and(|(_, quality)| quality.is_full());
+            let purpose = if is_full { RenderPurpose::Antialiasing } else { RenderPurpose::Refinement };
+            NextRender::Now(purpose, Box::new(frame_request.clone()))
         } else if self.is_frame_pending {
             NextRender::OnMailboxChange
         } else {

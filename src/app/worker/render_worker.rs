@@ -1,7 +1,7 @@
 //! Render worker: renders the window's pictures on the render thread.
 //!
 //! It works on the latest request, one job at a time: a preview at once, full quality when nothing has changed for a
-//! moment. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
+//! moment, and antialiased edges after another one. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
 //! something else is requested.
 
 use std::sync::{Arc, PoisonError};
@@ -17,7 +17,7 @@ use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_render::{
-    GpuContext, GpuError, RenderOptions, RenderStage, WorkOptions, measure_balance_fast,
+    GpuContext, GpuError, PictureOptions, RenderOptions, RenderStage, WorkOptions, measure_balance_fast,
     plan::{FrameKeys, RenderRequest},
 };
 use chiaroscuro_scene::Settings;
@@ -176,6 +176,7 @@ impl RenderWorker {
         let quality = match purpose {
             RenderPurpose::Preview => self.preview_quality(scene, &frame_request),
             RenderPurpose::Refinement => QualityLevel::FULL,
+            RenderPurpose::Antialiasing => QualityLevel::ANTIALIASED,
         };
         let task = RenderTask { frame_request, purpose, quality };
         let looks = &task.frame_request.looks;
@@ -191,16 +192,17 @@ impl RenderWorker {
         Ok(())
     }
 
-    /// Chooses the quality level of a preview: the full one if only a display pass is needed.
+    /// Chooses the quality level of a preview: a full one if only a display pass is needed.
     fn preview_quality(&self, scene: &RenderScene, frame_request: &FrameRequest) -> QualityLevel {
-        let options = self.options(QualityLevel::FULL);
         let FrameRequest { looks, size, .. } = frame_request;
-        let is_drawn = |settings: &Settings| {
-            let request = renderer_request(scene, settings, *size, QualityLevel::FULL);
-            scene.renderer.is_drawn(&request, &options)
-        };
-        if is_drawn(&looks.left) && looks.right.as_ref().is_none_or(is_drawn) {
-            return QualityLevel::FULL;
+        for quality in [frame_request.final_quality(), QualityLevel::FULL] {
+            let is_drawn = |settings: &Settings| {
+                let request = renderer_request(scene, settings, *size, quality);
+                scene.renderer.is_drawn(&request, &self.options(quality, settings))
+            };
+            if is_drawn(&looks.left) && looks.right.as_ref().is_none_or(is_drawn) {
+                return quality;
+            }
         }
         // A comparison has twice the pixels.
         let [width, height] = *size;
@@ -209,13 +211,15 @@ impl RenderWorker {
         self.controller.preview_level(pixels, missing_light_volumes(last_full_keys, frame_request.keys()))
     }
 
-    /// Returns the renderer's options for a quality level.
-    fn options(&self, quality: QualityLevel) -> RenderOptions {
-        RenderOptions::from(WorkOptions {
+    /// Returns the renderer's options for a look at a quality level.
+    fn options(&self, quality: QualityLevel, look: &Settings) -> RenderOptions {
+        let rays = if quality.antialiased { look.rays_per_pixel() } else { 1 };
+        let work = WorkOptions {
             light_parts: self.controller.light_parts(quality),
-            preview: quality != QualityLevel::FULL,
+            preview: !quality.is_full(),
             ..WorkOptions::default()
-        })
+        };
+        RenderOptions { picture: PictureOptions { rays, ..PictureOptions::default() }, ..work.into() }
     }
 
     /// Renders one look of a task; `None` if the task was dropped meanwhile.
@@ -228,7 +232,7 @@ impl RenderWorker {
     ) -> Result<Option<RenderedLook>, GpuError> {
         let RenderTask { frame_request, purpose, quality } = task;
         let request = renderer_request(scene, settings, frame_request.size, *quality);
-        let mut options = self.options(*quality);
+        let mut options = self.options(*quality, settings);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
         let (mut total_ms, mut light_ms, mut indirect_ms) = (0.0, 0.0, 0.0);
@@ -263,7 +267,7 @@ impl RenderWorker {
             }
             if self.last_progress.elapsed() >= PROGRESS_INTERVAL {
                 self.last_progress = Instant::now();
-                let refining = job.stage().filter(|_| *purpose == RenderPurpose::Refinement);
+                let refining = job.stage().filter(|_| *purpose != RenderPurpose::Preview);
                 let progress = job.progress().clamp(0.0, 1.0);
                 self.shared.mailbox().figures.refinement_progress = refining.map(|stage| (stage, progress));
                 self.ctx.request_repaint();
@@ -274,9 +278,11 @@ impl RenderWorker {
             }
         }
         let start = Instant::now();
-        let is_full = *quality == QualityLevel::FULL;
+        let is_full = quality.is_full();
+        // Antialiasing changes neither the brightness nor what is measured of it, nor the time of a picture.
+        let is_measured = !quality.antialiased;
         let mut dark_share = None;
-        if is_full && is_left {
+        if is_full && is_left && is_measured {
             let is_at_rest = *purpose == RenderPurpose::Refinement;
             dark_share = self.brightness.measure_full(scene, frame_request, is_at_rest)?;
         } else if !is_full {
@@ -285,13 +291,14 @@ impl RenderWorker {
         }
         let bytes = scene.renderer.read_display()?;
         let image = ColorImage::from_rgba_premultiplied(request.size.map(|n| n as usize), &bytes);
-        let splats = if is_full && is_left { Some(scene.renderer.splat_count()?) } else { None };
+        let splats =
+            if is_full && is_left && is_measured { Some(scene.renderer.splat_count()?) } else { None };
         total_ms += start.elapsed().as_secs_f64() * 1000.0;
         log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
         let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
         let runs = &scene.renderer.report().step_counts;
         // The time to upload a volume does not predict the next picture's.
-        if runs.eye > 0 && runs.volume == 0 {
+        if runs.eye > 0 && runs.volume == 0 && is_measured {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
             self.controller.learn_picture(*quality, pixels, total_ms - light_ms - indirect_ms);
         }
@@ -332,8 +339,11 @@ impl RenderWorker {
         let renderer = &scene.renderer;
         let mut mailbox = self.shared.mailbox();
         let figures = &mut mailbox.figures;
-        let time = if quality == QualityLevel::FULL { &mut figures.full_ms } else { &mut figures.preview_ms };
-        *time = Some(total_ms);
+        if quality == QualityLevel::FULL {
+            figures.full_ms = Some(total_ms);
+        } else if !quality.is_full() {
+            figures.preview_ms = Some(total_ms);
+        }
         figures.refinements += u64::from(purpose == RenderPurpose::Refinement);
         figures.light_rebuilds = renderer.light_rebuilds().iter().sum();
         figures.cached_light_volumes = renderer.cached_light_volumes();

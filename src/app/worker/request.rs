@@ -1,7 +1,8 @@
 //! Requests of the window to the render thread.
 
+use super::quality::QualityLevel;
 use chiaroscuro_render::{
-    RenderOptions, Renderer,
+    PictureOptions, Renderer,
     plan::{FrameKeys, RenderRequest},
 };
 use chiaroscuro_scene::Settings;
@@ -66,10 +67,21 @@ impl FrameRequest {
         let keys_of = |settings: &Settings| {
             let request =
                 RenderRequest { volume, settings: settings.clone(), size, preview_resolution: None };
-            FrameKeys::new(&request, &RenderOptions::default())
+            let rays = settings.rays_per_pixel();
+            FrameKeys::new(&request, &PictureOptions { rays, ..PictureOptions::default() }.into())
         };
         let (left_keys, right_keys) = (keys_of(&looks.left), looks.right.as_ref().map(keys_of));
         Self { generation, looks, size, left_keys, right_keys }
+    }
+
+    /// Returns the quality of the picture at rest.
+    pub(crate) fn final_quality(&self) -> QualityLevel {
+        let is_antialiased = |keys: &FrameKeys| keys.antialiased.is_some();
+        if is_antialiased(&self.left_keys) || self.right_keys.as_ref().is_some_and(is_antialiased) {
+            QualityLevel::ANTIALIASED
+        } else {
+            QualityLevel::FULL
+        }
     }
 
     /// Returns the keys of the products for the picture, or the left one of a comparison, at full quality.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use chiaroscuro_media::{PicturePixels, export_png, read_picture};
-use chiaroscuro_render::{PictureOptions, RenderOptions};
+use chiaroscuro_render::RenderOptions;
 use chiaroscuro_scene::{ImageSpec, PixelFormat};
 use eframe::egui::{self, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -32,7 +32,8 @@ fn exports_are_what_the_renderer_makes() {
     assert!(!harness.state().is_exporting() && std::fs::read(&exported).unwrap() == before);
     click(&mut harness, "Replace");
     wait_until(&mut harness, "never exported", |app| !app.is_exporting());
-    let options = RenderOptions::from(PictureOptions { transparent: true, ..PictureOptions::default() });
+    let image_spec = ImageSpec { transparent: true, ..ImageSpec::new([200, 150]) };
+    let options = RenderOptions::for_image(&image_spec, harness.state().settings());
     export_png([200, 150], &render_with(&harness, [200, 150], &options).display, true, None, &expected)
         .unwrap();
     assert!(pixels(&exported) == pixels(&expected));

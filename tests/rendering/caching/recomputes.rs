@@ -160,6 +160,7 @@ fn every_setting_costs_what_it_should() {
         ("output.background.bottom", "[0,0,0]", RecomputeCost::Display),
         ("output.tone_map", "clip", RecomputeCost::Display),
         ("output.exposure", "2", RecomputeCost::Display),
+        ("output.antialiasing", "8", RecomputeCost::Nothing),
     ];
     let bench = RecomputeCounter::new();
     for (path, value, expected) in table {

@@ -1,6 +1,7 @@
 //! Eye pass: sheets composited front to back as seen from the eye (P eq. 9).
 
 mod adaptive;
+mod antialiasing;
 mod preintegrated;
 
 use std::ops::Range;
@@ -34,8 +35,12 @@ impl Reference<'_> {
     ///
     /// C += T·(1 − e^−τ)·c, T ← T·e^−τ; no ray ends early.
     pub fn picture(&self, size: [u32; 2], attenuations: &[Option<AttenuationVolume>]) -> Vec<[f64; 4]> {
-        let frame = self.eye_frame(size);
-        let stack = self.eye_stack(&frame);
+        self.picture_in(&self.eye_frame(size), attenuations)
+    }
+
+    /// Renders the picture of a frame.
+    fn picture_in(&self, frame: &SheetFrame, attenuations: &[Option<AttenuationVolume>]) -> Vec<[f64; 4]> {
+        let stack = self.eye_stack(frame);
         let faces = self.visible_faces();
         let shader = Shader::new(self, attenuations);
         if self.settings.has_adaptive_slabs() {

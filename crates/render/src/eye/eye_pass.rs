@@ -161,13 +161,29 @@ impl EyePass {
         self.levels
     }
 
-    /// Draws some rows of the picture.
+    /// Draws some rows of the picture, with a ray through the middle of each pixel.
     pub(crate) fn draw(
         &self,
         gpu: VolumeContext<'_>,
         tables: &TransferTables,
         looked_up: LightLookup<'_>,
-        picture: &wgpu::TextureView,
+        target: RayTarget<'_>,
+        rows: std::ops::Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        let middle: uniforms::PixelRayUniform = bytemuck::Zeroable::zeroed();
+        let ray = uniforms::PixelRayUniform { place: [0.0, 0.0, 0.0, 1.0], ..middle };
+        let ray = DrawnRay { target, ray, slab_count: self.frame.slab_count };
+        self.cast_rays(gpu, tables, looked_up, ray, rows, encoder)
+    }
+
+    /// Records a dispatch of one ray through each of all or some pixels, in some rows of a picture.
+    pub(super) fn cast_rays(
+        &self,
+        gpu: VolumeContext<'_>,
+        tables: &TransferTables,
+        looked_up: LightLookup<'_>,
+        DrawnRay { target: RayTarget { picture, earlier, edges }, ray, slab_count }: DrawnRay<'_>,
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
@@ -178,8 +194,12 @@ impl EyePass {
         let pipeline = shaders.pipeline(&variant)?;
         let tiles = pass::tile_workgroups([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::interleaved_runs(context, tiles);
-        let uniform = uniforms::EyeUniform { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
+        let mut uniform =
+            uniforms::EyeUniform { first_row: rows.start, end_row: rows.end, runs, ..self.uniform };
+        uniform.frame.slab_count = slab_count;
         let uniform = gpu.uniform("Eye::uniform", uniform);
+        let ray_is_listed = ray.is_listed != 0;
+        let ray = gpu.uniform("Eye::ray", ray);
         let own = gpu.bind(
             "Eye::bind_group",
             &pipeline,
@@ -189,16 +209,44 @@ impl EyePass {
                 bind_buffer("table", tables.eye.lookup_buffer()),
                 bind_view("distances", &tables.eye_distances),
                 bind_view("picture", picture),
+                bind_buffer("edge_list", edges),
                 bind_buffer("lighting_table", tables.lighting.lookup_buffer()),
                 bind_view("light_distances", &tables.light_distances),
+                bind_buffer("bound_pixel_ray", &ray),
+                bind_view("earlier", earlier),
                 bind_view("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
         let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels, tables.pyramids(gpu.volume));
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
-        pass::dispatch(encoder, "Eye::pass", &pipeline, &[&own, &of_volume, &of_lights], tiles);
+        let groups = [&own, &of_volume, &of_lights];
+        if ray_is_listed {
+            pass::dispatch_indirect(encoder, "Eye::edges", &pipeline, &groups, edges);
+        } else {
+            pass::dispatch(encoder, "Eye::pass", &pipeline, &groups, tiles);
+        }
         Ok(())
     }
+}
+
+/// Pictures and the list of pixels that the eye's rays read and write.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RayTarget<'a> {
+    /// Picture that is drawn.
+    pub picture: &'a wgpu::TextureView,
+    /// Another picture, with the sum of earlier rays if the ray is added to them.
+    pub earlier: &'a wgpu::TextureView,
+    /// List of pixels with edges, which is read if only listed pixels are drawn.
+    pub edges: &'a wgpu::Buffer,
+}
+
+/// Ray through each pixel that a dispatch draws.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DrawnRay<'a> {
+    pub target: RayTarget<'a>,
+    pub ray: uniforms::PixelRayUniform,
+    /// Number of slabs in the stack of the ray.
+    pub slab_count: u32,
 }
 
 /// Pipeline variant of the eye pass.

@@ -88,7 +88,22 @@ impl DoubleBuffer {
 
 /// Returns the key of the displayed picture.
 pub(super) fn display_key(keys: &FrameKeys) -> DisplayedKey {
-    let FrameKeys { volume: _, tables: _, lights: _, combined: _, sky: _, bounces: _, eye, floor, display } =
-        keys;
-    DisplayedKey { eye: eye.clone(), floor: floor.clone(), display: display.clone() }
+    let FrameKeys {
+        volume: _,
+        tables: _,
+        lights: _,
+        combined: _,
+        sky: _,
+        bounces: _,
+        eye,
+        antialiased,
+        floor,
+        display,
+    } = keys;
+    DisplayedKey {
+        eye: eye.clone(),
+        antialiased: antialiased.clone(),
+        floor: floor.clone(),
+        display: display.clone(),
+    }
 }

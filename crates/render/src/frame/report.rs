@@ -30,7 +30,7 @@ pub struct RenderReport {
     pub sky_ms: f64,
     /// Time of computing scattered light, in milliseconds.
     pub bounces_ms: f64,
-    /// Time of the eye pass and the floor pass, in milliseconds.
+    /// Time of the eye pass, of its antialiasing and of the floor pass, in milliseconds.
     pub eye_ms: f64,
     /// Time of the display pass and of reading back, in milliseconds.
     pub readback_ms: f64,
@@ -69,6 +69,8 @@ pub struct StepCounts {
     pub bounces: u32,
     /// Number of steps of the eye pass.
     pub eye: u32,
+    /// Number of steps of the antialiasing pass.
+    pub antialiasing: u32,
     /// Number of steps of the floor pass.
     pub floor: u32,
     /// Number of display passes.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use crate::eye::floor;
+use crate::eye::{antialiasing, floor};
 use crate::resources::work_part::WorkPart;
 use crate::scattered_light::steps::ScatteringStep;
 use crate::volume::transfer_tables::{TransferTable, TransferTables};
@@ -91,6 +91,8 @@ pub(crate) enum FrameProduct {
     ScatteredLight,
     /// Linear light of the volume.
     Picture,
+    /// Antialiased linear light of the volume.
+    Antialiasing,
     Floor,
     Display,
 }
@@ -133,6 +135,8 @@ pub(crate) enum RenderStep {
     ScatteredLight(ScatteringStep),
     /// Draws rows of the picture.
     Eye(Range<u32>),
+    /// Draws further rays at edges, in rows of the picture.
+    Antialiasing(Range<u32>),
     /// Draws slabs of the eye's scattered sheets.
     ScatterEye(Range<u32>),
     /// Draws rows of the floor.
@@ -155,7 +159,7 @@ impl RenderStep {
             Self::Raycast(_) => RenderStage::LightRaycast,
             Self::SkyBlocks | Self::SkyBatch(_) => RenderStage::Sky,
             Self::ScatteredLight(_) => RenderStage::ScatteredLight,
-            Self::Eye(_) | Self::ScatterEye(_) | Self::Floor(_) => RenderStage::Eye,
+            Self::Eye(_) | Self::Antialiasing(_) | Self::ScatterEye(_) | Self::Floor(_) => RenderStage::Eye,
             Self::Display => RenderStage::Display,
             Self::Finish(_) => return None,
         })
@@ -168,6 +172,10 @@ pub(super) fn split_into_bands(steps: &mut VecDeque<RenderStep>, rows: u32) {
     for step in steps.drain(..) {
         match step {
             RenderStep::Eye(range) => append_bands(&mut cut, range, rows, RenderStep::Eye),
+            RenderStep::Antialiasing(range) => {
+                let rows = (rows / antialiasing::ROW_COST).max(1);
+                append_bands(&mut cut, range, rows, RenderStep::Antialiasing);
+            }
             RenderStep::Floor(range) => {
                 append_bands(&mut cut, range, (rows / floor::ROW_COST).max(1), RenderStep::Floor);
             }
@@ -185,7 +193,8 @@ fn append_bands(
     step: fn(Range<u32>) -> RenderStep,
 ) {
     let Range { mut start, end } = range;
-    if let Some(RenderStep::Eye(last) | RenderStep::Floor(last)) = steps.back()
+    if let Some(RenderStep::Eye(last) | RenderStep::Antialiasing(last) | RenderStep::Floor(last)) =
+        steps.back()
         && steps.back() == Some(&step(last.clone()))
         && last.end == start
         && last.end - last.start < rows

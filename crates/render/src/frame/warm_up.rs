@@ -1,6 +1,7 @@
 //! Pre-compilation of the pipelines for the first pictures and previews: each can take a driver tens of milliseconds,
 //! which would stall the window.
 
+use crate::eye::antialiasing::EDGES;
 use crate::eye::eye_pass::EyeVariant;
 use crate::eye::floor::FloorVariant;
 use crate::light::backproject::BackprojectVariant;
@@ -34,6 +35,7 @@ impl ShaderLibrary {
             self.compile_unless_cancelled(&SingleVariant(shader), cancel)?;
         }
         self.compile_unless_cancelled(&SingleVariant("light/clear_margin.wgsl"), cancel)?;
+        self.compile_unless_cancelled(&EDGES, cancel)?;
         self.compile_unless_cancelled(
             &DisplayVariant { samples: 1, is_linear: false, is_deep: false },
             cancel,

@@ -37,13 +37,14 @@ impl PipelineVariant for DisplayVariant {
     }
 }
 
-/// Converts the linear picture to the displayed one. All light is multiplied by the exposure of the settings, and
+/// Converts linear light of the volume to the displayed picture of a target. All light is multiplied by the exposure of the settings, and
 /// that of the volume also by the preview's exposure.
 pub(crate) fn record_display(
     GpuTools { context, shaders, pool, .. }: &GpuTools,
     output: &OutputSettings,
     options: &RenderOptions,
     target: &RenderTarget,
+    light: &wgpu::TextureView,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
     let TargetShape { size, samples, is_deep: deep } = target.shape;
@@ -77,7 +78,7 @@ pub(crate) fn record_display(
         0,
         &[
             bind_buffer("bound_display", &uniform),
-            bind_view("picture", &target.light.product.plane.view),
+            bind_view("picture", light),
             bind_view("shown", &target.display.product.view),
             bind_view("floor_light", &target.floor.product.view),
         ],

@@ -38,6 +38,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "diffusion/solution.wgsl",
     "diffusion/stencil.wgsl",
     "eye/adaptive_slabs.wgsl",
+    "eye/edges.wgsl",
     "eye/eye_pass.wgsl",
     "eye/floor.wgsl",
     "eye/preintegrated_slabs.wgsl",

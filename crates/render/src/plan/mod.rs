@@ -18,6 +18,7 @@ pub use self::geometry::light_frame::{
 };
 pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
 pub use self::geometry::near_field_cells::NearFieldOffset;
+pub use self::geometry::pixel_rays::PixelRay;
 pub use self::geometry::pixel_window::PixelWindow;
 pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
@@ -29,8 +30,8 @@ pub use self::geometry::sweep::{SlicePosition, SweepFrame};
 pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
 pub use chiaroscuro_scene::{directions_above, sweep_directions};
 pub use keys::{
-    ActiveLight, ActiveLights, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey, EyeKey, EyeTableKey,
-    FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
+    ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,
+    EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
 pub use probe::{LightArrival, Probe, probe};
 pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

@@ -1,7 +1,7 @@
 //! Request to the renderer: volume, look, size and options of a picture.
 
 use super::PixelWindow;
-use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, PixelFormat, Settings};
+use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, OutputSettings, PixelFormat, Settings};
 use chiaroscuro_volume::{DensityMapping, VolumeId};
 
 /// Request for a picture: the volume, its look and the size.
@@ -56,6 +56,8 @@ pub struct PictureOptions {
     pub part: Option<PixelWindow>,
     /// Number of samples per pixel along an edge.
     pub samples: u32,
+    /// Number of rays through each sample at edges, for antialiasing; 1 for the ray through its middle alone.
+    pub rays: u32,
     /// Bit depth of the displayed picture.
     pub depth: PixelFormat,
 }
@@ -87,7 +89,7 @@ pub struct TestSwitches {
 
 impl Default for PictureOptions {
     fn default() -> Self {
-        Self { transparent: false, exposure: 1.0, part: None, samples: 1, depth: PixelFormat::Eight }
+        Self { transparent: false, exposure: 1.0, part: None, samples: 1, rays: 1, depth: PixelFormat::Eight }
     }
 }
 
@@ -123,10 +125,18 @@ impl From<TestSwitches> for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Creates the options for an exported image.
-    pub fn for_image(image_spec: &ImageSpec) -> Self {
+    /// Creates the options for an exported image of a look.
+    pub fn for_image(image_spec: &ImageSpec, settings: &Settings) -> Self {
         let ImageSpec { size: _, transparent, samples, depth, marks: _ } = *image_spec;
-        PictureOptions { transparent, samples, depth, ..PictureOptions::default() }.into()
+        let rays = settings.rays_per_pixel();
+        PictureOptions { transparent, samples, rays, depth, ..PictureOptions::default() }.into()
+    }
+
+    /// Returns the number of rays through each sample at edges: one with the scattering engine, which draws whole
+    /// sheets.
+    pub fn rays_per_sample(&self, request: &RenderRequest) -> u32 {
+        let scatters = request.settings.uses_scattering_engine();
+        if scatters { 1 } else { OutputSettings::nearest_antialiasing(self.picture.rays) }
     }
 
     /// Returns the part of a picture that is displayed.

@@ -51,7 +51,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Self::read_display`].
     pub fn read_light(&self) -> Result<Vec<[f32; 4]>, GpuError> {
-        let bytes = read_texture(self.context(), &self.displayed_target()?.light.product.plane.texture)?;
+        let bytes = read_texture(self.context(), &self.displayed_target()?.displayed_light().texture)?;
         let float = |word: &[u8]| f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
         let texels = bytes.chunks_exact(16);
         Ok(texels.map(|texel| std::array::from_fn(|c| float(&texel[4 * c..]))).collect())

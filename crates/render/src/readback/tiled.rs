@@ -59,7 +59,8 @@ impl Renderer {
         largest: PartLimits,
     ) -> PictureBands<'a> {
         let samples = image_spec.samples.max(1);
-        let margin = gradient_margin(dataset.volume(), settings, image_spec.size, samples);
+        let gradients = gradient_margin(dataset.volume(), settings, image_spec.size, samples);
+        let margin = gradients.max(edge_margin(settings, samples));
         let longest = (largest.edge / samples).saturating_sub(2 * margin);
         let mut left: Vec<_> =
             PixelWindow::bands(image_spec.size, longest, largest.samples / (samples * samples)).collect();
@@ -116,7 +117,7 @@ impl PictureBands<'_> {
         }
         for part in parts {
             let drawn = part.widened(self.margin);
-            let mut options = RenderOptions::for_image(&self.spec);
+            let mut options = RenderOptions::for_image(&self.spec, self.settings);
             options.picture.part = Some(drawn);
             self.renderer.draw(self.dataset, self.settings, self.spec.size, &options)?;
             // Tested only until something is visible.
@@ -154,6 +155,11 @@ impl PictureBands<'_> {
         }
         Ok(whole)
     }
+}
+
+/// Returns the margin that a part needs to find its edges, in pixels: each is found from two samples to all sides.
+fn edge_margin(settings: &Settings, samples: u32) -> u32 {
+    if settings.rays_per_pixel() > 1 { 2_u32.div_ceil(samples) } else { 0 }
 }
 
 /// Returns the margin that a part needs, in pixels: gradients of scattered sheets are differences of neighbouring

@@ -27,13 +27,33 @@ pub(crate) fn dispatch(
     groups: &[&wgpu::BindGroup],
     [x, y, z]: [u32; 3],
 ) {
+    begin(encoder, label, pipeline, groups).dispatch_workgroups(x, y, z);
+}
+
+/// Records a compute pass like [`dispatch`], with the numbers of workgroups at the beginning of a buffer.
+pub(crate) fn dispatch_indirect(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &str,
+    pipeline: &ShaderPipeline,
+    groups: &[&wgpu::BindGroup],
+    counts: &wgpu::Buffer,
+) {
+    begin(encoder, label, pipeline, groups).dispatch_workgroups_indirect(counts, 0);
+}
+
+fn begin<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    label: &str,
+    pipeline: &ShaderPipeline,
+    groups: &[&wgpu::BindGroup],
+) -> wgpu::ComputePass<'e> {
     let mut pass = encoder
         .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
     pass.set_pipeline(&pipeline.raw);
     for (group, bound) in (0..).zip(groups) {
         pass.set_bind_group(group, *bound, &[]);
     }
-    pass.dispatch_workgroups(x, y, z);
+    pass
 }
 
 /// Returns the number of 8 × 8 workgroups that cover a sheet or a picture.

@@ -171,7 +171,13 @@ pub struct OutputSettings {
     /// [`MIN_EXPOSURE`] … [`MAX_EXPOSURE`]. Applies to linear images, too, but not to measurements of light and
     /// shadow.
     pub exposure: f64,
+    /// Number of rays through each pixel at edges, one of [`ANTIALIASING_RAYS`]; 1 leaves edges jagged. Applies to
+    /// exported images and to the image at rest, not to previews, and not to the scattering engine.
+    pub antialiasing: u32,
 }
+
+/// Numbers of rays per pixel for which there are sets of places in a pixel.
+pub const ANTIALIASING_RAYS: [u32; 4] = [1, 4, 8, 16];
 
 /// Smallest exposure, four stops down: below it every image is black.
 pub const MIN_EXPOSURE: f64 = 1.0 / 16.0;
@@ -183,11 +189,28 @@ impl Default for OutputSettings {
         // #14161b … #262a33: dark, but not black, so that shadows stand out from it.
         let bytes = |rgb: [u8; 3]| rgb.map(|c| f32::from(c) / 255.0);
         let background = Background { top: bytes([0x14, 0x16, 0x1b]), bottom: bytes([0x26, 0x2a, 0x33]) };
-        Self { background, tone_map: ToneMap::Neutral, exposure: 1.0 }
+        Self { background, tone_map: ToneMap::Neutral, exposure: 1.0, antialiasing: 4 }
+    }
+}
+
+impl OutputSettings {
+    /// Returns the number of rays per pixel that serves for a number: the nearest of [`ANTIALIASING_RAYS`].
+    pub fn nearest_antialiasing(rays: u32) -> u32 {
+        ANTIALIASING_RAYS.into_iter().min_by_key(|known| known.abs_diff(rays)).unwrap_or(1)
     }
 }
 
 impl Settings {
+    /// Returns the number of rays through each pixel of images at rest. The scattering engine draws whole sheets, and
+    /// has one.
+    pub fn rays_per_pixel(&self) -> u32 {
+        if self.uses_scattering_engine() {
+            1
+        } else {
+            OutputSettings::nearest_antialiasing(self.output.antialiasing)
+        }
+    }
+
     /// Returns the ambient coefficient of unattenuated light, as a share of the material's colour; 0 if there is a
     /// sky, which replaces it.
     pub fn flat_ambient(&self) -> f64 {

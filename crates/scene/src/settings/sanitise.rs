@@ -270,10 +270,12 @@ fn sanitise_sampling(sampling: &mut SamplingSettings, default: &SamplingSettings
 }
 
 fn sanitise_output(output: &mut OutputSettings, default: &OutputSettings) {
-    let OutputSettings { background: Background { top, bottom }, tone_map: _, exposure } = output;
+    let OutputSettings { background: Background { top, bottom }, tone_map: _, exposure, antialiasing } =
+        output;
     clamp_color(top);
     clamp_color(bottom);
     clamp_number(exposure, MIN_EXPOSURE, MAX_EXPOSURE, default.exposure);
+    *antialiasing = OutputSettings::nearest_antialiasing(*antialiasing);
 }
 
 #[cfg(test)]

@@ -57,6 +57,16 @@ pub(super) fn fill_in_defaults(record: &mut Value) {
         fill_in_scatter_gradients(groups);
     }
     fill_in_exposure(groups);
+    fill_in_antialiasing(groups);
+}
+
+/// Sets one ray per pixel in the record of an image from before antialiasing, so that the image can be reproduced.
+fn fill_in_antialiasing(groups: &mut Map<String, Value>) {
+    if groups.contains_key("_picture")
+        && let Some(Value::Object(output)) = groups.get_mut("output")
+    {
+        output.entry("antialiasing").or_insert(json!(1));
+    }
 }
 
 /// Sets the exposure to 1 in a record from before it was a setting, if it has all other output settings of that time:
@@ -167,6 +177,23 @@ mod tests {
         // A record without output settings keeps the current exposure.
         assert_eq!(exposure(r#"{"schema": 2, "output": {"tone_map": "clip"}}"#), 1.7);
         assert_eq!(exposure(r#"{"schema": 2}"#), 1.7);
+    }
+
+    #[test]
+    fn images_from_before_antialiasing_are_reproduced_without() {
+        let rays = |text: &str| {
+            let record = crate::LookRecord::parse(text).expect("a record");
+            let applied = record.apply(&Settings::default(), &chiaroscuro_volume::ValueRanges::UNIT);
+            applied.expect("settings").settings.output.antialiasing
+        };
+        let image =
+            r#""_picture": {"size": [4, 3], "transparent": false, "version": "0.1.0", "adapter": "x"}"#;
+        assert_eq!(rays(&format!(r#"{{"schema": 3, "output": {{"exposure": 2.0}}, {image}}}"#)), 1);
+        assert_eq!(rays(&format!(r#"{{"schema": 3, "output": {{"antialiasing": 8}}, {image}}}"#)), 8);
+        // Sessions are looked at with antialiasing, and numbers are served by the nearest.
+        assert_eq!(rays(r#"{"schema": 3, "output": {"exposure": 2.0}}"#), 4);
+        assert_eq!(rays(r#"{"schema": 3, "output": {"antialiasing": 11}}"#), 8);
+        assert_eq!(rays(r#"{"schema": 3, "output": {"antialiasing": 0}}"#), 1);
     }
 
     #[test]

@@ -35,6 +35,17 @@ pub(crate) const NEUTRAL: ControlText =
     control_text("Neutral", "Keeps colours up to 80 %, then rolls off smoothly");
 pub(crate) const CLIP: ControlText = control_text("Clip", "Clips at full brightness; exact below");
 
+pub(crate) const ANTIALIASING: ControlText = control_text(
+    "Antialiasing",
+    "Rays through each pixel where there are edges, in the picture at rest and in exports: more are smoother",
+);
+pub(crate) const NO_ANTIALIASING: ControlText =
+    control_text("Off", "One ray through the middle of each pixel: jagged edges");
+pub(crate) const FOUR_RAYS: ControlText = control_text("4", "Edges in four steps");
+pub(crate) const EIGHT_RAYS: ControlText = control_text("8", "Edges in eight steps");
+pub(crate) const SIXTEEN_RAYS: ControlText =
+    control_text("16", "Edges in sixteen steps, for prints; takes four times as long as 4");
+
 pub(crate) const BACKGROUND: ControlText =
     control_text("Background", "Colours behind the volume, at the top and at the bottom");
 pub(crate) const BACKGROUND_TOP: &str = "Background top";

@@ -69,6 +69,7 @@ pub(crate) const DIFFUSE: &str = "lambert matte scatter evenly";
 pub(crate) const HIGHLIGHTS: &str = "highlight gloss glossy shiny reflection phong";
 pub(crate) const SURFACE: &str = "gradient magnitude threshold normals noise haze";
 pub(crate) const SIDES: &str = "two sided double sided back faces backlight outer both";
+pub(crate) const ANTIALIASING: &str = "anti-aliasing jagged smooth edges stairs multisampling samples aa";
 pub(crate) const TONE_MAP: &str = "tone mapping hdr clip gamma";
 pub(crate) const BACKGROUND: &str = "background colour color white black backdrop";
 

@@ -176,6 +176,8 @@ fn describe_cuts(before: &Clipping, after: &Clipping) -> &'static str {
 fn describe_output(before: &OutputSettings, after: &OutputSettings) -> &'static str {
     if (OutputSettings { exposure: after.exposure, ..before.clone() }) == *after {
         "change exposure"
+    } else if (OutputSettings { antialiasing: after.antialiasing, ..before.clone() }) == *after {
+        "change antialiasing"
     } else {
         "change background"
     }

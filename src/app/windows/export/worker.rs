@@ -113,7 +113,7 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
     ) -> Result<Vec<u8>, String> {
-        let options = RenderOptions::for_image(image_spec);
+        let options = RenderOptions::for_image(image_spec, settings);
         let shown = self.renderer.render_display(&subject.dataset, settings, image_spec.size, &options);
         let mut shown = PixelRows::Bytes(shown.map_err(|err| err.to_string())?);
         marks_layer(image_spec, settings, subject.dataset.volume()).composite_over(image_spec, 0, &mut shown);

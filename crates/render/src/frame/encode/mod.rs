@@ -9,6 +9,8 @@ use super::frame_plan::light_inputs;
 use super::render_job::RenderJob;
 use super::step::{FrameProduct, RenderStep};
 use crate::GpuError;
+use crate::eye::antialiasing::EdgeRays;
+use crate::eye::eye_pass::RayTarget;
 use crate::eye::floor;
 use crate::eye::light_lookup::{AmbientVolumes, LightLookup};
 use crate::light::combined_light::CombinedLightShading;
@@ -68,11 +70,13 @@ impl RenderJob<'_> {
             RenderStep::SkyBatch(batch) => self.encode_sky(Some(*batch), encoder),
             RenderStep::ScatteredLight(step) => self.encode_bounce(*step, encoder),
             RenderStep::Eye(rows) => self.encode_eye(rows, encoder),
+            RenderStep::Antialiasing(rows) => self.encode_antialiasing(rows, encoder),
             RenderStep::ScatterEye(slabs) => self.encode_scatter_eye(slabs, encoder),
             RenderStep::Floor(rows) => {
                 self.report.step_counts.floor += 1;
                 let target = self.targets.get(self.role);
-                let (picture, floor) = (&target.light.product.plane.view, &target.floor.product.view);
+                let picture = &target.linear_light(self.keys.antialiased.as_ref()).view;
+                let floor = &target.floor.product.view;
                 let gpu = VolumeContext::new(self.tools, volume);
                 let lights = light_inputs(&self.lights, &self.light_indices, &self.loaded.product);
                 let shadows: Vec<_> = lights.iter().map(|light| light.volume?.floor.as_ref()).collect();
@@ -90,7 +94,9 @@ impl RenderJob<'_> {
             RenderStep::Display => {
                 self.report.step_counts.display += 1;
                 let target = self.targets.get(self.role);
-                record_display(self.tools, &self.request.settings.output, &self.options, target, encoder)
+                let light = &target.linear_light(self.keys.antialiased.as_ref()).view;
+                let output = &self.request.settings.output;
+                record_display(self.tools, output, &self.options, target, light, encoder)
             }
             RenderStep::Finish(_) => Ok(()),
         }
@@ -139,6 +145,7 @@ impl RenderJob<'_> {
                     self.tools.pool.drop_bind_groups();
                 }
                 FrameProduct::Picture => target.light.mark_complete(),
+                FrameProduct::Antialiasing => target.antialiased.mark_complete(),
                 FrameProduct::Floor => target.floor.mark_complete(),
                 FrameProduct::Display => {
                     target.display.restart(Some(display_key(&self.keys)));
@@ -188,12 +195,39 @@ impl RenderJob<'_> {
         self.report.step_counts.eye += 1;
         let loaded = &self.loaded.product;
         let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
-        let picture = &self.targets.get(self.role).light.product.plane.view;
+        let target = self.targets.get(self.role);
         self.eye_pass.draw(
             gpu,
             tables,
             LightLookup { attenuation: &self.light_views(), ambient: self.ambient_volumes() },
-            picture,
+            RayTarget {
+                picture: &target.light.product.plane.view,
+                earlier: &target.antialiased.product.sums.view,
+                edges: &target.antialiased.product.edges,
+            },
+            rows.clone(),
+            encoder,
+        )
+    }
+
+    fn encode_antialiasing(
+        &mut self,
+        rows: &Range<u32>,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        self.report.step_counts.antialiasing += 1;
+        let loaded = &self.loaded.product;
+        let target = self.targets.get(self.role);
+        let rays = EdgeRays {
+            eye: &self.eye_pass,
+            settings: &self.request.settings,
+            count: self.options.rays_per_sample(&self.request),
+        };
+        rays.draw(
+            VolumeContext::new(self.tools, &loaded.volume),
+            &loaded.tables.product,
+            LightLookup { attenuation: &self.light_views(), ambient: self.ambient_volumes() },
+            (&target.light.product.plane.view, &target.antialiased.product),
             rows.clone(),
             encoder,
         )

@@ -37,10 +37,15 @@ impl Renderer {
             sky: _,
             bounces: _,
             eye: _,
+            antialiased,
             floor,
             display: _,
         } = &keys;
-        role.is_some_and(|role| self.targets.get(role).floor.is_valid_for(floor))
+        role.is_some_and(|role| {
+            let target = self.targets.get(role);
+            let is_antialiased = antialiased.is_none() || target.antialiased.is_valid_for(antialiased);
+            is_antialiased && target.floor.is_valid_for(floor)
+        })
     }
 
     /// Starts a picture: finds stale products and lists the steps.

@@ -15,7 +15,7 @@ use crate::frame::report::RenderReport;
 use crate::frame::step::{FrameProduct, RenderStep};
 use crate::light::light_uniform::LightInput;
 use crate::output::render_target::TargetShape;
-use crate::plan::{ActiveLights, EyeKey, FloorKey, FrameKeys, RenderRequest, VolumeKey};
+use crate::plan::{ActiveLights, AntialiasedKey, EyeKey, FloorKey, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
 use crate::scatter::voxels::ScatterState;
@@ -53,11 +53,11 @@ impl<'r> FramePlanner<'r> {
     /// Finds or creates the volumes of light that the picture looks up. Its keys become those of the volumes in use,
     /// with which it may turn out to be drawn already.
     pub(super) fn place_volumes(&mut self) -> Result<VolumePlacement, GpuError> {
-        if self.drawn_in.is_none() || self.keys.floor.is_some() {
+        if self.casts_eye_rays() || self.keys.floor.is_some() {
             self.refresh_tables()?;
         }
         let mut placement = VolumePlacement::default();
-        if self.drawn_in.is_none() {
+        if self.casts_eye_rays() {
             let wanted = ProductRequest {
                 context: &self.tools.context,
                 request: &self.request,
@@ -70,7 +70,8 @@ impl<'r> FramePlanner<'r> {
             let combined = self.keys.combined.as_ref();
             let eye =
                 EyeKey::new(&self.request, &self.options, &placement.lights.keys, combined, sky, bounces);
-            self.keys.floor = FloorKey::new(&self.request, &eye);
+            self.keys.antialiased = AntialiasedKey::new(&self.request, &self.options, &eye);
+            self.keys.floor = FloorKey::new(&self.request, &self.options, &eye);
             self.keys.eye = eye;
             // A preview may find its light volumes at full resolution, and so a picture that is already drawn.
             self.drawn_in = self.targets.find(&self.keys, self.shape);
@@ -87,6 +88,14 @@ impl<'r> FramePlanner<'r> {
             placement.place_for_floor(self.tools, &mut self.loaded.product, wanted, &self.lights)?;
         }
         Ok(placement)
+    }
+
+    /// Returns true if rays of the eye are missing: the picture's, or those of its antialiasing.
+    fn casts_eye_rays(&self) -> bool {
+        let antialiased = &self.keys.antialiased;
+        self.drawn_in.is_none_or(|role| {
+            antialiased.is_some() && !self.targets.get(role).antialiased.is_valid_for(antialiased)
+        })
     }
 
     /// Updates the transfer tables and the classified voxels.
@@ -110,9 +119,9 @@ impl<'r> FramePlanner<'r> {
         for (at, build) in placement.lights.builds.iter().enumerate() {
             self.steps.extend(build.steps(at, light_parts));
         }
+        self.steps.extend(combine_steps(placement.lights.bricks_to_combine));
         let mut scattering = None;
         if self.drawn_in.is_none() {
-            self.steps.extend(combine_steps(placement.lights.bricks_to_combine));
             let settings = &self.request.settings;
             if settings.uses_scattering_engine() {
                 let voxels = self.loaded.product.scatter_voxels_for(&self.tools.context, settings)?;
@@ -196,6 +205,15 @@ impl<'r> FramePlanner<'r> {
             let volume = &self.loaded.product.volume;
             self.steps.extend(eye_steps(volume, eye, &self.request, scattering.is_some()));
             self.steps.push(RenderStep::Finish(FrameProduct::Picture));
+        }
+        let antialiased = &self.keys.antialiased;
+        if target.resize_antialiased(&self.tools.context, antialiased.as_ref())? {
+            self.tools.pool.drop_bind_groups();
+        }
+        if antialiased.is_some() && !target.antialiased.is_valid_for(antialiased) {
+            target.antialiased.restart(antialiased.clone());
+            self.steps.push(RenderStep::Antialiasing(0..self.shape.sample_size()[1]));
+            self.steps.push(RenderStep::Finish(FrameProduct::Antialiasing));
         }
         if target.resize_floor(&self.tools.context, self.keys.floor.as_ref())? {
             self.tools.pool.drop_bind_groups();

@@ -133,6 +133,20 @@ pub(crate) fn layouts() -> impl Iterator<Item = &'static (&'static str, GroupLay
 /// Layouts of all shaders but those of light, sky and scattered light.
 const COMMON_LAYOUTS: ShaderLayouts = &[
     (
+        "eye/edges.wgsl",
+        &[&[
+            BindingSlot::uniform::<uniforms::EdgesUniform>(0, "bound_edges"),
+            BindingSlot::loaded_texture(1, "middles", TextureShape::D2),
+            BindingSlot::storage_texture(
+                2,
+                "picture",
+                TextureShape::D2,
+                StorageFormat::Fixed(wgpu::TextureFormat::Rgba32Float),
+            ),
+            BindingSlot::storage(3, "edge_list", 4, BufferAccess::ReadWrite),
+        ]],
+    ),
+    (
         "eye/eye_pass.wgsl",
         &[
             &[
@@ -145,8 +159,11 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                     TextureShape::D2,
                     StorageFormat::Fixed(wgpu::TextureFormat::Rgba32Float),
                 ),
+                BindingSlot::storage(4, "edge_list", 4, BufferAccess::Read),
                 LIGHTING_TABLE,
                 BindingSlot::sampled_texture(5, "light_distances", TextureShape::D3),
+                BindingSlot::uniform::<uniforms::PixelRayUniform>(6, "bound_pixel_ray"),
+                BindingSlot::loaded_texture(7, "earlier", TextureShape::D2),
                 GRADIENTS,
             ],
             VOLUME_AND_LIGHTING,

@@ -326,6 +326,30 @@ pub struct FloorUniform {
     pub lights: [LightUniform; chiaroscuro_scene::MAX_LIGHTS],
 }
 
+/// Ray through each pixel of a dispatch, as declared in `eye/eye_pass.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct PixelRayUniform {
+    pub place: [f32; 4],
+    pub is_listed: u32,
+    pub is_added: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+}
+
+/// Picture and rows of the search for edges, as declared in `eye/edges.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct EdgesUniform {
+    pub size: [u32; 2],
+    pub first_row: u32,
+    pub end_row: u32,
+    pub min_contrast: f32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
+}
+
 /// Parameters of the display pass, as declared in `output/tone_map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -37,12 +37,18 @@ pub fn preview_slab(camera: &Camera, scene: &SceneSpace, size: [u32; 2], slab: f
 /// pre-integrated slabs.
 pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<PixelWindow>) -> SheetFrame {
     let frame = eye_frame(&settings.camera, scene, window, settings.thickest_slab());
+    let parts = slab_parts(settings);
+    if parts > 1 { frame.with_divided_slabs(parts) } else { frame }
+}
+
+/// Returns the number of a picture's slabs in the thickest one.
+pub(super) fn slab_parts(settings: &Settings) -> u32 {
     if settings.has_adaptive_slabs() {
-        frame.with_divided_slabs(MAX_SLAB_PARTS)
+        MAX_SLAB_PARTS
     } else if settings.has_preintegrated_slabs() {
-        frame.with_divided_slabs(PREINTEGRATED_STEPS)
+        PREINTEGRATED_STEPS
     } else {
-        frame
+        1
     }
 }
 

@@ -8,6 +8,7 @@ pub(super) mod floor_plane;
 pub(super) mod light_frame;
 pub(super) mod march_tiles;
 pub(super) mod near_field_cells;
+pub(super) mod pixel_rays;
 pub(super) mod pixel_window;
 pub(super) mod reach;
 pub(super) mod sheet_frame;

@@ -191,9 +191,30 @@ impl EyeKey {
 fn without_display_options(options: &RenderOptions) -> RenderOptions {
     let RenderOptions { picture, work, switches } = options.clone();
     RenderOptions {
-        picture: PictureOptions { transparent: false, exposure: 1.0, depth: PixelFormat::Eight, ..picture },
+        picture: PictureOptions {
+            transparent: false,
+            exposure: 1.0,
+            rays: 1,
+            depth: PixelFormat::Eight,
+            ..picture
+        },
         work: WorkOptions { timed: false, light_parts: 1, ..work },
         switches,
+    }
+}
+
+/// Inputs of a picture with several rays through each sample at edges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AntialiasedKey {
+    eye: EyeKey,
+    rays_per_sample: u32,
+}
+
+impl AntialiasedKey {
+    /// Creates the key of the antialiased picture; `None` if it has one ray through each sample.
+    pub fn new(request: &RenderRequest, options: &RenderOptions, eye: &EyeKey) -> Option<Self> {
+        let rays_per_sample = options.rays_per_sample(request);
+        (rays_per_sample > 1).then(|| Self { eye: eye.clone(), rays_per_sample })
     }
 }
 
@@ -202,6 +223,8 @@ fn without_display_options(options: &RenderOptions) -> RenderOptions {
 pub struct FloorKey {
     /// Volume in front of the floor, and its lights.
     eye: EyeKey,
+    /// Number of rays through each sample of the volume: edges that cover a pixel in part let the floor through.
+    rays_per_sample: u32,
     floor: FloorSettings,
     rays: ShadowRaysKey,
     /// Lights may be combined for the eye, but not for the floor.
@@ -210,10 +233,11 @@ pub struct FloorKey {
 
 impl FloorKey {
     /// Creates the key of the floor under a picture; `None` if there is no floor.
-    pub fn new(request: &RenderRequest, eye: &EyeKey) -> Option<Self> {
+    pub fn new(request: &RenderRequest, options: &RenderOptions, eye: &EyeKey) -> Option<Self> {
         let settings = &request.settings;
         settings.floor.on.then(|| Self {
             eye: eye.clone(),
+            rays_per_sample: options.rays_per_sample(request),
             floor: settings.floor.clone(),
             rays: ShadowRaysKey::new(settings),
             lights: ActiveLights::from_settings(settings),

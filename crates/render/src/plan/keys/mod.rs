@@ -19,7 +19,7 @@ mod uniform_light_color;
 pub use bounces::BouncesKey;
 pub use combined::CombinedKey;
 pub use display::DisplayKey;
-pub use eye::{EyeKey, FloorKey};
+pub use eye::{AntialiasedKey, EyeKey, FloorKey};
 pub use light::LightKey;
 pub use lit_lights::{ActiveLight, ActiveLights, AttenuationMethod};
 pub use sky::SkyKey;
@@ -46,6 +46,8 @@ pub struct FrameKeys {
     pub bounces: Option<BouncesKey>,
     /// Linear light of the volume.
     pub eye: EyeKey,
+    /// Linear light of the volume, antialiased, if there are several rays through each sample.
+    pub antialiased: Option<AntialiasedKey>,
     /// Linear light on the floor, if there is one.
     pub floor: Option<FloorKey>,
     /// Display of both on screen or in a file.
@@ -64,7 +66,8 @@ impl FrameKeys {
         Self {
             volume: request.volume_key(),
             tables: TablesKey::new(request),
-            floor: FloorKey::new(request, &eye),
+            antialiased: AntialiasedKey::new(request, options, &eye),
+            floor: FloorKey::new(request, options, &eye),
             display: DisplayKey::new(request, options),
             lights,
             combined,

@@ -58,6 +58,8 @@ enum ChangeEffect {
     Nothing,
     Display,
     Floor,
+    /// Rays beside the middle of pixels are drawn.
+    Antialiasing,
     Eye,
     /// Sky visibility is recomputed.
     Sky,
@@ -74,6 +76,7 @@ fn effect(before: &FrameKeys, after: &FrameKeys) -> ChangeEffect {
         _ if after.sky.is_some() && after.sky != before.sky => ChangeEffect::Sky,
         _ if after.bounces.is_some() && after.bounces != before.bounces => ChangeEffect::Bounces,
         _ if after.eye != before.eye => ChangeEffect::Eye,
+        _ if after.antialiased != before.antialiased => ChangeEffect::Antialiasing,
         _ if after.floor != before.floor => ChangeEffect::Floor,
         _ if after.display != before.display => ChangeEffect::Display,
         _ => ChangeEffect::Nothing,
@@ -212,6 +215,8 @@ fn every_setting_causes_what_the_design_says() {
         ("output.background.bottom", "[0,0,0]", ChangeEffect::Display),
         ("output.tone_map", "clip", ChangeEffect::Display),
         ("output.exposure", "2", ChangeEffect::Display),
+        // The callers' options have the number of rays.
+        ("output.antialiasing", "8", ChangeEffect::Nothing),
         // Corrections make another volume, whose identity is in every key.
         ("volume.spacing", "[0.5, 0.5, 2]", ChangeEffect::Nothing),
         ("volume.unit", "um", ChangeEffect::Nothing),
@@ -293,6 +298,8 @@ fn options_that_only_display_reads_change_the_display_alone() {
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Display);
     let options = RenderOptions::from(PictureOptions { transparent: true, ..PictureOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Display);
+    let options = RenderOptions::from(PictureOptions { rays: 4, ..PictureOptions::default() });
+    assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Antialiasing);
     let options = RenderOptions::from(WorkOptions { timed: true, light_parts: 3, ..WorkOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Nothing);
 }
