@@ -16,7 +16,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     var sum = 0.0;
     for (var corner = 0u; corner < 8u; corner += 1u) {
-        sum += extinction_at(block_sample_point(id, corner));
+        sum += min(extinction_at(block_sample_point(id, corner)) * blocks.edge, blocks.max_depth);
     }
-    textureStore(extinction, id + 1u, vec4f(sum * blocks.edge / 8.0));
+    textureStore(extinction, id + 1u, vec4f(sum / 8.0));
 }

@@ -29,7 +29,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let is_beside = any(id.xy == vec2u(0u));
     var t = 1.0;
     for (var n = ray.span.x; n <= select(min(ray.span.y, end), -1.0, is_beside); n += 1.0) {
-        let tau = textureSampleLevel(extinction, clamped, place_in_blocks(rays, ray, n), 0.0).r * rays.step;
+        let depth = textureSampleLevel(extinction, clamped, place_in_blocks(rays, ray, n), 0.0).r;
+        let tau = max(depth, 0.0) * rays.step;
         t *= select(exp(-tau), slab_mean_transmittance(tau), n == end);
     }
     textureStore(transmittance, vec3u(id.xy, id.z), vec4f(t));

@@ -4,8 +4,8 @@
 //
 // Blocks near a surface store the light of that surface instead. With the cosine c of a direction to its normal n, it
 // is E/π = 4 ⟨T c⟩ over the hemisphere above. The formula of the eye, A₀ + 2 n · A₁, yields that from
-//   V₀ = ⟨T 12 c (1 − c)⟩ and V₁ = ⟨T (4 c ω′ + 2 c (3 c − 2) n)⟩, ω′ = ω − c n,
-// because 12 c (1 − c) + 4 c (3 c − 2) = 4 c. An open surface has V₀ = 1 and V₁ = 0, so that it is equally bright for
+//   V₀ = ⟨T 12 c (1 − c)⟩ and V₁ = ⟨T 4 c (ω − c n)⟩ + ½ (⟨T 4 c⟩ − V₀) n.
+// The means ⟨12 c (1 − c)⟩ and ⟨4 c⟩ over few directions are not quite 1 and are divided by what they are. An open surface has V₀ = 1 and V₁ = 0, so that it is equally bright for
 // all normals: edges and noise of convex bodies show no error. What only sees a narrow cone has V₀ near 0, so that its
 // light falls with the cosine.
 #import "sky/rays.wgsl"
@@ -33,7 +33,7 @@ const MAX_START_SLICES = 2.0;
 
 // Maximum distance from a block, in blocks along an axis, at which its rays start; crates/render/src/sky/surfaces.rs
 // provides sheets a block farther around. Only blocks well inside material would need more, which nothing looks up.
-const MAX_START_DISTANCE = 3.0;
+const MAX_START_DISTANCE = 2.5;
 
 // Start of a ray in front of a surface, relative to the point at that height on the normal: on the ray from the
 // surface itself, so that nothing shifts against the surroundings, unless that is too far away.
@@ -67,17 +67,23 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     let height = clearance(surface.normal);
     let above = surface.normal * (height - surface.height);
     var sum = sums[at] * sweep.has_sums;
+    let light_reaches = select(1.0, 0.0, surface.is_buried);
     for (var i = 0u; i < DIRECTIONS; i += 1u) {
         let rays = bound_sweep.rays[i];
         let to_light = rays.direction_to_light;
         let cosine = max(dot(normal, to_light), 0.0);
         // Rays from below are inside the material, where fog is looked up as ever.
         let share = select(0.0, surface.share, cosine > 0.0);
-        let way = above + ray_start(rays, surface.normal, height);
-        let start = vec3f(id) + share * clamp(way, vec3f(-MAX_START_DISTANCE), vec3f(MAX_START_DISTANCE));
-        let of_surface = cosine * vec4f(4.0 * to_light + normal * (2.0 * cosine - 4.0), 12.0 - 12.0 * cosine);
-        let of_direction = mix(vec4f(to_light, 1.0), of_surface, surface.share);
-        sum += rays.weight * transmittance_from(rays, start) * of_direction;
+        let mean = surface.scale.x * 12.0 * cosine * (1.0 - cosine);
+        let light = surface.scale.y * 4.0 * cosine;
+        let of_surface = vec4f(light * (to_light - cosine * normal) + 0.5 * (light - mean) * normal, mean);
+        let of_direction = rays.weight * light_reaches * mix(vec4f(to_light, 1.0), of_surface, surface.share);
+        // Half of all directions are below a surface.
+        if (any(of_direction != vec4f(0.0))) {
+            let way = above + ray_start(rays, surface.normal, height);
+            let start = vec3f(id) + share * clamp(way, vec3f(-MAX_START_DISTANCE), vec3f(MAX_START_DISTANCE));
+            sum += transmittance_from(rays, start) * of_direction;
+        }
     }
     if (IS_LAST) {
         textureStore(moments, id, sum * sweep.share);

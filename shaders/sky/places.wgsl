@@ -17,6 +17,12 @@ struct BlocksUniform {
     edge: f32,
     // Fraction of attenuated light that is scattered, not absorbed; used by scattered_light/blocks.wgsl only.
     albedo: f32,
+    // Largest optical depth per shortest edge of a voxel that a sample point counts for; used by
+    // sky/extinction_blocks.wgsl only.
+    max_depth: f32,
+    pad0: f32,
+    pad1: f32,
+    pad2: f32,
     shading_cut: CutUniform,
 }
 

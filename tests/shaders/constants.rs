@@ -182,6 +182,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("sky/floor_map.wgsl", [8, 8, 1]),
         ("sky/floor_sweep.wgsl", [8, 8, 1]),
         ("sky/moments.wgsl", [64, 1, 1]),
+        ("sky/sharpened_blocks.wgsl", [64, 1, 1]),
         ("sky/surfaces.wgsl", [64, 1, 1]),
         ("sky/sweep.wgsl", [8, 8, 1]),
         ("volume/downsample.wgsl", [8, 8, 4]),

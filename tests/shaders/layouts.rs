@@ -313,7 +313,19 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
         ("eye/eye_pass.wgsl", layout!(SkyUniform { red, green, blue, lookup, lookup_distance })),
         (
             "sky/extinction_blocks.wgsl",
-            layout!(BlocksUniform { dims, voxel_step, level, offset, edge, albedo, shading_cut }),
+            layout!(BlocksUniform {
+                dims,
+                voxel_step,
+                level,
+                offset,
+                edge,
+                albedo,
+                max_depth,
+                pad0,
+                pad1,
+                pad2,
+                shading_cut
+            }),
         ),
         (
             "sky/surfaces.wgsl",
@@ -321,7 +333,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 dims,
                 has_surfaces,
                 block_scale,
-                pad0,
+                directions,
                 along_x,
                 pad1,
                 along_y,
@@ -330,6 +342,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 pad3
             }),
         ),
+        ("sky/surfaces.wgsl", layout!(SkyDirectionsUniform { directions })),
         (
             "sky/floor_map.wgsl",
             layout!(FloorSkyMapUniform { origin, share, along_x, size, along_y, pad0, plane }),

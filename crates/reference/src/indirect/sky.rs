@@ -10,7 +10,7 @@ use crate::Reference;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
 use chiaroscuro_render::plan::{SlicePosition, SweepFrame, directions_above, sweep_directions};
-use chiaroscuro_scene::{ReconstructionKernel, SKY_LOOKUP_DISTANCE};
+use chiaroscuro_scene::{ReconstructionKernel, sky_lookup_voxels};
 
 /// Volume of sky visibility: two moments over directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,8 @@ impl Reference<'_> {
     pub fn sky_visibility_from(&self, directions: &[DVec3], divisor: usize) -> SkyVisibility {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let extinction = self.sky_blocks(dims, divisor);
-        let surfaces = self.surfaces_of_blocks(dims, divisor, &extinction);
+        let surfaces = self.surfaces_of_blocks(dims, divisor, &extinction, directions);
+        let extinction = self.sharpened(dims, &extinction);
         let count: usize = dims.iter().product();
         let mut sums = vec![[0.0; 4]; count];
         for &towards in directions {
@@ -79,7 +80,8 @@ impl Reference<'_> {
             return Vec::new();
         }
         let divisor = self.sky_divisor();
-        let extinction = self.sky_blocks(self.scene.dims.map(|n| n.div_ceil(divisor)), divisor);
+        let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
+        let extinction = self.sharpened(dims, &self.sky_blocks(dims, divisor));
         let up = self.settings.camera.up.direction();
         // Height of a position in blocks above the floor.
         let above = |block: DVec3| {
@@ -124,7 +126,9 @@ impl Reference<'_> {
     /// Returns the extinction of sky light in each block.
     fn sky_blocks(&self, dims: [usize; 3], divisor: usize) -> Vec<f64> {
         let scale = self.settings.sky.density_scale;
-        self.blocks(dims, divisor, |_, extinction| [extinction * scale]).into_iter().flatten().collect()
+        let most = self.largest_sky_extinction();
+        let of_block = |_, extinction: f64| [(extinction * scale).min(most)];
+        self.blocks(dims, divisor, of_block).into_iter().flatten().collect()
     }
 
     /// Averages a function of position and extinction over eight positions in each block, or evaluates it at the
@@ -177,7 +181,7 @@ impl Reference<'_> {
         let strength = self.settings.shadows.strength;
         let (v0, v1) = openness.map_or((1.0, DVec3::ZERO), |openness| {
             let turned = if side.is_some_and(|side| side < 0.0) { -1.0 } else { 1.0 };
-            let ahead = SKY_LOOKUP_DISTANCE * openness.divisor as f64 * self.scene.smallest_edge();
+            let ahead = sky_lookup_voxels(openness.divisor) * self.scene.smallest_edge();
             let ahead = self.scene.index_from_scene.transform_vector3(normal * (turned * weight * ahead));
             let (v0, v1) = openness.at(point + ahead);
             (1.0 - strength * (1.0 - v0), v1 * strength)
@@ -201,7 +205,7 @@ fn depths<'a>(frame: &'a SweepFrame, extinction: &'a [f64], ray: usize) -> impl 
     let ray = [ray as u32 % frame.size[0], ray as u32 / frame.size[0]];
     (0..frame.slices()).map(move |slice| {
         let block = frame.block_position(slice as f64, frame.crossing(ray, slice));
-        interpolate_with_zero_border(frame.dims, extinction, block) * frame.step
+        interpolate_with_zero_border(frame.dims, extinction, block).max(0.0) * frame.step
     })
 }
 

@@ -99,6 +99,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "sky/moments.wgsl",
     "sky/places.wgsl",
     "sky/rays.wgsl",
+    "sky/sharpened_blocks.wgsl",
     "sky/surface_block.wgsl",
     "sky/surfaces.wgsl",
     "sky/sweep.wgsl",

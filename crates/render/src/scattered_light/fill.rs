@@ -86,8 +86,13 @@ impl ScatteredLightFill {
             .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share));
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
-        let met =
-            extinction_blocks::attenuating_cells(tables, options, volume.blocks.dims, volume.blocks.divisor);
+        let met = extinction_blocks::attenuating_cells(
+            tables,
+            options,
+            volume.blocks.dims,
+            volume.blocks.divisor,
+            0,
+        );
         // Pictures also look up the last bounce beside the blocks that scatter light.
         let visible_cells = met.union(&volume.filled_cells);
         let [each, last] = frames;
@@ -230,6 +235,7 @@ impl ScatteredLightFill {
             dims: volume.blocks.dims,
             divisor: volume.blocks.divisor,
             density_scale: scattering.density_scale,
+            max_depth: f32::MAX,
             albedo: scattering.albedo,
             one_color: self.one_color.is_some(),
             format: self.textures.medium_format,

@@ -102,6 +102,11 @@ impl DirectionBatches {
         self.directions_per_batch
     }
 
+    /// Returns the rays of all batches.
+    pub(crate) fn all(&self) -> &[DirectionRays] {
+        &self.rays
+    }
+
     /// Returns the rays of a batch; empty beyond the last.
     pub(crate) fn rays(&self, batch: usize) -> &[DirectionRays] {
         self.rays.chunks(self.directions_per_batch).nth(batch).unwrap_or_default()

@@ -10,6 +10,7 @@ use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{VolumeContext, brick_dims};
 use crate::{GpuError, RenderOptions};
 use chiaroscuro_scene::{ClassificationOrder, Settings};
+use chiaroscuro_volume::CELL_EDGE;
 
 /// Pass that fills blocks of extinction, with a shader that imports `sky/places.wgsl`.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +24,8 @@ pub(crate) struct BlocksPass<'a> {
     pub density_scale: f64,
     /// Fraction of attenuated light that is scattered rather than absorbed.
     pub albedo: f64,
+    /// Largest optical depth per shortest edge of a voxel that a sample point counts for; only the sky has one.
+    pub max_depth: f32,
     /// `true` if all light has the same colour.
     pub one_color: bool,
     /// Format of the texture that is filled.
@@ -39,20 +42,22 @@ fn pyramid_level(divisor: usize) -> f64 {
     (divisor as f64 / 2.0).max(1.0).log2()
 }
 
-/// Returns the cells of blocks of `divisor`³ voxels in which something may attenuate light; `dims` is the number of
-/// blocks.
+/// Returns the cells of blocks of `divisor`³ voxels in which something may attenuate light, and those within `margin`
+/// blocks of them; `dims` is the number of blocks.
 pub(crate) fn attenuating_cells(
     tables: &TransferTables,
     options: &RenderOptions,
     dims: [usize; 3],
     divisor: usize,
+    margin: usize,
 ) -> CellSet {
     let bricks = brick_dims(dims);
     if !options.switches.empty_space_skipping {
         return CellSet::full(bricks);
     }
     // The sample points of a block are at most as many cells from its centre as half its edge has voxels.
-    let reach = stretch_reach(pyramid_level(divisor)).saturating_add((divisor / 2) as u8);
+    let around = divisor / 2 + (margin * divisor).div_ceil(CELL_EDGE);
+    let reach = stretch_reach(pyramid_level(divisor)).saturating_add(around as u8);
     tables.lighting.cells_within(reach, divisor, bricks)
 }
 
@@ -64,7 +69,8 @@ impl BlocksPass<'_> {
         entries: &[NamedResource<'_>],
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let Self { shader, dims, divisor, density_scale, albedo, cells, tables, settings, .. } = *self;
+        let Self { shader, dims, divisor, density_scale, albedo, max_depth, cells, tables, settings, .. } =
+            *self;
         let scene = &gpu.volume.scene;
         let shading = settings.cuts.shadowing_part();
         let variant = BlocksVariant {
@@ -83,6 +89,10 @@ impl BlocksPass<'_> {
             offset: if divisor == 1 { 0.0 } else { divisor as f32 / 4.0 },
             edge: (scene.smallest_edge() * density_scale) as f32,
             albedo: albedo as f32,
+            max_depth,
+            pad0: 0.0,
+            pad1: 0.0,
+            pad2: 0.0,
             shading_cut: uniforms::CutUniform::new(&shading.region(scene)),
         };
         let uniform = gpu.uniform("Blocks::uniform", uniform);

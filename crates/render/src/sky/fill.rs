@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
+use super::block_texture::BlockTexture;
 use super::direction_batches::{DirectionBatches, sheet_size};
 use super::extinction_blocks::{self, BlocksPass};
 use super::floor_map::FloorSkyMap;
+use super::sharpened_blocks::{SOLID_DEPTH, SharpenedBlocks};
 use super::sheets::RaySheets;
 use super::surfaces::{START_REACH, SurfaceBlocks};
 use super::sweep::{SweepGatherVariant, SweepPass};
@@ -35,6 +37,8 @@ pub(crate) struct SkyFill {
     /// Blocks that pictures look up.
     output_cells: CellList,
     textures: SkyTextures,
+    /// Blocks with sharp surfaces; `None` if material has no surfaces.
+    sharpened: Option<SharpenedBlocks>,
 }
 
 /// Temporary textures and buffers for the filling.
@@ -83,8 +87,12 @@ impl SkyFill {
         let around = frames_of(sweep_directions(key.directions()));
         let up = volume.floor.as_ref().map(|floor| floor.extent.up.direction());
         let above = up.map_or_else(Vec::new, |up| frames_of(directions_above(up, key.directions())));
-        let met =
-            extinction_blocks::attenuating_cells(tables, options, volume.blocks.dims, volume.blocks.divisor);
+        let BlockTexture { dims, divisor, .. } = volume.blocks;
+        let attenuating =
+            |margin| extinction_blocks::attenuating_cells(tables, options, dims, divisor, margin);
+        let met = attenuating(0);
+        let sharpen = || SharpenedBlocks::new(gpu.context, dims, &attenuating(1));
+        let sharpened = key.has_surfaces().then(sharpen).transpose()?;
         // Rays start in front of surfaces.
         let reach = if key.has_surfaces() { START_REACH } else { 0.0 };
         let mut read = boxes_around(&volume.filled_cells);
@@ -106,6 +114,7 @@ impl SkyFill {
             attenuating_cells: met,
             output_cells: looked_up,
             textures,
+            sharpened,
         })
     }
 
@@ -116,7 +125,19 @@ impl SkyFill {
 
     /// Returns the size of the temporary resources, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        self.textures.bytes + self.attenuating_cells.bytes() + self.output_cells.bytes()
+        let sharpened = self.sharpened.as_ref().map_or(0, SharpenedBlocks::bytes);
+        self.textures.bytes + sharpened + self.attenuating_cells.bytes() + self.output_cells.bytes()
+    }
+
+    /// Uploads the geometry of blocks.
+    fn geometry(&self, gpu: VolumeContext<'_>, volume: &SkyVolume) -> wgpu::Buffer {
+        let directions = self.all_directions.directions();
+        SurfaceBlocks::geometry(gpu, &volume.blocks, directions, self.has_surfaces)
+    }
+
+    /// Returns the extinction that rays meet.
+    fn swept(&self) -> &wgpu::TextureView {
+        self.sharpened.as_ref().map_or(&self.textures.blocks, |sharpened| &sharpened.view)
     }
 
     /// Fills the blocks of extinction.
@@ -134,6 +155,7 @@ impl SkyFill {
             dims: volume.blocks.dims,
             divisor: volume.blocks.divisor,
             density_scale: self.density_scale,
+            max_depth: if self.has_surfaces { SOLID_DEPTH } else { f32::MAX },
             albedo: 0.0,
             one_color: false,
             format: gpu.context.storage_format,
@@ -143,7 +165,11 @@ impl SkyFill {
         };
         pass.record(gpu, &[bind_view("extinction", &self.textures.blocks)], encoder)?;
         let SkyTextures { blocks, surfaces, .. } = &self.textures;
-        surfaces.find(gpu, &volume.blocks, blocks, &self.output_cells, self.has_surfaces, encoder)
+        if let Some(sharpened) = &self.sharpened {
+            sharpened.fill(gpu, &volume.blocks, blocks, encoder)?;
+        }
+        let directions = SurfaceBlocks::directions(gpu, &self.all_directions);
+        surfaces.find(gpu, blocks, &self.output_cells, &self.geometry(gpu, volume), &directions, encoder)
     }
 
     /// Sweeps the directions of a batch, and adds their transmittance to the moments.
@@ -158,7 +184,7 @@ impl SkyFill {
         if let Some(batch) = batch.checked_sub(self.all_directions.count()) {
             return self.fill_floor(gpu, volume, batch, encoder);
         }
-        let SkyTextures { blocks, sheets, surfaces, sums, .. } = &self.textures;
+        let SkyTextures { sheets, surfaces, sums, .. } = &self.textures;
         let pass = SweepPass {
             shader: "sky/sweep.wgsl",
             one_color: false,
@@ -168,11 +194,11 @@ impl SkyFill {
             is_first: batch == 0,
             share: 1.0 / self.all_directions.directions() as f32,
         };
-        let entries = [bind_view("extinction", blocks), bind_view("sheets", &sheets.view)];
+        let entries = [bind_view("extinction", self.swept()), bind_view("sheets", &sheets.view)];
         let uniform = pass.record(gpu, &entries, |_| DVec3::ZERO, encoder)?;
         let gather = SweepGatherVariant::with_mean("sky/moments.wgsl", &self.all_directions, batch);
         let gather = gpu.shaders.pipeline(&gather)?;
-        let geometry = SurfaceBlocks::geometry(gpu, &volume.blocks, self.has_surfaces);
+        let geometry = self.geometry(gpu, volume);
         let entries = [
             bind_buffer("bound_sweep", &uniform),
             bind_view("sheets", &sheets.view),
@@ -196,8 +222,7 @@ impl SkyFill {
         batch: usize,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let SkyTextures { blocks, floor: Some(FloorTextures { transmittance, sums }), .. } = &self.textures
-        else {
+        let SkyTextures { floor: Some(FloorTextures { transmittance, sums }), .. } = &self.textures else {
             return Ok(());
         };
         let Some(floor) = &volume.floor else { return Ok(()) };
@@ -217,7 +242,7 @@ impl SkyFill {
             share: 0.0,
         };
         let entries = [
-            bind_view("extinction", blocks),
+            bind_view("extinction", self.swept()),
             bind_view("transmittance", &transmittance.view),
             bind_buffer("bound_map", &place),
         ];

@@ -10,6 +10,7 @@ pub(super) mod direction_batches;
 pub(super) mod extinction_blocks;
 pub(super) mod fill;
 pub(super) mod floor_map;
+pub(super) mod sharpened_blocks;
 pub(super) mod sheets;
 pub(super) mod surfaces;
 pub(super) mod sweep;

@@ -1,6 +1,7 @@
 //! Surfaces of dense material near the blocks that pictures look up, in front of which rays to the sky start.
 
 use super::block_texture::BlockTexture;
+use super::direction_batches::DirectionBatches;
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::SingleVariant;
 use crate::pipelines::uniforms;
@@ -14,9 +15,9 @@ use glam::DVec3;
 const SURFACE_BYTES: u64 = 16;
 
 /// Distance from the cells that pictures look up, in blocks along an axis, within which rays must be followed: they
-/// start up to three blocks from a block (`MAX_START_DISTANCE` in `shaders/sky/moments.wgsl`), and are interpolated
+/// start up to 2.5 blocks from a block (`MAX_START_DISTANCE` in `shaders/sky/moments.wgsl`), and are interpolated
 /// over another.
-pub(crate) const START_REACH: f64 = 4.0;
+pub(crate) const START_REACH: f64 = 3.5;
 
 /// Surface of each listed block: its normal, its distance, and the height above it that is free of its own material.
 #[derive(Debug)]
@@ -36,10 +37,11 @@ impl SurfaceBlocks {
         Self { buffer }
     }
 
-    /// Uploads the geometry of blocks.
+    /// Uploads the geometry of blocks, and the number of directions in which light is followed.
     pub(crate) fn geometry(
         gpu: VolumeContext<'_>,
         blocks: &BlockTexture,
+        directions: usize,
         has_surfaces: bool,
     ) -> wgpu::Buffer {
         let linear = gpu.volume.scene.index_from_scene.matrix3;
@@ -50,7 +52,7 @@ impl SurfaceBlocks {
             dims: blocks.dims.map(|n| n as u32),
             has_surfaces: u32::from(has_surfaces),
             block_scale: blocks.dims.map(|n| 1.0 / (n + 2) as f32),
-            pad0: 0.0,
+            directions: directions as u32,
             along_x: column(linear.x_axis),
             pad1: 0.0,
             along_y: column(linear.y_axis),
@@ -61,24 +63,34 @@ impl SurfaceBlocks {
         gpu.uniform("Sky::geometry", uniform)
     }
 
-    /// Records the pass that finds the surfaces near listed blocks; `extinction` is that of all blocks, with a border.
+    /// Uploads the directions of all sweeps.
+    pub(crate) fn directions(gpu: VolumeContext<'_>, batches: &DirectionBatches) -> wgpu::Buffer {
+        let mut uniform: uniforms::SkyDirectionsUniform = bytemuck::Zeroable::zeroed();
+        for (packed, rays) in uniform.directions.iter_mut().zip(batches.all()) {
+            *packed = rays.frame.towards.as_vec3().extend(0.0).into();
+        }
+        gpu.uniform("Sky::directions", uniform)
+    }
+
+    /// Records the pass that finds the surfaces near listed blocks; `extinction` is that of all blocks, with a border,
+    /// and `geometry` and `directions` are the uniforms of this type.
     pub(crate) fn find(
         &self,
         gpu: VolumeContext<'_>,
-        blocks: &BlockTexture,
         extinction: &wgpu::TextureView,
         cells: &CellList,
-        has_surfaces: bool,
+        geometry: &wgpu::Buffer,
+        directions: &wgpu::Buffer,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
         let pipeline = gpu.shaders.pipeline(&SingleVariant("sky/surfaces.wgsl"))?;
-        let geometry = Self::geometry(gpu, blocks, has_surfaces);
         let entries = [
             bind_view("extinction", extinction),
             sampler("clamped", &gpu.volume.clamped),
             cells.binding(),
             bind_buffer("surfaces", &self.buffer),
-            bind_buffer("bound_geometry", &geometry),
+            bind_buffer("bound_geometry", geometry),
+            bind_buffer("bound_directions", directions),
         ];
         let own = gpu.bind("Sky::surfaces", &pipeline, 0, &entries);
         pass::dispatch(encoder, "Sky::surfaces", &pipeline, &[&own], cells.workgroups());

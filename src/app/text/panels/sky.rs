@@ -39,6 +39,6 @@ pub(crate) const DIRECTION_SETS: [ControlText; 5] = [
     control_text("6", "For a first impression: shadows in six directions"),
     control_text("12", "As in previews"),
     control_text("24", "Fine for soft material; on surfaces it shows as a faint weave"),
-    control_text("48", "Even on surfaces, too"),
-    control_text("96", "Twice as many steps in the shadows of edges, in twice the time"),
+    control_text("48", "On surfaces, faint copies of the shadows of thin objects"),
+    control_text("96", "Even on surfaces, too, in twice the time"),
 ];

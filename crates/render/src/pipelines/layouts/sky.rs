@@ -85,6 +85,15 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     (
+        "sky/sharpened_blocks.wgsl",
+        &[&[
+            BindingSlot::loaded_texture(1, "extinction", TextureShape::D3),
+            BindingSlot::storage_texture(3, "sharpened", TextureShape::D3, StorageFormat::Storage),
+            BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
+            SURFACE_BLOCKS,
+        ]],
+    ),
+    (
         "sky/surfaces.wgsl",
         &[&[
             BindingSlot::sampled_texture(1, "extinction", TextureShape::D3),
@@ -92,6 +101,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             BindingSlot::storage(5, "cells", 4, BufferAccess::Read),
             BindingSlot::storage(6, "surfaces", 16, BufferAccess::ReadWrite),
             SURFACE_BLOCKS,
+            BindingSlot::uniform::<uniforms::SkyDirectionsUniform>(8, "bound_directions"),
         ]],
     ),
     (

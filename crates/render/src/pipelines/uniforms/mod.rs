@@ -17,8 +17,8 @@ pub use self::scattered_light::{
     BounceUniform, DiffusionLevelUniform, ScatteredLightUniform, SingleScatteringUniform,
 };
 pub use self::sky::{
-    BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyUniform, SurfaceBlocksUniform,
-    SweepRaysUniform, SweepUniform,
+    BlocksUniform, FloorSkyMapUniform, MAX_BATCH_DIRECTIONS, SkyDirectionsUniform, SkyUniform,
+    SurfaceBlocksUniform, SweepRaysUniform, SweepUniform,
 };
 
 use bytemuck::{Pod, Zeroable};

@@ -28,6 +28,10 @@ pub struct BlocksUniform {
     pub offset: f32,
     pub edge: f32,
     pub albedo: f32,
+    pub max_depth: f32,
+    pub pad0: f32,
+    pub pad1: f32,
+    pub pad2: f32,
     pub shading_cut: CutUniform,
 }
 
@@ -70,13 +74,23 @@ pub struct SurfaceBlocksUniform {
     pub dims: [u32; 3],
     pub has_surfaces: u32,
     pub block_scale: [f32; 3],
-    pub pad0: f32,
+    pub directions: u32,
     pub along_x: [f32; 3],
     pub pad1: f32,
     pub along_y: [f32; 3],
     pub pad2: f32,
     pub along_z: [f32; 3],
     pub pad3: f32,
+}
+
+/// Maximum number of directions of a sky, as in `sky/surfaces.wgsl`.
+pub const MAX_SKY_DIRECTIONS: usize = 96;
+
+/// Directions in which the light of a sky is followed, as declared in `sky/surfaces.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SkyDirectionsUniform {
+    pub directions: [[f32; 4]; MAX_SKY_DIRECTIONS],
 }
 
 /// Position of the floor's sky map, as declared in `sky/floor_place.wgsl`.
