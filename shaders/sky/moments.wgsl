@@ -5,9 +5,9 @@
 // Blocks near a surface store the light of that surface instead. With the cosine c of a direction to its normal n, it
 // is E/π = 4 ⟨T c⟩ over the hemisphere above. The formula of the eye, A₀ + 2 n · A₁, yields that from
 //   V₀ = ⟨T 12 c (1 − c)⟩ and V₁ = ⟨T 4 c (ω − c n)⟩ + ½ (⟨T 4 c⟩ − V₀) n.
-// The means ⟨12 c (1 − c)⟩ and ⟨4 c⟩ over few directions are not quite 1 and are divided by what they are. An open surface has V₀ = 1 and V₁ = 0, so that it is equally bright for
-// all normals: edges and noise of convex bodies show no error. What only sees a narrow cone has V₀ near 0, so that its
-// light falls with the cosine.
+// The means ⟨12 c (1 − c)⟩ and ⟨4 c⟩ over few directions are not quite 1, and both sums are divided by them. An open
+// surface has V₀ = 1 and V₁ = 0, so that it is equally bright for all normals: edges and noise of convex bodies show
+// no error. What only sees a narrow cone has V₀ near 0, so that its light falls with the cosine.
 #import "sky/rays.wgsl"
 #import "sky/surface_block.wgsl"
 #import "common/listed_cells.wgsl"

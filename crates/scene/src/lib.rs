@@ -44,7 +44,7 @@ pub use self::settings::light::horizon_clipping::VisibleLight;
 pub use self::settings::light::scattering::{MAX_ANISOTROPY, MAX_BOUNCES, ScatteringSettings};
 pub use self::settings::light::sky::{
     EnvironmentLight, MAX_ENVIRONMENT_RADIANCE, SKY_DIRECTIONS, SKY_LOOKUP_DISTANCE, SkyMode, SkyRadiance,
-    SkySettings, sky_lookup_voxels,
+    SkySettings,
 };
 pub use self::settings::light::{
     LightGeometry, LightLock, LightSettings, MAX_LIGHTS, MAX_NAME_CHARS, SceneLight, Spotlight, SpotlightCone,

@@ -3,8 +3,8 @@
 
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
-    ControlPoint, DensityRange, LightVolumeResolution, OpacityLength, Projection, SceneAxis, Settings,
-    SkyMode, SkySettings, TransferFunction,
+    ControlPoint, DensityRange, LightVolumeResolution, OpacityLength, SceneAxis, Settings, SkyMode,
+    SkySettings, TransferFunction,
 };
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
@@ -13,7 +13,7 @@ use crate::common::{context, damaged_renderer, render};
 use crate::scenes::{self, axis_camera};
 use crate::thresholds::{
     BOX_UNDER_SKY, CONVEX_BODY_UNDER_SKY, GROOVE_UNDER_SKY, OPEN_PLATE_AT_FULL_RESOLUTION,
-    OPEN_PLATE_UNDER_SKY, SKY_AT_HALF_OF_FULL, WELL_AT_FULL_RESOLUTION, WELL_UNDER_SKY,
+    OPEN_PLATE_UNDER_SKY, SKY_AT_HALF_OF_FULL, WELL_UNDER_SKY,
 };
 
 /// Edge of pictures, in pixels: so many that a pixel is smaller than a voxel.
@@ -61,7 +61,6 @@ fn brightness(
         .with_range(DensityRange::Full);
     settings.camera = axis_camera(scene.view[0], scene.view[1]);
     settings.camera.up = SceneAxis::PlusZ;
-    settings.camera.projection = Projection::Orthographic;
     settings.shading.ambient = 0.0;
     settings.shading.diffuse = 1.0;
     settings.shading.specular = 0.0;
@@ -204,8 +203,7 @@ fn a_well_is_dark_at_its_floor() {
         let voxel = top.iter().filter(|is_opaque| **is_opaque).count() as f64 / 40.0;
         let [found, ..] = statistics(picture, 12.0 * voxel / SIZE as f64);
         println!("{what}: {found:.4}, {right:.4} in closed form, {voxel:.2} pixels per voxel");
-        let limit = if what.ends_with("Full") { WELL_AT_FULL_RESOLUTION } else { WELL_UNDER_SKY };
-        assert!((found / right - 1.0).abs() <= limit, "{what}: {found}, not {right}");
+        assert!((found / right - 1.0).abs() <= WELL_UNDER_SKY, "{what}: {found}, not {right}");
     });
 }
 

@@ -10,7 +10,7 @@ use crate::Reference;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
 use chiaroscuro_render::plan::{SlicePosition, SweepFrame, directions_above, sweep_directions};
-use chiaroscuro_scene::{ReconstructionKernel, sky_lookup_voxels};
+use chiaroscuro_scene::{ReconstructionKernel, SKY_LOOKUP_DISTANCE};
 
 /// Volume of sky visibility: two moments over directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -181,7 +181,7 @@ impl Reference<'_> {
         let strength = self.settings.shadows.strength;
         let (v0, v1) = openness.map_or((1.0, DVec3::ZERO), |openness| {
             let turned = if side.is_some_and(|side| side < 0.0) { -1.0 } else { 1.0 };
-            let ahead = sky_lookup_voxels(openness.divisor) * self.scene.smallest_edge();
+            let ahead = SKY_LOOKUP_DISTANCE * openness.divisor as f64 * self.scene.smallest_edge();
             let ahead = self.scene.index_from_scene.transform_vector3(normal * (turned * weight * ahead));
             let (v0, v1) = openness.at(point + ahead);
             (1.0 - strength * (1.0 - v0), v1 * strength)

@@ -7,7 +7,7 @@ use crate::scattered_light::volume::ScatteredLightVolume;
 use crate::sky::block_texture::BlockTexture;
 use crate::sky::volume::SkyVolume;
 use crate::volume::VolumeContext;
-use chiaroscuro_scene::{SKY_LOOKUP_DISTANCE, Settings, SkyRadiance, sky_lookup_voxels};
+use chiaroscuro_scene::{SKY_LOOKUP_DISTANCE, Settings, SkyRadiance};
 use chiaroscuro_volume::math::SceneSpace;
 
 /// Volumes of light from all directions; `None` where a picture has none.
@@ -46,13 +46,11 @@ pub(crate) fn sky_uniform(
         green: color(1),
         blue: color(2),
         lookup: blocks.map_or([0.0; 3], BlockTexture::lookup),
-        lookup_distance: blocks
-            .map_or(0.0, |blocks| sky_lookup_voxels(blocks.divisor) * scene.smallest_edge())
-            as f32,
+        lookup_distance: lookup_distance(blocks, scene),
     }
 }
 
-/// Returns the distance in front of a surface at which blocks of scattered light are looked up, in scene units; 0 without blocks.
+/// Returns the distance in front of a surface at which blocks are looked up, in scene units; 0 without blocks.
 fn lookup_distance(blocks: Option<&BlockTexture>, scene: &SceneSpace) -> f32 {
     blocks.map_or(0.0, |blocks| SKY_LOOKUP_DISTANCE * blocks.divisor as f64 * scene.smallest_edge()) as f32
 }

@@ -10,7 +10,7 @@ use crate::plan::{
 };
 use crate::volume::transfer_tables::{CellRequirement, TransferTables};
 use crate::volume::{GpuVolume, brick_dims};
-use chiaroscuro_scene::{MAX_BIAS_VOXELS, NearFieldRay, sky_lookup_voxels};
+use chiaroscuro_scene::{MAX_BIAS_VOXELS, NearFieldRay, SKY_LOOKUP_DISTANCE};
 
 /// Maximum number of cached volumes of sky visibility, and of scattered light: one for the picture, one for its
 /// previews, and one for undoing a change.
@@ -81,7 +81,7 @@ pub(super) fn ambient_cells(
     divisor: usize,
     reach: u8,
 ) -> Arc<CellSet> {
-    let reach = reach.saturating_add(bias_reach(sky_lookup_voxels(divisor)));
+    let reach = reach.saturating_add(bias_reach(SKY_LOOKUP_DISTANCE * divisor as f64));
     needed_cells(
         volume,
         tables,

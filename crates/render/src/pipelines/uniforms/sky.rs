@@ -84,7 +84,7 @@ pub struct SurfaceBlocksUniform {
 }
 
 /// Maximum number of directions of a sky, as in `sky/surfaces.wgsl`.
-pub const MAX_SKY_DIRECTIONS: usize = 96;
+const MAX_SKY_DIRECTIONS: usize = 96;
 
 /// Directions in which the light of a sky is followed, as declared in `sky/surfaces.wgsl`.
 #[repr(C)]

@@ -26,12 +26,6 @@ pub const SKY_DIRECTIONS: std::ops::RangeInclusive<u32> = 6..=96;
 /// the surface itself, which the blocks blur.
 pub const SKY_LOOKUP_DISTANCE: f64 = 0.75;
 
-/// Returns the distance in front of a surface, in voxels, at which sky visibility is looked up in blocks of `divisor`³
-/// voxels: at least 1.5, because samples of a slab lie up to a voxel inside the material, where blocks are dark.
-pub fn sky_lookup_voxels(divisor: usize) -> f64 {
-    (SKY_LOOKUP_DISTANCE * divisor as f64).max(1.5)
-}
-
 /// Ambient light from all directions.
 ///
 /// Only sky visibility is cached (`SkyKey` of the renderer), so that changing
