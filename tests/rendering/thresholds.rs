@@ -371,29 +371,18 @@ pub(crate) const EXPOSED: DisplayLimit = DisplayLimit { rms: 0.7, worst: 1.1, me
 /// Lamps 3000 units away, and discs of a twentieth of a degree, which set behind a surface a little later than points.
 pub(crate) const FAR_OR_TINY: DisplayLimit = DisplayLimit { rms: 0.05, worst: 2.0, mean: 0.02 };
 
-/// Largest deviations of a plate's picture from the truth, relative to its mean.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PlateLimit {
-    /// Of the mean.
-    pub(crate) level: f64,
-    /// Of the rest, root mean square.
-    pub(crate) rms: f64,
-    /// Of the rest, from the least to the most.
-    pub(crate) peak_to_peak: f64,
-}
-
-/// Flat plates with *Standard*: what slabs of half a voxel leave that are halved where they show an eighth.
-pub(crate) const FLAT_STANDARD: PlateLimit = PlateLimit { level: 0.01, rms: 0.003, peak_to_peak: 0.01 };
+/// Flat plates with *Standard*, over the mean: of the level, and root mean square and peak to peak of the rest. What slabs of half a voxel leave that are halved where they show an eighth.
+pub(crate) const FLAT_STANDARD: [f64; 3] = [0.01, 0.003, 0.01];
 /// Tilted plates with *Standard*: differences over two voxels turn the normals of sharp voxels by up to two degrees, and
 /// slabs ripple where they meet voxels.
-pub(crate) const TILTED_STANDARD: PlateLimit = PlateLimit { level: 0.03, rms: 0.02, peak_to_peak: 0.07 };
+pub(crate) const TILTED_STANDARD: [f64; 3] = [0.03, 0.02, 0.07];
 /// Flat and tilted plates with *Fine*: slabs of a quarter, halved where they show a thirty-second.
-pub(crate) const PLATE_FINE: PlateLimit = PlateLimit { level: 0.009, rms: 0.0027, peak_to_peak: 0.01 };
+pub(crate) const PLATE_FINE: [f64; 3] = [0.009, 0.0027, 0.01];
 /// Flat plates with *Exact*: steps of a fifth of a voxel.
-pub(crate) const FLAT_EXACT: PlateLimit = PlateLimit { level: 0.002, rms: 0.002, peak_to_peak: 0.007 };
+pub(crate) const FLAT_EXACT: [f64; 3] = [0.002, 0.002, 0.007];
 /// Tilted plates with *Exact*: thinner slabs change nothing; texture filters have weights of 8 bits, and those of the
 /// oracle are exact.
-pub(crate) const TILTED_EXACT: PlateLimit = PlateLimit { level: 0.0025, rms: 0.0035, peak_to_peak: 0.012 };
+pub(crate) const TILTED_EXACT: [f64; 3] = [0.0025, 0.0035, 0.012];
 
 /// Opacity of a peak of ± 4 of 255 in the curve, relative.
 pub(crate) const NARROW_PEAK: f64 = 0.01;
