@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::plate_oracle::PlateOracle;
 use crate::common::{context, damaged_renderer, render};
 use crate::scenes::{self, axis_camera};
-use crate::thresholds::{FLAT_EXACT, FLAT_STANDARD, PLATE_FINE, PlateLimit, TILTED_EXACT, TILTED_STANDARD};
+use crate::thresholds::{FLAT_EXACT, FLAT_STANDARD, PLATE_FINE, TILTED_EXACT, TILTED_STANDARD};
 
 /// Size of pictures: a pixel is half a voxel wide.
 const SIZE: [usize; 2] = [160, 80];

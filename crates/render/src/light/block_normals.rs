@@ -49,7 +49,7 @@ impl BlockNormals {
         let size = normals.dims.map(|n| n + 2);
         let opacity =
             context.texture(&texture_3d("BlockNormals::opacity", size, context.storage_format, usages))?;
-        let attenuating = attenuating_cells(tables, options, normals.dims, divisor);
+        let attenuating = attenuating_cells(tables, options, normals.dims, divisor, 0);
         let listed = cells_around(&whole.filled_cells, divisor / (CELL_EDGE * whole.divisor), normals.dims);
         Ok(Self {
             normals,
@@ -82,6 +82,7 @@ impl BlockNormals {
             divisor: normals.divisor,
             density_scale,
             albedo: 0.0,
+            max_depth: f32::MAX,
             one_color: false,
             format: gpu.context.storage_format,
             cells: attenuating,
