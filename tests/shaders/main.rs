@@ -8,6 +8,7 @@ mod imports;
 mod layouts;
 mod options;
 mod sources;
+mod struct_layout;
 mod structs;
 mod validity;
 mod voxel_access;

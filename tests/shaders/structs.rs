@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::layouts::{FieldLayout, StructLayout, mirrored_structs};
+use crate::layouts::mirrored_structs;
 use crate::sources::{entry_shaders, shader_source, validate_shader};
+use crate::struct_layout::{FieldLayout, StructLayout};
 
 /// Rust's name of a WGSL type.
 fn rust_type_name(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {

@@ -1,7 +1,8 @@
 //! Antialiasing: a list of the pixels of a picture that have edges, and several rays through each of them.
 
-use super::eye_pass::{DrawnRay, EyePass, RayTarget};
+use super::eye_pass::EyePass;
 use super::light_lookup::LightLookup;
+use super::ray_target::{DrawnRay, RayTarget};
 use crate::GpuError;
 use crate::output::render_target::{AntialiasedLight, EDGE_LIST_HEADER};
 use crate::pipelines::binding::{bind_buffer, bind_view};

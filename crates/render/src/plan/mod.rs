@@ -18,8 +18,8 @@ pub use self::geometry::light_frame::{
 };
 pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
 pub use self::geometry::near_field_cells::NearFieldOffset;
-pub use self::geometry::pixel_rays::PixelRay;
-pub use self::geometry::pixel_window::PixelWindow;
+pub use self::geometry::pixels::rays::PixelRay;
+pub use self::geometry::pixels::window::PixelWindow;
 pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
     scatter_reach_bricks, slab_reach, stretch_reach,

@@ -86,13 +86,8 @@ impl ScatteredLightFill {
             .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share));
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
-        let met = extinction_blocks::attenuating_cells(
-            tables,
-            options,
-            volume.blocks.dims,
-            volume.blocks.divisor,
-            0,
-        );
+        let (dims, divisor) = (volume.blocks.dims, volume.blocks.divisor);
+        let met = extinction_blocks::attenuating_cells(tables, options, dims, divisor, 0);
         // Pictures also look up the last bounce beside the blocks that scatter light.
         let visible_cells = met.union(&volume.filled_cells);
         let [each, last] = frames;

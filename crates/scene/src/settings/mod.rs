@@ -204,11 +204,8 @@ impl Settings {
     /// Returns the number of rays through each pixel of images at rest. The scattering engine draws whole sheets, and
     /// has one.
     pub fn rays_per_pixel(&self) -> u32 {
-        if self.uses_scattering_engine() {
-            1
-        } else {
-            OutputSettings::nearest_antialiasing(self.output.antialiasing)
-        }
+        let rays = OutputSettings::nearest_antialiasing(self.output.antialiasing);
+        if self.uses_scattering_engine() { 1 } else { rays }
     }
 
     /// Returns the ambient coefficient of unattenuated light, as a share of the material's colour; 0 if there is a

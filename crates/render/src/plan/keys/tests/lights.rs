@@ -1,8 +1,8 @@
 //! Tests of changes to lights, and of the keys of their volumes.
 
 use super::{ChangeEffect, effect, effect_of, keys, request};
-use crate::plan::LightKey;
-use chiaroscuro_scene::{LightLock, LightShape, LightVolumeResolution, SkyMode};
+use crate::plan::{LightKey, RenderRequest};
+use chiaroscuro_scene::{LightLock, LightShape, LightVolumeResolution, SkyMode, apply_path};
 
 #[test]
 fn the_size_of_a_light_is_part_of_its_volume_alone() {
@@ -111,4 +111,23 @@ fn colours_of_what_light_meets_count_where_shadows_are_coloured() {
     // Without shadows, the colours have no effect.
     before.settings.shadows.algorithm = chiaroscuro_scene::ShadowAlgorithm::Off;
     assert_eq!(effect_of(&before, "shadows.transmission", "0.4"), ChangeEffect::Nothing);
+}
+
+#[test]
+fn combined_light_follows_what_its_samples_see() {
+    let mut before = request();
+    before.settings.shadows.storage = chiaroscuro_scene::LightStorage::Combined;
+    let differs = |path: &str, value: &str| {
+        let settings = apply_path(&before.settings, path, value).unwrap();
+        keys(&RenderRequest { settings, ..before.clone() }).combined != keys(&before).combined
+    };
+    assert!(keys(&before).combined.is_some() && keys(&request()).combined.is_none());
+    for (path, value) in
+        [("lights.0.color", "[1,0,0]"), ("shadows.gain", "2"), ("shading.surface_gradient", "1")]
+    {
+        assert!(differs(path, value), "{path}");
+    }
+    for (path, value) in [("camera.azimuth_deg", "9"), ("shading.diffuse", "0.1"), ("lights.0.name", "Key")] {
+        assert!(!differs(path, value), "{path}");
+    }
 }

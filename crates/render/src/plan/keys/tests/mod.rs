@@ -386,22 +386,3 @@ fn points_within_the_range_leave_the_volume_as_it_is() {
     assert_ne!(volume("0.4"), volume("1.1"));
     assert_eq!(volume("1.1"), volume("1.12"));
 }
-
-#[test]
-fn combined_light_follows_what_its_samples_see() {
-    let mut before = request();
-    before.settings.shadows.storage = chiaroscuro_scene::LightStorage::Combined;
-    let differs = |path: &str, value: &str| {
-        let settings = apply_path(&before.settings, path, value).unwrap();
-        keys(&RenderRequest { settings, ..before.clone() }).combined != keys(&before).combined
-    };
-    assert!(keys(&before).combined.is_some() && keys(&request()).combined.is_none());
-    for (path, value) in
-        [("lights.0.color", "[1,0,0]"), ("shadows.gain", "2"), ("shading.surface_gradient", "1")]
-    {
-        assert!(differs(path, value), "{path}");
-    }
-    for (path, value) in [("camera.azimuth_deg", "9"), ("shading.diffuse", "0.1"), ("lights.0.name", "Key")] {
-        assert!(!differs(path, value), "{path}");
-    }
-}

@@ -1,7 +1,7 @@
 //! Rays through a pixel for antialiasing: fixed places in the pixel, and shifts of the slabs along each ray.
 
-use super::sheet_frame::SheetFrame;
 use crate::plan::geometry::eye_frame::slab_parts;
+use crate::plan::geometry::sheet_frame::SheetFrame;
 use chiaroscuro_scene::{OutputSettings, Settings};
 
 /// Ray through a pixel, relative to the one through its middle.
