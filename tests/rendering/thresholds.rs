@@ -94,6 +94,8 @@ pub(crate) const STRETCHED_FOG: f64 = 0.005;
 
 /// Scattering against gathering with the same weights: f16 sheets and light volumes on both sides.
 pub(crate) const ENGINES: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2.5e-4 };
+/// Engines by default, of which gathering alone sees the first end of near-field rays with the eye's kernel: 4.3e-4.
+pub(crate) const ENGINES_BY_DEFAULT: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 6e-4 };
 
 /// A shell a tenth of a voxel thick, in adaptive slabs against such of a sixteenth of a voxel: parabolas over half a
 /// voxel place the shell beside it where it is seen from the side.
@@ -335,8 +337,7 @@ pub(crate) const PENUMBRA_ENERGY: f64 = 0.005;
 /// that mean: near-field rays, which are shared by all points, and surfaces that are a voxel soft.
 pub(crate) const TERMINATOR: f64 = 0.15;
 
-/// Light of area lights on the floor, on a map whose texels are half a voxel wide here, from sheets whose pixels are
-/// a voxel wide: rays find edges a little sharper.
+/// Light of area lights on the floor, on a map with texels of half a voxel: rays find edges a little sharper.
 pub(crate) const FLOOR_PENUMBRA: ErrorLimit = ErrorLimit { max: 0.02, rmse: 1.6e-3 };
 
 /// Upper limits for the difference of two pictures in display values, 0 … 255.
@@ -371,7 +372,8 @@ pub(crate) const EXPOSED: DisplayLimit = DisplayLimit { rms: 0.7, worst: 1.1, me
 /// Lamps 3000 units away, and discs of a twentieth of a degree, which set behind a surface a little later than points.
 pub(crate) const FAR_OR_TINY: DisplayLimit = DisplayLimit { rms: 0.05, worst: 2.0, mean: 0.02 };
 
-/// Flat plates with *Standard*, over the mean: of the level, and root mean square and peak to peak of the rest. What slabs of half a voxel leave that are halved where they show an eighth.
+/// Flat plates with *Standard*: error of the mean, and root mean square and peak to peak of the rest, over the mean.
+/// Slabs of half a voxel are halved where they show an eighth.
 pub(crate) const FLAT_STANDARD: [f64; 3] = [0.01, 0.003, 0.01];
 /// Tilted plates with *Standard*: differences over two voxels turn the normals of sharp voxels by up to two degrees, and
 /// slabs ripple where they meet voxels.
@@ -384,10 +386,8 @@ pub(crate) const FLAT_EXACT: [f64; 3] = [0.002, 0.002, 0.007];
 /// oracle are exact.
 pub(crate) const TILTED_EXACT: [f64; 3] = [0.0025, 0.0035, 0.012];
 
-/// Opacity of a peak of ± 4 of 255 in the curve, relative.
-pub(crate) const NARROW_PEAK: f64 = 0.01;
-/// Opacity of a peak of ± 0.2 % of the range, which is four entries of the table wide.
-pub(crate) const NARROWEST_PEAK: f64 = 0.03;
+/// Opacity of peaks of ± 4 of 255, and of ± 0.2 % of the range, which is four entries of the table wide; relative.
+pub(crate) const NARROW_PEAKS: [f64; 2] = [0.01, 0.03];
 
 /// Coverage of pixels beside an edge, and coverages that count as one: the transmittance behind ten voxels of an
 /// opacity of 0.99 is none, and a fortieth of a voxel at the edge is not hard.

@@ -225,7 +225,7 @@ sided_mutation!(
     rays_nearby_that_begin_without_a_bend,
     "eye/eye_pass.wgsl",
     "0.4375 * own + 0.625 * end - 0.0625 * behind",
-    "0.5 * own + 0.5 * end"
+    "own"
 );
 sided_mutation!(
     rays_nearby_through_the_eyes_material,

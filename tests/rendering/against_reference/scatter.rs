@@ -5,7 +5,7 @@ use super::check_against;
 use crate::common::{Dataset, context, render};
 use crate::compare::{channels_f32, compare, to_f64};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
-use crate::thresholds::{ENGINES, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
+use crate::thresholds::{ENGINES, ENGINES_BY_DEFAULT, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
 use chiaroscuro_render::{Renderer, SHADERS};
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ControlPoint, DepositMode, GradientSource, LightGeometry, LightLock,
@@ -127,7 +127,7 @@ fn both_engines_make_nearly_the_same_picture_by_default() {
         "engines by default",
         &channels_f32(&scattered.linear),
         &to_f64(&gathered.linear.concat()),
-        ENGINES,
+        ENGINES_BY_DEFAULT,
     )
     .unwrap_or_else(|err| panic!("{err}"));
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::common::{context, damaged_renderer, render};
 use crate::scenes::{self, axis_camera};
-use crate::thresholds::{NARROW_PEAK, NARROWEST_PEAK};
+use crate::thresholds::NARROW_PEAKS;
 
 /// Number of voxels along the axis in which densities rise, and along the other two.
 const HEIGHT: usize = 40;
@@ -65,7 +65,7 @@ fn peak_error(
 
 /// Half widths of peaks with the limits of their opacity: ± 4 of 255, and ± 0.2 % of the range, which is a fraction of
 /// a voxel even on slopes over ten.
-const PEAKS: [(f64, f64); 2] = [(4.0 / 255.0, NARROW_PEAK), (0.002, NARROWEST_PEAK)];
+const PEAKS: [(f64, f64); 2] = [(4.0 / 255.0, NARROW_PEAKS[0]), (0.002, NARROW_PEAKS[1])];
 
 #[test]
 fn narrow_peaks_keep_their_opacity() {

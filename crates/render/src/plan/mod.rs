@@ -5,6 +5,7 @@
 
 mod geometry;
 mod keys;
+mod pixel_rays;
 mod probe;
 mod request;
 
@@ -18,8 +19,7 @@ pub use self::geometry::light_frame::{
 };
 pub use self::geometry::march_tiles::{MarchTiles, TILE_EDGE, TILE_FIRST_BIT, TILE_ROW_BIT};
 pub use self::geometry::near_field_cells::NearFieldOffset;
-pub use self::geometry::pixels::rays::PixelRay;
-pub use self::geometry::pixels::window::PixelWindow;
+pub use self::geometry::pixel_window::PixelWindow;
 pub use self::geometry::reach::{
     bias_reach, lookup_reach, ray_reach, reverse_reach, reverse_reach_voxels, sample_reach,
     scatter_reach_bricks, slab_reach, stretch_reach,
@@ -28,6 +28,7 @@ pub use self::geometry::sheet_frame::{GradientSteps, MAX_STRETCH_LEVEL, PixelLin
 pub use self::geometry::slice_order::SliceOrder;
 pub use self::geometry::sweep::{SlicePosition, SweepFrame};
 pub use self::geometry::sweep_tiles::{END_SLICE_BIT, SweepTiles, boxes_around};
+pub use self::pixel_rays::PixelRay;
 pub use chiaroscuro_scene::{directions_above, sweep_directions};
 pub use keys::{
     ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,

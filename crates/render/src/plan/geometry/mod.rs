@@ -8,7 +8,7 @@ pub(super) mod floor_plane;
 pub(super) mod light_frame;
 pub(super) mod march_tiles;
 pub(super) mod near_field_cells;
-pub(super) mod pixels;
+pub(super) mod pixel_window;
 pub(super) mod reach;
 pub(super) mod sheet_frame;
 pub(super) mod slice_order;
