@@ -177,7 +177,8 @@ fn a_groove_darkens_towards_its_bottom() {
 fn well_light(edge: f64, depth: f64, x: f64, y: f64) -> f64 {
     let quarter = |a: f64, b: f64| {
         let (a, b) = (a / depth, b / depth);
-        let part = |a: f64, b: f64| a / a.hypot(1.0) * (b / a.hypot(1.0)).atan();
+        let length = |a: f64| (a * a + 1.0).sqrt();
+        let part = |a: f64, b: f64| a / length(a) * (b / length(a)).atan();
         (part(a, b) + part(b, a)) / std::f64::consts::TAU
     };
     let half = edge / 2.0;
@@ -195,7 +196,7 @@ fn a_well_is_dark_at_its_floor() {
     };
     let scene = Scene { dims: [40, 40, 38], depth: &depth, view: [0.0, 90.0] };
     // A quarter of the floor in its middle, of which a place may see one direction of the set more or less.
-    let places: Vec<f64> = (0..24).map(|at| (f64::from(at) + 0.5) / 2.0 - 6.0).collect();
+    let places: Vec<f64> = (0..24).map(|at| 0.5 * f64::from(at) - 5.75).collect();
     let of_place = |x: &f64| places.iter().map(|y| well_light(EDGE, EDGE, *x, *y)).sum::<f64>();
     let right = places.iter().map(of_place).sum::<f64>() / 576.0;
     for_all_looks("well", &scene, |what, picture| {

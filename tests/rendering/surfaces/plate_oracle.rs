@@ -87,7 +87,7 @@ impl PlateOracle<'_> {
     fn reflected(&self, at: [f64; 2]) -> f64 {
         let slope =
             [self.sum(at[0], at[1], spline_slope, spline), self.sum(at[0], at[1], spline, spline_slope)];
-        let steepness = slope[0].hypot(slope[1]).max(1e-12);
+        let steepness = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt().max(1e-12);
         let facing = -(slope[0] * self.to_light[0] + slope[1] * self.to_light[1]) / steepness;
         let light = if facing > 0.0 { facing * (-self.optical_depth(at, self.to_light)).exp() } else { 0.0 };
         self.ambient + light

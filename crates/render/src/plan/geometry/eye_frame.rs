@@ -42,7 +42,7 @@ pub fn picture_frame(settings: &Settings, scene: &SceneSpace, window: impl Into<
 }
 
 /// Returns the number of a picture's slabs in the thickest one.
-pub(super) fn slab_parts(settings: &Settings) -> u32 {
+pub(crate) fn slab_parts(settings: &Settings) -> u32 {
     if settings.has_adaptive_slabs() {
         MAX_SLAB_PARTS
     } else if settings.has_preintegrated_slabs() {
