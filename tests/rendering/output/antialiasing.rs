@@ -104,8 +104,9 @@ fn edges_are_one_pixel_wide_ramps_of_what_they_cover() {
         for rays in [4, 8, 16] {
             let EdgeErrors { largest, beside, levels } = edge_errors(&mut renderer, degrees, rays);
             println!("{degrees}° with {rays} rays: {largest:.3}, beside {beside:.4}, {levels} levels");
-            // Places in a pixel are apart by about its share of one ray along any direction.
-            assert!(largest < 1.0 / f64::from(rays) + 0.05, "{degrees}° {rays}: {largest}");
+            // Projected on the normal of an edge, gaps between places are up to one and a half times those of even
+            // places; and a fortieth of a voxel is not hard.
+            assert!(largest < 1.5 / f64::from(rays) + 0.02, "{degrees}° {rays}: {largest}");
             assert!(beside < COVERAGE_ROUNDING, "{degrees}° {rays}: wider than a pixel, {beside}");
             // The edge crosses too few pixels for all sixteen.
             assert!(levels >= rays.min(12) as usize, "{degrees}° {rays}: {levels}");
