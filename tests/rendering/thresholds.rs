@@ -97,9 +97,9 @@ pub(crate) const ENGINES: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2.
 /// Engines by default, of which gathering alone sees the first end of near-field rays with the eye's kernel: 4.3e-4.
 pub(crate) const ENGINES_BY_DEFAULT: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 6e-4 };
 
-/// A shell a tenth of a voxel thick, in adaptive slabs against such of a sixteenth of a voxel: parabolas over half a
-/// voxel place the shell beside it where it is seen from the side.
-pub(crate) const PEAK: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 2.5 / 255.0 };
+/// A shell a tenth of a voxel thick, in adaptive slabs against such of a sixteenth of a voxel: densities that are linear
+/// within a quarter of a voxel place the shell beside it where it is seen from the side.
+pub(crate) const PEAK: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 4.5 / 255.0 };
 /// Mean of the thin shell in slabs by need against even slabs, relative.
 pub(crate) const PEAK_MEAN: f64 = 0.03;
 

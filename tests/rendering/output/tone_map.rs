@@ -52,6 +52,8 @@ fn look(intensity: f64, tone_map: ToneMap, exposure: f64) -> Settings {
     settings.lights[0].intensity = intensity;
     settings.lights[0].color = [1.0, 0.7, 0.4];
     settings.output.tone_map = tone_map;
+    // Light is read back with a ray through each pixel.
+    settings.output.antialiasing = 1;
     settings.output.exposure = exposure;
     settings
 }

@@ -72,8 +72,8 @@ fn narrow_peaks_keep_their_opacity() {
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut failures = Vec::new();
     for (half_width, limit) in PEAKS {
-        for length in [5.0, 12.0, 24.0] {
-            for angle_deg in [0.0, 7.0, 33.0] {
+        for length in [5.0, 24.0] {
+            for angle_deg in [0.0, 33.0] {
                 for quality in [QualityPreset::Standard, QualityPreset::Fine, QualityPreset::Exact] {
                     let error = peak_error(&mut renderer, half_width, length, angle_deg, quality);
                     println!(

@@ -194,10 +194,10 @@ fn exceeds(found: [f64; 3], limits: [f64; 3]) -> bool {
 /// Flat plates from oblique views, and tilted ones from above.
 fn for_all_plates(mut check: impl FnMut(&PlateScene<'_>)) {
     for curve in &CURVES {
-        for view_deg in [4.3, 30.0, 50.0] {
+        for view_deg in [4.3, 30.0] {
             check(&PlateScene { tilt_deg: 0.0, view_deg, curve });
         }
-        for tilt_deg in [4.3, 20.0, 45.0] {
+        for tilt_deg in [4.3, 20.0] {
             check(&PlateScene { tilt_deg, view_deg: 0.0, curve });
         }
     }
