@@ -75,7 +75,8 @@ fn adaptive_slabs(ray: Ray, span: vec2f, inside: vec2i) -> RayResult {
                     let opacity = 1.0 - exp(-extinction_bound(front.value, found.value) * length);
                     is_complete = t * (1.0 - sum.opacity) * opacity <= eye.max_undivided_share;
                 }
-                // The same instructions add a whole slab, or both halves of one: software drivers run either branch.
+                // One piece of code adds a whole slab or both halves of one. Two branches would take twice the time on
+                // software drivers, which run both of them for all lanes.
                 let is_halved = task == SAMPLE_MIDDLE;
                 task = select(SAMPLE_MIDDLE, SAMPLE_END, is_complete);
                 if (is_complete) {

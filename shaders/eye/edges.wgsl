@@ -23,7 +23,7 @@ var<private> edges: EdgesUniform;
 @group(0) @binding(1) var middles: texture_2d<f32>;
 @group(0) @binding(2) var picture: texture_storage_2d<rgba32float, write>;
 // Workgroups that cover the listed pixels (three numbers), the number of these, and each with its column in the low
-// half and its row in the high half. The order is that in which threads come by, and makes no difference.
+// half and its row in the high half. Pixels are listed in any order, which does not change the picture.
 @group(0) @binding(3) var<storage, read_write> edge_list: array<atomic<u32>>;
 
 // Contrast that counts in darkness, where a grey step is 1/(255 · 12.92) = 3e-4: three steps of what is seen through

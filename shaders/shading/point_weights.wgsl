@@ -7,8 +7,8 @@
 // Change of weights with the offset of points from the centre of a light. `towards`: vector to the centre; `right` and
 // `up`: vectors from there to the borders; `share`: degree to which there is a surface.
 //
-// Where the surface's horizon comes near to the border of the light, all points count alike: those below it are hidden
-// by the surface itself.
+// All points have equal weights if the border of the light is near the horizon of the surface: the surface itself
+// hides the points below its horizon.
 fn weight_slope(towards: vec3f, right: vec3f, up: vec3f, normal: vec3f, share: f32) -> vec3f {
     let facing = dot(normal, towards);
     let divisor = select(min(facing, -1e-9), max(facing, 1e-9), facing >= 0.0);
