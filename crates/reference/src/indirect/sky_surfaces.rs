@@ -13,6 +13,8 @@ const FOG: f64 = 0.5;
 const SOLID: f64 = 1.5;
 /// Largest optical depth per shortest edge of a voxel that a position in a block counts for.
 const MOST: f64 = 3.0;
+/// Share of the excess of the largest extinction around a block that is subtracted from that of the block.
+const TAKEN: f64 = 0.6;
 /// Opacity per shortest edge of a voxel all around a block that no light reaches.
 const BURIED: f64 = 0.9;
 /// Places along the normal, in halves of a block from the block's centre.
@@ -44,7 +46,7 @@ impl NearbySurface {
     pub(super) fn ray_start(&self, block: DVec3, frame: &SweepFrame) -> DVec3 {
         let origin = frame.block_position(1.0, glam::DVec2::ZERO);
         let per_slice = frame.block_position(0.0, -frame.drift) - origin;
-        let clear = 0.5 + self.normal.abs().element_sum();
+        let clear = self.normal.abs().element_sum();
         let rise = self.normal.dot(per_slice);
         if rise <= 0.0 {
             return block;
@@ -79,7 +81,7 @@ impl Reference<'_> {
     }
 
     /// Sharpens the extinction of all blocks at the surfaces of dense material: it becomes negative where it is less
-    /// than half of the largest among the blocks around.
+    /// than 3/8 of the largest among the blocks around.
     pub(super) fn sharpened(&self, dims: [usize; 3], extinction: &[f64]) -> Vec<f64> {
         if !self.settings.shading.has_surfaces() {
             return extinction.to_vec();
@@ -91,7 +93,7 @@ impl Reference<'_> {
             let around = near(2).flat_map(|z| near(1).flat_map(move |y| near(0).map(move |x| [x, y, z])));
             let most = around.map(at).fold(0.0, f64::max);
             let own = at(place);
-            own - solidity(most * self.scene.smallest_edge()) * (most - own)
+            own - TAKEN * solidity(most * self.scene.smallest_edge()) * (most - own)
         };
         (0..extinction.len()).into_par_iter().map(of_block).collect()
     }

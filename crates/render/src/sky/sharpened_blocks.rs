@@ -11,7 +11,8 @@ use crate::volume::{VolumeContext, texture_3d};
 use crate::{GpuContext, GpuError};
 
 /// Largest optical depth per shortest edge of a voxel that a sample point of a block counts for, if material has
-/// surfaces: surfaces are where half of it is, at an opacity of 0.8. A block of one voxel lets 5 % of the light pass.
+/// surfaces. Rays start from where half of it is, at an opacity of 0.8. A block of one voxel lets 5 % of the light
+/// pass.
 pub(crate) const SOLID_DEPTH: f32 = 3.0;
 
 /// Texture of extinction that falls through 0 at the surfaces of dense material, with a border of empty blocks.
