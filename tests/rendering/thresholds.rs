@@ -268,8 +268,8 @@ pub(crate) const CONVEX_BODY_UNDER_SKY: f64 = 0.015;
 /// Single pixels of a box under a white sky: the same errors, and samples at edges whose normals turn within a block.
 pub(crate) const BOX_UNDER_SKY: f64 = 0.04;
 /// Light of the sky in a groove at half resolution and at full, relative: directions cross its rim one by one, each
-/// with up to 4 % of the light, and the grid ends. Up to 0.047 and 0.08 were found.
-pub(crate) const GROOVE_UNDER_SKY: [f64; 2] = [0.055, 0.09];
+/// with up to 4 % of the light, and the grid ends. Up to 0.057 and 0.091 were found.
+pub(crate) const GROOVE_UNDER_SKY: [f64; 2] = [0.06, 0.1];
 /// Mean of a picture under a sky at half of the resolution, relative to that at full resolution: opaque bodies reach
 /// up to a block farther for rays that pass along them.
 pub(crate) const SKY_AT_HALF_OF_FULL: f64 = 0.03;
