@@ -11,8 +11,7 @@ struct DiffusionLevelUniform {
     coarser_first: u32,
     // Edges of the blocks of the finest level, in shortest edges of a voxel.
     edges: vec3f,
-    // One over the number of directions of a bounce.
-    share: f32,
+    pad0: f32,
 }
 
 @group(0) @binding(0) var<uniform> bound_level: DiffusionLevelUniform;

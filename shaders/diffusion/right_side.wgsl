@@ -3,7 +3,7 @@
 #import "diffusion/level.wgsl"
 
 @group(0) @binding(1) var<storage, read> scattering: array<vec4f>;
-@group(0) @binding(2) var<storage, read> sums: array<vec4f>;
+@group(0) @binding(2) var<storage, read> received: array<vec4f>;
 @group(0) @binding(3) var<storage, read> first: array<vec4f>;
 @group(0) @binding(4) var<storage, read> last: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> right_sides: array<vec4f>;
@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var side = vec3f(0.0);
     if (found.a > 0.0) {
         if (HAS_BOUNCED) {
-            side = found.rgb * (sums[at].rgb * level.share - last[at].rgb);
+            side = found.rgb * (received[at].rgb - last[at].rgb);
         } else {
             side = first[at].rgb;
         }

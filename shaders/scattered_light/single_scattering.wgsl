@@ -26,7 +26,7 @@ struct SingleScatteringUniform {
     slice: u32,
     end: u32,
     pad0: f32,
-    // 1 if `sums` hold the light of the sky, else 0.
+    // 1 if `received` is the light of the sky, else 0.
     has_sky: f32,
     lights: array<LightUniform, MAX_LIGHTS>,
 }
@@ -35,7 +35,7 @@ struct SingleScatteringUniform {
 var<private> scene: SingleScatteringUniform;
 @group(0) @binding(1) var medium: texture_3d<f32>;
 @group(0) @binding(2) var clamped: sampler;
-@group(0) @binding(5) var<storage, read> sums: array<vec4f>;
+@group(0) @binding(5) var<storage, read> received: array<vec4f>;
 // Source term: light that blocks scatter or emit per shortest edge before the first bounce.
 @group(0) @binding(6) var<storage, read_write> first: array<vec4f>;
 
@@ -84,7 +84,7 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
     }
     let block = vec3f(id);
     let position = scene_from_index(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
-    var light = sums[at].rgb * (bounce.share * scene.has_sky) + scene.emission;
+    var light = received[at].rgb * scene.has_sky + scene.emission;
     for (var i = 0u; i < scene.count; i += 1u) {
         // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let whole = bound_scene.lights[i];

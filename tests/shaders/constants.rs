@@ -173,6 +173,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("scattered_light/blocks.wgsl", [64, 1, 1]),
         ("scattered_light/gather.wgsl", [64, 1, 1]),
         ("scattered_light/mixing.wgsl", [256, 1, 1]),
+        ("scattered_light/received_light.wgsl", [4, 4, 4]),
         ("scattered_light/result.wgsl", [64, 1, 1]),
         ("scattered_light/single_scattering.wgsl", [4, 4, 4]),
         ("scattered_light/source.wgsl", [4, 4, 4]),

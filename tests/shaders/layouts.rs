@@ -269,7 +269,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
         ),
         (
             "diffusion/relax.wgsl",
-            layout!(DiffusionLevelUniform { dims, first, coarser_dims, coarser_first, edges, share }),
+            layout!(DiffusionLevelUniform { dims, first, coarser_dims, coarser_first, edges, pad0 }),
         ),
         ("scattered_light/gather.wgsl", layout!(BounceUniform { dims, share, color, min_extinction })),
         (

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::diffusion::DiffusionGrid;
-use super::series::SeriesStep;
+use super::series::{SeriesStep, without_spread};
 use super::sky::interpolate_with_zero_border;
 use crate::field::classified::TransferSide;
 use crate::field::trilinear;
@@ -109,7 +109,10 @@ impl Reference<'_> {
         let count = medium.extinction.len();
         let nothing = || [(); 3].map(|()| vec![0.0; count]);
         let own = self.settings.shading.emission / scattering.albedo;
-        let mut first = self.before_bounces(&medium, &frames_of_a_bounce);
+        let sky = self
+            .sky_in_blocks(&medium, &frames_of_a_bounce)
+            .map(|light| without_spread(medium.dims, &medium.extinction, &light));
+        let mut first = self.with_lights(&medium, sky);
         first.iter_mut().flatten().for_each(|light| *light += own);
         let emitted_by = |light: &[Vec<f64>; 3]| -> [Vec<f64>; 3] {
             std::array::from_fn(|c| {
@@ -127,7 +130,8 @@ impl Reference<'_> {
             }
             let mut before: Option<[SeriesStep; 3]> = None;
             for bounce in 1..scattering.bounces {
-                let next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3]);
+                let next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3])
+                    .map(|light| without_spread(medium.dims, &medium.extinction, &light));
                 if scattering.bounces - bounce > DIFFUSED_BOUNCES {
                     light = next;
                     continue;
@@ -135,11 +139,8 @@ impl Reference<'_> {
                 let steps = std::array::from_fn(|c| {
                     let change: Vec<f64> =
                         next[c].iter().zip(&light[c]).map(|(next, last)| next - last).collect();
-                    let scattered: Vec<f64> = change
-                        .iter()
-                        .zip(&medium.scattering[c])
-                        .map(|(change, share)| change * share)
-                        .collect();
+                    let both = change.iter().zip(&medium.scattering[c]);
+                    let scattered: Vec<f64> = both.map(|(change, share)| change * share).collect();
                     let later = self.diffuse(&grids[c], &scattered);
                     SeriesStep::new(&light[c], &change, &later)
                 });
@@ -160,7 +161,7 @@ impl Reference<'_> {
     /// Returns the mean light over all directions, linear RGB, that reaches each block from lights and sky before it
     /// bounces; that of the sky from the given number of directions.
     pub fn unscattered_light(&self, medium: &ScatteringMedium, directions: u32) -> [Vec<f64>; 3] {
-        self.before_bounces(medium, &self.frames(medium, directions))
+        self.with_lights(medium, self.sky_in_blocks(medium, &self.frames(medium, directions)))
     }
 
     /// Creates the diffusion equation of each colour.
@@ -181,18 +182,24 @@ impl Reference<'_> {
         grid.solve(&per_edge)
     }
 
-    fn before_bounces(&self, medium: &ScatteringMedium, frames: &[SweepFrame]) -> [Vec<f64>; 3] {
-        let count = medium.extinction.len();
-        let nothing = [(); 3].map(|()| vec![0.0; count]);
-        let mut light = match self.settings.sky.radiance(self.settings.camera.up) {
+    /// Returns the mean light of the sky in each block.
+    fn sky_in_blocks(&self, medium: &ScatteringMedium, frames: &[SweepFrame]) -> [Vec<f64>; 3] {
+        let nothing = [(); 3].map(|()| vec![0.0; medium.extinction.len()]);
+        match self.settings.sky.radiance(self.settings.camera.up) {
             Some(sky) => mean_light(medium, frames, &nothing, |towards| {
                 std::array::from_fn(|c| (sky.mean[c] + sky.slope[c].dot(towards)).max(0.0))
             }),
             None => nothing,
-        };
+        }
+    }
+
+    /// Adds the light of lamps to that of the sky in each block.
+    fn with_lights(&self, medium: &ScatteringMedium, mut light: [Vec<f64>; 3]) -> [Vec<f64>; 3] {
         let sampled_lights = self.active_lights();
-        let lit: Vec<_> =
-            (0..count).into_par_iter().map(|at| self.light_in_block(medium, &sampled_lights, at)).collect();
+        let lit: Vec<_> = (0..light[0].len())
+            .into_par_iter()
+            .map(|at| self.light_in_block(medium, &sampled_lights, at))
+            .collect();
         for (c, light) in light.iter_mut().enumerate() {
             light.iter_mut().zip(&lit).for_each(|(sum, light)| *sum += light[c]);
         }
@@ -224,7 +231,7 @@ impl Reference<'_> {
             let [r, g, b, _] = table.sample(self.gathered_pyramid(TransferSide::Eye).fetch(point, level));
             [r, g, b]
         };
-        let blocks = self.blocks(dims, divisor, |point, extinction| {
+        let blocks = self.blocks(dims, divisor, divisor as f64 / 4.0, |point, extinction| {
             let [r, g, b] = color(point).map(|color| color * scattering.albedo * extinction);
             [r, g, b, extinction]
         });

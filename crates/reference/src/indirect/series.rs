@@ -1,4 +1,4 @@
-//! Steps towards the limit of the series of bounces.
+//! Steps towards the limit of the series of bounces, and the light that each sweep brings.
 
 /// Largest magnitude of the share of a step that is taken out of the next.
 const MAX_MIXED_SHARE: f64 = 1.0;
@@ -31,4 +31,22 @@ impl SeriesStep {
         let both = self.reached.iter().zip(&before.reached);
         both.map(|(reached, before)| (reached - share * (reached - before)).max(0.0)).collect()
     }
+}
+
+/// Returns the light that a sweep brings to blocks without what the interpolation between its rays has spread: the
+/// second difference times t(1 − t)/2, in the mean over t, for two axes of three. Along an axis it is unknown beside
+/// blocks that do not attenuate light.
+pub(super) fn without_spread(dims: [usize; 3], extinction: &[f64], light: &[f64]) -> Vec<f64> {
+    let strides = [1, dims[0], dims[0] * dims[1]];
+    let of_block = |at: usize| {
+        let place = [at % dims[0], at / dims[0] % dims[1], at / strides[2]];
+        let spread: f64 = (0..3)
+            .filter(|&axis| place[axis] > 0 && place[axis] + 1 < dims[axis])
+            .map(|axis| [at - strides[axis], at + strides[axis]])
+            .filter(|both| both.iter().all(|&next| extinction[next] > 0.0))
+            .map(|[before, after]| light[before] + light[after] - 2.0 * light[at])
+            .sum();
+        (light[at] - spread / 18.0).max(0.0)
+    };
+    (0..light.len()).map(of_block).collect()
 }

@@ -72,6 +72,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "scattered_light/gather.wgsl",
     "scattered_light/medium.wgsl",
     "scattered_light/mixing.wgsl",
+    "scattered_light/received_light.wgsl",
     "scattered_light/result.wgsl",
     "scattered_light/series.wgsl",
     "scattered_light/single_scattering.wgsl",

@@ -50,7 +50,7 @@ impl DiffusionLevel {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DiffusionInputs<'a> {
     pub(super) scattering: &'a wgpu::Buffer,
-    pub(super) sums: &'a wgpu::Buffer,
+    pub(super) received: &'a wgpu::Buffer,
     pub(super) single_scattering: &'a wgpu::Buffer,
     pub(super) previous: &'a wgpu::Buffer,
 }
@@ -61,8 +61,6 @@ pub(super) struct DiffusionSolver {
     levels: Vec<DiffusionLevel>,
     /// Edges of the finest blocks, in shortest edges of a voxel.
     edges: [f32; 3],
-    /// One over the number of directions of a bounce.
-    share: f32,
     stencils: wgpu::Buffer,
     right_sides: wgpu::Buffer,
     /// Light of all later bounces, the finest level first.
@@ -72,7 +70,7 @@ pub(super) struct DiffusionSolver {
 
 impl DiffusionSolver {
     /// Allocates the buffers for a grid of blocks with these edges, in shortest edges of a voxel.
-    pub(super) fn new(context: &GpuContext, dims: [usize; 3], edges: [f32; 3], share: f32) -> Self {
+    pub(super) fn new(context: &GpuContext, dims: [usize; 3], edges: [f32; 3]) -> Self {
         let levels = DiffusionLevel::all(dims.map(|n| n as u32));
         let blocks: u64 = levels.iter().map(|level| u64::from(level.count())).sum();
         let list = |label| {
@@ -86,7 +84,6 @@ impl DiffusionSolver {
         Self {
             levels,
             edges,
-            share,
             stencils: list("Diffusion::stencils"),
             right_sides: list("Diffusion::right_sides"),
             solution: list("Diffusion::solution"),
@@ -124,7 +121,7 @@ impl DiffusionSolver {
     ) -> Result<(), GpuError> {
         let entries = [
             bind_buffer("scattering", inputs.scattering),
-            bind_buffer("sums", inputs.sums),
+            bind_buffer("received", inputs.received),
             bind_buffer("first", inputs.single_scattering),
             bind_buffer("last", inputs.previous),
             bind_buffer("right_sides", &self.right_sides),
@@ -189,7 +186,7 @@ impl DiffusionSolver {
             coarser_dims: coarser.dims,
             coarser_first: coarser.first,
             edges: self.edges,
-            share: self.share,
+            pad0: 0.0,
         };
         let uniform = gpu.uniform("Diffusion::level", uniform);
         let mut all = vec![bind_buffer("bound_level", &uniform)];

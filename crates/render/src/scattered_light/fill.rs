@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 
+use super::block_passes::{BlockPasses, workgroups_over_blocks};
 use super::diffusion::{DiffusionSolver, diffuses};
 use super::source_variant::SourceVariant;
 use super::steps::{ScatteringStep, SweepSource, scattering_steps};
 use super::textures::ScatteringTextures;
 use super::volume::ScatteredLightVolume;
 use crate::light::light_uniform::light_uniform;
-use crate::pipelines::binding::{NamedResource, bind_buffer, bind_view, sampler};
-use crate::pipelines::pipeline_variant::{ColorVariant, PipelineVariant, SingleVariant};
+use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
+use crate::pipelines::pipeline_variant::{ColorVariant, SingleVariant};
 use crate::pipelines::uniforms;
 use crate::plan::{ActiveLights, BouncesKey, SweepFrame, UniformLightColor, boxes_around, sweep_directions};
 use crate::resources::pass;
@@ -81,13 +82,14 @@ impl ScatteredLightFill {
         let size = sheet_size(frames.iter().flatten(), format, followed);
         let textures = ScatteringTextures::new(gpu.context, volume, size, one_color.is_some())?;
         let edges = (scene.voxel_edges / scene.smallest_edge()).as_vec3() * volume.blocks.divisor as f32;
-        let share = 1.0 / frames_per_bounce as f32;
-        let diffusion = (key.bounces() > 1)
-            .then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into(), share));
+        let diffusion =
+            (key.bounces() > 1).then(|| DiffusionSolver::new(gpu.context, volume.blocks.dims, edges.into()));
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
         let (dims, divisor) = (volume.blocks.dims, volume.blocks.divisor);
-        let met = extinction_blocks::attenuating_cells(tables, options, dims, divisor, 0);
+        // Sample points of single voxels may be in the next cell.
+        let margin = usize::from(divisor == 1);
+        let met = extinction_blocks::attenuating_cells(tables, options, dims, divisor, margin);
         // Pictures also look up the last bounce beside the blocks that scatter light.
         let visible_cells = met.union(&volume.filled_cells);
         let [each, last] = frames;
@@ -155,10 +157,16 @@ impl ScatteredLightFill {
                 self.fill_batch(gpu, look.settings, volume, followed, batch, encoder)
             }
             ScatteringStep::SingleScattering { slice } => {
+                if self.has_sky && slice == 0 {
+                    self.block_passes(gpu, volume, SweepSource::Sky).record_received_light(encoder)?;
+                }
                 self.fill_single_scattering(gpu, look, volume, slice, encoder)
             }
             ScatteringStep::Emission { bounce } => {
-                let shared = self.bounce_uniform(gpu, volume, SweepSource::Bounce);
+                let passes = self.block_passes(gpu, volume, SweepSource::Bounce);
+                if bounce > 0 {
+                    passes.record_received_light(encoder)?;
+                }
                 let diffusion = self.diffusion.as_ref().filter(|_| diffuses(self.bounces, bounce));
                 if let Some(diffusion) = diffusion {
                     diffusion.record_cycle(gpu, bounce > 0, self.textures.diffusion_inputs(), encoder)?;
@@ -167,7 +175,7 @@ impl ScatteredLightFill {
                 let mixes = bounce > 1 && diffuses(self.bounces, bounce - 1) && diffusion.is_some();
                 if mixes {
                     let mixing = SingleVariant("scattered_light/mixing.wgsl");
-                    self.record_block_pass(gpu, &mixing, &shared, volume, encoder)?;
+                    passes.record(&mixing, encoder)?;
                 }
                 let source = SourceVariant {
                     has_bounced: bounce > 0,
@@ -175,12 +183,11 @@ impl ScatteredLightFill {
                     mixes,
                     one_color: self.one_color.is_some(),
                 };
-                self.record_block_pass(gpu, &source, &shared, volume, encoder)
+                passes.record(&source, encoder)
             }
             ScatteringStep::Result => {
-                let shared = self.bounce_uniform(gpu, volume, SweepSource::LastBounce);
                 let variant = self.color_variant("scattered_light/result.wgsl");
-                self.record_block_pass(gpu, &variant, &shared, volume, encoder)
+                self.block_passes(gpu, volume, SweepSource::LastBounce).record(&variant, encoder)
             }
         }
     }
@@ -229,6 +236,7 @@ impl ScatteredLightFill {
             shader: "scattered_light/blocks.wgsl",
             dims: volume.blocks.dims,
             divisor: volume.blocks.divisor,
+            sample_offset: extinction_blocks::offset_in_blocks(volume.blocks.divisor),
             density_scale: scattering.density_scale,
             max_depth: f32::MAX,
             albedo: scattering.albedo,
@@ -338,7 +346,7 @@ impl ScatteredLightFill {
             sampler("clamped", &gpu.volume.clamped),
             bind_buffer("bound_bounce", &shared),
             bind_buffer("scattering", &self.textures.scattering),
-            bind_buffer("sums", &self.textures.sums),
+            bind_buffer("received", &self.textures.received),
             bind_buffer("first", &self.textures.single_scattering),
         ];
         let own = gpu.bind("Bounces::first", &pipeline, 0, &entries);
@@ -348,51 +356,21 @@ impl ScatteredLightFill {
         Ok(())
     }
 
-    /// Records a pass over all blocks that reads the gathered sums.
-    fn record_block_pass(
-        &self,
-        gpu: VolumeContext<'_>,
-        variant: &impl PipelineVariant,
-        shared: &wgpu::Buffer,
-        volume: &ScatteredLightVolume,
-        encoder: &mut wgpu::CommandEncoder,
-    ) -> Result<(), GpuError> {
-        let shader = variant.shader();
-        let textures = &self.textures;
-        let mut entries: Vec<NamedResource<'_>> =
-            vec![bind_buffer("bound_bounce", shared), bind_buffer("sums", &textures.sums)];
-        if shader == "scattered_light/result.wgsl" {
-            entries.extend([bind_view("bounced", &volume.blocks.view), self.output_cells.binding()]);
-        } else {
+    /// Returns what passes over all blocks share.
+    fn block_passes<'a>(
+        &'a self,
+        gpu: VolumeContext<'a>,
+        volume: &'a ScatteredLightVolume,
+        followed: SweepSource,
+    ) -> BlockPasses<'a> {
+        BlockPasses {
+            gpu,
+            shared: self.bounce_uniform(gpu, volume, followed),
+            textures: &self.textures,
             // One bounce alone has no later ones.
-            let solution = self.diffusion.as_ref().map_or(&textures.mixing, |diffusion| &diffusion.solution);
-            entries.extend([
-                bind_buffer("scattering", &textures.scattering),
-                bind_buffer("last", &textures.previous),
-                bind_buffer("step_before", &textures.previous_step),
-                bind_buffer("solution", solution),
-                bind_buffer("mixing", &textures.mixing),
-            ]);
+            solution: self.diffusion.as_ref().map_or(&self.textures.mixing, |diffusion| &diffusion.solution),
+            output_cells: &self.output_cells,
+            volume,
         }
-        if shader == "scattered_light/source.wgsl" {
-            entries.extend([
-                bind_buffer("first", &textures.single_scattering),
-                bind_view("medium", &textures.medium),
-                bind_buffer("reached_before", &textures.previously_reached),
-            ]);
-        }
-        let pipeline = gpu.shaders.pipeline_into(variant, self.textures.medium_format)?;
-        let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
-        let groups = match shader {
-            "scattered_light/mixing.wgsl" => [1; 3],
-            "scattered_light/result.wgsl" => self.output_cells.workgroups(),
-            _ => workgroups_over_blocks(volume),
-        };
-        pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);
-        Ok(())
     }
-}
-
-fn workgroups_over_blocks(volume: &ScatteredLightVolume) -> [u32; 3] {
-    volume.blocks.dims.map(|n| (n as u32).div_ceil(4))
 }

@@ -4,6 +4,7 @@
 //! that light is swept through the blocks in many directions, like a sky's, and gathered, bounce by bounce. With
 //! two or more bounces, a diffusion equation gives what all later ones bring.
 
+mod block_passes;
 mod diffusion;
 pub(super) mod fill;
 mod source_variant;

@@ -23,6 +23,8 @@ pub(super) struct ScatteringTextures {
     pub single_scattering: wgpu::Buffer,
     /// Sums of the light that a bounce brings to blocks.
     pub sums: wgpu::Buffer,
+    /// Mean light that blocks receive of a bounce.
+    pub received: wgpu::Buffer,
     /// Light of which the last sweep followed a bounce.
     pub previous: wgpu::Buffer,
     /// Step towards the limit of the series before this one.
@@ -78,11 +80,12 @@ impl ScatteringTextures {
             scattering: list("Bounces::scattering", blocks),
             single_scattering: list("Bounces::first", blocks),
             sums: list("Bounces::sums", blocks),
+            received: list("Bounces::received", blocks),
             previous: list("Bounces::last", blocks),
             previous_step: list("Bounces::step", blocks),
             previously_reached: list("Bounces::reached", blocks),
             mixing: list("Bounces::mixing", 1),
-            bytes: texel * texels(medium_size) + sheets.bytes() + SUM_BYTES * (6 * blocks + 1),
+            bytes: texel * texels(medium_size) + sheets.bytes() + SUM_BYTES * (7 * blocks + 1),
             sheets,
         })
     }
@@ -91,7 +94,7 @@ impl ScatteringTextures {
     pub(super) fn diffusion_inputs(&self) -> DiffusionInputs<'_> {
         DiffusionInputs {
             scattering: &self.scattering,
-            sums: &self.sums,
+            received: &self.received,
             single_scattering: &self.single_scattering,
             previous: &self.previous,
         }

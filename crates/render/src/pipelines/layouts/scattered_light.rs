@@ -10,6 +10,7 @@ const RGBA16: StorageFormat = StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Fl
 const BOUNCE: BindingSlot = BindingSlot::uniform::<uniforms::BounceUniform>(3, "bound_bounce");
 const SCATTERING: BindingSlot = BindingSlot::storage(4, "scattering", 16, BufferAccess::Read);
 const SUMS: BindingSlot = BindingSlot::storage(5, "sums", 16, BufferAccess::Read);
+const RECEIVED: BindingSlot = BindingSlot::storage(5, "received", 16, BufferAccess::Read);
 
 const LAST: BindingSlot = BindingSlot::storage(7, "last", 16, BufferAccess::ReadWrite);
 const STEP_BEFORE: BindingSlot = BindingSlot::storage(8, "step_before", 16, BufferAccess::ReadWrite);
@@ -40,7 +41,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             LEVEL,
             DIFFUSION_SCATTERING,
-            BindingSlot::storage(2, "sums", 16, BufferAccess::Read),
+            BindingSlot::storage(2, "received", 16, BufferAccess::Read),
             BindingSlot::storage(3, "first", 16, BufferAccess::Read),
             BindingSlot::storage(4, "last", 16, BufferAccess::Read),
             BindingSlot::storage(5, "right_sides", 16, BufferAccess::ReadWrite),
@@ -83,12 +84,16 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             BOUNCE,
             SCATTERING,
-            SUMS,
+            RECEIVED,
             LAST,
             STEP_BEFORE,
             SOLUTION_OF_SERIES,
             BindingSlot::storage(9, "mixing", 16, BufferAccess::ReadWrite),
         ]],
+    ),
+    (
+        "scattered_light/received_light.wgsl",
+        &[&[BOUNCE, SCATTERING, SUMS, BindingSlot::storage(6, "received", 16, BufferAccess::ReadWrite)]],
     ),
     (
         "scattered_light/result.wgsl",
@@ -107,7 +112,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
             BLOCK_SAMPLER,
             BOUNCE,
             SCATTERING,
-            SUMS,
+            RECEIVED,
             BindingSlot::storage(6, "first", 16, BufferAccess::ReadWrite),
         ]],
     ),
@@ -116,7 +121,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
         &[&[
             BOUNCE,
             SCATTERING,
-            SUMS,
+            RECEIVED,
             BindingSlot::storage(6, "first", 16, BufferAccess::Read),
             LAST,
             STEP_BEFORE,

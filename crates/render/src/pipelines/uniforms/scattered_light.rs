@@ -35,7 +35,7 @@ pub struct DiffusionLevelUniform {
     pub coarser_dims: [u32; 3],
     pub coarser_first: u32,
     pub edges: [f32; 3],
-    pub share: f32,
+    pub pad0: f32,
 }
 
 /// Scene of the single-scattering pass, as declared in `scattered_light/single_scattering.wgsl`.
