@@ -1,5 +1,5 @@
 // Right side of the next coarser level: the mean residual of the merged blocks. Those with an odd sum of coordinates
-// have been balanced last, and have none.
+// have been balanced last, and have none. Every other block of the coarser level is balanced with it at once.
 #import "diffusion/solution.wgsl"
 
 @compute @workgroup_size(4, 4, 4)
@@ -19,5 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let at = at_coarser(id);
     right_sides[at] = vec4f(sum / 8.0, 0.0);
-    solution[at] = vec4f(0.0);
+    level.dims = level.coarser_dims;
+    level.first = level.coarser_first;
+    solution[at] = first_solution(at, id);
 }

@@ -1,13 +1,11 @@
-// Right side of the diffusion equation, whose solution starts at 0: what blocks scatter of the light that the last
-// sweep changed; before the first sweep all that they scatter or emit.
-#import "diffusion/level.wgsl"
+// Right side of the diffusion equation: what blocks scatter of the light that the last sweep changed; before the first
+// sweep all that they scatter or emit. Every other block is balanced with it at once.
+#import "diffusion/solution.wgsl"
 
-@group(0) @binding(1) var<storage, read> scattering: array<vec4f>;
-@group(0) @binding(2) var<storage, read> received: array<vec4f>;
-@group(0) @binding(3) var<storage, read> first: array<vec4f>;
-@group(0) @binding(4) var<storage, read> last: array<vec4f>;
-@group(0) @binding(5) var<storage, read_write> right_sides: array<vec4f>;
-@group(0) @binding(6) var<storage, read_write> solution: array<vec4f>;
+@group(0) @binding(4) var<storage, read> scattering: array<vec4f>;
+@group(0) @binding(5) var<storage, read> received: array<vec4f>;
+@group(0) @binding(6) var<storage, read> first: array<vec4f>;
+@group(0) @binding(7) var<storage, read> last: array<vec4f>;
 
 // Set after the first sweep.
 override HAS_BOUNCED: bool = true;
@@ -29,5 +27,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     right_sides[at] = vec4f(side, 0.0);
-    solution[at] = vec4f(0.0);
+    solution[at] = first_solution(at, id);
 }

@@ -8,13 +8,7 @@
 // Set if the coarser level corrects the solution where it is read.
 override CORRECTS: bool = false;
 
-// Set if the solution is 0 so far.
-override STARTS: bool = false;
-
 fn solution_at(at: u32, id: vec3u) -> vec3f {
-    if (STARTS) {
-        return vec3f(0.0);
-    }
     if (CORRECTS) {
         return solution[at].rgb + solution[at_coarser(id / 2u)].rgb;
     }
@@ -57,6 +51,27 @@ fn balance_of(at: u32, id: vec3u) -> Balance {
         found.conductance += face;
     }
     return found;
+}
+
+// First solution of a block: the one that balances every other block while all others have none.
+fn first_solution(at: u32, id: vec3u) -> vec4f {
+    if (((id.x + id.y + id.z) & 1u) == 1u) {
+        return vec4f(0.0);
+    }
+    let own = unpack_stencil(stencils[at]);
+    let row = level.dims.x;
+    let slice = row * level.dims.y;
+    var conductance = own.sink + own.faces.x + own.faces.y + own.faces.z;
+    if (id.x > 0u) {
+        conductance += unpack_stencil(stencils[at - 1u]).faces.x;
+    }
+    if (id.y > 0u) {
+        conductance += unpack_stencil(stencils[at - row]).faces.y;
+    }
+    if (id.z > 0u) {
+        conductance += unpack_stencil(stencils[at - slice]).faces.z;
+    }
+    return vec4f(right_sides[at].rgb / max(conductance, vec3f(1e-12)), 0.0);
 }
 
 // Solution that balances a block with its neighbours (Gauss and Seidel).

@@ -3,7 +3,7 @@
 use chiaroscuro_reference::{BouncedLight, Reference, ReferenceFault, ReferenceOptions};
 use chiaroscuro_render::plan::UniformLightColor;
 use chiaroscuro_scene::{
-    ClassificationOrder, ClipEffect, CropBox, LightGeometry, LightSettings, LightShape,
+    ClassificationOrder, ClipEffect, CropBox, DensityRange, LightGeometry, LightSettings, LightShape,
     LightVolumeResolution, LitSides, RenderEngine, ScatteringSettings, Settings, ShadowAlgorithm, SkyMode,
     SkySettings, Spotlight,
 };
@@ -70,6 +70,13 @@ fn one_color() -> Settings {
     settings
 }
 
+/// Look with lamps alone: without a sky, blocks of single voxels are means over themselves.
+fn without_sky() -> Settings {
+    let mut settings = look_with_all_light();
+    settings.sky.mode = SkyMode::Off;
+    settings
+}
+
 /// Scattered light of a reference in the memory layout of the GPU.
 fn gpu_layout(bounced: &BouncedLight) -> Vec<f64> {
     let [r, g, b] = &bounced.light;
@@ -94,6 +101,7 @@ fn light_that_has_bounced_is_what_the_reference_says() {
         ("creature", creature(), with_scattering(scenes::look())),
         ("everything", creature(), look_with_all_light()),
         ("of one colour", creature(), one_color()),
+        ("under lamps alone", creature(), without_sky()),
         ("cut", creature(), cut()),
         ("missing voxels", waves(N, DVec3::ONE, true), with_scattering(two_lobes())),
     ] {
@@ -165,6 +173,24 @@ fn mistakes_in_light_of_one_color_are_noticed() {
         ("scattered_light/single_scattering.wgsl", "return found.g;", "return found.r;"),
     ];
     for (shader, from, to) in mistakes {
+        assert_in_shader(shader, from);
+        let damaged = damaged_light((from, to), &volume, &settings);
+        assert!(compare(to, &damaged, &right, SCATTERED_LIGHT).is_err(), "{shader}: {to:?} is not noticed");
+    }
+}
+
+/// Blocks of single voxels, which are means over themselves, and what sweeps spread between rays.
+#[test]
+fn mistakes_in_blocks_of_single_voxels_are_noticed() {
+    let volume = scenes::block(14, |at| at.iter().all(|c| (4..10).contains(c)));
+    let mut settings =
+        without_sky().with_transfer(scenes::linear_extinction(1.0)).with_range(DensityRange::Full);
+    settings.scattering.resolution = LightVolumeResolution::Full;
+    let right = light(&volume, &settings);
+    for (shader, from, to) in [
+        ("scattered_light/blocks.wgsl", "side * blocks.offset", "side * 0.0"),
+        ("scattered_light/received_light.wgsl", "SPREAD * spread", "0.0 * spread"),
+    ] {
         assert_in_shader(shader, from);
         let damaged = damaged_light((from, to), &volume, &settings);
         assert!(compare(to, &damaged, &right, SCATTERED_LIGHT).is_err(), "{shader}: {to:?} is not noticed");

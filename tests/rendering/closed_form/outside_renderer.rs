@@ -129,7 +129,8 @@ fn differences(picture: &[f64], figures: &OutsideFigures) -> [f64; 2] {
     [mean / figures.mean - 1.0, (squares / found.len() as f64).sqrt() / figures.mean]
 }
 
-/// Limits of both differences: wider for a hard slab with an optical depth of 1 within a voxel, the smallest block.
+/// Limits of both differences: that of squares is wider for a hard slab with an optical depth of 1 within a voxel, the
+/// smallest block.
 fn limits(scene: &str) -> [f64; 2] {
     if scene.starts_with("hard") { OUTSIDE_HARD } else { [OUTSIDE_MEAN, OUTSIDE_SQUARES] }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::Reference;
 use crate::field::trilinear;
-use crate::indirect::sky::{interpolate_with_zero_border, offset_in_voxels};
+use crate::indirect::sky::interpolate_with_zero_border;
 
 /// Distance along each axis, in blocks, at which opacities around a block are compared.
 const DISTANCE: f64 = 1.25;
@@ -36,8 +36,7 @@ impl Reference<'_> {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let edge = self.scene.smallest_edge();
         let opacity = |_, extinction: f64| [1.0 - (-extinction * density_scale * edge).exp()];
-        let opacities: Vec<f64> =
-            self.blocks(dims, divisor, offset_in_voxels(divisor), opacity).into_iter().flatten().collect();
+        let opacities: Vec<f64> = self.blocks(dims, divisor, false, opacity).into_iter().flatten().collect();
         let around: Vec<DVec3> = [-1.0, 0.0, 1.0]
             .into_iter()
             .flat_map(|x| [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|z| DVec3::new(x, y, z))))

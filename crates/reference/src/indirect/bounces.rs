@@ -107,7 +107,6 @@ impl Reference<'_> {
             self.frames(&medium, ScatteringSettings::inner_bounce_directions(scattering.directions));
         let frames = self.frames(&medium, scattering.directions);
         let count = medium.extinction.len();
-        let nothing = || [(); 3].map(|()| vec![0.0; count]);
         let own = self.settings.shading.emission / scattering.albedo;
         let sky = self
             .sky_in_blocks(&medium, &frames_of_a_bounce)
@@ -120,7 +119,7 @@ impl Reference<'_> {
                 (0..count).map(of).collect()
             })
         };
-        let mut light = nothing();
+        let mut light = [(); 3].map(|()| vec![0.0; count]);
         if scattering.bounces > 1 {
             let grids = self.diffusion_grids(&medium);
             // Before the first sweep all that blocks scatter or emit diffuses.
@@ -231,7 +230,7 @@ impl Reference<'_> {
             let [r, g, b, _] = table.sample(self.gathered_pyramid(TransferSide::Eye).fetch(point, level));
             [r, g, b]
         };
-        let blocks = self.blocks(dims, divisor, divisor as f64 / 4.0, |point, extinction| {
+        let blocks = self.blocks(dims, divisor, !self.settings.sky.is_on(), |point, extinction| {
             let [r, g, b] = color(point).map(|color| color * scattering.albedo * extinction);
             [r, g, b, extinction]
         });

@@ -34,12 +34,6 @@ impl SkyVisibility {
     }
 }
 
-/// Returns the distance of sample points from a block's centre along each axis, in voxels; a single voxel is sampled at
-/// its centre.
-pub(crate) fn offset_in_voxels(divisor: usize) -> f64 {
-    if divisor == 1 { 0.0 } else { divisor as f64 / 4.0 }
-}
-
 impl Reference<'_> {
     /// Computes sky visibility, with the directions and the resolution in the settings.
     pub fn sky_visibility(&self) -> SkyVisibility {
@@ -134,16 +128,16 @@ impl Reference<'_> {
         let scale = self.settings.sky.density_scale;
         let most = self.largest_sky_extinction();
         let of_block = |_, extinction: f64| [(extinction * scale).min(most)];
-        self.blocks(dims, divisor, offset_in_voxels(divisor), of_block).into_iter().flatten().collect()
+        self.blocks(dims, divisor, false, of_block).into_iter().flatten().collect()
     }
 
-    /// Averages a function of position and extinction over eight positions in each block, so many voxels from its centre
-    /// along each axis.
+    /// Averages a function of position and extinction over eight positions in each block, or evaluates it at the
+    /// voxel if a block is a single one that is not smoothed.
     pub(crate) fn blocks<const N: usize>(
         &self,
         dims: [usize; 3],
         divisor: usize,
-        offset: f64,
+        is_smoothed: bool,
         of_place: impl Fn(DVec3, f64) -> [f64; N] + Sync,
     ) -> Vec<[f64; N]> {
         let table = self.gathered_table(TransferSide::Indirect);
@@ -151,6 +145,7 @@ impl Reference<'_> {
         let profile = self.profile(ReconstructionKernel::Prefiltered);
         let remaining = self.attenuating_region();
         let level = (divisor as f64 / 2.0).max(1.0).log2();
+        let offset = if divisor == 1 && !is_smoothed { 0.0 } else { divisor as f64 / 4.0 };
         let at = |point: DVec3| {
             let extinction = table.sample(pyramid.fetch(point + self.kernel_shift(), level))[3]
                 * self.gathered_presence(&profile, point, level)

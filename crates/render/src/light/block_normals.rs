@@ -7,7 +7,7 @@ use crate::pipelines::uniforms;
 use crate::plan::CellSet;
 use crate::resources::pass;
 use crate::sky::block_texture::BlockTexture;
-use crate::sky::extinction_blocks::{BlocksPass, attenuating_cells, offset_in_voxels};
+use crate::sky::extinction_blocks::{BlocksPass, attenuating_cells, sample_offset};
 use crate::volume::cell_list::CellList;
 use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{GpuVolume, VolumeContext, brick_dims, texture_3d};
@@ -80,7 +80,7 @@ impl BlockNormals {
             shader: "light/opacity_blocks.wgsl",
             dims: normals.dims,
             divisor: normals.divisor,
-            sample_offset: offset_in_voxels(normals.divisor),
+            sample_offset: sample_offset(normals.divisor, false),
             density_scale,
             albedo: 0.0,
             max_depth: f32::MAX,

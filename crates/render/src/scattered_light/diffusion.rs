@@ -119,19 +119,21 @@ impl DiffusionSolver {
         inputs: DiffusionInputs<'_>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
+        let [stencils, right_sides, solution] = self.entries();
         let entries = [
+            stencils,
+            right_sides,
+            solution,
             bind_buffer("scattering", inputs.scattering),
             bind_buffer("received", inputs.received),
             bind_buffer("first", inputs.single_scattering),
             bind_buffer("last", inputs.previous),
-            bind_buffer("right_sides", &self.right_sides),
-            bind_buffer("solution", &self.solution),
         ];
         self.record(gpu, 0, &RightSideVariant { has_bounced }, &entries, self.levels[0].dims, encoder)?;
         let coarsest = self.levels.len() - 1;
         for at in 0..coarsest {
-            self.relax(gpu, at, RelaxVariant { parity: 0, starts: true, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: false }, encoder)?;
+            // Even blocks are balanced where their right side is found.
+            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: false }, encoder)?;
             let variant = SingleVariant("diffusion/restrict.wgsl");
             self.record(gpu, at, &variant, &self.entries(), self.levels[at + 1].dims, encoder)?;
         }
@@ -139,10 +141,10 @@ impl DiffusionSolver {
         self.record(gpu, coarsest, &variant, &self.entries(), [1; 3], encoder)?;
         for at in (0..coarsest).rev() {
             // The correction is of even blocks, from which odd ones follow.
-            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: true }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 0, starts: false, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 1, starts: false, corrects: false }, encoder)?;
-            self.relax(gpu, at, RelaxVariant { parity: 0, starts: false, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: true }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 0, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 1, corrects: false }, encoder)?;
+            self.relax(gpu, at, RelaxVariant { parity: 0, corrects: false }, encoder)?;
         }
         Ok(())
     }
@@ -220,8 +222,6 @@ impl PipelineVariant for RightSideVariant {
 struct RelaxVariant {
     /// Parity of the sum of their coordinates.
     parity: u8,
-    /// True if the solution is 0 so far.
-    starts: bool,
     /// True if the coarser level corrects the solution of the other half.
     corrects: bool,
 }
@@ -232,6 +232,6 @@ impl PipelineVariant for RelaxVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![("PARITY", f64::from(self.parity)), flag("STARTS", self.starts), flag("CORRECTS", self.corrects)]
+        vec![("PARITY", f64::from(self.parity)), flag("CORRECTS", self.corrects)]
     }
 }

@@ -236,7 +236,7 @@ impl ScatteredLightFill {
             shader: "scattered_light/blocks.wgsl",
             dims: volume.blocks.dims,
             divisor: volume.blocks.divisor,
-            sample_offset: extinction_blocks::offset_in_blocks(volume.blocks.divisor),
+            sample_offset: extinction_blocks::sample_offset(volume.blocks.divisor, !self.has_sky),
             density_scale: scattering.density_scale,
             max_depth: f32::MAX,
             albedo: scattering.albedo,

@@ -44,18 +44,13 @@ fn pyramid_level(divisor: usize) -> f64 {
     (divisor as f64 / 2.0).max(1.0).log2()
 }
 
-/// Returns the distance of sample points from the centre of a block that finds what voxels hold: that of single voxels
-/// is 0.
-pub(crate) fn offset_in_voxels(divisor: usize) -> f64 {
-    if divisor == 1 { 0.0 } else { offset_in_blocks(divisor) }
-}
-
-/// Returns the distance of sample points from the centre of a block for the mean over the block.
+/// Returns the distance of sample points from the centre of a block along each axis, in voxels: for the mean over a
+/// block, but for what single voxels hold unless they are smoothed.
 ///
 /// A quarter of a voxel amid linearly interpolated texels spreads single voxels by a variance of 1/4, beside the 1/6 of
 /// the prefiltered volume: 5/12, as the B-spline's 1/3 and the 1/12 of a mean over a voxel.
-pub(crate) fn offset_in_blocks(divisor: usize) -> f64 {
-    divisor as f64 / 4.0
+pub(crate) fn sample_offset(divisor: usize, is_smoothed: bool) -> f64 {
+    if divisor == 1 && !is_smoothed { 0.0 } else { divisor as f64 / 4.0 }
 }
 
 /// Returns the cells of blocks of `divisor`³ voxels in which something may attenuate light, and those within `margin`

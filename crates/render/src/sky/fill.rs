@@ -154,7 +154,7 @@ impl SkyFill {
             shader: "sky/extinction_blocks.wgsl",
             dims: volume.blocks.dims,
             divisor: volume.blocks.divisor,
-            sample_offset: extinction_blocks::offset_in_voxels(volume.blocks.divisor),
+            sample_offset: extinction_blocks::sample_offset(volume.blocks.divisor, false),
             density_scale: self.density_scale,
             max_depth: if self.has_surfaces { SOLID_DEPTH } else { f32::MAX },
             albedo: 0.0,
