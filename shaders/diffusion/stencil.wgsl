@@ -7,11 +7,10 @@
 // Optical depth of the grid's longest edge below which D grows no further. In emptiness light does not diffuse, and a D
 // of a ninth of that edge is about what light that goes straight across a cavity amounts to.
 const MIN_DEPTH = 3.0;
-// Share of an edge's optical depth by which the interpolation of the medium onto rays spreads light. A linear
-// interpolation at the fraction t adds t(1 − t)/2 times the second difference, 1/12 in the mean over t; rays are
-// interpolated across two of three axes: 1/12 · 2/3 = 1/18. What blocks receive is rid of it
-// (scattered_light/received_light.wgsl).
-const SPREAD = 0.0556;
+// Share of an edge's optical depth by which the interpolation of sweeps spreads light. A linear interpolation at the
+// fraction t adds t(1 − t)/2 times the second difference, 1/12 in the mean over t; rays are interpolated twice, into
+// the medium and out of it, across two of three axes: 2/12 · 2/3 = 1/9.
+const SPREAD = 0.111;
 
 // Diffusion coefficient, D = 1/(3σ), times what slabs of optical depth τ make of it, τ/2 · coth(τ/2): the second
 // moment of the way that light goes before it is scattered, from the middle of one slab to that of another.

@@ -1,5 +1,6 @@
-// Mean light that blocks receive from all directions of a sweep, without what the interpolation between rays has spread:
-// in dense material it would carry light a block further at every bounce, and out of the material.
+// Mean light that blocks receive from all directions of a sweep. Under lamps alone it is rid of what the interpolation
+// between rays has spread: in dense material it would carry light a block further at every bounce, and out of the
+// material. Under a sky it has to add up with the sky's own light, which is as spread.
 #import "scattered_light/bounce.wgsl"
 
 @group(0) @binding(5) var<storage, read> sums: array<vec4f>;
@@ -9,10 +10,13 @@
 // rays, 1/12 in the mean, across two of three axes.
 const SPREAD = 0.0556;
 
+// Set if that is taken out.
+override SHARPENS: bool = true;
+
 // Second difference of the sums along an axis whose next block is so far in the lists; 0 unless blocks on both sides
 // scatter light.
 fn second_difference(at: u32, next: u32, is_inside: bool) -> vec3f {
-    if (!is_inside) {
+    if (!SHARPENS || !is_inside) {
         return vec3f(0.0);
     }
     if (scattering[at - next].a <= 0.0 || scattering[at + next].a <= 0.0) {

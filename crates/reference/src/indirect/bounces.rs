@@ -108,9 +108,7 @@ impl Reference<'_> {
         let frames = self.frames(&medium, scattering.directions);
         let count = medium.extinction.len();
         let own = self.settings.shading.emission / scattering.albedo;
-        let sky = self
-            .sky_in_blocks(&medium, &frames_of_a_bounce)
-            .map(|light| without_spread(medium.dims, &medium.extinction, &light));
+        let sky = self.sky_in_blocks(&medium, &frames_of_a_bounce);
         let mut first = self.with_lights(&medium, sky);
         first.iter_mut().flatten().for_each(|light| *light += own);
         let emitted_by = |light: &[Vec<f64>; 3]| -> [Vec<f64>; 3] {
@@ -129,8 +127,10 @@ impl Reference<'_> {
             }
             let mut before: Option<[SeriesStep; 3]> = None;
             for bounce in 1..scattering.bounces {
-                let next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3])
-                    .map(|light| without_spread(medium.dims, &medium.extinction, &light));
+                let mut next = mean_light(&medium, &frames_of_a_bounce, &emitted_by(&light), |_| [0.0; 3]);
+                if !self.settings.sky.is_on() {
+                    next = next.map(|light| without_spread(medium.dims, &medium.extinction, &light));
+                }
                 if scattering.bounces - bounce > DIFFUSED_BOUNCES {
                     light = next;
                     continue;

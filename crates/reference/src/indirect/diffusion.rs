@@ -5,9 +5,9 @@ use glam::DVec3;
 
 /// Optical depth of the grid's longest edge that extinction has at least.
 const MIN_DEPTH: f64 = 3.0;
-/// Second differences that the interpolation of the medium onto rays adds: t(1 − t)/2, in the mean over t, for two axes
-/// of three.
-const SPREAD: f64 = 1.0 / 18.0;
+/// Second differences that the interpolation of sweeps adds: t(1 − t)/2 twice, in the mean over t, for two axes of
+/// three.
+const SPREAD: f64 = 0.111;
 /// Maximum number of blocks along each axis of the coarsest grid.
 const COARSEST_EDGE: usize = 4;
 /// Number of relaxations of the coarsest grid.
@@ -206,7 +206,7 @@ mod tests {
                 .collect();
             found.iter_mut().zip(grid.solve(&left)).for_each(|(found, more)| *found += more);
         }
-        let coefficient = 1.0 / 1.0_f64.tanh() / 6.0 + 0.111;
+        let coefficient = 1.0 / 1.0_f64.tanh() / 6.0 + 0.222;
         let length = 16.0;
         let middle = found[index_of(dims, [80, 80, 8])];
         let expected = 0.5 * length * (2.0 + 0.25 * length / coefficient);

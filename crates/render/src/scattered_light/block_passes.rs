@@ -4,7 +4,7 @@ use super::textures::ScatteringTextures;
 use super::volume::ScatteredLightVolume;
 use crate::GpuError;
 use crate::pipelines::binding::{NamedResource, bind_buffer, bind_view};
-use crate::pipelines::pipeline_variant::{PipelineVariant, SingleVariant};
+use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, flag};
 use crate::resources::pass;
 use crate::volume::VolumeContext;
 use crate::volume::cell_list::CellList;
@@ -23,9 +23,14 @@ pub(super) struct BlockPasses<'a> {
 }
 
 impl BlockPasses<'_> {
-    /// Records the pass that turns the sums of a sweep into the light that blocks receive.
-    pub(super) fn record_received_light(&self, encoder: &mut wgpu::CommandEncoder) -> Result<(), GpuError> {
-        self.record(&SingleVariant("scattered_light/received_light.wgsl"), encoder)
+    /// Records the pass that turns the sums of a sweep into the light that blocks receive; if it `sharpens`, without
+    /// what the interpolation between rays has spread.
+    pub(super) fn record_received_light(
+        &self,
+        sharpens: bool,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), GpuError> {
+        self.record(&ReceivedLightVariant { sharpens }, encoder)
     }
 
     /// Records one of the passes.
@@ -75,6 +80,23 @@ impl BlockPasses<'_> {
         let own = gpu.bind("Bounces::whole", &pipeline, 0, &entries);
         pass::dispatch(encoder, "Bounces::whole", &pipeline, &[&own], groups);
         Ok(())
+    }
+}
+
+/// Pipeline variant of the pass that finds the light that blocks receive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct ReceivedLightVariant {
+    /// True if what the interpolation between rays has spread is taken out.
+    sharpens: bool,
+}
+
+impl PipelineVariant for ReceivedLightVariant {
+    fn shader(&self) -> &'static str {
+        "scattered_light/received_light.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        vec![flag("SHARPENS", self.sharpens)]
     }
 }
 

@@ -158,14 +158,14 @@ impl ScatteredLightFill {
             }
             ScatteringStep::SingleScattering { slice } => {
                 if self.has_sky && slice == 0 {
-                    self.block_passes(gpu, volume, SweepSource::Sky).record_received_light(encoder)?;
+                    self.block_passes(gpu, volume, SweepSource::Sky).record_received_light(false, encoder)?;
                 }
                 self.fill_single_scattering(gpu, look, volume, slice, encoder)
             }
             ScatteringStep::Emission { bounce } => {
                 let passes = self.block_passes(gpu, volume, SweepSource::Bounce);
                 if bounce > 0 {
-                    passes.record_received_light(encoder)?;
+                    passes.record_received_light(!self.has_sky, encoder)?;
                 }
                 let diffusion = self.diffusion.as_ref().filter(|_| diffuses(self.bounces, bounce));
                 if let Some(diffusion) = diffusion {
