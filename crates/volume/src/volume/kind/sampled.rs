@@ -71,6 +71,23 @@ impl<'a> SampledValues<'a> {
         count as f64 / self.values.len().max(1) as f64
     }
 
+    /// Returns true if all values are whole numbers.
+    pub(super) fn are_whole_numbers(&self) -> bool {
+        self.values.iter().all(|value| value.fract() == 0.0)
+    }
+
+    /// Returns the two quantiles at `share` from either end of the values that are no spikes; `None` if there are
+    /// none.
+    pub(super) fn quantile_range_without_spikes(&self, share: f64) -> Option<ValueRange> {
+        let is_spike = |at: fn(&[f64], usize) -> f64| self.spike(at);
+        let low = is_spike(|values, at| values[at]);
+        let high = is_spike(|values, at| values[values.len() - 1 - at]);
+        let first = low.map_or(0, |low| self.values.partition_point(|&value| value <= low));
+        let end = high.map_or(self.values.len(), |high| self.values.partition_point(|&value| value < high));
+        let rest = self.values.get(first..end).filter(|rest| !rest.is_empty())?;
+        Some(ValueRange { low: quantile(rest, share), high: quantile(rest, 1.0 - share) })
+    }
+
     /// Returns the two quantiles of the nonzero values at `share` from either end; `None` if all values are zero.
     pub(super) fn nonzero_quantiles(&self, share: f64) -> Option<ValueRange> {
         let below = self.values.partition_point(|&value| value < 0.0);

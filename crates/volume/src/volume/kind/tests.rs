@@ -9,7 +9,7 @@ use crate::{Modality, Samples, ValueMeaning, ValueMetadata, Volume};
 const N: usize = 40;
 
 /// Returns uniform noise from −1 to 1, deterministic for a place and seed.
-fn noise(at: usize, seed: u64) -> f64 {
+pub(super) fn noise(at: usize, seed: u64) -> f64 {
     let mut state =
         (at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ seed.wrapping_mul(0xd1b5_4a32_d192_ed03);
     for _ in 0..3 {
@@ -19,12 +19,12 @@ fn noise(at: usize, seed: u64) -> f64 {
 }
 
 /// Returns approximately normal noise with a standard deviation of 1.
-fn bell(at: usize, seed: u64) -> f64 {
+pub(super) fn bell(at: usize, seed: u64) -> f64 {
     (0..6).map(|i| noise(at, seed * 16 + i)).sum::<f64>() / 2f64.sqrt()
 }
 
 /// Makes values from positions relative to the middle, in units of half the edge, and from voxel indices.
-fn values(value: impl Fn(DVec3, usize) -> f64) -> Vec<f64> {
+pub(super) fn values(value: impl Fn(DVec3, usize) -> f64) -> Vec<f64> {
     let middle = (N - 1) as f64 / 2.0;
     (0..N * N * N)
         .map(|at| {
@@ -34,11 +34,11 @@ fn values(value: impl Fn(DVec3, usize) -> f64) -> Vec<f64> {
         .collect()
 }
 
-fn volume_of(samples: Samples) -> Volume {
+pub(super) fn volume_of(samples: Samples) -> Volume {
     Volume::with_spacing("t", [N; 3], DVec3::ONE, samples).unwrap()
 }
 
-fn kind(values: &[f64]) -> KindName {
+pub(super) fn kind(values: &[f64]) -> KindName {
     volume_of(Samples::F64(values.to_vec())).kind().kind.name()
 }
 
@@ -52,12 +52,12 @@ fn regions(p: DVec3, count: u64) -> f64 {
     nearest.unwrap_or(0) as f64 + 1.0
 }
 
-fn bump(p: DVec3, at: DVec3, width: f64) -> f64 {
+pub(super) fn bump(p: DVec3, at: DVec3, width: f64) -> f64 {
     (-(p - at).length_squared() / (2.0 * width * width)).exp()
 }
 
 /// Returns Hounsfield units of a trunk with lungs, ribs and a spine.
-fn chest(p: DVec3, at: usize) -> f64 {
+pub(super) fn chest(p: DVec3, at: usize) -> f64 {
     let disk = |x: f64, y: f64, rx: f64, ry: f64| ((p.x - x) / rx).powi(2) + ((p.y - y) / ry).powi(2) < 1.0;
     let base = if disk(0.0, 0.5, 0.15, 0.12)
         || (disk(0.0, 0.0, 0.75, 0.6) && !disk(0.0, 0.0, 0.68, 0.53) && p.z.abs() % 0.3 < 0.1)
