@@ -94,10 +94,25 @@ impl GridPlacement {
     }
 }
 
-/// Replaces unusable spacings: a missing or invalid one by 1, all of them by 1 where their ratios are implausible.
+/// Largest ratio of an assumed length of a voxel to a stated one. Slices of clinical scans and of microscopes are up
+/// to ten times as far apart as pixels are wide; a unit of length that has nothing to do with the voxels would make
+/// slices of them, or a line of the volume.
+pub(crate) const MAX_ASSUMED_RATIO: f64 = 10.0;
+
+/// Returns true if an assumed length of a voxel suits a stated one.
+pub(crate) fn is_plausible_assumption(assumed: f64, stated: f64) -> bool {
+    let ratio = assumed / stated;
+    (1.0 / MAX_ASSUMED_RATIO..=MAX_ASSUMED_RATIO).contains(&ratio)
+}
+
+/// Replaces unusable spacings: a missing or invalid one by 1, or by the smallest of the others where 1 is unlike them;
+/// all of them by 1 where their ratios are implausible.
 fn repair_spacing(spacing_mm: [f64; 3], remarks: &mut Vec<String>) -> DVec3 {
-    let mend = |length: f64| if is_usable_spacing(length.abs()) { length.abs() } else { 1.0 };
-    let mut usable = spacing_mm.map(mend);
+    let stated = spacing_mm.map(|length| Some(length.abs()).filter(|length| is_usable_spacing(*length)));
+    let smallest = stated.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let suits_all = stated.iter().flatten().all(|length| is_plausible_assumption(1.0, *length));
+    let assumed = if suits_all { 1.0 } else { smallest };
+    let mut usable = stated.map(|length| length.unwrap_or(assumed));
     if spacing_ratio_error(usable).is_some() {
         usable = [1.0; 3];
     }
@@ -187,6 +202,11 @@ mod tests {
             ([0.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
             ([-1.5, 2.0, f64::NAN], [1.5, 2.0, 1.0]),
             ([1e-8, 1.0, 1e8], [1.0; 3]),
+            // A length of 1 would make a line or a plate of the grid.
+            ([0.02, 0.03, 0.0], [0.02, 0.03, 0.02]),
+            ([25.0, 0.0, 30.0], [25.0, 25.0, 30.0]),
+            ([0.1, 0.1, 0.0], [0.1, 0.1, 1.0]),
+            ([0.0; 3], [1.0; 3]),
         ] {
             let placement = GridPlacement::from_spacing(said);
             let axes = placement.world_from_index.matrix3;

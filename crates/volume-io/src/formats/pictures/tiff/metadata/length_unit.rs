@@ -1,5 +1,8 @@
 //! Units of length by their names in microscope software.
 
+/// Length of an inch in millimetres, the unit of the resolution of prints and screens.
+pub(super) const INCH_MM: f64 = 25.4;
+
 /// Length of a unit in millimetres; `None` for any other text.
 pub(super) fn millimetres(unit: &str) -> Option<f64> {
     // The micro sign is also written as the Greek letter, and as an escape of Java.
@@ -13,7 +16,7 @@ pub(super) fn millimetres(unit: &str) -> Option<f64> {
         "pm" | "picometer" => 1e-9,
         // Also as the angstrom sign, which is a character of its own.
         "Å" | "\u{212b}" | "A" | "angstrom" | "Angstrom" => 1e-7,
-        "in" | "inch" | "inches" => 25.4,
+        "in" | "inch" | "inches" => INCH_MM,
         _ => return None,
     })
 }

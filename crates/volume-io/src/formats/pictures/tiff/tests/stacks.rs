@@ -86,12 +86,41 @@ fn channels_are_called_as_imagej_calls_their_slices() {
 }
 
 #[test]
+fn slices_are_not_assumed_to_be_far_thicker_than_pixels_are_wide() {
+    // Pixels per micrometre, and the distance of slices that is taken.
+    for (resolution, said, taken) in [
+        (2, "", 1.0),
+        (10, "", 1.0),
+        (15, "", 1.0 / 15.0),
+        (15, "spacing=1\n", 1.0),
+        (40, "spacing=0.3\n", 0.3),
+    ] {
+        let mut leaves = pages(2);
+        leaves[0] = page(0)
+            .with_rational(tag::X_RESOLUTION, resolution, 1)
+            .with_rational(tag::Y_RESOLUTION, resolution, 1)
+            .with_text(tag::DESCRIPTION, &format!("ImageJ=1.53t\nimages=2\nslices=2\nunit=um\n{said}"));
+        let volume = load_bytes(&LITTLE.file(&leaves)).unwrap();
+        let found = volume.spacing_mm().z / 1e-3;
+        assert!((found - taken).abs() < 1e-9, "{resolution} {said:?}: {found}");
+        assert_eq!(volume.remarks().is_empty(), !said.is_empty(), "{:?}", volume.remarks());
+    }
+}
+
+#[test]
 fn imagej_defaults_apply() {
     let of = |lines: &str| {
         load_bytes(&described(pages(2), &format!("ImageJ=1.53t\nimages=2\nslices=2\n{lines}"))).unwrap()
     };
     let volume = of("unit=micron\n");
     assert!((volume.spacing_mm().z - 1e-3).abs() < 1e-15 && volume.remarks()[0].contains("ImageJ"));
+    // The pages have 2 pixels per unit along x, and 4 along y.
+    let print = of("unit=inch\n");
+    assert_eq!(print.spacing_mm(), glam::DVec3::new(1.0, 0.5, 1.0), "of unknown size");
+    assert!(print.has_unknown_scale() && print.remarks()[0].contains("prints"), "{:?}", print.remarks());
+    let stated = of("unit=inch\nspacing=0.5\n");
+    assert!((stated.spacing_mm() - 25.4 * glam::DVec3::new(0.5, 0.25, 0.5)).length() < 1e-9);
+    assert!(stated.remarks().is_empty() && !stated.has_unknown_scale());
     let pixels = of("unit=pixel\nspacing=3\n");
     assert!(pixels.has_unknown_scale() && pixels.spacing_mm().z == 3.0, "longer, nobody knows of what");
     assert!(of("").has_unknown_scale());
