@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::super::MIN_VISIBLE_OPACITY;
+use super::label_visibility::decide_visibility;
 use crate::{
     ColorMixing, ControlPoint, DensityRange, Easing, LUT_SIZE, LabelLook, LabelTable, MAX_POINTS,
     OpacityInterpolation, Settings, TransferFunction, oklab_from_linear,
@@ -58,7 +59,9 @@ const SAME_COLOR_DISTANCE: f64 = 0.0075;
 pub(crate) fn label_table(volume: &Volume) -> LabelTable {
     let Some(labels) = volume.labels() else { return LabelTable::default() };
     let numbers = (0..labels.class_count()).map(|class| labels.representative_of_class(class).number);
-    numbers.map(|number| (number, label_look(volume, number))).collect()
+    let mut table = numbers.map(|number| (number, label_look(volume, number))).collect();
+    decide_visibility(&mut table, volume);
+    table
 }
 
 /// Returns the look of a label, with name and colour from the file if it has them.

@@ -4,6 +4,7 @@ mod covering_label;
 mod dark_on_bright;
 mod hounsfield;
 mod label_map;
+mod label_visibility;
 mod mask;
 mod masked_field;
 mod scalar;
@@ -50,7 +51,7 @@ pub(super) fn find_transfer(volume: &Volume, histogram: &Histogram, kind: DataKi
         }
         DataKind::LabelMap { .. } => FirstTransfer {
             transfer: label_map::label_transfer(volume),
-            labels: label_map::label_table(volume),
+            labels: label_visibility::with_report(label_map::label_table(volume), volume),
             domain: DataDomain::Unknown,
             has_veil: false,
         },
