@@ -29,6 +29,7 @@ pub use self::look_proposals::{LookProposal, propose_looks};
 
 use self::domain::DataDomain;
 use self::object::VisibleObject;
+use self::transfer::TransferStyle;
 use super::{
     Camera, ClassificationOrder, LabelTable, LightingRig, ObjectRotation, OpacityLength, PhongShading,
     QualityPreset, ReconstructionKernel, SceneAxis, Settings, ShadowSettings, TransferFunction,
@@ -77,7 +78,7 @@ fn with_robust_range<T>(
 fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstLookOptions) -> Settings {
     let kind = data_kind(volume, wishes.data_kind);
     let found = transfer::find_transfer(volume, histogram, kind);
-    let (domain, has_veil) = (found.domain, found.has_veil);
+    let (domain, style) = (found.domain, found.style);
     let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
@@ -101,8 +102,11 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
             (ReconstructionKernel::Prefiltered, ReconstructionKernel::Prefiltered);
     }
     choose_view_and_lights(&mut settings, volume);
-    if has_veil {
+    if style == TransferStyle::Veiled {
         settings = frame_veil(settings, volume);
+    }
+    if style == TransferStyle::Settled {
+        return settings;
     }
     match kind {
         // All labels are shown already; a label that hides the others is framed, too.

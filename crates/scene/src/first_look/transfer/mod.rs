@@ -2,6 +2,7 @@
 
 mod covering_label;
 mod dark_on_bright;
+mod distance_field;
 mod hounsfield;
 mod label_map;
 mod label_visibility;
@@ -32,19 +33,34 @@ pub(super) struct FirstTransfer {
     /// Label table, for label maps only.
     pub(super) labels: LabelTable,
     pub(super) domain: DataDomain,
-    /// True if a part is too transparent to count as visible, and still has to be framed.
-    pub(super) has_veil: bool,
+    pub(super) style: TransferStyle,
+}
+
+/// Style of a transfer function, which decides what is done with it afterwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TransferStyle {
+    /// Objects, of which another may be sought, or an inner material revealed.
+    Object,
+    /// Objects with a part that is too transparent to count as visible, and still has to be framed.
+    Veiled,
+    /// Objects that are certain: no other is sought.
+    Settled,
 }
 
 impl FirstTransfer {
-    /// Creates a result without labels and without a veil.
+    /// Creates a result without labels, for objects.
     fn from_values(transfer: TransferFunction, domain: DataDomain) -> Self {
-        Self { transfer, labels: LabelTable::default(), domain, has_veil: false }
+        Self { transfer, labels: LabelTable::default(), domain, style: TransferStyle::Object }
     }
 }
 
 /// Finds the transfer function for a kind of data.
 pub(super) fn find_transfer(volume: &Volume, histogram: &Histogram, kind: DataKind) -> FirstTransfer {
+    // Distances are of either sign, or brighter around than within.
+    let may_be_distance = matches!(kind, DataKind::Signed | DataKind::Scalar | DataKind::DarkOnBright);
+    if may_be_distance && let Some(distances) = distance_field::find_distance_field(volume) {
+        return distances;
+    }
     match kind {
         DataKind::Mask => {
             FirstTransfer::from_values(mask::mask_transfer(volume, histogram), DataDomain::Unknown)
@@ -53,7 +69,7 @@ pub(super) fn find_transfer(volume: &Volume, histogram: &Histogram, kind: DataKi
             transfer: label_map::label_transfer(volume),
             labels: label_visibility::with_report(label_map::label_table(volume), volume),
             domain: DataDomain::Unknown,
-            has_veil: false,
+            style: TransferStyle::Object,
         },
         DataKind::Signed => {
             signed::find_signed(volume).unwrap_or_else(|| scalar::find_scalar(volume, histogram))

@@ -5,7 +5,8 @@ use super::super::domain::{DataDomain, roughness};
 use super::super::palette::DomainPalette;
 use super::masked_field::masked_voxel_count;
 use super::{
-    FirstTransfer, PaletteStop, quantile, sample_values, transfer_from_points, transfer_through_stops,
+    FirstTransfer, PaletteStop, TransferStyle, quantile, sample_values, transfer_from_points,
+    transfer_through_stops,
 };
 use crate::ControlPoint;
 use chiaroscuro_volume::Volume;
@@ -87,7 +88,7 @@ pub(super) fn find_signed(volume: &Volume) -> Option<FirstTransfer> {
     let glass = known_part_veil(volume, threshold);
     points.extend(glass.into_iter().flatten());
     Some(FirstTransfer {
-        has_veil: glass.is_some(),
+        style: if glass.is_some() { TransferStyle::Veiled } else { TransferStyle::Object },
         ..FirstTransfer::from_values(transfer_from_points(points), DataDomain::Simulation)
     })
 }
