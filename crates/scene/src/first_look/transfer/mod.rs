@@ -1,5 +1,6 @@
 //! Automatic transfer functions by the kind of data.
 
+mod box_filling;
 mod covering_label;
 mod dark_on_bright;
 mod distance_field;

@@ -3,6 +3,7 @@
 
 use super::super::domain::{DataDomain, roughness};
 use super::super::palette::DomainPalette;
+use super::box_filling::{fills_box, is_coherent};
 use super::masked_field::masked_voxel_count;
 use super::{
     FirstTransfer, PaletteStop, TransferStyle, quantile, sample_values, transfer_from_points,
@@ -27,6 +28,10 @@ const MAX_NOISELESS_ROUGHNESS: f64 = 0.2;
 /// Smallest share of values to show, however strong noise is: three times the share of normal noise beyond the
 /// threshold.
 const MIN_STRONG_SHARE: f64 = 0.04;
+
+/// Smallest share of values to show of a field that fills its box, such as layers of rock, which are as rough across
+/// as noise: they are strong everywhere, and a twentieth of them is crumbs.
+const MIN_SHARE_OF_FULL: f64 = 0.1;
 
 /// Smallest ratio of the bulk of strong values to their threshold, and of their peaks to the bulk: limits the
 /// steepness of opacity, so that surfaces do not end as abruptly as voxels.
@@ -65,6 +70,9 @@ pub(super) fn find_signed(volume: &Volume) -> Option<FirstTransfer> {
     // In a field without noise, all values are signal.
     let has_noise = roughness(volume) > MAX_NOISELESS_ROUGHNESS;
     let threshold = strong_threshold(&magnitudes, has_noise);
+    let most = quantile(&magnitudes, 1.0 - MIN_SHARE_OF_FULL);
+    let is_full = fills_box(volume, 0.0) && is_coherent(volume, most);
+    let threshold = if is_full { threshold.min(most) } else { threshold };
     if threshold <= 0.0 {
         return None;
     }
@@ -85,7 +93,8 @@ pub(super) fn find_signed(volume: &Volume) -> Option<FirstTransfer> {
             stops.map(|(magnitude, place, opacity)| PaletteStop { value: sign * magnitude, place, opacity });
         points.extend(transfer_through_stops(side, DomainPalette::diverging(is_negative)).points);
     }
-    let glass = known_part_veil(volume, threshold);
+    // There is nothing around a field that fills its box.
+    let glass = if is_full { None } else { known_part_veil(volume, threshold) };
     points.extend(glass.into_iter().flatten());
     Some(FirstTransfer {
         style: if glass.is_some() { TransferStyle::Veiled } else { TransferStyle::Object },
