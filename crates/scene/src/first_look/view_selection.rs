@@ -4,6 +4,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use super::frame::face_thick_slices;
 use super::object::VisibleObject;
 use crate::Camera;
 use chiaroscuro_volume::Volume;
@@ -45,6 +46,7 @@ pub(super) fn choose_view(camera: &mut Camera, volume: &Volume, object: &Visible
     }
     if volume.is_anatomical() {
         (camera.azimuth_deg, camera.elevation_deg) = PATIENT_VIEW_DEG;
+        face_thick_slices(camera, volume);
         return;
     }
     let surface = ObjectSurface::extract(volume, object);
@@ -72,6 +74,7 @@ pub(super) fn choose_view(camera: &mut Camera, volume: &Volume, object: &Visible
         let azimuth = (views[best].0 + 180.0).rem_euclid(360.0) - 180.0;
         (camera.azimuth_deg, camera.elevation_deg) = (azimuth, views[best].1);
     }
+    face_thick_slices(camera, volume);
 }
 
 /// Returns the view of a grid with few slices, as right, up and backward axes in scene space: perpendicular to the

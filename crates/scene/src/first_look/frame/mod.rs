@@ -1,10 +1,13 @@
 //! Camera framing: places the camera so that a volume's object fills the frame, and the floor under the object.
 
 mod outline;
+mod thick_slices;
 
 use glam::{DVec2, DVec3};
 
 pub use self::outline::ObjectOutline;
+pub(super) use self::thick_slices::face_thick_slices;
+use self::thick_slices::thick_slice_axis;
 use super::object::VisibleObject;
 use crate::{Camera, FRAME_ASPECT, FovReference, Settings};
 use chiaroscuro_volume::Volume;
@@ -42,7 +45,15 @@ fn trimmed_range(points: &[DVec2], along: impl Fn(&DVec2) -> f64) -> [f64; 2] {
 /// Returns the outline of an object in scene space.
 fn outline_points(volume: &Volume, object: &VisibleObject) -> Vec<DVec3> {
     let scene_from_index = volume.scene().scene_from_index;
-    object.outline().into_iter().map(|point| scene_from_index.transform_point3(point)).collect()
+    let centres = object.outline().into_iter();
+    let points: Vec<DVec3> = match thick_slice_axis(volume) {
+        // Material reaches half a slice beyond the centres of voxels, which is much where slices are thick.
+        Some(axis) => {
+            centres.flat_map(|point| [-0.5, 0.5].map(|offset| point + offset * DVec3::AXES[axis])).collect()
+        }
+        None => centres.collect(),
+    };
+    points.into_iter().map(|point| scene_from_index.transform_point3(point)).collect()
 }
 
 /// Puts the floor under the object; without an object it is not moved.
