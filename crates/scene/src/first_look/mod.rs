@@ -83,7 +83,7 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     let mut settings = Settings {
         camera: Camera { up, ..Camera::default() },
         lights: Vec::new(),
-        shading: shading(found.domain),
+        shading: if style == TransferStyle::Picture { evenly_lit() } else { shading(found.domain) },
         // An automatic look stays as bright as without shadows.
         shadows: ShadowSettings { keep_balanced: true, ..ShadowSettings::default() },
         volume: *volume.corrections(),
@@ -105,7 +105,7 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     if style == TransferStyle::Veiled {
         settings = frame_veil(settings, volume);
     }
-    if style == TransferStyle::Settled {
+    if matches!(style, TransferStyle::Picture | TransferStyle::Settled) {
         return settings;
     }
     match kind {
@@ -186,6 +186,11 @@ fn shading(domain: DataDomain) -> PhongShading {
         DataDomain::Metal => PhongShading { specular: 0.5, shininess: 48.0, ..usual },
         _ => usual,
     }
+}
+
+/// Returns the shading of pictures: every place is as bright as its colour, without a relief.
+fn evenly_lit() -> PhongShading {
+    PhongShading { ambient: 1.0, diffuse: 0.0, specular: 0.0, ..PhongShading::default() }
 }
 
 /// Frames the visible object from the camera's current direction, and puts the floor under it.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::frame::face_thick_slices;
 use super::object::VisibleObject;
+use super::transfer::axis_across_picture;
 use crate::Camera;
 use chiaroscuro_volume::Volume;
 
@@ -85,10 +86,10 @@ fn slice_view(volume: &Volume) -> Option<DMat3> {
     let dims = volume.dims();
     let mut by_length = [0, 1, 2].map(|axis: usize| (axes[axis].length() * dims[axis] as f64, axis));
     by_length.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [(shortest, across), (next, _), _] = by_length;
-    if shortest >= MAX_FLATNESS_RATIO * next {
-        return None;
-    }
+    let [(shortest, thinnest), (next, _), _] = by_length;
+    let is_flat = shortest < MAX_FLATNESS_RATIO * next;
+    // Few slices are a picture, however far they are apart.
+    let across = axis_across_picture(volume).or_else(|| is_flat.then_some(thinnest))?;
     // Slices stacked along z are images, whose second axis runs down; others are upright.
     let (right, up) = match across {
         0 => (axes[1], axes[2]),
@@ -98,7 +99,7 @@ fn slice_view(volume: &Volume) -> Option<DMat3> {
     let right = right.normalize();
     let up = up.reject_from(right).normalize();
     let backward = right.cross(up);
-    let above = if dims[across] > 1 { SLICE_ELEVATION_DEG.to_radians() } else { 0.0 };
+    let above = if dims[across] > 1 && is_flat { SLICE_ELEVATION_DEG.to_radians() } else { 0.0 };
     let (sine, cosine) = above.sin_cos();
     Some(DMat3::from_cols(right, up * cosine - backward * sine, backward * cosine + up * sine))
 }

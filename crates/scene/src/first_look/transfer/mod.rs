@@ -9,6 +9,7 @@ mod label_map;
 mod label_visibility;
 mod mask;
 mod masked_field;
+mod picture;
 mod scalar;
 mod signed;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use chiaroscuro_volume::{DataKind, Histogram, Volume};
 pub(super) use self::covering_label::make_cover_translucent;
 pub(super) use self::hounsfield::add_skin;
 pub(super) use self::label_map::{count_lost_labels, label_range as range_of_labels, label_table};
+pub(super) use self::picture::axis_across_picture;
 pub(super) use self::scalar::transfer_from_edge;
 pub(super) use self::veil::{inner_transfer, opaque_transfer, scale_opacity, veiled_transfer};
 
@@ -46,6 +48,8 @@ pub(super) enum TransferStyle {
     Veiled,
     /// Objects that are certain: no other is sought.
     Settled,
+    /// Picture, all of it opaque: it has no relief, and no object is sought in it.
+    Picture,
 }
 
 impl FirstTransfer {
@@ -57,6 +61,9 @@ impl FirstTransfer {
 
 /// Finds the transfer function for a kind of data.
 pub(super) fn find_transfer(volume: &Volume, histogram: &Histogram, kind: DataKind) -> FirstTransfer {
+    if let Some(picture) = picture::find_picture(volume, kind) {
+        return picture;
+    }
     // Distances are of either sign, or brighter around than within.
     let may_be_distance = matches!(kind, DataKind::Signed | DataKind::Scalar | DataKind::DarkOnBright);
     if may_be_distance && let Some(distances) = distance_field::find_distance_field(volume) {
