@@ -37,6 +37,7 @@ pub use load_context::{
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
 };
+pub use values::fill_value::find_fill_value;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{FiniteRange, Samples, VoxelType};

@@ -7,8 +7,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::voxels::ReadVoxels;
 use super::{LoadControl, LoadError};
 use chiaroscuro_volume::{
-    GridExtent, LoadContext, Samples, ValueMetadata, ValueRange, Volume, is_usable_affine, is_usable_spacing,
-    spacing_ratio_error,
+    GridExtent, LoadContext, MissingVoxels, Samples, ValueMetadata, ValueRange, Volume, VolumeError,
+    find_fill_value, is_usable_affine, is_usable_spacing, spacing_ratio_error,
 };
 
 /// Affine transform of the grid as the file gives it, with implausible values corrected.
@@ -177,6 +177,10 @@ impl VolumeParts {
                 Some(padding) if volume.value_range() != ValueRange::new(padding, padding) => {
                     volume.with_padding(padding)
                 }
+                None => match find_fill_value(volume.samples(), &volume.ranges()) {
+                    Some(fill) if !volume.is_label_map() => with_fill_value(context, volume, fill),
+                    _ => Ok(volume),
+                },
                 _ => Ok(volume),
             })
         };
@@ -189,6 +193,28 @@ impl VolumeParts {
         control.set_analysis_time(start.elapsed());
         volume.map_err(|error| context.bad_input_error("data", error.to_string(), help))
     }
+}
+
+/// Marks voxels of a fill value as missing, and says so.
+fn with_fill_value(context: LoadContext<'_>, volume: Volume, fill: f64) -> Result<Volume, VolumeError> {
+    let mut remarks = volume.remarks().to_vec();
+    let volume = volume.with_padding(fill)?;
+    let missing = volume.missing().map_or(0, MissingVoxels::count) - volume.non_finite_voxels();
+    // The digits of a 32-bit float are those of the number that was written: 1e20, not 1.0000000200408773e20.
+    let short = fill as f32;
+    let number = match (fill.abs() < 1e7, f64::from(short) == fill) {
+        (true, _) => format!("{fill}"),
+        (false, true) => format!("{short:e}"),
+        (false, false) => format!("{fill:e}"),
+    };
+    remarks.push(format!(
+        "{:.0} % of the voxels hold {number}, far from all other values: they are taken as missing",
+        100.0 * missing as f64 / volume.voxel_count() as f64
+    ));
+    if let Some(remark) = remarks.last() {
+        context.warn(remark);
+    }
+    Ok(volume.with_remarks(remarks))
 }
 
 #[cfg(test)]
@@ -213,6 +239,26 @@ mod tests {
             assert_eq!([axes.x_axis.x, axes.y_axis.y, axes.z_axis.z], taken);
             assert_eq!(placement.remarks.is_empty(), said == taken, "{said:?}");
         }
+    }
+
+    #[test]
+    fn fill_values_are_missing_and_said() {
+        let load = |fill: f32| {
+            let value = |at: usize| if at % 10 < 4 { fill } else { (at * 7919 % 1000) as f32 };
+            let bytes: Vec<u8> = (0..1000).flat_map(|at| value(at).to_le_bytes()).collect();
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("grid_10x10x10_float32.raw");
+            std::fs::write(&path, bytes).unwrap();
+            crate::load(&path, &crate::LoadOptions::default(), &LoadControl::new()).unwrap()
+        };
+        let filled = load(1e20);
+        assert_eq!(
+            (filled.padding_value(), filled.missing().map(MissingVoxels::count)),
+            (Some(f64::from(1e20f32)), Some(400))
+        );
+        let remarks = filled.remarks().join("; ");
+        assert!(remarks.contains("40 % of the voxels hold 1e20"), "{remarks}");
+        assert_eq!(load(0.0).missing(), None);
     }
 
     #[test]

@@ -108,7 +108,7 @@ pub(crate) fn quantile(samples: &Samples, left_out: f64, share: f64) -> f64 {
 }
 
 /// Returns the finite values of evenly spread voxels other than `left_out`, sorted.
-fn sorted_samples(samples: &Samples, left_out: f64) -> Vec<f64> {
+pub(super) fn sorted_samples(samples: &Samples, left_out: f64) -> Vec<f64> {
     let stride = samples.len().div_ceil(MAX_SAMPLES).max(1);
     let value = |at: usize| {
         let first = at * stride;
@@ -183,7 +183,7 @@ fn trimmed_range(samples: &Samples, left_out: f64, few: usize, above: f64, below
 }
 
 /// Returns true if sorted values have at most [`MAX_LABEL_VALUES`] distinct ones.
-fn has_few_distinct(values: &[f64]) -> bool {
+pub(super) fn has_few_distinct(values: &[f64]) -> bool {
     values.windows(2).filter(|pair| pair[0] < pair[1]).take(MAX_LABEL_VALUES).count() < MAX_LABEL_VALUES
 }
 
