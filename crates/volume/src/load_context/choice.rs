@@ -75,6 +75,18 @@ impl VolumeChoice {
         self
     }
 
+    /// Returns this choice with the only array of single numbers selected, if none is selected and all others hold
+    /// vectors, colours or series.
+    #[must_use]
+    pub fn with_only_scalar_array(&self, offers: &[VolumeOffer], is_scalar: impl Fn(usize) -> bool) -> Self {
+        let mut scalars = (0..offers.len()).filter(|&at| is_scalar(at));
+        let only = scalars.next().filter(|_| scalars.next().is_none());
+        match (&self.array, only) {
+            (None, Some(only)) => self.clone().with_selected(FileDimension::Array, &offers[only].key),
+            _ => self.clone(),
+        }
+    }
+
     /// Returns the index of the selected offer: the only one, or the one whose key or name was given.
     ///
     /// # Errors

@@ -162,7 +162,10 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
         let key = array.key();
         VolumeOffer { name: key.clone(), key, dims: Some(array.grid.dims) }
     });
-    let chosen = context.resolve_choice(&source.options.choice, FileDimension::Array, offers.collect())?;
+    let offers: Vec<VolumeOffer> = offers.collect();
+    let is_scalar = |at: usize| arrays[at].grid.components == 1 && arrays[at].grid.outer.is_empty();
+    let choice = source.options.choice.with_only_scalar_array(&offers, is_scalar);
+    let chosen = context.resolve_choice(&choice, FileDimension::Array, offers)?;
     let ArchivedArray { entry, header, grid } = arrays.swap_remove(chosen);
     let wanted = choose_volume(&source, context, &header, &grid)?;
     let voxels = read_entry(&mut source, context, &entry, &wanted)?;

@@ -172,12 +172,13 @@ pub(super) fn choose_array<P>(
         ));
     }
     let is_one_of_several = arrays.len() > 1;
-    let offers = arrays
+    let offers: Vec<VolumeOffer> = arrays
         .iter()
         .enumerate()
         .map(|(at, array)| VolumeOffer::with_number(at, &array.name, grid.dims(array.is_cell_data)))
         .collect();
-    let array = arrays.swap_remove(context.resolve_choice(&options.choice, FileDimension::Array, offers)?);
+    let choice = options.choice.with_only_scalar_array(&offers, |at| arrays[at].components == 1);
+    let array = arrays.swap_remove(context.resolve_choice(&choice, FileDimension::Array, offers)?);
     let components = array.components;
     let component = options.choice.resolve_component(components, array.is_color);
     let part = ScalarReduction::require(context, component, components, array.is_color)?;

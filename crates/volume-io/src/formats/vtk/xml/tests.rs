@@ -212,6 +212,29 @@ fn one_of_several_arrays_is_chosen() {
 }
 
 #[test]
+fn the_only_array_of_single_numbers_is_opened() {
+    let array = |name: &str, components: usize, first: usize| {
+        let numbers: Vec<_> = (0..8 * components).map(|at| (first + at).to_string()).collect();
+        format!(
+            "<DataArray Name=\"{name}\" type=\"UInt8\" NumberOfComponents=\"{components}\" format=\"ascii\">{}\
+             </DataArray>",
+            numbers.join(" ")
+        )
+    };
+    let of = |arrays: &[String]| file("", &format!("<PointData>{}</PointData>", arrays.concat()), b"");
+    let (velocity, pressure, rgb) = (array("velocity", 3, 0), array("pressure", 1, 100), array("rgb", 3, 50));
+    let one = of(&[velocity.clone(), pressure.clone(), rgb.clone()]);
+    let found = load_bytes(&one).unwrap();
+    assert_eq!((found.value(0, 0, 0), found.name()), (100.0, "v pressure"));
+    let chosen = VolumeChoice::default().with_selected(FileDimension::Array, "velocity");
+    assert_eq!(load_bytes_as(&one, chosen).unwrap().name(), "v velocity");
+    // Of two, or of none, the user chooses.
+    for several in [of(&[velocity.clone(), pressure, array("t", 1, 0)]), of(&[velocity, rgb])] {
+        assert_refused(load_bytes(&several), LoadErrorKind::BadInput, &["--array"]);
+    }
+}
+
+#[test]
 fn several_components_make_one_value() {
     let with = |kind: &str, components: usize, component: Option<usize>| {
         let numbers: Vec<_> = (0..8 * components).map(|at| (3 + at % components).to_string()).collect();
