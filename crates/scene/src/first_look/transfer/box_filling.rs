@@ -3,8 +3,9 @@
 use chiaroscuro_volume::Volume;
 
 /// Smallest ratio of the deviations on the faces of a volume to those within at which a field fills its box: layers
-/// of rock and crystals have about 1, orbitals and molecules within their box hardly more than 0.
-const MIN_FACE_STRENGTH: f64 = 0.6;
+/// of rock and crystals have about 1, noise around two strong lobes 0.62, molecules within their box hardly more than
+/// 0.
+const MIN_FACE_STRENGTH: f64 = 0.75;
 
 /// Returns true if a field deviates from its background as strongly on the faces of the volume as within, by root
 /// mean squares: it has no margin, and goes on outside.
@@ -46,8 +47,9 @@ impl MeanSquare {
 }
 
 /// Smallest share of the neighbours of strong values that are at least half as strong, of the same sign, in a field of
-/// lobes or layers; both have 0.9 and more, white noise 0.2.
-const MIN_COHERENCE: f64 = 0.5;
+/// lobes or layers. Lobes have 0.9 and more; layers of one voxel, with four of six neighbours alike, two thirds; white
+/// noise 0.2, and noise whose sign is smooth half.
+const MIN_COHERENCE: f64 = 0.65;
 
 /// Returns true if strong values, which are at least `strong` from zero, have strong neighbours: they are no noise.
 pub(super) fn is_coherent(volume: &Volume, strong: f64) -> bool {
@@ -92,9 +94,9 @@ mod tests {
         ((at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / f64::from(1 << 23) - 1.0
     }
 
-    /// Returns layers as rough across as noise, and smooth along.
+    /// Returns layers of two voxels, as rough across as noise, and smooth along.
     fn layers(p: DVec3, at: usize) -> f64 {
-        let layer = (p.z + 15.5 + 2.0 * (0.1 * p.x).sin()).floor() as usize;
+        let layer = ((p.z + 17.5 + 2.0 * (0.1 * p.x).sin()) / 2.0).floor() as usize;
         noise(layer * 31 + 7).powi(3) + 0.02 * noise(at)
     }
 
