@@ -8,7 +8,7 @@
 
 // Share of the second difference along each axis that interpolation adds: t(1 − t)/2 at the fraction t between two
 // rays, 1/12 in the mean, across two of three axes.
-const SPREAD = 0.0556;
+const SPREAD = 1.0 / 18.0;
 
 // Set if that is taken out.
 override SHARPENS: bool = true;

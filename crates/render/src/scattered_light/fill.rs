@@ -87,8 +87,8 @@ impl ScatteredLightFill {
         let lights = settings.lights.iter().filter(|light| light.on).count();
         let rays = (lights * key.points() as usize).max(1);
         let (dims, divisor) = (volume.blocks.dims, volume.blocks.divisor);
-        // Sample points of single voxels may be in the next cell.
-        let margin = usize::from(divisor == 1);
+        // Sample points of single voxels may be in the next cell, if lamps alone shine.
+        let margin = usize::from(divisor == 1 && !settings.sky.is_on());
         let met = extinction_blocks::attenuating_cells(tables, options, dims, divisor, margin);
         // Pictures also look up the last bounce beside the blocks that scatter light.
         let visible_cells = met.union(&volume.filled_cells);

@@ -105,7 +105,7 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     if style == TransferStyle::Veiled {
         settings = frame_veil(settings, volume);
     }
-    if matches!(style, TransferStyle::Picture | TransferStyle::Settled) {
+    if matches!(style, TransferStyle::Picture | TransferStyle::KnownObject) {
         return settings;
     }
     match kind {

@@ -56,7 +56,7 @@ pub(super) fn find_distance_field(volume: &Volume) -> Option<FirstTransfer> {
         point(RAMP_HALF_WIDTH, 0.0),
     ];
     let found = FirstTransfer::from_values(transfer_from_points(points), DataDomain::Unknown);
-    Some(FirstTransfer { style: TransferStyle::Settled, ..found })
+    Some(FirstTransfer { style: TransferStyle::KnownObject, ..found })
 }
 
 /// Returns the distance in data units that corresponds to the smallest edge of a voxel, if the field's slope is 1

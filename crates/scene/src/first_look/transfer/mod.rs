@@ -46,8 +46,8 @@ pub(super) enum TransferStyle {
     Object,
     /// Objects with a part that is too transparent to count as visible, and still has to be framed.
     Veiled,
-    /// Objects that are certain: no other is sought.
-    Settled,
+    /// Object that is known for certain: no other is sought.
+    KnownObject,
     /// Picture, all of it opaque: it has no relief, and no object is sought in it.
     Picture,
 }
