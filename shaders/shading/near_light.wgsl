@@ -14,9 +14,9 @@
 override NEAR_STEPS: u32 = 0u;
 #option NEAR_HALVES: the first step is divided into two, both with the kernel of the eye
 
-// Lengths of the steps, in shortest edges of a voxel: ½ ½ 1 1 1½ 1½ 2.
+// Lengths of the steps, in shortest edges of a voxel: ½ ½ 1 1 1 1 1. Longer ones would pass thin sheets.
 fn near_step_length(step: u32) -> f32 {
-    return 0.5 * f32(1u + (step >> 1u));
+    return select(1.0, 0.5, step < 2u);
 }
 
 // End of a step.

@@ -229,7 +229,7 @@ pub(crate) const MIRRORED: ErrorLimit = ErrorLimit { max: 4.0 / 255.0, rmse: 0.2
 /// that passes add the same numbers in another order.
 pub(crate) const PHANTOM: ErrorLimit = ErrorLimit { max: 1.0 / 255.0, rmse: 0.1 / 255.0 };
 
-/// Light just below a lit face with near-field rays, RMSE: steps of ½ to 1½ voxels through densities that are
+/// Light just below a lit face with near-field rays, RMSE: steps of ½ to 1 voxel through densities that are
 /// prefiltered at voxels and interpolated between them; where τ is about 1, a tenth of a voxel is 0.02. Short rays
 /// (0.017) take the bend of their first step from differences of prefiltered densities, long ones (0.011) do not.
 pub(crate) const NEAR_A_FACE: f64 = 0.018;

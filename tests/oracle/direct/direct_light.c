@@ -1,8 +1,8 @@
 // Pictures of direct light with volumetric shadows, computed by brute force: the oracle of compare.py.
 //
-// It shares no code with the program. Densities and slopes are sums over the 64 neighbours with cubic B-spline weights
-// (Unser 1999), zero outside; every ray, from the eye and from each sample to the light, takes even steps of a small
-// fraction of a voxel, with values at their middles. docs/LIGHT.md has the formulas of matter and reflectance.
+// It shares no code with the program. Densities and slopes are sums over the 64 neighbours with cubic B-spline weights,
+// zero outside; every ray, from the eye and from each sample to the light, takes even steps of a small fraction of a
+// voxel, with values at their middles. docs/LIGHT.md has the formulas of matter and reflectance.
 //
 //   cc -O3 -march=native -ffast-math -o direct_light direct_light.c -lm
 //   ./direct_light VOXELS < PARAMETERS > PIXELS

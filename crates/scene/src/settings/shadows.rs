@@ -122,12 +122,12 @@ pub enum NearFieldRay {
     Off,
     /// Short ray of four steps, three voxels long.
     Short,
-    /// Long ray of seven steps, eight voxels long.
+    /// Long ray of seven steps, six voxels long.
     Long,
 }
 
 impl NearFieldRay {
-    /// Returns the number of steps of the ray; their widths are ½ ½ 1 1 1½ 1½ 2 smallest voxel edges, and the last is
+    /// Returns the number of steps of the ray; their widths are ½ ½ 1 1 1 1 1 smallest voxel edges, and the last is
     /// longer by half a voxel of the light volume. Material close to a sample shades it most, and is blurred least.
     pub fn step_count(self) -> u32 {
         match self {
@@ -156,7 +156,8 @@ impl NearFieldRay {
 
     /// Returns the width of a step in smallest voxel edges, without the extension of the last.
     pub fn width_voxels(step: u32) -> f64 {
-        0.5 * f64::from(1 + step / 2)
+        // Longer steps pass sheets that are three voxels thick, between whose ends density is taken as linear.
+        if step < 2 { 0.5 } else { 1.0 }
     }
 }
 

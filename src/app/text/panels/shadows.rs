@@ -124,7 +124,7 @@ pub(crate) const CONTACT_OFF: ControlText =
 pub(crate) const CONTACT_SHORT: ControlText =
     control_text("3 voxels", "Sharp where it matters most, at little cost");
 pub(crate) const CONTACT_LONG: ControlText =
-    control_text("8 voxels", "More accurate, and slower: for figures");
+    control_text("6 voxels", "More accurate, and slower: for figures");
 
 pub(crate) const REVERSE_KERNEL: ControlText =
     control_text("Reverse kernel", "Kernel that carries light from the sheets into the light volume");
