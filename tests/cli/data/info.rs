@@ -180,3 +180,16 @@ fn exposed_pictures_are_made_again_from_themselves() {
     folder.run_successfully("render builtin:chair:16 -o q.png --size 48x36 --session p.png");
     assert!(folder.read("p.png") == folder.read("q.png"));
 }
+
+#[test]
+fn few_slices_are_shown_as_bright_as_their_values() {
+    let folder = ProgramFolder::new();
+    let mut slices = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 32 2\nencoding: raw\n\n".to_vec();
+    // Mostly dark, so that an automatic exposure would be far above 1.
+    slices.extend((0..40 * 32 * 2_u32).map(|at| if at % 17 == 0 { 230 } else { 10 + (at % 23) as u8 }));
+    folder.write("slices.nrrd", slices);
+    folder.run_successfully("render slices.nrrd -o p.png --size 48x36 --report r.json");
+    let settings = folder.json("r.json")["settings"].clone();
+    assert_eq!(settings["output"]["exposure"], 1.0, "{settings}");
+    assert_eq!(settings["shading"]["diffuse"], 0.0, "{settings}");
+}

@@ -39,7 +39,7 @@ pub fn first_look_upright(
     let mut settings = first_look::first_settings_with(dataset.volume(), dataset.histogram(), wishes);
     let pictures = BrightnessPictures::draw(renderer, dataset, &settings)?;
     settings.shadows.balance = pictures.balance();
-    settings.output.exposure = automatic_exposure(&pictures.with_balance(settings.shadows.balance));
+    settings.output.exposure = pictures.exposure(&settings);
     settings.sanitise();
     Ok(settings)
 }
@@ -127,6 +127,16 @@ impl BrightnessPictures {
             [&self.shadowed, &self.unshadowed, &self.unlit].map(|light| mean_luminance(light));
         let factor = (without - unlit) / (with - unlit);
         if factor.is_finite() { factor.clamp(BALANCE_RANGE.0, BALANCE_RANGE.1) } else { 1.0 }
+    }
+
+    /// Returns the automatic exposure of these pictures with the balance of `settings`; 1 for colours that no light
+    /// changes, which are shown as they are.
+    pub(super) fn exposure(&self, settings: &Settings) -> f64 {
+        let shading = &settings.shading;
+        if shading.diffuse == 0.0 && shading.specular == 0.0 {
+            return 1.0;
+        }
+        automatic_exposure(&self.with_balance(settings.shadows.balance))
     }
 
     /// Returns the picture with shadows and a balance.

@@ -1,7 +1,6 @@
 //! Completion of a first look: light search, floor, balance and exposure.
 
 use super::balance::{BrightnessPictures, with_fast_shadows};
-use super::image_statistics::automatic_exposure;
 use super::light_search::{LightSearch, LightSearchResult, SearchedLight};
 use crate::{GpuError, Renderer};
 use chiaroscuro_scene::Settings;
@@ -47,7 +46,7 @@ pub fn complete_first_look(
             look.shadows.balance = seen.balance();
         }
         if open.contains(&UndecidedPart::Exposure) {
-            look.output.exposure = automatic_exposure(&seen.with_balance(look.shadows.balance));
+            look.output.exposure = seen.exposure(&look);
         }
     }
     look.sanitise();

@@ -1,7 +1,6 @@
 //! Settings measured on a downsampled volume: balance and exposure, and a fast variant for drawing.
 
 use super::balance::BrightnessPictures;
-use super::image_statistics::automatic_exposure;
 use super::small_volume::fast_settings;
 use crate::{GpuError, Renderer};
 use chiaroscuro_scene::Settings;
@@ -31,7 +30,7 @@ impl MeasuredSettings {
         let seen =
             BrightnessPictures::draw(renderer, small, &fast_settings(&settings, whole, small.volume()))?;
         settings.shadows.balance = seen.balance();
-        settings.output.exposure = automatic_exposure(&seen.with_balance(settings.shadows.balance));
+        settings.output.exposure = seen.exposure(&settings);
         settings.sanitise();
         Ok(Self::new(whole, small, settings))
     }
