@@ -14,7 +14,7 @@ const SOLID: f64 = 1.5;
 /// Largest optical depth per shortest edge of a voxel that a position in a block counts for.
 const MOST: f64 = 3.0;
 /// Share of the excess of the largest extinction around a block that is subtracted from that of the block.
-const TAKEN: f64 = 0.6;
+const SURROUNDING_SHARE: f64 = 0.6;
 /// Opacity per shortest edge of a voxel all around a block that no light reaches.
 const BURIED: f64 = 0.9;
 /// Places along the normal, in halves of a block from the block's centre.
@@ -93,7 +93,7 @@ impl Reference<'_> {
             let around = near(2).flat_map(|z| near(1).flat_map(move |y| near(0).map(move |x| [x, y, z])));
             let most = around.map(at).fold(0.0, f64::max);
             let own = at(place);
-            own - TAKEN * solidity(most * self.scene.smallest_edge()) * (most - own)
+            own - SURROUNDING_SHARE * solidity(most * self.scene.smallest_edge()) * (most - own)
         };
         (0..extinction.len()).into_par_iter().map(of_block).collect()
     }

@@ -1,6 +1,6 @@
 //! Detection of fill values that a file does not declare: numbers that programs write where nothing was measured.
 
-use super::robust::{has_few_distinct, sorted_samples};
+use super::robust::{has_few_distinct, sampled_values, sorted_samples};
 use crate::{Samples, ValueRanges, VoxelType};
 
 /// Smallest share of voxels that hold a fill value, and smallest share of others; fewer are outliers.
@@ -36,7 +36,7 @@ pub fn find_fill_value(samples: &Samples, ranges: &ValueRanges) -> Option<f64> {
 
 fn is_fill_value(samples: &Samples, value: f64) -> bool {
     let others = sorted_samples(samples, value);
-    let count = sorted_samples(samples, f64::NAN).len() as f64;
+    let count = sampled_values(samples, f64::NAN).len() as f64;
     let share = others.len() as f64 / count.max(1.0);
     // Values of masks and labels have no distances.
     if value == 0.0 || !(MIN_OTHER_SHARE..=1.0 - MIN_FILL_SHARE).contains(&share) || has_few_distinct(&others)

@@ -109,6 +109,13 @@ pub(crate) fn quantile(samples: &Samples, left_out: f64, share: f64) -> f64 {
 
 /// Returns the finite values of evenly spread voxels other than `left_out`, sorted.
 pub(super) fn sorted_samples(samples: &Samples, left_out: f64) -> Vec<f64> {
+    let mut values = sampled_values(samples, left_out);
+    values.par_sort_unstable_by(f64::total_cmp);
+    values
+}
+
+/// Returns the finite values of evenly spread voxels other than `left_out`, in the order of the voxels.
+pub(super) fn sampled_values(samples: &Samples, left_out: f64) -> Vec<f64> {
     let stride = samples.len().div_ceil(MAX_SAMPLES).max(1);
     let value = |at: usize| {
         let first = at * stride;
@@ -117,9 +124,7 @@ pub(super) fn sorted_samples(samples: &Samples, left_out: f64) -> Vec<f64> {
         samples.value(first + hash % stride.min(samples.len() - first))
     };
     let all = (0..samples.len().div_ceil(stride)).into_par_iter().map(value);
-    let mut values: Vec<f64> = all.filter(|value| value.is_finite() && *value != left_out).collect();
-    values.par_sort_unstable_by(f64::total_cmp);
-    values
+    all.filter(|value| value.is_finite() && *value != left_out).collect()
 }
 
 /// Lowest and highest values seen, sorted from the outermost inwards.

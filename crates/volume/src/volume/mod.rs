@@ -36,6 +36,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use self::corrections::AppliedCorrections;
 use self::grid::VoxelGrid;
+use self::grid::face_voxels::face_voxels;
 use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
 use super::load_context::FileContents;
@@ -261,6 +262,12 @@ impl Volume {
     /// Returns the value of one voxel in data units, as stored in the file.
     pub fn value(&self, x: usize, y: usize, z: usize) -> f64 {
         self.samples().value(self.grid.voxel_index([x, y, z]))
+    }
+
+    /// Returns the indices of the voxels of one of the six faces: at the start and at the end of x, of y and of z. Of
+    /// longer edges, `max_per_edge` voxels at most are evenly spread.
+    pub fn face_voxels(&self, face: usize, max_per_edge: usize) -> impl Iterator<Item = usize> {
+        face_voxels(self.dims(), face, max_per_edge)
     }
 
     /// Returns the density of a voxel; `None` if it is missing.

@@ -114,15 +114,11 @@ fn sampled_gradients(volume: &Volume) -> Vec<DVec3> {
 
 /// Returns the numbers of faces of the volume with values below a level, and with values from it on.
 fn faces_touched(volume: &Volume, level: f64) -> [usize; 2] {
-    let dims = volume.dims();
     let mut touched = [0; 2];
-    for (axis, is_last) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    for face in 0..6 {
         let mut has = [false; 2];
-        for (i, j) in (0..dims[u]).flat_map(|i| (0..dims[v]).map(move |j| (i, j))) {
-            let mut place = [0; 3];
-            (place[axis], place[u], place[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
-            has[usize::from(volume.value(place[0], place[1], place[2]) >= level)] = true;
+        for voxel in volume.face_voxels(face, usize::MAX) {
+            has[usize::from(volume.samples().value(voxel) >= level)] = true;
         }
         touched.iter_mut().zip(has).for_each(|(count, has)| *count += usize::from(has));
     }

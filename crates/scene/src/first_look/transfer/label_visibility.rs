@@ -1,4 +1,4 @@
-//! Visibility of labels in first looks: whether 0 is a label like others, and which of a crowd that fills its box.
+//! Visibility of labels in first looks: whether 0 is a label like others, and which of many that fill their box.
 
 use std::collections::BTreeMap;
 
@@ -18,15 +18,15 @@ const MIN_OTHER_LABELS: usize = 3;
 /// Share of empty voxels below which labels fill their box, so that nothing inside can be seen.
 const MIN_EMPTY_SHARE: f64 = 0.05;
 
-/// Labels that are shown of a crowd: their largest number, the number of faces that each may touch (more than two are
+/// Labels that are shown of many that fill their box: their largest number, the number of faces that each may touch (more than two are
 /// cut off all around), and their smallest share of the volume.
 const MAX_SHOWN: usize = 12;
 const MAX_FACES_OF_SHOWN: u32 = 2;
 const MIN_SHARE_OF_SHOWN: f64 = 0.0005;
 
-/// Shows label 0 where it is no background, and of a crowd that fills its box only the largest labels inside.
+/// Shows label 0 where it is no background, and of many labels that fill their box only the largest inside.
 ///
-/// A crowd has more labels than there are classes: its colours repeat, and a box painted with them says nothing.
+/// Many are more than there are classes: their colours repeat, and a box painted with them says nothing.
 pub(crate) fn decide_visibility(table: &mut LabelTable, volume: &Volume) {
     let Some(labels) = volume.labels() else { return };
     let touched = touched_faces(volume);
@@ -93,15 +93,9 @@ fn is_background(labels: &LabelSet, faces: u32) -> bool {
 
 /// Returns for each label the faces of the volume that it touches, as bits.
 fn touched_faces(volume: &Volume) -> BTreeMap<i64, u8> {
-    let dims = volume.dims();
     let mut touched: BTreeMap<i64, u8> = BTreeMap::new();
     for face in 0..6 {
-        let (axis, is_last) = (face / 2, face % 2 == 1);
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        for (i, j) in (0..dims[u]).flat_map(|i| (0..dims[v]).map(move |j| (i, j))) {
-            let mut place = [0; 3];
-            (place[axis], place[u], place[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
-            let voxel = (place[2] * dims[1] + place[1]) * dims[0] + place[0];
+        for voxel in volume.face_voxels(face, usize::MAX) {
             if volume.missing().is_none_or(|missing| !missing.contains(voxel)) {
                 *touched.entry(volume.samples().value(voxel) as i64).or_default() |= 1 << face;
             }
@@ -166,9 +160,9 @@ mod tests {
     }
 
     #[test]
-    fn of_a_crowd_that_fills_its_box_the_largest_inside_are_shown() {
-        let crowd = cells(400, |_| true, 1, 0);
-        let seen = shown(&crowd);
+    fn of_many_labels_that_fill_their_box_the_largest_inside_are_shown() {
+        let many = cells(400, |_| true, 1, 0);
+        let seen = shown(&many);
         assert!((6..=MAX_SHOWN).contains(&seen.len()), "{seen:?}");
         // Fewer labels, and as many in a ball, are all shown.
         let few = cells(60, |_| true, 1, 0);

@@ -1,6 +1,7 @@
 //! Grid of a volume: its size in voxels, and its position in world space (millimetres) and in the grid of its file.
 
 mod correct;
+pub(super) mod face_voxels;
 mod file_grid_mapping;
 
 use glam::{DAffine3, DVec3};

@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn two_materials_at_other_values_are_no_lungs_and_tissue() {
-        // The same shapes at other values, without tissue, and as deviations of an eighth of the size.
+        // Shapes of a chest with other values: 400 above, 500 below, and an eighth as large.
         let chest = cropped_chest();
         for (scale, offset) in [(1.0, 400.0), (1.0, -500.0), (0.125, 0.0)] {
             let other: Vec<f64> = chest.iter().map(|value| (value * scale + offset).round()).collect();

@@ -210,19 +210,11 @@ impl<'a> SampledValues<'a> {
     /// Returns the sorted values of each of the six faces, subsampled if there are many, without padding; a face of
     /// only padding is empty.
     pub(super) fn faces(&self) -> [Vec<f64>; 6] {
-        let dims = self.volume.dims();
         std::array::from_fn(|face| {
-            let (axis, is_last) = (face / 2, face % 2 == 1);
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let step = |axis: usize| dims[axis].div_ceil(MAX_FACE_SAMPLES);
-            let mut values: Vec<f64> = (0..dims[u])
-                .step_by(step(u))
-                .flat_map(|i| (0..dims[v]).step_by(step(v)).map(move |j| (i, j)))
-                .map(|(i, j)| {
-                    let mut at = [0; 3];
-                    (at[axis], at[u], at[v]) = (if is_last { dims[axis] - 1 } else { 0 }, i, j);
-                    self.volume.value(at[0], at[1], at[2])
-                })
+            let mut values: Vec<f64> = self
+                .volume
+                .face_voxels(face, MAX_FACE_SAMPLES)
+                .map(|voxel| self.volume.samples().value(voxel))
                 .filter(|value| is_present(*value, self.padding))
                 .collect();
             values.sort_unstable_by(f64::total_cmp);

@@ -228,7 +228,7 @@ fn the_only_array_of_single_numbers_is_opened() {
     assert_eq!((found.value(0, 0, 0), found.name()), (100.0, "v pressure"));
     let chosen = VolumeChoice::default().with_selected(FileDimension::Array, "velocity");
     assert_eq!(load_bytes_as(&one, chosen).unwrap().name(), "v velocity");
-    // Of two, or of none, the user chooses.
+    // The user chooses among two arrays of single numbers, and among vectors if there is none.
     for several in [of(&[velocity.clone(), pressure, array("t", 1, 0)]), of(&[velocity, rgb])] {
         assert_refused(load_bytes(&several), LoadErrorKind::BadInput, &["--array"]);
     }
