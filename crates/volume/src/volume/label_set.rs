@@ -31,17 +31,23 @@ pub struct CountedLabel {
     pub voxels: u64,
 }
 
+/// Number of the largest labels that keep classes of their own where labels outnumber the classes, so that each can be
+/// shown alone: half of the classes. The others share the second half, in which most neighbours still differ.
+const MAX_OWN_CLASSES: usize = MAX_CLASSES / 2;
+
 /// Labels of a volume, at least two.
 ///
 /// Each belongs to a class, which determines its look: up to [`MAX_CLASSES`] labels have classes of their own, in the
-/// order of their numbers. If there are more, the background (0, or the lowest label if no voxel is 0) keeps a class
-/// of its own, and the others share the remaining classes in turn.
+/// order of their numbers. If there are more, the background (0, or the lowest label if no voxel is 0) and the largest
+/// others keep classes of their own, and the rest share the remaining classes in turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LabelSet {
     /// Labels in ascending order of their numbers.
     labels: Vec<CountedLabel>,
-    /// Rank of the background label.
-    background_rank: usize,
+    /// Class of each label.
+    classes: Vec<u16>,
+    /// Rank of the first label of each class, which represents all of them.
+    representatives: Vec<usize>,
 }
 
 impl LabelSet {
@@ -66,8 +72,20 @@ impl LabelSet {
 
     /// Creates a set of labels, which must ascend by number; `None` if there are fewer than two.
     fn new(labels: Vec<CountedLabel>) -> Option<Self> {
-        let around = labels.binary_search_by_key(&0, |label| label.number).unwrap_or(0);
-        (labels.len() > 1).then_some(Self { labels, background_rank: around })
+        if labels.len() < 2 {
+            return None;
+        }
+        let classes = if labels.len() <= MAX_CLASSES {
+            (0..labels.len() as u16).collect()
+        } else {
+            shared_classes(&labels)
+        };
+        let count = labels.len().min(MAX_CLASSES);
+        let mut representatives = vec![0; count];
+        for (rank, &class) in classes.iter().enumerate().rev() {
+            representatives[usize::from(class)] = rank;
+        }
+        Some(Self { labels, classes, representatives })
     }
 
     /// Returns all labels in the order of their numbers.
@@ -90,30 +108,23 @@ impl LabelSet {
         self.count_integers() <= MAX_CLASSES
     }
 
-    /// Returns the class of the label with the given rank among all.
-    fn class_of_rank(&self, rank: usize) -> usize {
-        if self.has_own_classes() || rank == self.background_rank {
-            return if self.has_own_classes() { rank } else { 0 };
-        }
-        let among_others = rank - usize::from(rank > self.background_rank);
-        1 + among_others % (MAX_CLASSES - 1)
+    /// Returns true if no other label has the class of this one.
+    pub fn has_own_class(&self, number: i64) -> bool {
+        self.labels
+            .binary_search_by_key(&number, |label| label.number)
+            .is_ok_and(|rank| self.has_own_classes() || usize::from(self.classes[rank]) <= MAX_OWN_CLASSES)
     }
 
     /// Returns the first label of a class, which represents all its labels.
     pub fn representative_of_class(&self, class: usize) -> CountedLabel {
-        let rank = match class {
-            _ if self.has_own_classes() => class,
-            0 => self.background_rank,
-            _ => class - usize::from(class <= self.background_rank),
-        };
-        self.labels[rank.min(self.count_integers() - 1)]
+        self.labels[self.representatives[class.min(self.representatives.len() - 1)]]
     }
 
     /// Returns the label that represents the class of a number; the number itself if it has a class of its own or is
     /// not in the set.
     pub fn representative_of(&self, number: i64) -> i64 {
         match self.labels.binary_search_by_key(&number, |label| label.number) {
-            Ok(rank) => self.representative_of_class(self.class_of_rank(rank)).number,
+            Ok(rank) => self.representative_of_class(usize::from(self.classes[rank])).number,
             Err(_) => number,
         }
     }
@@ -136,7 +147,7 @@ impl LabelSet {
             above if distance(above - 1) < distance(above) => above - 1,
             above => above,
         };
-        self.class_of_rank(rank) as f64 / self.class_range().high
+        f64::from(self.classes[rank]) / self.class_range().high
     }
 
     /// Returns the number of the first label of the class nearest to a density.
@@ -144,6 +155,30 @@ impl LabelSet {
         let class = self.class_range().value_at(density.clamp(0.0, 1.0)).round() as usize;
         self.representative_of_class(class).number
     }
+}
+
+/// Returns the classes of more than [`MAX_CLASSES`] labels: 0 for the background, the next for the largest others in
+/// the order of their numbers, and the remaining ones in turn.
+fn shared_classes(labels: &[CountedLabel]) -> Vec<u16> {
+    let background = labels.binary_search_by_key(&0, |label| label.number).unwrap_or(0);
+    let mut by_size: Vec<usize> = (0..labels.len()).filter(|&rank| rank != background).collect();
+    by_size.sort_by_key(|&rank| (std::cmp::Reverse(labels[rank].voxels), rank));
+    let mut has_own = vec![false; labels.len()];
+    by_size.iter().take(MAX_OWN_CLASSES).for_each(|&rank| has_own[rank] = true);
+    let (mut own, mut shared) = (0, 0);
+    let class = |rank: usize| {
+        if rank == background {
+            return 0;
+        }
+        if has_own[rank] {
+            own += 1;
+            return own;
+        }
+        shared += 1;
+        let first = MAX_OWN_CLASSES as u16 + 1;
+        first + (shared - 1) % (MAX_CLASSES as u16 - first)
+    };
+    (0..labels.len()).map(class).collect()
 }
 
 /// Counts the occurrences of each integer; `None` if there are fractions, or more than [`MAX_LABELS_IN_VOLUME`]
@@ -238,18 +273,31 @@ mod tests {
     }
 
     #[test]
-    fn extra_labels_share_classes_except_the_background() {
-        let labels = set(1000);
+    fn small_labels_share_classes_where_there_are_too_many() {
+        // Every fifth label is large, but for a middling one.
+        let size = |rank: usize| if rank.is_multiple_of(5) { 100 } else { 1 + u64::from(rank == 7) };
+        let labels =
+            (0..1000).map(|rank| CountedLabel { number: 7 * rank as i64 - 70, voxels: size(rank) }).collect();
+        let labels = LabelSet::new(labels).unwrap();
         assert_eq!(labels.class_count(), MAX_CLASSES);
         let class = |number: i64| (labels.density_of(number as f64) * 255.0).round() as usize;
-        assert_eq!((class(0), class(-70), class(-63), class(7)), (0, 1, 2, 11));
-        // All labels have the look of the first one in their class.
+        // 0 has rank 10. Before it, ranks 0 and 5 are large; 1 is the first small one.
+        assert_eq!([0, -70, -35, 35].map(class), [0, 1, 2, 3]);
+        assert_eq!([-63, -56].map(class), [MAX_OWN_CLASSES + 1, MAX_OWN_CLASSES + 2]);
+        let mut members = vec![0; MAX_CLASSES];
         for label in labels.labels() {
+            members[class(label.number)] += 1;
+            // All labels have the look of the first one in their class.
             let first = labels.representative_of(label.number);
             assert_eq!(class(first), class(label.number));
             assert_eq!(labels.representative_of_class(class(first)).number, first);
             assert!(first <= label.number && (first == 0) == (label.number == 0));
         }
+        for label in labels.labels() {
+            assert_eq!(labels.has_own_class(label.number), members[class(label.number)] == 1, "{label:?}");
+        }
+        // 1000 labels less the background and the largest 128, in 127 classes.
+        assert!(members[MAX_OWN_CLASSES + 1..].iter().all(|count| (6..=7).contains(count)), "{members:?}");
         assert_eq!(labels.representative_of(12), 12, "there is no such label");
         assert!((0..200).all(|rank| set(200).representative_of(7 * rank - 70) == 7 * rank - 70));
     }

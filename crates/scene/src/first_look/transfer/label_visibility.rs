@@ -18,8 +18,8 @@ const MIN_OTHER_LABELS: usize = 3;
 /// Share of empty voxels below which labels fill their box, so that nothing inside can be seen.
 const MIN_EMPTY_SHARE: f64 = 0.05;
 
-/// Labels that are shown of many that fill their box: their largest number, the number of faces that each may touch (more than two are
-/// cut off all around), and their smallest share of the volume.
+/// Labels that are shown of many that fill their box: their largest number, the number of faces that each may touch
+/// (more than two are cut off all around), and their smallest share of the volume.
 const MAX_SHOWN: usize = 12;
 const MAX_FACES_OF_SHOWN: u32 = 2;
 const MIN_SHARE_OF_SHOWN: f64 = 0.0005;
@@ -46,22 +46,12 @@ pub(crate) fn decide_visibility(table: &mut LabelTable, volume: &Volume) {
     let is_inside = |label: &CountedLabel| {
         let is_label = label.number != 0 || !has_background;
         is_label
+            && labels.has_own_class(label.number)
             && faces(label.number) <= MAX_FACES_OF_SHOWN
             && label.voxels as f64 >= MIN_SHARE_OF_SHOWN * all
     };
-    // Labels of one class are shown together: the largest decides.
-    let mut classes: Vec<i64> = Vec::new();
-    let mut shown: Vec<i64> = Vec::new();
-    for label in &largest {
-        let class = labels.representative_of(label.number);
-        if classes.contains(&class) {
-            continue;
-        }
-        classes.push(class);
-        if is_inside(label) && shown.len() < MAX_SHOWN {
-            shown.push(class);
-        }
-    }
+    let shown: Vec<i64> =
+        largest.iter().filter(|label| is_inside(label)).take(MAX_SHOWN).map(|label| label.number).collect();
     if !shown.is_empty() {
         table.modify_all(|number, look| look.visible &= shown.contains(&number));
     }
