@@ -53,7 +53,10 @@ impl EyePass {
         EyeLights { lights, combined, ambient }: EyeLights<'_>,
         options: &RenderOptions,
     ) -> Self {
-        let frame = picture_frame(settings, scene, window);
+        let mut frame = picture_frame(settings, scene, window);
+        if options.work.point_samples {
+            frame.coarsest_level = 0.0;
+        }
         let direct = settings.shadows.algorithm == ShadowAlgorithm::Direct;
         let shadowed = lights.iter().filter(|input| input.light.is_shadowed()).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
@@ -149,7 +152,7 @@ impl EyePass {
         if self.variant.shading.classification == ClassificationOrder::Pre {
             return None;
         }
-        gpu.volume.gradients_views.as_ref().map(|views| self.levels.choose(views))
+        gpu.volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
     /// Returns true if pixels are wider than voxels somewhere in the view.

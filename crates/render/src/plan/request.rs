@@ -68,6 +68,9 @@ pub struct WorkOptions {
     /// Use shortcuts with stretched kernels that only previews may take: normals from the gradient texture, and
     /// kernels without their outermost tails.
     pub preview: bool,
+    /// Sample light at points however wide pixels are, with the shaders of larger pictures: for means over a picture,
+    /// which sharp kernels do not change.
+    pub point_samples: bool,
     /// Number of parts into which each chunk of the light pass is divided, for short submissions.
     pub light_parts: u32,
     /// Wait after every step, so that the durations of stages in a report are exact.
@@ -95,7 +98,13 @@ impl Default for PictureOptions {
 
 impl Default for WorkOptions {
     fn default() -> Self {
-        Self { preview: false, light_parts: 1, timed: false, fill_all_light_voxels: false }
+        Self {
+            preview: false,
+            point_samples: false,
+            light_parts: 1,
+            timed: false,
+            fill_all_light_voxels: false,
+        }
     }
 }
 

@@ -63,6 +63,8 @@ pub struct SheetFrame {
     pub inverse_distance: f64,
     /// ∛(voxel volume) in scene units: the pitch at which kernels begin to stretch.
     pub voxel_edge: f64,
+    /// Coarsest level of the pyramid to which kernels are stretched.
+    pub coarsest_level: f64,
 }
 
 /// Placement of a projection in the scene: the parameters of [`SheetFrame::new`].
@@ -132,6 +134,7 @@ impl SheetFrame {
             pitch: place.pitch,
             inverse_distance: spread,
             voxel_edge: scene.mean_edge(),
+            coarsest_level: MAX_STRETCH_LEVEL,
         }
     }
 
@@ -161,9 +164,9 @@ impl SheetFrame {
     }
 
     /// Returns the stretch of kernels at a depth, as a pyramid level: log₂(pitch / voxel), from 0 (pixels no wider
-    /// than voxels, P §4) to [`MAX_STRETCH_LEVEL`].
+    /// than voxels, P §4) to the coarsest.
     pub fn stretch_level(&self, depth: f64) -> f64 {
-        (self.pitch_at(depth) / self.voxel_edge).max(1e-9).log2().clamp(0.0, MAX_STRETCH_LEVEL)
+        (self.pitch_at(depth) / self.voxel_edge).max(1e-9).log2().clamp(0.0, self.coarsest_level)
     }
 
     /// Returns the number of pixels and of slabs to either side over which gradients from sheets are differenced:
