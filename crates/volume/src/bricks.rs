@@ -42,7 +42,7 @@ impl BrickBounds {
     }
 
     /// Returns the mask of cells of a brick that are not entirely missing.
-    fn present_cells(&self, brick: usize) -> u64 {
+    pub(super) fn present_cells(&self, brick: usize) -> u64 {
         self.present.as_ref().map_or(u64::MAX, |present| present[brick])
     }
 

@@ -15,6 +15,7 @@ mod cancellation;
 mod cells;
 mod dataset;
 mod histogram;
+mod label_cells;
 mod load_context;
 pub mod math;
 pub mod synthetic;
@@ -27,6 +28,7 @@ pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::{Dataset, DatasetField};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
+pub use label_cells::CellOccupancy;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
     FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, Portion, ReadContext,

@@ -114,7 +114,8 @@ fn try_allocation(context: &GpuContext, like: &Volume, dims: [usize; 3]) -> Resu
     if context.is_software() && bytes > memory_budget_bytes() {
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
     }
-    let made = volume::create_volume_textures(context, like, dims).and_then(|textures| {
+    let made = volume::density_texture(context, like, dims).and_then(|density| {
+        let textures = (density, volume::pyramid_texture(context, like, dims)?);
         let presence = PresenceTexture::new(context, like, dims)?;
         Ok((textures, presence, attenuation_texture(context, dims, context.storage_format)?))
     });

@@ -124,20 +124,21 @@ impl LoadedVolume {
         if settings.sampling.classification == ClassificationOrder::Post {
             return Ok(());
         }
-        let baked = [&tables.eye, &tables.lighting].map(|table| Arc::clone(table.baked()));
+        let baked = [&tables.eye, &tables.lighting]
+            .map(|table| (Arc::clone(table.baked()), Arc::clone(&table.occupied_bricks)));
         // Pre-classified voxels of earlier tables are reused for their textures.
         let (needed, mut reusable): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
             .into_iter()
-            .partition(|known| baked.iter().any(|baked| known.matches(baked)));
+            .partition(|known| baked.iter().any(|(baked, _)| known.matches(baked)));
         self.materials = needed;
         let mut found = [None, None];
-        for (baked, found) in baked.iter().zip(&mut found) {
+        for ((baked, occupied), found) in baked.iter().zip(&mut found) {
             let known = self.materials.iter().find(|known| known.matches(baked));
             let materials = if let Some(known) = known {
                 Arc::clone(known)
             } else {
                 let left = reusable.pop().and_then(Arc::into_inner);
-                let fresh = Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, left)?);
+                let fresh = Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, occupied, left)?);
                 self.materials.push(Arc::clone(&fresh));
                 fresh
             };

@@ -80,6 +80,8 @@ impl TransferSelector {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FrameProduct {
     Volume,
+    /// Pyramid of densities, and its gradients.
+    Pyramid,
     /// Pre-classified voxels of a table.
     Materials(TransferSelector),
     /// Light volume of the build with this index.

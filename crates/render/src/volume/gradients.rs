@@ -49,7 +49,8 @@ pub(crate) fn fill_gradients(
     range: &Range<usize>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let Some(gradients) = &volume.gradients else { return Ok(()) };
+    let Some(pyramid) = &volume.pyramid else { return Ok(()) };
+    let Some(gradients) = &pyramid.gradients else { return Ok(()) };
     let bricks = &volume.filled_levels[level as usize][range.clone()];
     let pipeline = shaders.pipeline(&SingleVariant("volume/gradients.wgsl"))?;
     let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
@@ -59,7 +60,7 @@ pub(crate) fn fill_gradients(
         &pipeline,
         0,
         &[
-            bind_view("source_texture", &level_view(&volume.pyramid, level)),
+            bind_view("source_texture", &level_view(&pyramid.texture, level)),
             bind_buffer("bound_resample", &uniform),
             bind_view("gradient_level", &level_view(gradients, level)),
             bind_buffer("bricks", &list),

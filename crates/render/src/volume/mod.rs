@@ -2,6 +2,7 @@
 
 pub(super) mod brick_list;
 pub(super) mod cell_list;
+pub(crate) mod density_pyramid;
 pub(super) mod gradients;
 pub(super) mod preclassified;
 pub(super) mod presence;
@@ -11,17 +12,18 @@ mod textures;
 pub(super) mod transfer_tables;
 
 pub(crate) use texture_shapes::texture_3d;
-pub(crate) use textures::create_volume_textures;
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
+pub(crate) use textures::{density_texture, pyramid_texture};
 
 use std::sync::Arc;
 
 use half::f16;
 
+use self::density_pyramid::DensityPyramid;
 use self::presence::PresenceTexture;
 use self::texture_shapes::pyramid_dims;
-use self::textures::{VolumeTextures, density_is_unorm, unorm16};
+use self::textures::{density_is_unorm, unorm16};
 use super::resources::gpu_tools::GpuTools;
 use super::resources::resource_pool::ResourcePool;
 use super::{GpuContext, GpuError};
@@ -207,16 +209,14 @@ pub(crate) struct GpuVolume {
     pub scene: SceneSpace,
     density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
-    pub pyramid: wgpu::Texture,
-    pub pyramid_views: PyramidViews,
+    /// Pyramid of densities, once a picture has read it.
+    pub pyramid: Option<DensityPyramid>,
+    /// Views of a single texel, bound in place of a pyramid that no picture has read.
+    no_pyramid: PyramidViews,
     /// Presence texture, if voxels are missing.
     pub presence: Option<PresenceTexture>,
-    /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid.
+    /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid of densities.
     pub filled_levels: Vec<Vec<u32>>,
-    /// Gradients of the pyramid; `None` if they take too much memory.
-    pub gradients: Option<wgpu::Texture>,
-    /// Views of the gradient texture.
-    pub gradients_views: Option<PyramidViews>,
     pub clamped: wgpu::Sampler,
     nearest: wgpu::Sampler,
     is_unorm: bool,
@@ -235,7 +235,13 @@ impl GpuVolume {
         presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let VolumeTextures { density, pyramid } = create_volume_textures(context, volume, dims)?;
+        let density = density_texture(context, volume, dims)?;
+        let texel = context.texture(&texture_3d(
+            "Volume::no_pyramid",
+            [1; 3],
+            wgpu::TextureFormat::R16Float,
+            wgpu::TextureUsages::TEXTURE_BINDING,
+        ))?;
         let presence = match presence {
             None => PresenceTexture::new(context, volume, dims)?,
             known => known,
@@ -252,18 +258,15 @@ impl GpuVolume {
             cell_scale: reciprocal(bricks.dims.map(|n| n * BRICK_EDGE / CELL_EDGE)),
             pad2: 0.0,
         };
-        let gradients = gradients::gradient_texture(context, &pyramid);
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
-            filled_levels: pyramid::nonempty_bricks(bricks, &pyramid, presence.is_some()),
-            gradients_views: gradients.as_ref().map(PyramidViews::new),
-            gradients,
-            pyramid_views: PyramidViews::new(&pyramid),
-            pyramid,
+            filled_levels: pyramid::nonempty_bricks(bricks, dims, presence.is_some()),
+            pyramid: None,
+            no_pyramid: PyramidViews::new(&texel),
             presence,
             clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -273,6 +276,22 @@ impl GpuVolume {
             is_unorm: density_is_unorm(context, volume),
             grid,
         })
+    }
+
+    /// Creates the pyramid of densities if there is none. Returns true if it has yet to be filled.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold it.
+    pub(crate) fn begin_pyramid(&mut self, context: &GpuContext) -> Result<bool, GpuError> {
+        if self.pyramid.is_none() {
+            self.pyramid = Some(DensityPyramid::new(context, &self.volume)?);
+        }
+        Ok(self.pyramid.as_ref().is_some_and(|pyramid| !pyramid.is_complete()))
+    }
+
+    /// Returns the views of the pyramid of densities, which are those of a single texel until a picture reads it.
+    pub(crate) fn pyramid_views(&self) -> &PyramidViews {
+        self.pyramid.as_ref().map_or(&self.no_pyramid, |pyramid| &pyramid.views)
     }
 
     /// Returns the number of z-slices per upload step.
@@ -337,17 +356,20 @@ impl GpuVolume {
 
     /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        let texels = |texture: &wgpu::Texture| {
-            let size = texture.size();
-            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
-        };
         // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
         let channels = if self.presence.is_some() { 2 } else { 1 };
-        let gradients =
-            self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(texels(texture)));
+        let pyramid = self.pyramid.as_ref().map_or(0, |pyramid| {
+            channels * texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes()
+        });
         let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
-        2 * texels(&self.density) + channels * texels(&self.pyramid) * 16 / 7 + presence + gradients
+        2 * texel_count(&self.density) + pyramid + presence
     }
+}
+
+/// Returns the number of texels of the finest level of a texture.
+fn texel_count(texture: &wgpu::Texture) -> u64 {
+    let size = texture.size();
+    u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
 }
 
 /// Returns the number of bricks along each axis of a grid.

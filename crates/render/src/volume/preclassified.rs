@@ -14,12 +14,11 @@ use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, SingleVariant, flag};
-use crate::plan::MAX_STRETCH_LEVEL;
+use crate::plan::{BrickSet, MAX_STRETCH_LEVEL};
 use crate::resources::pass;
-use crate::volume::brick_list::pack_coordinates;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::BakedTransfer;
-use chiaroscuro_volume::{BRICK_EDGE, memory_budget_bytes};
+use chiaroscuro_volume::memory_budget_bytes;
 
 /// Pre-classified voxels of one transfer function.
 #[derive(Debug)]
@@ -30,15 +29,15 @@ pub(crate) struct PreclassifiedVoxels {
     pub views: PyramidViews,
     /// Table that converts relative to absolute extinction, bound in place of the transfer function.
     pub table: wgpu::Buffer,
-    /// Packed coordinates of the bricks that may be non-empty, for each level.
+    /// Packed coordinates of the bricks that may be non-empty, or were for an earlier transfer function, for each level
+    /// in ascending order.
     bricks: Vec<Vec<u32>>,
-    /// `true` if the lists contain all bricks.
-    lists_all_bricks: bool,
     is_complete: AtomicBool,
 }
 
 impl PreclassifiedVoxels {
-    /// Creates the texture for a volume, or takes that of `reusable`; nothing is classified yet.
+    /// Creates the texture for a volume, or takes that of `reusable`; nothing is classified yet. `occupied` are the
+    /// bricks of the volume in which the transfer function has extinction.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the texture.
@@ -46,24 +45,30 @@ impl PreclassifiedVoxels {
         context: &GpuContext,
         volume: &GpuVolume,
         baked: &Arc<BakedTransfer>,
+        occupied: &BrickSet,
         reusable: Option<Self>,
     ) -> Result<Self, GpuError> {
         let shares = BakedTransfer::linear_ramp(baked.max_extinction());
         let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
-        let (texture, held_all) = match reusable {
-            Some(voxels) => (voxels.texture, voxels.lists_all_bricks),
-            None => (Self::texture(context, volume.volume.dims())?, false),
+        let dims = volume.volume.dims();
+        let mut bricks = pyramid::level_bricks(dims, occupied.dims, |at| occupied.members[at]);
+        let texture = match reusable {
+            Some(voxels) => {
+                for (new, held) in bricks.iter_mut().zip(voxels.bricks) {
+                    new.extend(held);
+                    new.sort_unstable();
+                    new.dedup();
+                }
+                voxels.texture
+            }
+            None => Self::texture(context, dims)?,
         };
-        // Bricks that are not listed have the lowest density, so all are listed if that is visible.
-        let holds_all = held_all || baked.is_lowest_visible();
-        let bricks = if holds_all { all_bricks(&texture) } else { volume.filled_levels.clone() };
         Ok(Self {
             baked: Arc::clone(baked),
             views: PyramidViews::new(&texture),
             texture,
             table,
             bricks,
-            lists_all_bricks: holds_all,
             is_complete: AtomicBool::new(false),
         })
     }
@@ -177,16 +182,4 @@ impl PipelineVariant for MaterialsVariant {
     fn constants(&self) -> ShaderConstants {
         vec![flag("MISSING", self.has_missing)]
     }
-}
-
-/// Returns the packed coordinates of all bricks of each level of a texture.
-fn all_bricks(texture: &wgpu::Texture) -> Vec<Vec<u32>> {
-    let size = texture.size();
-    let size = [size.width, size.height, size.depth_or_array_layers];
-    let of_level = |level: u32| {
-        let [nx, ny, nz] = size.map(|n| ((n >> level).max(1) as usize).div_ceil(BRICK_EDGE));
-        let place = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
-        (0..nx * ny * nz).map(|at| pack_coordinates(place(at))).collect()
-    };
-    (0..texture.mip_level_count()).map(of_level).collect()
 }

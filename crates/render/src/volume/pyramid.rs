@@ -4,48 +4,54 @@
 
 use std::ops::Range;
 
+use super::density_pyramid::DensityPyramid;
+use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, VolumeContext};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, SingleVariant, flag};
 use crate::pipelines::uniforms;
-use crate::plan::BrickSet;
+use crate::plan::{BrickSet, MAX_STRETCH_LEVEL};
 use crate::resources::pass;
 use crate::volume::brick_list;
 use crate::{GpuContext, GpuError};
-use chiaroscuro_volume::BrickBounds;
+use chiaroscuro_volume::{BRICK_EDGE, BrickBounds};
 
 /// Number of bricks per step: 2^18 texels with eight fetches each, some 40 ms on a software adapter.
 const STEP_BRICKS: usize = 512;
 
-/// Returns the packed coordinates of the bricks of 8³ texels in which each level of the pyramid, or its gradients,
-/// are non-zero.
+/// Returns the packed coordinates of the bricks of 8³ texels in which each level of the pyramid of densities, or its
+/// gradients, are non-zero.
 ///
 /// With missing voxels all bricks count, because presence is non-zero at any density.
-pub(crate) fn nonempty_bricks(
-    bricks: &BrickBounds,
-    pyramid: &wgpu::Texture,
-    has_missing: bool,
+pub(crate) fn nonempty_bricks(bricks: &BrickBounds, dims: [usize; 3], has_missing: bool) -> Vec<Vec<u32>> {
+    // A brick's range covers three voxels beyond it: one for the blur, two for differences.
+    level_bricks(dims, bricks.dims, |at| has_missing || bricks.ranges[at] != [0.0, 0.0])
+}
+
+/// Returns the packed coordinates of the bricks of 8³ texels, in each level of a pyramid of `dims` voxels, that overlap
+/// bricks of voxels which are filled, of a grid of `bricks`.
+pub(super) fn level_bricks(
+    dims: [usize; 3],
+    [nx, ny, nz]: [usize; 3],
+    is_filled: impl Fn(usize) -> bool,
 ) -> Vec<Vec<u32>> {
-    let size = pyramid.size();
-    let size = [size.width, size.height, size.depth_or_array_layers].map(|n| n as usize);
-    let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(8));
-    let [nx, ny, nz] = bricks.dims;
-    let is_empty = |x: usize, y: usize, z: usize| {
-        // A brick's range covers three voxels beyond it: one for the blur, two for differences. Beyond the grid its
-        // border is repeated.
+    let size = pyramid_dims(dims);
+    let dims = |level: u32| size.map(|n| (n >> level).max(1).div_ceil(BRICK_EDGE));
+    // Beyond the grid its border is repeated.
+    let is_filled = |x: usize, y: usize, z: usize| {
         let [x, y, z] = [x.min(nx - 1), y.min(ny - 1), z.min(nz - 1)];
-        !has_missing && bricks.ranges[x + nx * (y + ny * z)] == [0.0, 0.0]
+        is_filled(x + nx * (y + ny * z))
     };
     let finest = dims(0);
     let holds = |at: usize| {
         let [x, y, z] = [at % finest[0], at / finest[0] % finest[1], at / (finest[0] * finest[1])];
         // Four texels of padding are half a brick, so a brick of texels overlaps two of voxels.
         let sides = |c: usize| c.saturating_sub(1)..=c;
-        sides(z).any(|z| sides(y).any(|y| sides(x).any(|x| !is_empty(x, y, z))))
+        sides(z).any(|z| sides(y).any(|y| sides(x).any(|x| is_filled(x, y, z))))
     };
     let mut set = BrickSet::new(finest, (0..finest.iter().product()).map(holds).collect());
     let mut levels = Vec::new();
-    for level in 0..pyramid.mip_level_count() {
+    for level in 0..=MAX_STRETCH_LEVEL as u32 {
         if level > 0 {
             // Texel i is made of texels 2i − 1 … 2i + 2, and differences reach two texels further.
             set = set.dilated(1).coarsened(2, dims(level));
@@ -123,18 +129,19 @@ pub(crate) fn fill_pyramid(
 ) -> Result<(), GpuError> {
     let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let format = volume.pyramid.format();
+    let Some(DensityPyramid { texture, .. }) = &volume.pyramid else { return Ok(()) };
+    let format = texture.format();
     let pipeline = match level {
         0 => shaders.pipeline_into(&PrefilterVariant { has_missing: volume.presence.is_some() }, format)?,
         _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), format)?,
     };
     let source = match level {
         0 => volume.density_view.clone(),
-        _ => level_view(&volume.pyramid, level - 1),
+        _ => level_view(texture, level - 1),
     };
     let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
     let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
-    let target = level_view(&volume.pyramid, level);
+    let target = level_view(texture, level);
     let mut entries = vec![
         bind_view("source_texture", &source),
         sampler("source_sampler", &volume.clamped),

@@ -13,22 +13,15 @@ use chiaroscuro_volume::{BRICK_EDGE, Volume, VoxelType};
 /// brick more.
 const MAX_VOXELS: usize = 1023 * BRICK_EDGE;
 
-/// Textures that are created for a volume.
-#[derive(Debug)]
-pub(crate) struct VolumeTextures {
-    pub density: wgpu::Texture,
-    pub pyramid: wgpu::Texture,
-}
-
-/// Creates the textures of a volume as if it had these dimensions.
+/// Creates the density texture of a volume as if it had these dimensions.
 ///
 /// # Errors
-/// Returns an error if the adapter cannot hold them.
-pub(crate) fn create_volume_textures(
+/// Returns an error if the adapter cannot hold it.
+pub(crate) fn density_texture(
     context: &GpuContext,
     volume: &Volume,
     dims: [usize; 3],
-) -> Result<VolumeTextures, GpuError> {
+) -> Result<wgpu::Texture, GpuError> {
     if let Some(&size) = dims.iter().find(|&&n| n > MAX_VOXELS) {
         return Err(GpuError::OverLimit {
             what: "the volume".to_owned(),
@@ -38,13 +31,24 @@ pub(crate) fn create_volume_textures(
         });
     }
     let unorm = density_is_unorm(context, volume);
-    let density = context.texture(&texture_3d(
+    context.texture(&texture_3d(
         "Volume::density",
         dims.map(|n| n + 2),
         if unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float },
         wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-    ))?;
-    let pyramid = context.texture(&wgpu::TextureDescriptor {
+    ))
+}
+
+/// Creates the texture for the pyramid of a volume as if it had these dimensions.
+///
+/// # Errors
+/// Returns an error if the adapter cannot hold it.
+pub(crate) fn pyramid_texture(
+    context: &GpuContext,
+    volume: &Volume,
+    dims: [usize; 3],
+) -> Result<wgpu::Texture, GpuError> {
+    context.texture(&wgpu::TextureDescriptor {
         mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
         ..texture_3d(
             "Volume::pyramid",
@@ -56,8 +60,7 @@ pub(crate) fn create_volume_textures(
             },
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         )
-    })?;
-    Ok(VolumeTextures { density, pyramid })
+    })
 }
 
 /// Converts a density to a 16-bit normalised integer.

@@ -11,7 +11,7 @@ use crate::plan::{BrickSet, CellDistances, CellSet, NearFieldOffset, TablesKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::{BakedTransfer, LIGHT_COLORS, Settings};
-use chiaroscuro_volume::CELL_EDGE;
+use chiaroscuro_volume::{CELL_EDGE, CellOccupancy};
 
 /// Distance in voxels between opposite faces from which on no unstretched kernel reaches both: twice `EDGE_REACH` in
 /// `shaders/density/presence.wgsl`.
@@ -61,9 +61,10 @@ impl TransferTable {
             };
         }
         let dims = volume.bricks.dims;
-        let occupied = BrickSet::new(dims, volume.bricks.occupancy(baked.visibility_test()));
+        let CellOccupancy { bricks, cells } = occupancy(volume, &baked);
+        let occupied = BrickSet::new(dims, bricks);
         let masks = if bounded {
-            volume.bricks.cell_masks(baked.visibility_test())
+            cells
         } else {
             occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
         };
@@ -148,7 +149,7 @@ impl TransferTable {
 
     /// Returns the pyramid that values are gathered from.
     pub(crate) fn pyramid<'a>(&'a self, volume: &'a GpuVolume) -> &'a PyramidViews {
-        self.materials.as_ref().map_or(&volume.pyramid_views, |materials| &materials.views)
+        self.materials.as_ref().map_or(volume.pyramid_views(), |materials| &materials.views)
     }
 
     /// Returns true if the lowest density has extinction.
@@ -159,6 +160,19 @@ impl TransferTable {
     /// Returns the maximum extinction of any density, per scene unit.
     pub(crate) fn largest_extinction(&self) -> f32 {
         self.baked.max_extinction()
+    }
+}
+
+/// Returns the bricks and cells in which a transfer function has extinction. Labels are looked up voxel by voxel:
+/// ranges of their numbers would include others that are visible.
+fn occupancy(volume: &GpuVolume, baked: &BakedTransfer) -> CellOccupancy {
+    let bricks = &volume.bricks;
+    if volume.volume.shown_labels().is_some() {
+        return CellOccupancy::from_labels(&volume.volume, bricks, baked.exact_visibility_test());
+    }
+    CellOccupancy {
+        bricks: bricks.occupancy(baked.visibility_test()),
+        cells: bricks.cell_masks(baked.visibility_test()),
     }
 }
 

@@ -150,6 +150,14 @@ impl BakedTransfer {
         }
     }
 
+    /// Returns a test for extinction at a density that is not interpolated, such as that of a label: the nearest entry
+    /// is its own.
+    pub fn exact_visibility_test(&self) -> impl Fn(f32) -> bool + Sync + use<> {
+        let is_visible: Vec<bool> = self.entries.iter().map(|entry| entry[3] > 0.0).collect();
+        let last = LUT_SIZE - 1;
+        move |density| is_visible[((density * last as f32).round() as usize).min(last)]
+    }
+
     /// Returns the largest extinction of densities from `low` to `high`.
     pub fn max_extinction_in(&self, low: f64, high: f64) -> f64 {
         let at = |density: f64| density.clamp(0.0, 1.0) * (LUT_SIZE - 1) as f64;

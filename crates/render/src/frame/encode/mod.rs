@@ -108,6 +108,11 @@ impl RenderJob<'_> {
             let target = self.targets.get_mut(self.role);
             match product {
                 FrameProduct::Volume => self.loaded.mark_complete(),
+                FrameProduct::Pyramid => {
+                    if let Some(pyramid) = &mut self.loaded.product.volume.pyramid {
+                        pyramid.mark_complete();
+                    }
+                }
                 FrameProduct::Materials(side) => {
                     if let Some(materials) = &side.table(&self.loaded.product.tables.product).materials {
                         materials.mark_complete();

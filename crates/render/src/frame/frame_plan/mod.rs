@@ -9,7 +9,7 @@ use std::time::Instant;
 
 pub(super) use self::light_inputs::light_inputs;
 use self::planner::FramePlanner;
-use self::steps::upload_steps;
+use self::steps::{pyramid_steps, upload_steps};
 use super::loaded_volume::LoadedVolume;
 use super::render_job::RenderJob;
 use super::report::RenderReport;
@@ -17,6 +17,7 @@ use super::step::RenderStep;
 use crate::output::render_target::TargetShape;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
+use crate::volume::density_pyramid::needs_density_pyramid;
 use crate::volume::presence::PresenceTexture;
 use crate::{GpuError, RenderOptions, Renderer};
 use chiaroscuro_scene::PixelFormat;
@@ -77,12 +78,17 @@ impl Renderer {
         self.report = RenderReport { peak_gpu_bytes: self.report.peak_gpu_bytes, ..RenderReport::default() };
         self.fill_counts.resize(self.fill_counts.len().max(request.settings.lights.len()), 0);
         let mut steps = Vec::new();
-        let loaded = match self.loaded.take() {
+        let mut loaded = match self.loaded.take() {
             Some(known) if known.is_valid_for(&keys.volume) && known.product.has_voxel_type_of(dataset) => {
                 known
             }
             other => self.load_volume(other, dataset, &request, &keys, &mut steps)?,
         };
+        if needs_density_pyramid(&request.settings)
+            && loaded.product.volume.begin_pyramid(&self.tools.context)?
+        {
+            steps.extend(pyramid_steps(&loaded.product.volume));
+        }
         let shape = target_shape(&request, options);
         Ok(FramePlanner {
             tools: &self.tools,

@@ -12,17 +12,24 @@ use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{GpuVolume, pyramid};
 use chiaroscuro_scene::SheetOrder;
 
-/// Returns the steps that upload a volume and compute its pyramid and gradients.
+/// Returns the steps that upload a volume.
 pub(super) fn upload_steps(volume: &GpuVolume) -> Vec<RenderStep> {
     let slices = volume.volume.dims()[2];
     let each = volume.slices_per_step();
     let mut steps: Vec<_> =
         (0..slices).step_by(each).map(|first| RenderStep::Upload(first..slices.min(first + each))).collect();
-    steps.extend(pyramid::steps(volume).map(|(level, bricks)| RenderStep::Pyramid(level, bricks)));
-    if volume.gradients.is_some() {
+    steps.push(RenderStep::Finish(FrameProduct::Volume));
+    steps
+}
+
+/// Returns the steps that compute the pyramid of densities and its gradients.
+pub(super) fn pyramid_steps(volume: &GpuVolume) -> Vec<RenderStep> {
+    let mut steps: Vec<_> =
+        pyramid::steps(volume).map(|(level, bricks)| RenderStep::Pyramid(level, bricks)).collect();
+    if volume.pyramid.as_ref().is_some_and(|pyramid| pyramid.gradients.is_some()) {
         steps.extend(pyramid::steps(volume).map(|(level, bricks)| RenderStep::Gradients(level, bricks)));
     }
-    steps.push(RenderStep::Finish(FrameProduct::Volume));
+    steps.push(RenderStep::Finish(FrameProduct::Pyramid));
     steps
 }
 
