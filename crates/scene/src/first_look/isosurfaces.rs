@@ -206,6 +206,11 @@ impl IsosurfaceStatistics {
         self.compactness_of_bin(density_bin(density as f32))
     }
 
+    /// Returns the number of voxels above a density.
+    pub(super) fn inside(&self, density: f64) -> f64 {
+        self.inside[density_bin(density as f32)]
+    }
+
     fn compactness_of_bin(&self, bin: usize) -> f64 {
         // A single voxel has six faces.
         let surface = self.area[bin] + self.on_faces[bin];
