@@ -199,6 +199,12 @@ pub fn frame_object(settings: &mut Settings, volume: &Volume) {
     frame::frame_object(settings, volume, &object);
 }
 
+/// Frames the largest part of the visible object as [`frame_object`] does the whole of it.
+fn frame_largest_part(settings: &mut Settings, volume: &Volume) {
+    let object = VisibleObject::from_settings(settings, volume).largest_part();
+    frame::frame_object(settings, volume, &object);
+}
+
 /// Puts the floor under the visible object; it is not moved if nothing is visible.
 pub fn lay_floor(settings: &mut Settings, volume: &Volume) {
     let object = VisibleObject::from_settings(settings, volume);

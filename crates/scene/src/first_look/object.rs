@@ -62,7 +62,7 @@ impl VisibleObject {
                     > MIN_VISIBLE_OPACITY
             })
             .collect();
-        let is_there = (0..cells[2])
+        let counts: Vec<usize> = (0..cells[2])
             .into_par_iter()
             .flat_map_iter(|layer| {
                 let mut counts = vec![0usize; cells[0] * cells[1]];
@@ -77,11 +77,14 @@ impl VisibleObject {
                         counts[y / edge[1] * cells[0] + x / edge[0]] += usize::from(is_shown);
                     }
                 }
-                let enough = (edge.iter().product::<usize>() / OCCUPANCY_DIVISOR).max(1);
-                counts.into_iter().map(move |count| count >= enough)
+                counts
             })
             .collect();
-        Self { cells, edge, dims, occupied: is_there }
+        let enough = (edge.iter().product::<usize>() / OCCUPANCY_DIVISOR).max(1);
+        // Single voxels are all that there is of some objects.
+        let enough = if counts.iter().any(|&count| count >= enough) { enough } else { 1 };
+        let occupied = counts.into_iter().map(|count| count >= enough).collect();
+        Self { cells, edge, dims, occupied }
     }
 
     fn coordinates(&self, cell: usize) -> [usize; 3] {
@@ -211,6 +214,16 @@ impl VisibleObject {
             }
         }
         on_box as f64 / faces.max(1) as f64
+    }
+
+    /// Returns the largest part alone.
+    pub(super) fn largest_part(mut self) -> Self {
+        let parts = self.connected_components();
+        let largest = parts.iter().max_by_key(|part| part.cells.len());
+        let mut occupied = vec![false; self.occupied.len()];
+        largest.iter().flat_map(|part| &part.cells).for_each(|&cell| occupied[cell] = true);
+        self.occupied = occupied;
+        self
     }
 
     /// Returns the share of occupied cells that belong to the largest part.

@@ -1,6 +1,7 @@
 //! Revealing hidden materials in the first look: if an inner material is hardly visible, the outer one becomes a
 //! veil.
 
+mod optical_depth;
 mod skin;
 mod visibility;
 
@@ -9,7 +10,7 @@ use std::ops::Range;
 use super::domain::DataDomain;
 use super::isosurfaces::IsosurfaceStatistics;
 use super::threshold::otsu_threshold;
-use super::{frame_object, histogram_above, transfer};
+use super::{frame_largest_part, histogram_above, transfer};
 use crate::{Settings, TransferFunction};
 use chiaroscuro_volume::{Histogram, Volume};
 pub(super) use skin::add_skin as with_skin;

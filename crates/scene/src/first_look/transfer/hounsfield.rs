@@ -30,17 +30,37 @@ const MAX_CT_HU: f64 = 3000.0;
 /// one. Lungs are below, fat is above; an edge from air to tissue spends half a voxel there.
 const SKIN_HU: [f64; 3] = [-600.0, -300.0, -20.0];
 
-/// Opacity of translucent skin: two layers of it, and two of the lungs, leave nine tenths of the light.
-const SKIN_OPACITY: f64 = 0.03;
+/// Hounsfield units at which skin ends, and the body begins within.
+pub(crate) const SKIN_END_HU: f64 = SKIN_HU[2];
 
-/// Returns a function with translucent skin added.
-pub(crate) fn add_skin(function: &TransferFunction, water: f64) -> TransferFunction {
-    let color = DomainPalette::for_domain(DataDomain::SoftTissue).color_at(0.0);
-    let point = |value: f64, opacity: f64| ControlPoint::new(water + value, color, opacity);
-    let skin = [point(SKIN_HU[0], 0.0), point(SKIN_HU[1], SKIN_OPACITY), point(SKIN_HU[2], 0.0)];
-    TransferFunction {
-        points: skin.into_iter().chain(function.points.iter().copied()).collect(),
-        ..function.clone()
+/// Translucent skin in CT, whose values are those of voxels between air and body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SkinVeil {
+    /// Value of water.
+    pub water: f64,
+}
+
+impl SkinVeil {
+    /// Returns the extinction of skin at a value relative to that at its peak.
+    pub(crate) fn relative_extinction(self, value: f64) -> f64 {
+        let [begins, peak, ends] = SKIN_HU.map(|units| self.water + units);
+        ((value - begins) / (peak - begins)).min((ends - value) / (ends - peak)).max(0.0)
+    }
+
+    /// Returns true if a value is within the body.
+    pub(crate) fn is_body(self, value: f64) -> bool {
+        value > self.water + SKIN_END_HU
+    }
+
+    /// Returns a function with skin of a given opacity at its peak added.
+    pub(crate) fn add_to(self, function: &TransferFunction, opacity: f64) -> TransferFunction {
+        let color = DomainPalette::for_domain(DataDomain::SoftTissue).color_at(0.0);
+        let point = |value: f64, opacity: f64| ControlPoint::new(self.water + value, color, opacity);
+        let skin = [point(SKIN_HU[0], 0.0), point(SKIN_HU[1], opacity), point(SKIN_HU[2], 0.0)];
+        TransferFunction {
+            points: skin.into_iter().chain(function.points.iter().copied()).collect(),
+            ..function.clone()
+        }
     }
 }
 

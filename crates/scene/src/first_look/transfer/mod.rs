@@ -24,10 +24,10 @@ use crate::{ColorMixing, ControlPoint, LabelTable, OpacityInterpolation, Transfe
 use chiaroscuro_volume::{DataKind, Histogram, Volume};
 
 pub(super) use self::covering_label::make_cover_translucent;
-pub(super) use self::hounsfield::add_skin;
+pub(super) use self::hounsfield::{SKIN_END_HU, SkinVeil};
 pub(super) use self::label_map::{count_lost_labels, label_range as range_of_labels, label_table};
 pub(super) use self::picture::axis_across_picture;
-pub(super) use self::scalar::transfer_from_edge;
+pub(super) use self::scalar::{find_scalar, transfer_from_edge};
 pub(super) use self::veil::{inner_transfer, opaque_transfer, scale_opacity, veiled_transfer};
 
 /// Transfer function found for a volume, with its domain.

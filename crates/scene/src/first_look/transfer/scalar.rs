@@ -31,7 +31,7 @@ fn density_map_threshold(volume: &Volume) -> Option<ObjectThreshold> {
 }
 
 /// Builds a function that shows the object and hides the background.
-pub(super) fn find_scalar(volume: &Volume, histogram: &Histogram) -> FirstTransfer {
+pub(crate) fn find_scalar(volume: &Volume, histogram: &Histogram) -> FirstTransfer {
     let edge = density_map_threshold(volume).unwrap_or_else(|| object_threshold(volume, histogram));
     let domain = DataDomain::detect(volume, edge.start);
     FirstTransfer::from_values(transfer_in_domain_colors(domain, volume, histogram, edge), domain)
