@@ -156,11 +156,10 @@ impl PersistentState {
         }
     }
 
-    /// Returns the up axis for a file: the last one that the user has chosen in its folder.
-    pub(crate) fn up_of(&self, source: &Path) -> SceneAxis {
-        let folder = folder_of(source);
-        let known = folder.and_then(|folder| self.standing.iter().find(|known| known.folder == folder));
-        known.map_or_else(SceneAxis::default, |known| known.up)
+    /// Returns the up axis for a file: the last one that the user has chosen in its folder; `None` without a choice.
+    pub(crate) fn up_of(&self, source: &Path) -> Option<SceneAxis> {
+        let folder = folder_of(source)?;
+        self.standing.iter().find(|known| known.folder == folder).map(|known| known.up)
     }
 
     /// Remembers the up axis for the folder of a file. Built-in volumes have no folder.

@@ -36,8 +36,8 @@ pub(crate) struct ReadChoices {
 /// Settings of a file that were remembered from earlier sessions.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RememberedFileSettings {
-    /// Axis of the scene that points up, unless the file defines one.
-    pub up: SceneAxis,
+    /// Axis of the scene that points up, unless the file defines one; `None` without a choice.
+    pub up: Option<SceneAxis>,
     /// Corrections that were applied to the volume.
     pub corrections: Option<CorrectedFile>,
 }

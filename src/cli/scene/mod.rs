@@ -225,7 +225,7 @@ impl LookArgs {
         let mut settings = first_look::first_settings_with(
             volume,
             histogram,
-            FirstLookOptions { data_kind: treated_as, up },
+            FirstLookOptions { data_kind: treated_as, up: Some(up) },
         );
         // Overrides the orientation from the file.
         first_look::set_up_axis(&mut settings, volume, up);

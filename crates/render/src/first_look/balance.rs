@@ -24,18 +24,18 @@ const BALANCE_RANGE: (f64, f64) = (0.1, 20.0);
 /// # Errors
 /// Returns an error if the device fails or memory is exhausted.
 pub fn first_look(renderer: &mut Renderer, dataset: &Dataset) -> Result<Settings, GpuError> {
-    first_look_upright(renderer, dataset, SceneAxis::default())
+    first_look_upright(renderer, dataset, None)
 }
 
 /// Returns the automatic settings like [`first_look()`], with the axis `up` of the scene pointing up, unless the file
-/// of the volume gives an orientation.
+/// of the volume gives an orientation; `None` for the axis that the object suggests.
 ///
 /// # Errors
 /// Returns an error if the device fails or memory is exhausted.
 pub fn first_look_upright(
     renderer: &mut Renderer,
     dataset: &Dataset,
-    up: SceneAxis,
+    up: Option<SceneAxis>,
 ) -> Result<Settings, GpuError> {
     let wishes = FirstLookOptions { up, ..FirstLookOptions::default() };
     let mut settings = first_look::first_settings_with(dataset.volume(), dataset.histogram(), wishes);

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::data_kind_override::find_transfer_as_kind;
 use super::isosurfaces::IsosurfaceStatistics;
 use super::object::VisibleObject;
 use super::threshold::{self, ObjectThreshold};
@@ -10,7 +11,7 @@ use crate::{
     ControlPoint, DensityRange, FRAME_ASPECT, LabelTable, LightingTransfer, OpacityInterpolation, Settings,
     TransferFunction,
 };
-use chiaroscuro_volume::{DataKind, Histogram, ValueRange, Volume};
+use chiaroscuro_volume::{Histogram, KindName, ValueRange, Volume};
 
 /// Size in pixels of the frame in which the object is searched.
 const FRAME_PIXELS: [f64; 2] = [48.0 * FRAME_ASPECT, 48.0];
@@ -29,7 +30,7 @@ pub(super) fn with_fallback(
     first: Settings,
     volume: &Volume,
     histogram: &Histogram,
-    kind: DataKind,
+    treated_as: Option<KindName>,
 ) -> Settings {
     let found = visible_content(&first, volume);
     if found == VisibleContent::Object {
@@ -46,7 +47,7 @@ pub(super) fn with_fallback(
         &|| beginning_at(isosurfaces().best_threshold().unwrap_or(0.5)),
         &|| {
             let all = volume.with_density_mapping(volume.value_range());
-            let transfer = transfer::find_transfer(&all, &Histogram::from_volume(&all), kind).transfer;
+            let transfer = find_transfer_as_kind(&all, &Histogram::from_volume(&all), treated_as).transfer;
             first.clone().with_range(DensityRange::Full).with_transfer(transfer)
         },
         &|| robust(densest_transfer(volume)),

@@ -21,18 +21,19 @@ mod threshold;
 mod transfer;
 mod view_selection;
 
-pub use self::data_kind_override::{first_look_as_kind, replace_look};
+pub use self::data_kind_override::{first_look_as_kind, labels_for_kind, replace_look, transfer_for_kind};
 pub use self::empty_look_fallback::{densest_transfer, with_visible_transfer};
 pub use self::floor::{floor_color, needs_floor};
 pub use self::frame::ObjectOutline;
 pub use self::look_proposals::{LookProposal, propose_looks};
 
+use self::data_kind_override::{data_kind, find_transfer_as_kind};
 use self::domain::DataDomain;
 use self::object::VisibleObject;
 use self::transfer::TransferStyle;
 use super::{
-    Camera, ClassificationOrder, LabelTable, LightingRig, ObjectRotation, OpacityLength, PhongShading,
-    QualityPreset, ReconstructionKernel, SceneAxis, Settings, ShadowSettings, TransferFunction,
+    Camera, ClassificationOrder, LightingRig, ObjectRotation, OpacityLength, PhongShading, QualityPreset,
+    ReconstructionKernel, SceneAxis, Settings, ShadowSettings,
 };
 use chiaroscuro_volume::{DataKind, DensityMapping, Histogram, KindName, Volume};
 
@@ -44,8 +45,8 @@ const MIN_VISIBLE_OPACITY: f64 = 0.05;
 pub struct FirstLookOptions {
     /// Kind of data to treat the volume as; `None` for the detected kind.
     pub data_kind: Option<KindName>,
-    /// Scene axis that points up, unless the file says where the head is.
-    pub up: SceneAxis,
+    /// Scene axis that points up, unless the file says where the head is; `None` for the one that the object suggests.
+    pub up: Option<SceneAxis>,
 }
 
 /// Returns the settings of a volume's first look.
@@ -77,11 +78,11 @@ fn with_robust_range<T>(
 /// Returns the first look at a volume that shows its robust range.
 fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstLookOptions) -> Settings {
     let kind = data_kind(volume, wishes.data_kind);
-    let found = transfer::find_transfer(volume, histogram, kind);
+    let found = find_transfer_as_kind(volume, histogram, wishes.data_kind);
     let (domain, style) = (found.domain, found.style);
-    let up = if volume.is_anatomical() { SceneAxis::PlusZ } else { wishes.up };
+    let wished_up = if volume.is_anatomical() { Some(SceneAxis::PlusZ) } else { wishes.up };
     let mut settings = Settings {
-        camera: Camera { up, ..Camera::default() },
+        camera: Camera { up: wished_up.unwrap_or_default(), ..Camera::default() },
         lights: Vec::new(),
         shading: if style == TransferStyle::Picture { evenly_lit() } else { shading(found.domain) },
         // An automatic look stays as bright as without shadows.
@@ -101,6 +102,10 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
         (settings.sampling.kernel, settings.shadows.kernel) =
             (ReconstructionKernel::Prefiltered, ReconstructionKernel::Prefiltered);
     }
+    if wished_up.is_none() {
+        settings.camera.up =
+            view_selection::find_up_axis(&settings, volume, histogram, kind, (domain, style));
+    }
     choose_view_and_lights(&mut settings, volume);
     if style == TransferStyle::Veiled {
         settings = frame_veil(settings, volume);
@@ -117,19 +122,19 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
         }
         DataKind::Mask => settings,
         DataKind::Scalar => {
-            let settings = empty_look_fallback::with_fallback(settings, volume, histogram, kind);
+            let settings = empty_look_fallback::with_fallback(settings, volume, histogram, wishes.data_kind);
             reveal::reveal_inner_material(settings, volume, histogram)
         }
         DataKind::HounsfieldCt { water } => {
             let bones = (domain == DataDomain::Bone).then(|| settings.layer().transfer.clone());
-            let settings = empty_look_fallback::with_fallback(settings, volume, histogram, kind);
+            let settings = empty_look_fallback::with_fallback(settings, volume, histogram, wishes.data_kind);
             if bones.is_some_and(|bones| bones == settings.layer().transfer) {
                 reveal::with_skin(settings, volume, water)
             } else {
                 settings
             }
         }
-        _ => empty_look_fallback::with_fallback(settings, volume, histogram, kind),
+        _ => empty_look_fallback::with_fallback(settings, volume, histogram, wishes.data_kind),
     }
 }
 
@@ -162,15 +167,6 @@ pub fn set_up_axis(settings: &mut Settings, volume: &Volume, up: SceneAxis) {
     if settings.camera.up != up {
         settings.rotate_object(ObjectRotation::MakeUpright(up));
         frame_object(settings, volume);
-    }
-}
-
-/// Returns the data kind for a name, or the volume's own if it is `None`.
-fn data_kind(volume: &Volume, treated_as: Option<KindName>) -> DataKind {
-    let own = volume.kind().kind;
-    match treated_as {
-        Some(name) if name != own.name() => DataKind::from_name(name, volume),
-        _ => own,
     }
 }
 
@@ -222,30 +218,6 @@ fn file_voxel_edge(volume: &Volume) -> f64 {
     (count(volume.dims()) / count(volume.file_dims())).cbrt()
 }
 
-/// Returns the transfer function that shows the object and hides the background, for the given kind of data; `None`
-/// for the detected kind.
-pub fn transfer_for_kind(
-    volume: &Volume,
-    histogram: &Histogram,
-    treated_as: Option<KindName>,
-) -> TransferFunction {
-    with_robust_range(volume, histogram, |volume, histogram| {
-        transfer::find_transfer(volume, histogram, data_kind(volume, treated_as)).transfer
-    })
-}
-
-/// Returns the label table for the given kind of data; `None` for the detected kind. Empty for all but label maps.
-pub fn labels_for_kind(volume: &Volume, treated_as: Option<KindName>) -> LabelTable {
-    match data_kind(volume, treated_as) {
-        DataKind::LabelMap { .. } => {
-            let mut labels = transfer::label_table(volume);
-            transfer::make_cover_translucent(&mut labels, volume, opacity_unit(volume));
-            labels
-        }
-        _ => LabelTable::default(),
-    }
-}
-
 /// Returns the number of labels that are invisible with the settings, or not in their own colour.
 pub fn count_lost_labels(settings: &Settings, volume: &Volume) -> usize {
     transfer::count_lost_labels(settings, volume)
@@ -269,7 +241,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::ControlPoint;
+    use crate::{ControlPoint, TransferFunction};
     use chiaroscuro_volume::Samples;
 
     /// Returns settings that show values above 100 of 255.
@@ -329,7 +301,7 @@ mod tests {
             let first = first_settings_with(
                 &volume,
                 &histogram,
-                FirstLookOptions { up, ..FirstLookOptions::default() },
+                FirstLookOptions { up: Some(up), ..FirstLookOptions::default() },
             );
             assert_eq!(first.camera.up, up);
             assert!((first.floor.height - floor).abs() < 0.07, "{up:?}: {}", first.floor.height);
@@ -350,7 +322,7 @@ mod tests {
         let first = first_settings_with(
             &patient,
             &histogram,
-            FirstLookOptions { up: SceneAxis::MinusX, ..FirstLookOptions::default() },
+            FirstLookOptions { up: Some(SceneAxis::MinusX), ..FirstLookOptions::default() },
         );
         assert_eq!(first.camera.up, SceneAxis::PlusZ);
     }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::empty_look_fallback::{VisibleContent, visible_content};
 use super::*;
+use crate::TransferFunction;
 use chiaroscuro_volume::{Samples, ValueRange};
 
 const N: usize = 32;

@@ -101,13 +101,13 @@ fn files_stand_as_those_of_their_folder_did() {
     let folder = tempfile::tempdir().unwrap();
     let (a, b, other) = (Path::new("/data/a.nrrd"), Path::new("/data/b.raw"), Path::new("/data/more/a.nrrd"));
     let mut memory = remember(folder.path());
-    assert_eq!(memory.up_of(a), SceneAxis::PlusZ);
+    assert_eq!(memory.up_of(a), None);
     memory.remember_up(a, SceneAxis::PlusX);
     memory.remember_up(a, SceneAxis::MinusY);
     memory.remember_up(Path::new("builtin:chair"), SceneAxis::PlusX);
     assert_eq!(
         [a, b, other].map(|file| memory.up_of(file)),
-        [SceneAxis::MinusY, SceneAxis::MinusY, SceneAxis::PlusZ]
+        [Some(SceneAxis::MinusY), Some(SceneAxis::MinusY), None]
     );
     // Another window that began earlier does not know these folders.
     let mut second = remember(folder.path());
@@ -115,12 +115,12 @@ fn files_stand_as_those_of_their_folder_did() {
     second.remember_up(other, SceneAxis::PlusY);
     drop(second);
     let mut memory = remember(folder.path());
-    assert_eq!((memory.up_of(b), memory.up_of(other)), (SceneAxis::MinusY, SceneAxis::PlusY));
-    assert_eq!(memory.up_of(Path::new("builtin:chair")), SceneAxis::PlusZ);
+    assert_eq!((memory.up_of(b), memory.up_of(other)), (Some(SceneAxis::MinusY), Some(SceneAxis::PlusY)));
+    assert_eq!(memory.up_of(Path::new("builtin:chair")), None);
     memory.remember_up(b, SceneAxis::PlusZ);
     drop(memory);
     let mut memory = remember(folder.path());
-    assert_eq!(memory.up_of(a), SceneAxis::PlusZ, "what was chosen last");
+    assert_eq!(memory.up_of(a), Some(SceneAxis::PlusZ), "what was chosen last");
     // The number of folders is limited; the oldest one goes.
     for at in 0..2 * folder_orientation::MAX_FOLDERS {
         memory.remember_up(Path::new(&format!("/{at}/a.nrrd")), SceneAxis::PlusX);
@@ -129,10 +129,7 @@ fn files_stand_as_those_of_their_folder_did() {
     drop(memory);
     let memory = remember(folder.path());
     assert_eq!(memory.standing.len(), folder_orientation::MAX_FOLDERS);
-    assert_eq!(
-        (memory.up_of(other), memory.up_of(Path::new("/199/b.raw"))),
-        (SceneAxis::PlusZ, SceneAxis::PlusX)
-    );
+    assert_eq!((memory.up_of(other), memory.up_of(Path::new("/199/b.raw"))), (None, Some(SceneAxis::PlusX)));
     drop(memory);
     fs::write(folder.path().join("standing.json"), "[{}]").unwrap();
     let mut memory = remember(folder.path());

@@ -1,6 +1,11 @@
 //! View selection for the first look: slices face-on, bodies from the front if the file says where that is, and other
 //! objects from the most informative direction.
 
+mod cross_section;
+mod up_axis;
+#[cfg(test)]
+mod up_axis_tests;
+
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
@@ -9,6 +14,7 @@ use super::object::VisibleObject;
 use super::transfer::axis_across_picture;
 use crate::Camera;
 use chiaroscuro_volume::Volume;
+pub(super) use up_axis::find_up_axis;
 
 /// Azimuth and elevation in degrees in front of a patient, to the right of the face and a little above: a
 /// three-quarter view, as in portraits. World space is right-anterior-superior.
