@@ -113,6 +113,13 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     if matches!(style, TransferStyle::Picture | TransferStyle::KnownObject) {
         return settings;
     }
+    if let Some(small) = reveal::show_small_objects(&settings, volume, histogram, kind) {
+        settings = small.settings;
+        if small.are_alone {
+            choose_view_and_lights(&mut settings, volume);
+        }
+        return settings;
+    }
     match kind {
         // All labels are shown already; a label that hides the others is framed, too.
         DataKind::LabelMap { .. } => {

@@ -3,7 +3,9 @@
 
 mod optical_depth;
 mod skin;
+mod small_objects;
 mod visibility;
+mod voxel_clusters;
 
 use std::ops::Range;
 
@@ -14,6 +16,7 @@ use super::{frame_largest_part, histogram_above, transfer};
 use crate::{Settings, TransferFunction};
 use chiaroscuro_volume::{Histogram, Volume};
 pub(super) use skin::add_skin as with_skin;
+pub(super) use small_objects::show_small_objects;
 use visibility::AveragedCells;
 
 /// Share of the object's voxels that an inner material may take: not a few specks, nor nearly all.
