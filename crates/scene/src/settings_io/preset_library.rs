@@ -2,8 +2,8 @@
 //!
 //! Values are data values if a domain has units (Hounsfield units for CT), else shares of the look's range
 //! (`"_values": "relative"`). Light presets fit any data: they set a sky and multiple scattering. The paper's also
-//! set shadows and sheets as in the paper, and the benchmark's sets everything; all others leave camera, lights,
-//! shadows and sampling unchanged.
+//! set shadows and sheets as in the paper, and the benchmark's sets everything. Scenes belong to one built-in volume
+//! each, with camera and lights. All others leave camera, lights, shadows and sampling unchanged.
 
 use serde_json::Value;
 
@@ -32,7 +32,7 @@ macro_rules! presets {
 }
 
 /// All built-in presets, grouped by domain.
-pub const PRESETS: [Preset; 22] = presets![
+pub const PRESETS: [Preset; 27] = presets![
     "ct/bone": "Bone",
     "ct/muscle_and_skin": "Muscle and skin",
     "ct/angiography": "CT angiography",
@@ -55,6 +55,11 @@ pub const PRESETS: [Preset; 22] = presets![
     "paper/fuel": "Fuel injection",
     "paper/chair": "Chair",
     "bench/creature": "Creature",
+    "scene/bone": "Carved bone",
+    "scene/cloud": "Evening cloud",
+    "scene/wax": "Wax rabbit",
+    "scene/stained_glass": "Rose window",
+    "scene/cells": "Cell cluster",
 ];
 
 impl Preset {
@@ -82,8 +87,20 @@ impl Preset {
             "simulation" => "Simulation",
             "light" => "Light, for any data",
             "paper" => "Splatting with shadows",
+            "scene" => "Built-in scenes",
             other => other,
         }
+    }
+
+    /// Returns the name of the built-in volume whose scene this is; `None` for presets that fit other volumes.
+    pub fn scene_volume(&self) -> Option<&'static str> {
+        self.name.strip_prefix("scene/")
+    }
+
+    /// Returns true if menus offer the preset for any volume: the benchmark's is for the command line, and scenes are
+    /// opened with their volume.
+    pub fn is_offered(&self) -> bool {
+        self.domain() != "bench" && self.scene_volume().is_none()
     }
 
     /// Returns true if the preset suits the kind of data: CT presets refer to Hounsfield units, and show nothing, or
@@ -157,7 +174,7 @@ pub fn apply_relative(
 mod tests {
     use super::*;
     use crate::DensityRange;
-    use chiaroscuro_volume::ValueRange;
+    use chiaroscuro_volume::{ValueRange, synthetic::builtin};
 
     #[test]
     fn presets_of_ct_suit_hounsfield_units_alone() {
@@ -181,13 +198,37 @@ mod tests {
             assert_eq!(preset.apply(&Settings::default(), &ranges).unwrap(), settings);
             let points = &settings.layer().transfer.points;
             assert!(points.windows(2).all(|pair| pair[0].value <= pair[1].value), "{}", preset.name);
-            // Light presets work with any curve.
-            let is_seen = points.iter().any(|point| point.opacity > 0.05);
+            // Light presets work with any curve, and labels have no curve.
+            let is_seen =
+                points.iter().any(|point| point.opacity > 0.05) || !settings.layer().labels.is_empty();
             assert!(is_seen || preset.domain() == "light" && settings.sky.is_on(), "{}", preset.name);
             assert!(
                 !preset.description().is_empty() && !preset.title.is_empty() && !preset.domain().is_empty()
             );
         }
+    }
+
+    #[test]
+    fn scenes_belong_to_built_in_volumes_and_light_them() {
+        let scenes = PRESETS.into_iter().filter_map(|preset| Some((preset, preset.scene_volume()?)));
+        let mut count = 0;
+        for (preset, name) in scenes {
+            let volume = builtin(name, Some(32)).unwrap();
+            let scene = preset.apply(&Settings::default(), &volume.ranges()).unwrap();
+            assert!(!preset.is_offered() && !scene.shadows.keep_balanced, "{name}");
+            assert!(scene.lights.iter().any(|light| light.on && light.casts_shadows), "{name}");
+            // A look-up by label is for label maps alone, and shows all labels that there are.
+            assert_eq!(scene.layer().labels.is_empty(), !volume.is_label_map(), "{name}");
+            let labels = volume.labels().filter(|_| volume.is_label_map());
+            for label in labels.iter().flat_map(|set| set.labels()).filter(|label| label.number > 0) {
+                assert!(scene.layer().labels.get(label.number).is_some(), "{name} lacks {}", label.number);
+            }
+            let points = &scene.layer().transfer.points;
+            let range = volume.value_range();
+            assert!(points.iter().all(|point| range.low <= point.value), "{name}");
+            count += 1;
+        }
+        assert_eq!(count, 5);
     }
 
     #[test]
@@ -218,7 +259,8 @@ mod tests {
             assert!(preset.is_in_use(&used, &ranges), "{}", preset.name);
             // A preset without a camera allows it to turn.
             used.camera.azimuth_deg += 20.0;
-            assert_eq!(preset.is_in_use(&used, &ranges), preset.domain() != "bench", "{}", preset.name);
+            let has_camera = preset.domain() == "bench" || preset.scene_volume().is_some();
+            assert_eq!(preset.is_in_use(&used, &ranges), !has_camera, "{}", preset.name);
             for point in &mut used.layer_mut().transfer.points {
                 point.opacity *= 0.5;
             }

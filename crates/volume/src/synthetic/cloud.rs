@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::super::load_context::{LoadContext, LoadControl, LoadError};
 use super::UnitGrid;
 use super::noise::fractal;
+use super::solids::smooth_step;
 
 /// Maximum voxel value, where the cloud is densest.
 const DENSEST: f64 = 220.0;
@@ -29,14 +30,7 @@ pub(super) fn voxels(
     context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Vec<u8>, LoadError> {
-    grid.fill(context, control, |z, slice| {
-        for (y, row) in slice.chunks_exact_mut(grid.n).enumerate() {
-            for (x, voxel) in row.iter_mut().enumerate() {
-                let p = DVec3::new(grid.centre(x), grid.centre(y), grid.centre(z));
-                *voxel = (DENSEST * density(p)).round() as u8;
-            }
-        }
-    })
+    grid.fill_points(context, control, |p| (DENSEST * density(p)).round() as u8)
 }
 
 /// Returns the density at `p`, in [0, 1]; 0 outside the puffs.
@@ -57,11 +51,6 @@ fn body(p: DVec3) -> f64 {
         clear * (1.0 - (1.0 - offset.length_squared()).max(0.0))
     });
     (1.0 - clear) * smooth_step(-0.46, -0.26, p.z)
-}
-
-fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 #[cfg(test)]

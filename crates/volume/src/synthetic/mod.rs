@@ -4,14 +4,19 @@
 //! for one resolution hold for the others. They are described in coordinates p in [-1, 1]³ with z up: p = 1 is 64 mm,
 //! and voxel i of n has its centre at (i + ½) / n · 2 − 1.
 
+mod bone;
+mod cells;
 mod chair;
 mod cloud;
 mod cube;
 mod marschner_lobb;
 mod noise;
 mod shapes;
+mod solids;
 mod sphere;
+mod stained_glass;
 mod voxelise;
+mod wax;
 
 use std::path::Path;
 
@@ -21,10 +26,11 @@ use rayon::prelude::*;
 use super::load_context::{
     GridExtent, LoadContext, LoadControl, LoadError, ReadContext, VolumeChoice, memory_budget_bytes,
 };
-use super::{Samples, Volume, VoxelType};
+use super::{Samples, ValueMetadata, Volume, VoxelType};
 
 /// Names of the built-in volumes.
-pub const BUILTIN_NAMES: [&str; 5] = ["chair", "cloud", "sphere", "box", "marschner-lobb"];
+pub const BUILTIN_NAMES: [&str; 9] =
+    ["chair", "cloud", "sphere", "box", "marschner-lobb", "bone", "wax", "stained_glass", "cells"];
 
 /// Default number of voxels along each edge.
 pub const DEFAULT_SIZE: usize = 128;
@@ -85,6 +91,22 @@ impl UnitGrid {
         })?;
         Ok(values)
     }
+
+    /// Computes all voxels in parallel from the coordinates p of their centres.
+    fn fill_points<T: Copy + Default + Send>(
+        self,
+        context: LoadContext<'_>,
+        control: &LoadControl,
+        value: impl Fn(DVec3) -> T + Sync,
+    ) -> Result<Vec<T>, LoadError> {
+        self.fill(context, control, |z, slice| {
+            for (y, row) in slice.chunks_exact_mut(self.n).enumerate() {
+                for (x, voxel) in row.iter_mut().enumerate() {
+                    *voxel = value(DVec3::new(self.centre(x), self.centre(y), self.centre(z)));
+                }
+            }
+        })
+    }
 }
 
 /// Makes the built-in volume `name` of `n`³ voxels, [`DEFAULT_SIZE`]³ by default.
@@ -134,11 +156,16 @@ pub fn builtin_with_budget(
     let grid = UnitGrid { n };
     let samples = match name {
         "chair" => Samples::U8(voxelise::voxelise(grid, &chair::parts(), context, control)?),
+        "bone" => Samples::U8(bone::voxels(grid, context, control)?),
+        "wax" => Samples::U8(wax::voxels(grid, context, control)?),
+        "cells" => Samples::U8(cells::voxels(grid, context, control)?),
+        "stained_glass" => Samples::U8(stained_glass::voxels(grid, context, control)?),
         "sphere" => Samples::U8(voxelise::voxelise(grid, &sphere::parts(), context, control)?),
         "cloud" => Samples::U8(cloud::voxels(grid, context, control)?),
         "box" => Samples::U8(cube::voxels(grid, context, control)?),
         _ => Samples::F32(marschner_lobb::voxels(grid, context, control)?),
     };
+    let metadata = if name == "stained_glass" { stained_glass::metadata() } else { ValueMetadata::default() };
     let spacing_mm = EDGE_MM / n as f64;
     let world_from_index = DAffine3 {
         matrix3: DMat3::from_diagonal(DVec3::splat(spacing_mm)),
@@ -146,7 +173,7 @@ pub fn builtin_with_budget(
     };
     Volume::new(name, [n; 3], world_from_index, samples)
         // The opacity unit is one voxel of the default size, so that the look is independent of the resolution.
-        .map(|volume| volume.with_unit_mm(OPACITY_UNIT_MM))
+        .map(|volume| volume.with_unit_mm(OPACITY_UNIT_MM).with_metadata(metadata))
         .map_err(|error| {
             context.bad_input_error("data", error.to_string(), "choose another number of voxels")
         })
@@ -161,9 +188,12 @@ mod tests {
         builtin(name, Some(n)).unwrap()
     }
 
+    /// Mean value; of a label map, whose numbers have no mean, the share of voxels with a label.
     fn mean(volume: &Volume) -> f64 {
         let count = volume.voxel_count();
-        (0..count).map(|voxel| volume.samples().value(voxel)).sum::<f64>() / count as f64
+        let value = |voxel| volume.samples().value(voxel);
+        let shown = |voxel| if volume.is_label_map() { value(voxel).min(1.0) } else { value(voxel) };
+        (0..count).map(shown).sum::<f64>() / count as f64
     }
 
     #[test]
@@ -198,7 +228,7 @@ mod tests {
 
     #[test]
     fn scenes_stay_clear_of_the_border() {
-        for name in ["chair", "cloud", "sphere", "box"] {
+        for name in BUILTIN_NAMES.into_iter().filter(|name| *name != "marschner-lobb") {
             let volume = make(name, 32);
             for a in 0..32 {
                 for b in 0..32 {

@@ -127,11 +127,11 @@ fn render_candidate(
     Ok(ColorImage::from_rgba_unmultiplied(PICTURE_SIZE.map(|n| n as usize), &shown))
 }
 
-/// Candidates with each preset applied, except that of the benchmarks; presets for other kinds of data come last.
+/// Candidates with each preset that fits other volumes applied; presets for other kinds of data come last.
 fn preset_candidates(settings: &Settings, volume: &Volume) -> Vec<LookCandidate> {
     let ranges = volume.ranges();
     let kind = volume.kind().kind;
-    let mut presets: Vec<_> = PRESETS.into_iter().filter(|preset| preset.domain() != "bench").collect();
+    let mut presets: Vec<_> = PRESETS.into_iter().filter(Preset::is_offered).collect();
     let fits = |preset: &Preset| preset.suits_data(&kind);
     presets.sort_by_key(|preset| !fits(preset));
     presets
@@ -300,7 +300,7 @@ mod tests {
         let presets = preset_candidates(&Settings::default(), &volume);
         let last_that_fits = presets.iter().rposition(|look| look.suits_data);
         assert_eq!(last_that_fits, presets.iter().position(|look| !look.suits_data).map(|first| first - 1));
-        assert_eq!(presets.len(), PRESETS.len() - 1);
+        assert_eq!(presets.len(), PRESETS.into_iter().filter(Preset::is_offered).count());
         let usual = Settings::default();
         // Presets of light leave the curve as it is.
         let differs = |look: &Settings| {
