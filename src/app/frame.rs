@@ -9,6 +9,7 @@ use super::common::commands::AppCommand;
 use super::common::{light_keys, reveal, shortcuts};
 use super::layout::outer_panels::OuterPanelInputs;
 use super::shell::opening::VolumeOpener;
+use super::shell::start_screen::stays_on_start;
 use super::shell::status_file;
 use super::viewport::paint_callback;
 use super::windows::device_loss::DeviceLossAnswer;
@@ -63,6 +64,8 @@ impl eframe::App for App {
             self.opening.loader.options(),
             &mut commands,
         );
+        let occupation = self.occupation();
+        let shows_start = self.start_screen.update(occupation);
         let mut inputs = OuterPanelInputs {
             editor: &mut self.editor,
             opening: &self.opening,
@@ -71,23 +74,35 @@ impl eframe::App for App {
             layout: &mut self.layout,
             facts: &facts,
             commands: &mut commands,
+            shows_start,
         };
         self.panels.show(ui, &mut inputs);
-        let export_preview = self.windows.export.requested_image().filter(|_| !self.layout.picture_only);
-        let drawn = self.picture.show_picture(
-            ui,
-            &mut self.editor,
-            &mut self.windows.slices,
-            export_preview,
-            &facts,
-            &mut commands,
-        );
-        if let Err(err) = drawn {
-            self.handle_render_error(&err, &ctx);
+        if shows_start {
+            self.show_start(ui, &mut commands);
+        } else {
+            let export_preview = self.windows.export.requested_image().filter(|_| !self.layout.picture_only);
+            let drawn = self.picture.show_picture(
+                ui,
+                &mut self.editor,
+                &mut self.windows.slices,
+                export_preview,
+                &facts,
+                &mut commands,
+            );
+            if let Err(err) = drawn {
+                self.handle_render_error(&err, &ctx);
+            }
         }
         self.editor.document.update_shown_range(self.editor.viewport.dataset().as_ref());
-        shortcuts::commands_from_keys(&ctx, &mut commands);
-        light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
+        let mut from_keys = Vec::new();
+        shortcuts::commands_from_keys(&ctx, &mut from_keys);
+        if shows_start {
+            // Keys for the picture have no effect while it is hidden.
+            from_keys.retain(stays_on_start);
+        } else {
+            light_keys::nudge(&ctx, &mut self.editor.document.settings, self.editor.document.selected_light);
+        }
+        commands.extend(from_keys);
         self.show_windows(frame, &ctx, &mut commands);
         self.drag_cancel.end(&mut self.editor.document.settings);
         let mut opener = VolumeOpener { state: &mut self.opening, editor: &mut self.editor, ctx: &ctx };
@@ -97,7 +112,13 @@ impl eframe::App for App {
         commands.extend(self.editor.update_outline(self.opening.is_opening(), &ctx));
         let before = self.editor.document.settings.camera.clone();
         for command in commands {
+            if shows_start && !stays_on_start(&command) {
+                self.start_screen.close();
+            }
             self.execute(command, frame, &ctx);
+        }
+        if shows_start && occupation.has_volume && !occupation.is_opening {
+            self.start_screen.close_by_key(&ctx);
         }
         self.picture.camera_animation.begin(
             &before,
@@ -147,6 +168,17 @@ impl eframe::App for App {
 }
 
 impl App {
+    /// Shows the start screen in place of the picture, with the messages over it.
+    fn show_start(&mut self, ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
+        let recent = self.editor.memory.recent();
+        let context = Some(self.editor.viewport.context()).filter(|_| !self.opening.is_opening());
+        let thumbnails = &mut self.panels.recent_pictures;
+        let area = self.start_screen.show(ui, context, recent, thumbnails, commands);
+        self.picture.canvas = None;
+        self.editor.messages.notice(ui.ctx(), area);
+        self.editor.messages.list(ui.ctx());
+    }
+
     /// Shows the windows over the picture, and acts on the answers that they return.
     fn show_windows(&mut self, frame: &eframe::Frame, ctx: &egui::Context, commands: &mut Vec<AppCommand>) {
         if let Some(answer) = self.dialogs.recovery.ui(ctx) {
@@ -154,7 +186,6 @@ impl App {
             if let RecoveryAnswer::Restore(look) = answer {
                 self.opener(ctx).open_record(&look);
             }
-            self.opener(ctx).open_deferred();
         }
         self.windows.history.show(ctx, &self.editor.document, commands);
         self.dialogs.quit.ui(ctx, self.windows.export.is_busy());

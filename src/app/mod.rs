@@ -44,6 +44,7 @@ use self::layout::outer_panels::OuterPanels;
 use self::shell::look_editor::LookEditor;
 use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
+use self::shell::start_screen::{StartScreen, WindowOccupation};
 use self::shell::status_file::StatusFile;
 use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
@@ -51,6 +52,8 @@ use self::worker::jobs::Jobs;
 #[cfg(feature = "testing")]
 use chiaroscuro_files::fault;
 use chiaroscuro_scene::Settings;
+#[cfg(feature = "testing")]
+use chiaroscuro_volume::ValueRanges;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
@@ -73,6 +76,8 @@ pub struct App {
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
+    /// Screen with the built-in scenes and recent files, while no volume is open.
+    start_screen: StartScreen,
 }
 
 /// Longest wait of a closing window for jobs that still use the graphics driver.
@@ -104,8 +109,10 @@ impl App {
 
     /// Returns true if the full-quality picture of the current settings is on screen, nothing is being opened, the
     /// first look is finished, and the balance, if it is kept, has been measured for these settings.
+    /// The start screen is idle as soon as it is open.
     pub fn is_idle(&self) -> bool {
-        !self.opening.is_opening() && self.editor.is_complete() && !self.editor.is_changing()
+        let is_shown = self.editor.is_complete() && !self.editor.is_changing();
+        !self.opening.is_opening() && (is_shown || self.start_screen.is_open())
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
@@ -138,9 +145,20 @@ impl App {
     /// Drops the pictures of the volume before, if another one has replaced it.
     fn drop_pictures_of_replaced(&mut self) {
         if self.opening.take_opened() {
+            self.start_screen.close();
             self.panels.recent_pictures.clear();
             self.windows.contact_sheet.discard();
             self.panels.kept_strip.reset();
+        }
+    }
+
+    /// Returns what decides on whether the start screen is shown.
+    fn occupation(&self) -> WindowOccupation {
+        let is_kept = self.device.handed_over_dataset.is_some() || self.editor.viewport.dataset().is_some();
+        WindowOccupation {
+            has_volume: self.editor.document.volume.is_some() || is_kept,
+            is_opening: self.opening.is_opening(),
+            has_question: self.dialogs.recovery.is_open() || self.dialogs.device_loss.is_open(),
         }
     }
 
@@ -171,6 +189,16 @@ impl App {
     /// Number of previews of this volume that were followed by a full-quality picture.
     pub fn full_quality_pictures(&self) -> u64 {
         self.editor.viewport.refinement_count()
+    }
+
+    /// Ranges of the open volume's values, or `None` if there is none.
+    pub fn ranges(&self) -> Option<ValueRanges> {
+        self.editor.viewport.dataset().map(|dataset| dataset.volume().ranges())
+    }
+
+    /// Returns true while the start screen is open.
+    pub fn shows_start(&self) -> bool {
+        self.start_screen.is_open()
     }
 
     /// Name of the open volume, or `None` if there is none.

@@ -45,6 +45,8 @@ pub(crate) struct OuterPanelInputs<'a> {
     pub facts: &'a RendererStatus,
     /// Queue of the commands that the user issues.
     pub commands: &'a mut Vec<AppCommand>,
+    /// True while the start screen is in place of the picture, whose panels are then hidden.
+    pub shows_start: bool,
 }
 
 impl OuterPanels {
@@ -63,6 +65,10 @@ impl OuterPanels {
         }
         self.show_menu(ui, inputs);
         show_status(ui, inputs);
+        if inputs.shows_start {
+            dock::hide(ui.ctx());
+            return;
+        }
         self.show_transfer_editor(ui, inputs);
         show_side_panel(ui, inputs);
         self.render_missing_thumbnails(ui.ctx(), inputs);

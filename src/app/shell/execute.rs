@@ -24,6 +24,8 @@ impl App {
             AppCommand::PreviousFile => self.opener(ctx).seek_neighbour(false),
             AppCommand::OpenPath => self.dialogs.files.open_typed_path(FileDialogPurpose::OpenVolume),
             AppCommand::Open(source) => self.opener(ctx).open(&source),
+            AppCommand::OpenScene(scene) => self.opener(ctx).open_scene(&scene),
+            AppCommand::ShowStart => self.start_screen.open(),
             AppCommand::OpenAgain(path, choice) => self.opener(ctx).open_again(&path, &choice),
             AppCommand::ShowChooser(aspect) => self.windows.show_chooser(aspect, &mut self.editor),
             AppCommand::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),

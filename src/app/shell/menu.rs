@@ -2,6 +2,8 @@
 
 use eframe::egui::{self, Button, ThemePreference};
 
+use super::recent_files::recent_file_button;
+use super::start_screen::scenes;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::{elide_middle, text_width};
@@ -9,21 +11,11 @@ use crate::app::common::{overlay_windows, theme};
 use crate::app::persistence::{EarlierRun, RecentFile, RecentThumbnails};
 use crate::app::text;
 use crate::app::windows::recovery;
-use chiaroscuro_files::sanitised;
-use chiaroscuro_scene::{
-    LightingRig, MAX_LIGHTS, MAX_NAME_CHARS, ObjectRotation, Projection, Settings, StandardView,
-};
+use chiaroscuro_scene::{LightingRig, MAX_LIGHTS, ObjectRotation, Projection, Settings, StandardView};
 use chiaroscuro_volume::{ChoiceAspect, FileContents, FileDimension, synthetic};
-
-/// Maximum number of characters of a path in a tooltip: the longest path that systems allow.
-const MAX_PATH_CHARS: usize = 4096;
 
 /// Maximum width of a file name in a menu, in points: menus stay narrower than the smallest window.
 const MAX_NAME_WIDTH: f32 = 300.0;
-
-/// Longer edge of a recent file's thumbnail, in points: its subject is recognisable, and the list fits on low
-/// screens.
-const THUMBNAIL_EDGE: f32 = 48.0;
 
 /// Inputs of the menu bar: the state that it shows, and the values that it changes.
 pub(crate) struct MenuInputs<'a> {
@@ -161,6 +153,7 @@ fn history_item(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>, command: AppComman
 }
 
 fn file(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
+    item(ui, menu, AppCommand::ShowStart, true);
     item(ui, menu, AppCommand::OpenDialog, true);
     item(ui, menu, AppCommand::OpenFolder, true);
     item(ui, menu, AppCommand::OpenPath, true);
@@ -169,24 +162,9 @@ fn file(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {
         overlay_windows::scrolling_menu(ui, text::menu::OPEN_RECENT, |ui| {
             for recent in menu.recent {
-                let path = &recent.path;
-                let whole = path.to_string_lossy();
-                let name = path.file_name().map(|name| name.to_string_lossy());
-                let name = sanitised(name.as_ref().unwrap_or(&whole), MAX_NAME_CHARS);
-                let name = elide_middle(ui, &name, &egui::TextStyle::Button, MAX_NAME_WIDTH);
-                let picture = menu.recent_pictures.get(path, ui.ctx());
-                let button = match &picture {
-                    Some(picture) => {
-                        let size = picture.size_vec2();
-                        let size = size * (THUMBNAIL_EDGE / size.max_elem());
-                        Button::image_and_text((picture.id(), size), &name)
-                    }
-                    None => Button::new(&name),
-                };
-                let button = ui.add(button.image_tint_follows_text_color(false));
-                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-                if button.on_hover_text(sanitised(&whole, MAX_PATH_CHARS)).clicked() {
-                    menu.commands.push(AppCommand::OpenAgain(path.clone(), recent.choice.clone()));
+                let button = recent_file_button(ui, recent, menu.recent_pictures, MAX_NAME_WIDTH);
+                if button.clicked() {
+                    menu.commands.push(AppCommand::OpenAgain(recent.path.clone(), recent.choice.clone()));
                 }
             }
         });
@@ -206,7 +184,9 @@ fn file(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     overlay_windows::scrolling_menu(ui, text::commands::OPEN_BUILT_IN, |ui| {
         for name in synthetic::BUILTIN_NAMES {
             if ui.button(name).clicked() {
-                menu.commands.push(AppCommand::Open(format!("builtin:{name}").into()));
+                let scene = scenes().find(|(_, volume)| *volume == name).map(|(scene, _)| scene);
+                let open = || AppCommand::Open(format!("builtin:{name}").into());
+                menu.commands.push(scene.map_or_else(open, AppCommand::OpenScene));
             }
         }
     });

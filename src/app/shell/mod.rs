@@ -7,6 +7,8 @@ pub(super) mod menu;
 pub(super) mod messages;
 pub(super) mod opening;
 pub(super) mod picture_area;
+mod recent_files;
+pub(super) mod start_screen;
 pub(super) mod status;
 pub(super) mod status_file;
 pub(super) mod tool_windows;

@@ -16,6 +16,7 @@ use crate::app::persistence::PersistentState;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::picture_area::PictureTools;
+use crate::app::shell::start_screen::StartScreen;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
 use crate::app::viewport::Viewport;
@@ -57,12 +58,7 @@ impl App {
         app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
         app.opening.requests.trusts_paths = trust_paths;
-        let is_named = source.is_some() || volume.is_some() || app.editor.document.session.is_some();
-        if is_named || !app.dialogs.recovery.is_open() {
-            app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
-        } else {
-            app.opening.default_open_waits = true;
-        }
+        app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
         Ok(app)
     }
 
@@ -82,11 +78,6 @@ impl App {
             QualityPreset::Fast.apply(&mut settings);
             settings
         }));
-        if app.dialogs.recovery.is_open() {
-            app.opening.default_open_waits = true;
-        } else {
-            app.opener(&cc.egui_ctx).open_first(None, None);
-        }
         Ok(app)
     }
 
@@ -153,6 +144,7 @@ impl App {
             drag_cancel: DragCancel::default(),
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
+            start_screen: StartScreen::default(),
         })
     }
 }

@@ -8,8 +8,8 @@ use chiaroscuro_volume_io::LoadOptions;
 /// Options of the window, from the command line.
 #[derive(Default)]
 pub struct WindowOptions {
-    /// Source to open: a volume file, `builtin:NAME[:N]`, a session or an exported picture. The built-in scene if
-    /// `None`.
+    /// Source to open: a volume file, `builtin:NAME[:N]`, a session or an exported picture. The start screen is
+    /// shown if `None`.
     pub source: Option<PathBuf>,
     /// Options for reading volume files.
     pub load: LoadOptions,

@@ -20,7 +20,9 @@ pub(super) use self::panels::{
     camera, corrections, cuts, data, floor, labels, lights, sampling, scattering, sections, shading, shadows,
     sky, synonyms,
 };
-pub(super) use self::shell::{change_descriptions, commands, menu, messages, opening, persistence, status};
+pub(super) use self::shell::{
+    change_descriptions, commands, menu, messages, opening, persistence, start_screen, status,
+};
 pub(super) use self::viewport::{comparison, cut_handles, picture, probe};
 pub(super) use self::windows::{
     chooser, contact_sheet, export, files, foreign_path, help, large_volume, light_volume, palette_synonyms,

@@ -29,6 +29,11 @@ impl DeviceLossDialog {
         self.is_open = true;
     }
 
+    /// Returns true while the dialog waits for an answer.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     /// Shows the dialog while it is open, and returns the answer once.
     pub(crate) fn ui(&mut self, ctx: &egui::Context, is_cpu: bool) -> Option<DeviceLossAnswer> {
         if !self.is_open {

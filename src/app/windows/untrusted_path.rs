@@ -62,11 +62,6 @@ impl UntrustedPathDialog {
         });
     }
 
-    /// Returns true while the dialog is open.
-    pub(crate) fn is_open(&self) -> bool {
-        self.pending.is_some()
-    }
-
     /// Takes the look and the path of its volume, and closes the dialog.
     pub(crate) fn close(&mut self) -> Option<(LookRecord, Option<PathBuf>)> {
         self.pending.take().map(|asked| (asked.record, asked.path))

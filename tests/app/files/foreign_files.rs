@@ -130,9 +130,9 @@ fn looks_that_are_named_at_the_start_are_read_while_the_window_goes_on() {
     let harness = adjusted_window(options, size);
     assert_eq!(harness.state().settings().shadows.gain, 2.5, "the look");
     assert_eq!(harness.state().settings().camera.fov_y_deg, 21.0, "the session");
-    // A file that cannot be read leaves the default volume.
+    // A file that cannot be read leads to the start screen.
     let harness = adjusted_window(WindowOptions { source: Some(broken), ..WindowOptions::default() }, size);
-    assert!(harness.state().volume_name().is_some_and(|name| name.contains("chair")));
+    assert!(harness.state().shows_start() && harness.state().errors().len() == 1);
     // If the wait for the session is cancelled, the volume opens without it.
     let source = Some(crate::harness::SCENE.into());
     let held = App::block_file_tasks();

@@ -8,6 +8,7 @@ mod large_volumes;
 mod opening;
 pub(crate) mod raw_import;
 mod sessions;
+pub(crate) mod start_screen;
 mod typed_paths;
 mod untrusted_paths;
 mod volume_choice;

@@ -15,6 +15,7 @@ use image::{RgbaImage, imageops};
 
 use crate::accessibility::expanded_window;
 use crate::files::raw_import::{drop_and_analyse, write_scan};
+use crate::files::start_screen::start_window;
 use crate::harness::{wait_until_idle, window};
 use crate::thresholds::{MAX_CHANNEL_STEPS, MAX_DIFFERENT_PIXELS};
 
@@ -161,6 +162,20 @@ fn windows_over_the_picture() {
         let close = if name == "export" { "Close" } else { "Close window" };
         harness.get_by_label(close).click();
         harness.run_steps(6);
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn start_screen() {
+    let mut harness = start_window(None);
+    let mut failures = Vec::new();
+    for (theme, suffix) in THEMES {
+        let window = in_theme(&mut harness, theme);
+        // Without the status bar, which names the adapter.
+        let area =
+            Rect::from_min_max(pos2(0.0, 28.0), pos2(window.width() as f32, window.height() as f32 - 26.0));
+        check(&window, area, &format!("start-{suffix}"), &mut failures);
     }
     assert!(failures.is_empty(), "{failures:#?}");
 }

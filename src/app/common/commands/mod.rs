@@ -38,6 +38,10 @@ pub(crate) enum AppCommand {
     PreviousFile,
     /// Open a file or a built-in volume.
     Open(PathBuf),
+    /// Open a built-in volume with the scene that this preset of the library is.
+    OpenScene(Preset),
+    /// Show the start screen with the built-in scenes and recent files.
+    ShowStart,
     /// Open a recent file, and the volume of it that was open then.
     OpenAgain(PathBuf, VolumeChoice),
     /// Show the chooser of the open file's volumes in an aspect.
@@ -197,6 +201,7 @@ pub(crate) enum AppCommand {
 /// Lists every command that can be found by its name.
 pub(crate) fn searchable_commands() -> Vec<AppCommand> {
     let mut all = vec![
+        AppCommand::ShowStart,
         AppCommand::OpenDialog,
         AppCommand::OpenFolder,
         AppCommand::OpenPath,
@@ -271,7 +276,9 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
     all.extend(StandardView::ALL.map(AppCommand::LookFrom));
     all.extend(SceneAxis::ALL.map(|axis| AppCommand::TurnObject(ObjectRotation::MakeUpright(axis))));
     all.extend(LightingRig::ALL.map(AppCommand::UseRig));
-    all.extend(PRESETS.map(AppCommand::UsePreset));
+    let is_scene = |preset: &Preset| preset.scene_volume().is_some();
+    all.extend(PRESETS.into_iter().filter(|preset| !is_scene(preset)).map(AppCommand::UsePreset));
+    all.extend(PRESETS.into_iter().filter(is_scene).map(AppCommand::OpenScene));
     all.extend(SEARCHABLE_SETTINGS.iter().map(|(place, _)| AppCommand::Reveal(*place)));
     all.extend(
         (0..COLOR_MAPS.len()).flat_map(|at| [false, true].map(|back| AppCommand::UseColors(at, back))),

@@ -21,7 +21,7 @@ impl AppCommand {
         match self {
             Self::Reveal(place) => synonyms_of(*place),
             // The domain, and the name on the command line.
-            Self::UsePreset(preset) => preset.name,
+            Self::UsePreset(preset) | Self::OpenScene(preset) => preset.name,
             _ => "",
         }
     }
@@ -45,6 +45,8 @@ impl AppCommand {
             Self::ShowChooser(aspect) => return text::chooser::command(*aspect).into(),
             Self::StepChoice(aspect, is_forward) => return text::chooser::step(*aspect, *is_forward).into(),
             Self::OpenChoice(..) => text::commands::SHOW_CHOICE,
+            Self::OpenScene(scene) => return text::commands::open_scene(scene.title).into(),
+            Self::ShowStart => text::commands::SHOW_START,
             Self::OpenAgain(..) => text::menu::OPEN_RECENT,
             Self::Subsample(thinning) => return text::commands::subsample(*thinning).into(),
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,

@@ -103,11 +103,6 @@ impl FileTasks {
         self.running.last().map(|running| running.path.as_path())
     }
 
-    /// Returns true while a file is read for this purpose.
-    pub(crate) fn is_reading(&self, reason: ReadPurpose) -> bool {
-        self.running.iter().any(|running| running.reason == reason)
-    }
-
     /// Drops the task of a purpose, because something else has superseded it.
     pub(crate) fn drop_purpose(&mut self, reason: ReadPurpose) {
         self.running.retain(|running| running.reason != reason);
@@ -138,11 +133,11 @@ impl FileTasks {
     }
 
     /// Removes the tasks that have ended, and returns their continuations.
-    fn take_finished(&mut self) -> Vec<(ReadPurpose, TaskContinuation)> {
+    fn take_finished(&mut self) -> Vec<TaskContinuation> {
         let mut ended = Vec::new();
         for RunningFileTask { reason, path, task } in std::mem::take(&mut self.running) {
             match task.end() {
-                Ok(finish) => ended.push((reason, finish)),
+                Ok(finish) => ended.push(finish),
                 Err(task) => self.running.push(RunningFileTask { reason, path, task }),
             }
         }
@@ -166,18 +161,17 @@ impl VolumeOpener<'_> {
 
     /// Runs the continuations of the tasks that have ended.
     pub(crate) fn finish_file_tasks(&mut self) {
-        for (reason, finish) in self.state.file_tasks.take_finished() {
+        for finish in self.state.file_tasks.take_finished() {
             finish(self);
-            self.open_default_if_empty(reason);
         }
     }
 
     /// Cancels opening a volume and reading other files.
     pub(crate) fn cancel_files(&mut self) {
         self.state.loader.cancel();
-        for RunningFileTask { reason, path: _, task } in std::mem::take(&mut self.state.file_tasks.running) {
+        for RunningFileTask { reason: _, path: _, task } in std::mem::take(&mut self.state.file_tasks.running)
+        {
             task.cancel()(self);
-            self.open_default_if_empty(reason);
         }
     }
 

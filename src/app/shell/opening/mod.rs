@@ -26,7 +26,7 @@ use crate::app::worker::loader::{LoadOutcome, Loader, ReadChoices, RememberedFil
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::Dataset;
 
-/// Volume that is opened when none is named.
+/// Volume on which a look is shown that names none, if none is open.
 const DEFAULT_SOURCE: &str = "builtin:chair";
 
 /// Function that changes settings once.
@@ -51,8 +51,6 @@ pub(crate) struct OpeningState {
     pub requests: OpenRequests,
     /// Change of the first volume's settings, from the command line or by a safe start.
     pub adjust_first_look: Option<SettingsAdjustment>,
-    /// True while the default volume waits for the user's answer about reopening the last session.
-    pub default_open_waits: bool,
     /// Reader of volumes, on threads of its own.
     pub loader: Loader,
     /// Search for the next file in the folder (true) or the one before (false).
@@ -75,7 +73,6 @@ impl OpeningState {
         Self {
             requests: OpenRequests::default(),
             adjust_first_look: None,
-            default_open_waits: false,
             loader,
             next_file_search: JobSlot::default(),
             file_tasks: FileTasks::default(),

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use super::VolumeOpener;
 use super::file_tasks::ReadPurpose;
 use super::plan::PendingLook;
-use super::{DEFAULT_SOURCE, VolumeOpener};
 use crate::app::text;
 use crate::app::windows::file_dialogs;
 use crate::app::windows::raw_dialog::RawDialogResult;
 use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_files::provenance_mark;
-use chiaroscuro_scene::{OpacityLength, VolumeLocation};
+use chiaroscuro_scene::{LookRecord, OpacityLength, Preset, VolumeLocation};
 use chiaroscuro_volume::{Downsampling, Portion, VolumeChoice};
 
 impl VolumeOpener<'_> {
@@ -30,6 +30,16 @@ impl VolumeOpener<'_> {
     pub(super) fn open_volume(&mut self, source: &Path) {
         if self.start_loading(source, ReadChoices::default()) {
             self.state.requests.pending_look = None;
+        }
+    }
+
+    /// Opens a built-in volume with its scene.
+    pub(crate) fn open_scene(&mut self, scene: &Preset) {
+        let Some(volume) = scene.scene_volume() else { return };
+        self.editor.messages.dismiss();
+        match LookRecord::parse(scene.json()) {
+            Ok(record) => self.open_with(Path::new(&format!("builtin:{volume}")), record),
+            Err(err) => self.editor.messages.error(text::opening::SETTINGS_NOT_LOADED, err.to_string()),
         }
     }
 
@@ -55,34 +65,12 @@ impl VolumeOpener<'_> {
         ReadChoices { choice: Some(said.with_fallback(choice)), ..ReadChoices::default() }
     }
 
-    /// Opens the file, look or session named at the start. If a look cannot be used, the default volume is opened.
+    /// Opens the file, look or session named at the start, if one is; without a volume the start screen is shown.
     pub(crate) fn open_first(&mut self, source: Option<&Path>, volume: Option<&Path>) {
         match (source, volume) {
             (Some(look), Some(volume)) => self.open_look_with(look, volume),
             (Some(source), None) | (None, Some(source)) => self.open(source),
             (None, None) => self.open_volume_of_session(),
-        }
-        self.open_default_if_empty(ReadPurpose::Open);
-    }
-
-    /// Opens the default volume if reading a file to open has led to nothing and no volume is open.
-    pub(crate) fn open_default_if_empty(&mut self, reason: ReadPurpose) {
-        let is_empty = self.editor.document.volume.is_none() && self.editor.viewport.dataset().is_none();
-        let is_busy =
-            self.state.loader.progress().is_some() || self.state.file_tasks.is_reading(ReadPurpose::Open);
-        if reason == ReadPurpose::Open && is_empty && !is_busy {
-            self.start_loading(Path::new(DEFAULT_SOURCE), ReadChoices::default());
-        }
-    }
-
-    /// Opens the first volume, which has waited for the user's answer about the last session, unless a volume is open
-    /// or being opened.
-    pub(crate) fn open_deferred(&mut self) {
-        let is_free = self.editor.document.volume.is_none()
-            && self.state.loader.progress().is_none()
-            && !self.state.untrusted_path.is_open();
-        if std::mem::take(&mut self.state.default_open_waits) && is_free {
-            self.open_first(None, None);
         }
     }
 

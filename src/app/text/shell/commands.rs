@@ -4,6 +4,14 @@ use crate::app::text::data;
 use chiaroscuro_volume::{Downsampling, KindName};
 
 pub(crate) const OPEN_DIALOG: &str = "Open…";
+/// Shows the start screen with the built-in scenes and recent files.
+pub(crate) const SHOW_START: &str = "Start";
+
+/// Opens a built-in scene.
+pub(crate) fn open_scene(title: &str) -> String {
+    format!("Open scene: {title}")
+}
+
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";
 pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";

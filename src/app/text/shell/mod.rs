@@ -6,4 +6,5 @@ pub(crate) mod menu;
 pub(crate) mod messages;
 pub(crate) mod opening;
 pub(crate) mod persistence;
+pub(crate) mod start_screen;
 pub(crate) mod status;

@@ -256,7 +256,7 @@ fn use_even_slabs(settings: &mut Settings) {
 }
 
 /// Returns quick settings for a small picture.
-fn quick_settings(settings: &Settings) -> Settings {
+pub(crate) fn quick_settings(settings: &Settings) -> Settings {
     let mut quick = settings.clone();
     quick.shadows.resolution = LightVolumeResolution::Half;
     (quick.shadows.kernel, quick.sampling.kernel) =

@@ -16,7 +16,7 @@ use crate::app::text;
 use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use chiaroscuro_scene::Settings;
 
-pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, render_small};
+pub(crate) use self::candidates::{ContactSheetKind, PICTURE_SIZE as SMALL, quick_settings, render_small};
 
 /// Height above and below the pictures, in points: default position of the window, its title, the row of buttons, and
 /// margins.

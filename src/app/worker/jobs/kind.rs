@@ -19,6 +19,7 @@ pub(crate) enum JobKind {
     RawSlices,
     ReadFile,
     SavedThumbnails,
+    SceneCard,
     VolumeThumbnail,
     WarmUp,
 }
@@ -43,6 +44,7 @@ impl JobKind {
             Self::RawSlices => "raw-slices",
             Self::ReadFile => "file",
             Self::SavedThumbnails => "kept",
+            Self::SceneCard => "scene-card",
             Self::VolumeThumbnail => "preview",
             Self::WarmUp => "warm-up",
         }
