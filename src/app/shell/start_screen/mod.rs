@@ -179,7 +179,11 @@ fn focus_by_arrow_key(ui: &egui::Ui, first: egui::Id) {
     let arrows = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown];
     let is_pressed = ui.input(|input| arrows.iter().any(|key| input.key_pressed(*key)));
     if is_pressed && ui.memory(|memory| memory.focused().is_none()) {
-        ui.memory_mut(|memory| memory.request_focus(first));
+        ui.memory_mut(|memory| {
+            // This press only finds the first one, and does not move on.
+            memory.move_focus(egui::FocusDirection::None);
+            memory.request_focus(first);
+        });
     }
 }
 
