@@ -170,6 +170,7 @@ impl eframe::App for App {
 impl App {
     /// Shows the start screen in place of the picture, with the messages over it.
     fn show_start(&mut self, ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
+        self.editor.report_notices();
         let recent = self.editor.memory.recent();
         let context = Some(self.editor.viewport.context()).filter(|_| !self.opening.is_opening());
         let thumbnails = &mut self.panels.recent_pictures;

@@ -149,10 +149,15 @@ impl LookEditor {
                 self.memory.autosave_thumbnail(picture);
             }
             // Not before there is a volume, which clears the messages.
-            let notices = self.memory.take_notices();
-            if !notices.is_empty() {
-                self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
-            }
+            self.report_notices();
+        }
+    }
+
+    /// Reports the notices about the state that outlives a run, each once.
+    pub(crate) fn report_notices(&mut self) {
+        let notices = self.memory.take_notices();
+        if !notices.is_empty() {
+            self.messages.error(text::persistence::STARTUP_NOTICES, notices.join("\n\n"));
         }
     }
 
