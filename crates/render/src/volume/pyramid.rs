@@ -4,7 +4,6 @@
 
 use std::ops::Range;
 
-use super::density_pyramid::DensityPyramid;
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, VolumeContext};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
@@ -129,7 +128,8 @@ pub(crate) fn fill_pyramid(
 ) -> Result<(), GpuError> {
     let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
     let bricks = &volume.filled_levels[level as usize][range.clone()];
-    let Some(DensityPyramid { texture, .. }) = &volume.pyramid else { return Ok(()) };
+    let Some(pyramid) = &volume.pyramid else { return Ok(()) };
+    let texture = &pyramid.texture;
     let format = texture.format();
     let pipeline = match level {
         0 => shaders.pipeline_into(&PrefilterVariant { has_missing: volume.presence.is_some() }, format)?,

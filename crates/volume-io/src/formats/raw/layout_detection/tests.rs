@@ -30,10 +30,16 @@ const UNUSUAL_HEADER_BYTES: usize = 1000;
 /// Lengths of headers: none, usual ones, and the unusual one.
 const HEADERS: [usize; 6] = [0, 352, 0, 512, 1024, UNUSUAL_HEADER_BYTES];
 
+/// Returns the built-in volumes of measured values: layouts are found by how alike neighbours are, which says little of
+/// labels.
+fn measured_names() -> impl Iterator<Item = &'static str> {
+    BUILTIN_NAMES.into_iter().filter(|name| *name != "stained_glass")
+}
+
 /// Test cases: every built-in volume in every type, with byte orders, headers and shapes in turn.
 fn cases() -> Vec<DetectionCase> {
     let mut cases = Vec::new();
-    for name in BUILTIN_NAMES {
+    for name in measured_names() {
         for voxel_type in VoxelType::ALL {
             for _ in 0..2 {
                 let at = cases.len();
@@ -109,7 +115,7 @@ fn check(cases: Vec<DetectionCase>) {
     let edges = SHAPES.map(|dims| dims.into_iter().max().unwrap_or_default());
     let volume = |name: &'static str, n: usize| (name, n, builtin(name, Some(n)).expect("a built-in volume"));
     let volumes: Vec<(&str, usize, Volume)> =
-        BUILTIN_NAMES.iter().flat_map(|name| edges.map(|n| volume(name, n))).collect();
+        measured_names().flat_map(|name| edges.map(|n| volume(name, n))).collect();
     let places: Vec<(DetectionCase, Option<usize>, bool)> = cases
         .into_par_iter()
         .map(|case| {

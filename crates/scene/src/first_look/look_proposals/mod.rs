@@ -1,7 +1,10 @@
 //! Look proposals: complete looks of a volume that differ in material, lighting or view.
 
+mod publication_looks;
+
 use glam::DVec3;
 
+use self::publication_looks::publication_looks;
 use super::domain::DataDomain;
 use super::threshold::otsu_threshold;
 use super::{MIN_VISIBLE_OPACITY, floor_color, frame_object, histogram_above, transfer};
@@ -51,7 +54,7 @@ const SOFT_DEG: f64 = 8.0;
 /// Colour of fired clay, with which modellers judge form by light alone.
 const CLAY_COLOR: [f32; 3] = [0.80, 0.76, 0.72];
 
-/// Returns eight looks of a volume, the first look first, another if it has an inner structure, and one more if that
+/// Returns twelve looks of a volume, the first look first, another if it has an inner structure, and one more if that
 /// is not within a veil already. The volume may be subsampled.
 ///
 /// Looks that every volume has come first, so that a number selects the same kind of look for all data.
@@ -83,6 +86,7 @@ pub fn propose_looks(first: &Settings, volume: &Volume, histogram: &Histogram) -
     transfer::scale_opacity(&mut thin.layer_mut().transfer, TRANSLUCENT_OPACITY);
     thin.layer_mut().labels.modify_all(|_, look| look.opacity *= TRANSLUCENT_OPACITY);
     all.push(proposal("Translucent", "less opaque: what lies behind shows through", thin));
+    all.extend(publication_looks(first));
     let has_veil = veil_end(&first.layer().transfer);
     if let Some(start) = has_veil.or_else(|| inner_start(&first.layer().transfer, volume, histogram)) {
         let channels = DataDomain::from_channels(volume);
@@ -188,12 +192,12 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_eight_to_ten_that_differ() {
+    fn looks_are_twelve_to_fourteen_that_differ() {
         for volume in
             [ball(200.0, 0.0), builtin("chair", Some(32)).unwrap(), builtin("cloud", Some(32)).unwrap()]
         {
             let all = proposals(&volume);
-            assert!((8..=10).contains(&all.len()), "{}", all.len());
+            assert!((12..=14).contains(&all.len()), "{}", all.len());
             assert_eq!(all[0].settings, first_settings(&volume, &Histogram::from_volume(&volume)));
             for (at, one) in all.iter().enumerate() {
                 let others = &all[at + 1..];
