@@ -105,7 +105,7 @@ fn looks_are_tried_on_the_volume() {
     // The other looks follow one by one.
     wait_for(&mut harness, "Refresh");
     let count = harness.query_all_by_label_contains("Use ").count();
-    assert!([8, 10].contains(&count), "{count} looks");
+    assert!([12, 14].contains(&count), "{count} looks");
     assert_eq!(harness.state().settings(), &before, "trying changes nothing");
     harness.query_all_by_label_contains("Rim light").next().expect("a look").click();
     harness.run_steps(3);

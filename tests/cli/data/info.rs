@@ -118,7 +118,7 @@ fn looks_are_listed_and_taken_by_their_numbers() {
     let facts: serde_json::Value =
         serde_json::from_str(&folder.run_successfully("info builtin:chair:24 --json")).expect("JSON");
     let looks = facts["looks"].as_array().expect("a list");
-    assert!([8, 10].contains(&looks.len()), "{looks:?}");
+    assert!([12, 14].contains(&looks.len()), "{looks:?}");
     let number = |name: &str| {
         let look = looks.iter().find(|look| look["name"] == name).expect("a look");
         look["number"].as_u64().expect("a number")
@@ -134,7 +134,7 @@ fn looks_are_listed_and_taken_by_their_numbers() {
     assert_eq!(rim["camera"], first["camera"]);
     let above = settings(&format!("--look {} --set shading.ambient=0.3", number("From above")));
     assert_eq!((&above["floor"]["on"], &above["shading"]["ambient"]), (&true.into(), &0.3.into()));
-    for wrong in ["0", "11"] {
+    for wrong in ["0", "15"] {
         let outcome = folder.run(&format!("{RENDER} --look {wrong}"));
         assert!(outcome.code == Some(2) && outcome.stderr.contains("expected 1 to"), "{outcome:?}");
     }
