@@ -76,8 +76,9 @@ pub struct App {
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
-    /// Screen with the built-in scenes and recent files, while no volume is open.
-    start_screen: StartScreen,
+    /// Screen with the built-in scenes and recent files, while no volume is open; boxed, as it would make the frame of
+    /// the constructor too large.
+    start_screen: Box<StartScreen>,
 }
 
 /// Longest wait of a closing window for jobs that still use the graphics driver.

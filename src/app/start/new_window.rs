@@ -16,7 +16,6 @@ use crate::app::persistence::PersistentState;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::picture_area::PictureTools;
-use crate::app::shell::start_screen::StartScreen;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
 use crate::app::viewport::Viewport;
@@ -144,7 +143,7 @@ impl App {
             drag_cancel: DragCancel::default(),
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
-            start_screen: StartScreen::default(),
+            start_screen: Box::default(),
         })
     }
 }

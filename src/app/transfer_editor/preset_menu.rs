@@ -60,7 +60,7 @@ impl PresetMenu {
                 ui.spacing_mut().item_spacing = Vec2::splat(2.0);
                 ui.set_width(COLUMNS * (THUMBNAIL_SIZE.x + 2.0 * THUMBNAIL_MARGIN + 2.0));
                 // Those of the benchmarks and of scenes are for one volume each.
-                let listed: Vec<Preset> = PRESETS.into_iter().filter(|preset| preset.is_offered()).collect();
+                let listed: Vec<Preset> = PRESETS.into_iter().filter(Preset::is_offered).collect();
                 for domain in listed.chunk_by(|a, b| a.domain() == b.domain()) {
                     ui.add_space(6.0);
                     ui.weak(domain.first().map_or("", Preset::domain_title));

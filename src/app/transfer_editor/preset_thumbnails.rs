@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn every_preset_of_the_menu_has_a_picture() {
-        for preset in PRESETS.into_iter().filter(|preset| preset.is_offered()) {
+        for preset in PRESETS.into_iter().filter(Preset::is_offered) {
             let picture =
                 decode_thumbnail(&preset).unwrap_or_else(|| panic!("{} has no picture", preset.name));
             assert_eq!(picture.size, [176, 116], "{}", preset.name);

@@ -137,7 +137,7 @@ mod tests {
             assert!((1..=MAX_COLUMNS).contains(&columns), "{room}");
             assert!(columns as f32 * (width + GAP) - GAP <= room, "{room}: {columns} of {width}");
             assert!(columns == 1 || width >= MIN_WIDTH.floor(), "{room}: {width}");
-            let is_full = width == MAX_WIDTH || columns as f32 * (width + 1.0 + GAP) - GAP > room;
+            let is_full = width >= MAX_WIDTH || columns as f32 * (width + 1.0 + GAP) - GAP > room;
             assert!(is_full, "{room}: {columns} of {width}");
         }
     }
