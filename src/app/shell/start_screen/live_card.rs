@@ -82,7 +82,7 @@ impl LiveCard {
 
     /// Ends the rendering, and shows the scene's own picture again.
     pub(super) fn rest(&mut self) {
-        // What has ended is dropped.
+        // The result of a rendering that has ended is dropped, so that its last picture does not arrive later.
         self.task.take_ended();
         self.task.cancel();
         self.shown = None;

@@ -1,7 +1,7 @@
 //! Voxels on the faces of a grid.
 
 /// Returns the indices of the voxels of one of the six faces of a grid: at the start and at the end of x, of y and of z.
-/// Of longer edges, `max_per_edge` voxels at most are evenly spread.
+/// A face with edges longer than `max_per_edge` is subsampled evenly, to at most that many voxels along each edge.
 pub(crate) fn face_voxels(dims: [usize; 3], face: usize, max_per_edge: usize) -> impl Iterator<Item = usize> {
     let strides = [1, dims[0], dims[0] * dims[1]];
     let (axis, is_last) = (face / 2, face % 2 == 1);
