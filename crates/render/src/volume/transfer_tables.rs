@@ -61,13 +61,8 @@ impl TransferTable {
             };
         }
         let dims = volume.bricks.dims;
-        let CellOccupancy { bricks, cells } = occupancy(volume, &baked);
+        let CellOccupancy { bricks, cells: masks } = occupancy(volume, &baked, bounded);
         let occupied = BrickSet::new(dims, bricks);
-        let masks = if bounded {
-            cells
-        } else {
-            occupied.members.iter().map(|&member| if member { u64::MAX } else { 0 }).collect()
-        };
         let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::from_set(&CellSet { dims, masks }));
         let clearance = distances.min_at_faces(volume.volume.dims().map(|n| (n - 1) / CELL_EDGE));
@@ -163,17 +158,21 @@ impl TransferTable {
     }
 }
 
-/// Returns the bricks and cells in which a transfer function has extinction. Labels are looked up voxel by voxel:
-/// ranges of their numbers would include others that are visible.
-fn occupancy(volume: &GpuVolume, baked: &BakedTransfer) -> CellOccupancy {
-    let bricks = &volume.bricks;
-    if volume.volume.shown_labels().is_some() {
-        return CellOccupancy::from_labels(&volume.volume, bricks, baked.exact_visibility_test());
+/// Returns the bricks and cells in which a transfer function has extinction: all cells of such bricks unless the cells'
+/// bounds hold (`bounded`). Labels are looked up voxel by voxel: ranges of their numbers would include others that are
+/// visible.
+fn occupancy(volume: &GpuVolume, baked: &BakedTransfer, bounded: bool) -> CellOccupancy {
+    let known = &volume.bricks;
+    let mut found = if volume.volume.shown_labels().is_some() {
+        CellOccupancy::from_labels(&volume.volume, known, baked.exact_visibility_test())
+    } else {
+        let cells = if bounded { known.cell_masks(baked.visibility_test()) } else { Vec::new() };
+        CellOccupancy { bricks: known.occupancy(baked.visibility_test()), cells }
+    };
+    if !bounded {
+        found.cells = found.bricks.iter().map(|&member| if member { u64::MAX } else { 0 }).collect();
     }
-    CellOccupancy {
-        bricks: bricks.occupancy(baked.visibility_test()),
-        cells: bricks.cell_masks(baked.visibility_test()),
-    }
+    found
 }
 
 /// Tables of both transfer functions of the settings.
