@@ -85,7 +85,10 @@ fn main(@builtin(global_invocation_id) thread: vec3u) {
     let block = vec3f(id);
     let position = scene_from_index(scene.space, (block + 0.5) * scene.voxel_step - 0.5);
     var light = received[at].rgb * scene.has_sky + scene.emission;
-    for (var i = 0u; i < scene.count; i += 1u) {
+    // Never true: software drivers compile loops whose length is a uniform alone for each dispatch anew, and never free
+    // them.
+    let count = select(scene.count, 0u, found.a > 1e30);
+    for (var i = 0u; i < count; i += 1u) {
         // Indexed in the uniform: copying an array that is indexed dynamically would keep it in memory.
         let whole = bound_scene.lights[i];
         var arriving = 0.0;

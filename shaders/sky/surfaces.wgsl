@@ -67,7 +67,10 @@ fn opacity_around(b: vec3f) -> OpacityAround {
 // 4 ⟨c⟩ with the cosine c = max(n·ω, 0), both nearly 1.
 fn open_light(normal: vec3f) -> vec2f {
     var sum = vec2f(0.0);
-    for (var i = 0u; i < geometry.directions; i += 1u) {
+    // Never true for a unit vector: software drivers compile loops whose length is a uniform alone for each dispatch
+    // anew, and never free them.
+    let count = select(geometry.directions, 0u, normal.x > 2.0);
+    for (var i = 0u; i < count; i += 1u) {
         let cosine = max(dot(normal, bound_directions.directions[i].xyz), 0.0);
         sum += vec2f(12.0 * cosine * (1.0 - cosine), 4.0 * cosine);
     }
