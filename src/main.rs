@@ -82,6 +82,7 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         trust_paths: request.trust_paths,
         adjust: None,
         storage: app::storage_folder(),
+        light_search_limit_s: None,
     };
     app::run(options).map_err(|err| match GpuContext::headless() {
         // Without an adapter no window opens, and the window system's own message does not say so.

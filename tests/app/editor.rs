@@ -57,7 +57,7 @@ fn a_point_beyond_the_ends_of_the_curve_brings_one_that_holds_the_rest() {
     let before = transfer(&harness);
     let (first, last) = (before.points[0].value, before.points[2].value);
     let plot = harness.get_by_label("Transfer function plot").rect();
-    for (share, beyond) in [(0.2, first - 1.9 * (last - first)), (0.8, last + 1.9 * (last - first))] {
+    for (share, beyond) in [(0.2, first - 2.6 * (last - first)), (0.8, last + 2.6 * (last - first))] {
         drag(&mut harness, plot.left_top() + vec2(share * plot.width(), 20.0), Vec2::ZERO);
         harness.run_steps(12);
         let after = transfer(&harness);

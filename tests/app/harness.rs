@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
 use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
-use chiaroscuro_scene::{ImageSpec, LookRecord, Settings};
+use chiaroscuro_scene::{ImageSpec, LightSimplification, LookRecord, Settings, SkyMode};
 use chiaroscuro_volume::{Dataset, LoadControl, ValueRanges};
 use chiaroscuro_volume_io::{LoadOptions, open};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Pos2, Vec2};
@@ -20,6 +20,20 @@ pub(crate) const SCENE: &str = "builtin:chair:32";
 /// Creates the usual test window, taller than wide panels need, so that nothing is scrolled out of view.
 pub(crate) fn window() -> Harness<'static, App> {
     let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    adjusted_window(options, Vec2::new(760.0, 1140.0))
+}
+
+/// Creates the usual test window with the complete light of a first look.
+pub(crate) fn first_look_window() -> Harness<'static, App> {
+    let adjust = |mut settings: Settings| {
+        settings.shadows.keep_balanced = false;
+        settings
+    };
+    let options = WindowOptions {
+        source: Some(SCENE.into()),
+        adjust: Some(Box::new(adjust)),
+        ..WindowOptions::default()
+    };
     adjusted_window(options, Vec2::new(760.0, 1140.0))
 }
 
@@ -39,7 +53,10 @@ const FRAME_S: f32 = 0.1;
 
 fn paced_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
     options.adjust.get_or_insert_with(|| {
-        Box::new(|mut settings| {
+        Box::new(|settings| {
+            // Soft light takes several times as long, and few tests are about it.
+            let mut settings = LightSimplification::ALL.apply(&settings);
+            settings.sky.mode = SkyMode::Off;
             settings.shadows.keep_balanced = false;
             settings
         })
@@ -54,7 +71,9 @@ pub(crate) fn automatic_window(options: WindowOptions) -> Harness<'static, App> 
     automatic_window_with(options, Vec2::new(760.0, 1140.0), FRAME_S)
 }
 
-fn automatic_window_with(options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+fn automatic_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+    // Simulated time runs ahead of the search.
+    options.light_search_limit_s.get_or_insert(f64::INFINITY);
     let mut setup = wgpu_setup();
     // Uses the first adapter like the tests of the renderer, software included.
     setup.power_preference = wgpu::PowerPreference::None;

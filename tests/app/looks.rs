@@ -35,7 +35,7 @@ fn the_light_search_is_not_an_undo_step() {
     let (dataset, mut renderer) = second_renderer();
     let first = first_look(&mut renderer, &dataset).expect("a first look");
     let search =
-        LightSearch::new(renderer.shaders(), &dataset, &first, SearchedLight::KeyAndFill).expect("a search");
+        LightSearch::new(renderer.shaders(), &dataset, &first, SearchedLight::KeyAndRim).expect("a search");
     let found = search.run().expect("a search").expect("something is seen");
     let Settings { lights, floor, .. } = found.apply(&first);
     let shown = harness.state().settings().clone();

@@ -1,10 +1,11 @@
 //! Small scenes for comparisons: a volume with shells, rods and soft parts, and looks for it.
 
 use chiaroscuro_scene::{
-    Camera, ControlPoint, LightGeometry, LightSettings, LitSides, NearFieldRay, OpacityInterpolation,
-    OpacityLength, Projection, ReverseKernel, Settings, ShadowSettings, TransferFunction,
+    Camera, ControlPoint, LightGeometry, LightSettings, LightingRig, LitSides, NearFieldRay,
+    OpacityInterpolation, OpacityLength, Projection, ReverseKernel, Settings, ShadowSettings, SkyMode,
+    TransferFunction, first_look,
 };
-use chiaroscuro_volume::{Samples, Volume};
+use chiaroscuro_volume::{Histogram, Samples, Volume};
 use glam::DVec3;
 
 /// Asymmetric volume with thin and thick, hard and soft parts.
@@ -123,6 +124,15 @@ pub(crate) fn axis_camera(azimuth_deg: f64, elevation_deg: f64) -> Camera {
         distance: 4.0,
         ..Camera::default()
     }
+}
+
+/// Sets the light of first looks in earlier versions, a key and a fill light without sizes and no sky, and surfaces as
+/// wide as in the data.
+pub(crate) fn use_hard_light(settings: &mut Settings, volume: &Volume) {
+    settings.lights = LightingRig::KeyAndFill.lights(&settings.camera);
+    settings.sky.mode = SkyMode::Off;
+    settings.layer_mut().transfer =
+        first_look::transfer_for_kind(volume, &Histogram::from_volume(volume), None);
 }
 
 /// Sets the camera of first looks in earlier versions, and the key light 40° from the line of sight, as much to the

@@ -18,6 +18,7 @@ mod lighting_rig;
 mod object_rotation;
 mod settings;
 mod settings_io;
+mod simple_light;
 mod transfer;
 mod transfer_exchange;
 mod turntable;
@@ -33,7 +34,7 @@ pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIU
 pub use self::settings::label_table::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::length::OpacityLength;
 pub use self::settings::light::area_light::{
-    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE, area_light_points,
+    LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
 pub use self::settings::light::cube_axes::cube_axes;
 pub use self::settings::light::direction_sets::{
@@ -83,12 +84,13 @@ pub use comparison_variant::ComparisonVariant;
 pub use environment_map::{BrightLight, EnvironmentMap, Panorama};
 pub use image_spec::{Annotations, ImageSpec, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 pub use light_direction::LightDirection;
-pub use lighting_rig::{LightingRig, key_and_fill};
+pub use lighting_rig::{LightingRig, key_and_fill, key_and_rim};
 pub use object_rotation::{CameraLightRotation, ObjectRotation};
 pub use settings::{
     ANTIALIASING_RAYS, Background, LitSides, MAX_EXPOSURE, MIN_EXPOSURE, OutputSettings, PhongShading,
     SCHEMA, Settings, ToneMap,
 };
+pub use simple_light::LightSimplification;
 pub use transfer::{
     ColorMixing, ControlPoint, Easing, LUT_SIZE, MAX_OPACITY, MAX_POINTS, OpacityInterpolation,
     SMOOTH_SEGMENT_PIECES, TransferFunction, TransferSample, linear_from_srgb, srgb_from_linear,

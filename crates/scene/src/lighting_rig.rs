@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, LightDirection, LightLock, LightSettings};
+use super::{Camera, LightDirection, LightLock, LightSettings, LightShape};
 
 /// Distance of the lights from the centre of the volume, in scene units: outside its half diagonal of at most √3.
 const LIGHT_DISTANCE: f64 = 3.0;
@@ -11,10 +11,25 @@ const LIGHT_DISTANCE: f64 = 3.0;
 /// (of thirteen volumes, by 30 % or more), and nothing was nearly black with either.
 const FILL_INTENSITY: f64 = 0.10;
 
+/// Angular width in degrees of the lights of a first look: softboxes of half a metre from three. Shadows keep their
+/// shape, and lose the hard edge of a lamp.
+const SOFTBOX_DEG: f64 = 10.0;
+
+/// Position of the rim light in view space, right, up and towards the viewer, for a key light on the left: 65° behind
+/// the image plane's side, so that it grazes what the viewer sees, and a little above, so that hollows stay dark.
+const RIM_PLACE: [f64; 3] = [0.75, 0.5, -0.75];
+
+/// Intensity of the rim light relative to a key of 1: its line is brighter than the side in shadow, and no brighter
+/// than the side in light.
+const RIM_INTENSITY: f64 = 0.6;
+
 /// Named arrangement of lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LightingRig {
-    /// Warm key light from the upper left, and a cool fill light without shadows: the lights of a first look.
+    /// Warm key light with a size from the upper left, and a cool rim light from behind: the lights of a first look,
+    /// for which a sky brightens shadows.
+    KeyAndRim,
+    /// Warm key light from the upper left, and a cool fill light without shadows.
     KeyAndFill,
     /// Key, fill and a back light that draws the outline: the portrait photographer's three-point lighting.
     KeyFillBack,
@@ -30,7 +45,8 @@ pub enum LightingRig {
 
 impl LightingRig {
     /// All rigs in the order of menus.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
+        Self::KeyAndRim,
         Self::KeyAndFill,
         Self::KeyFillBack,
         Self::ThreeQuarter,
@@ -42,6 +58,7 @@ impl LightingRig {
     /// Returns the rig's name in menus.
     pub fn name(self) -> &'static str {
         match self {
+            Self::KeyAndRim => "Key and rim",
             Self::KeyAndFill => "Key and fill",
             Self::KeyFillBack => "Key, fill and back",
             Self::ThreeQuarter => "From the side",
@@ -65,6 +82,7 @@ impl LightingRig {
             ..LightSettings::default()
         };
         match self {
+            Self::KeyAndRim => key_and_rim(camera, LightDirection::DEFAULT_KEY).to_vec(),
             Self::KeyAndFill => vec![key, fill],
             Self::KeyFillBack => {
                 let back = LightSettings {
@@ -124,6 +142,25 @@ pub fn key_and_fill(camera: &Camera, place: LightDirection) -> [LightSettings; 2
         ..LightSettings::default()
     };
     [key, fill]
+}
+
+/// Returns a warm key light with a size from the given direction, and a cool rim light behind the object on the other
+/// side, which separates it from a dark background.
+pub fn key_and_rim(camera: &Camera, place: LightDirection) -> [LightSettings; 2] {
+    let [key, fill] = key_and_fill(camera, place);
+    let across = if place.is_right() { -1.0 } else { 1.0 };
+    let behind = DVec3::new(RIM_PLACE[0] * across, RIM_PLACE[1], RIM_PLACE[2]);
+    let key = LightSettings { shape: LightShape::Disc, angle_deg: SOFTBOX_DEG, ..key };
+    let rim = LightSettings {
+        name: "Rim".to_owned(),
+        shape: key.shape,
+        angle_deg: key.angle_deg,
+        position: (camera.scene_from_view() * (behind.normalize_or(DVec3::NEG_Z) * LIGHT_DISTANCE)).into(),
+        intensity: RIM_INTENSITY,
+        casts_shadows: true,
+        ..fill
+    };
+    [key, rim]
 }
 
 #[cfg(test)]

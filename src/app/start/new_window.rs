@@ -9,6 +9,7 @@ use super::window_device::WindowDevice;
 use crate::app::common::drag_cancel::DragCancel;
 use crate::app::common::input_pacing::InputPacing;
 use crate::app::common::theme;
+use crate::app::document::light_placement::SEARCH_LIMIT_S;
 use crate::app::document::session::SessionFile;
 use crate::app::layout::WindowLayout;
 use crate::app::layout::outer_panels::OuterPanels;
@@ -43,7 +44,16 @@ impl App {
         options: WindowOptions,
         legacy: HandoverSlot,
     ) -> Result<Self, AppError> {
-        let WindowOptions { source, load, session, volume, trust_paths, adjust, storage } = options;
+        let WindowOptions {
+            source,
+            load,
+            session,
+            volume,
+            trust_paths,
+            adjust,
+            light_search_limit_s,
+            storage,
+        } = options;
         let memory = PersistentState::new(storage.as_deref(), &cc.egui_ctx);
         if memory.needs_safe_start() {
             return Self::start_safely(cc, storage, memory, legacy);
@@ -56,6 +66,7 @@ impl App {
         app.opening.requests.session_is_due = session.is_some();
         app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
+        app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;
         app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
         Ok(app)

@@ -21,6 +21,8 @@ pub struct WindowOptions {
     pub trust_paths: bool,
     /// Change of the first volume's settings, after the session.
     pub adjust: Option<SettingsAdjustment>,
+    /// Longest time from the first picture to the movement of its lights, in seconds; `None` for two seconds.
+    pub light_search_limit_s: Option<f64>,
     /// Storage folder for the state that outlives a run; see [`super::main_loop::storage_folder`].
     pub storage: Option<PathBuf>,
 }

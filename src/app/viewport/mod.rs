@@ -26,7 +26,7 @@ use eframe::egui::{self, ColorImage};
 
 use self::compare::Compare;
 pub(super) use self::renderer_status::{LightCost, RendererActivity, RendererStatus};
-use super::worker::mailbox::FinishedFrame;
+use super::worker::mailbox::{FinishedFrame, RefinementHold};
 use super::worker::quality::QualityLevel;
 use super::worker::render_thread::RenderThread;
 use super::worker::request::{ComparedLooks, FrameRequest, RenderScene};
@@ -157,8 +157,8 @@ impl Viewport {
     }
 
     /// Delays the full-quality picture while the look is about to change automatically.
-    pub(super) fn hold_refinement(&self, holds: bool) {
-        self.thread.hold_refinement(holds);
+    pub(super) fn hold_refinement(&self, hold: RefinementHold) {
+        self.thread.hold_refinement(hold);
     }
 
     /// Requests a measurement of a look's balance, which takes place once its light volumes are filled.

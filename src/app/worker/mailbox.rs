@@ -61,6 +61,18 @@ pub(crate) struct BalanceRequest {
     pub(crate) settings: Box<Settings>,
 }
 
+/// Hold on refinements while the look is about to change automatically.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum RefinementHold {
+    /// Refinements go on.
+    #[default]
+    Off,
+    /// Refinements stop after filling light volumes, before drawing: brightness is about to change.
+    BeforeDrawing,
+    /// Refinements stop at once: lights are about to move.
+    AtOnce,
+}
+
 /// Messages between the window and the render thread.
 #[derive(Default)]
 pub(crate) struct Mailbox {
@@ -74,9 +86,8 @@ pub(crate) struct Mailbox {
     pub(crate) frame: Option<FinishedFrame>,
     pub(crate) error: Option<GpuError>,
     pub(crate) figures: RenderStatistics,
-    /// True while the look is about to change automatically: refinements stop after filling light volumes, before
-    /// drawing.
-    pub(crate) holds_refinement: bool,
+    /// Hold on refinements while the look is about to change automatically.
+    pub(crate) refinement_hold: RefinementHold,
     /// Pending measurement, which starts when no picture is due.
     pub(crate) balance_request: Option<BalanceRequest>,
     /// Result of the last measurement, with its number.

@@ -2,11 +2,11 @@
 
 mod brightness;
 pub(super) mod difference;
-mod exposure_compensation;
 pub(super) mod jobs;
 pub(super) mod loader;
 pub(super) mod mailbox;
 pub(super) mod memory_estimate;
+mod missing_light_volumes;
 pub(super) mod quality;
 mod render_schedule;
 pub(super) mod render_thread;

@@ -3,8 +3,11 @@
 //! Pure arithmetic: it predicts milliseconds from the measured times of earlier batches and chooses the finest level
 //! that fits the frame budget; the render worker carries it out.
 
+use super::missing_light_volumes::MissingLightVolumes;
 use chiaroscuro_render::plan::preview_slab;
-use chiaroscuro_scene::{LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, SlabMode};
+use chiaroscuro_scene::{
+    LightSimplification, LightVolumeResolution, ReconstructionKernel, RenderEngine, Settings, SlabMode,
+};
 use chiaroscuro_volume::math::SceneSpace;
 
 /// Time budget of a preview during interaction, in milliseconds: a frame at 30 Hz.
@@ -32,6 +35,8 @@ pub(crate) struct QualityLevel {
     pub prefiltered_light: bool,
     /// True if edges are antialiased, as the look says.
     pub antialiased: bool,
+    /// Parts of the light that are left out.
+    pub simplification: LightSimplification,
 }
 
 impl QualityLevel {
@@ -42,6 +47,7 @@ impl QualityLevel {
         prefiltered_eye: false,
         prefiltered_light: false,
         antialiased: false,
+        simplification: LightSimplification::NONE,
     };
     /// Full quality with antialiased edges, as in exports.
     pub(crate) const ANTIALIASED: Self = Self { antialiased: true, ..Self::FULL };
@@ -58,7 +64,7 @@ impl QualityLevel {
 
     /// Returns the settings with which a look is rendered at this level.
     pub(crate) fn settings(self, look: &Settings, scene: &SceneSpace, viewport: [u32; 2]) -> Settings {
-        let mut settings = look.clone();
+        let mut settings = self.simplification.apply(look);
         if !self.is_full() {
             // The scattering engine is too slow during interaction.
             settings.sampling.engine = RenderEngine::Gather;
@@ -75,15 +81,6 @@ impl QualityLevel {
         }
         settings
     }
-}
-
-/// Light volumes that a request needs and that are not filled yet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct MissingLightVolumes {
-    /// Number of volumes that must be filled.
-    pub count: usize,
-    /// True if other volumes can be used as they are.
-    pub has_usable: bool,
 }
 
 /// Running estimate of a duration; the first measurement replaces the guess.
@@ -234,7 +231,9 @@ impl QualityController {
             }
         }
         let exact_ms = self.eye_pixel[0][0].ms * pixels;
-        if coarse.is_none() && exact_ms + light_ms <= budget {
+        let simplification = if self.software { missing.simplification } else { LightSimplification::NONE };
+        let is_complete = simplification == LightSimplification::NONE;
+        if coarse.is_none() && is_complete && exact_ms + light_ms <= budget {
             return QualityLevel::FULL;
         }
         let quick_eye = self.software;
@@ -247,6 +246,7 @@ impl QualityController {
             if self.software { LightVolumeResolution::Quarter } else { LightVolumeResolution::Half };
         let quick_light = quick_light && coarse.is_some();
         QualityLevel {
+            simplification,
             scale,
             light_resolution: coarse.or((missing.count == 0).then_some(fallback)),
             prefiltered_eye: quick_eye,
@@ -285,7 +285,8 @@ mod tests {
         controller
     }
 
-    const ONE: MissingLightVolumes = MissingLightVolumes { count: 1, has_usable: false };
+    const ONE: MissingLightVolumes =
+        MissingLightVolumes { count: 1, has_usable: false, simplification: LightSimplification::ALL };
 
     #[test]
     fn quick_previews_have_preintegrated_slabs() {
@@ -308,7 +309,7 @@ mod tests {
     #[test]
     fn a_slow_one_goes_coarse_in_steps() {
         let refine = measured(false, 20.0, 60.0);
-        let still = refine.preview_level([1000, 1000], MissingLightVolumes::default());
+        let still = refine.preview_level([1000, 1000], MissingLightVolumes::NONE);
         assert_eq!((still.scale, still.prefiltered_eye), (1, false));
         let moving = refine.preview_level([1000, 1000], ONE);
         assert_eq!(moving.light_resolution, Some(LightVolumeResolution::Half));
@@ -316,6 +317,19 @@ mod tests {
         let moving = software.preview_level([1000, 700], ONE);
         assert_eq!(moving.light_resolution, Some(LightVolumeResolution::Quarter));
         assert!(moving.prefiltered_eye && moving.prefiltered_light && moving.scale >= 2, "{moving:?}");
+    }
+
+    #[test]
+    fn only_slow_adapters_simplify_the_light() {
+        let missing = MissingLightVolumes { simplification: LightSimplification::ALL, ..ONE };
+        let level = |software| measured(software, 600.0, 1000.0).preview_level([1000, 700], missing);
+        assert_eq!(level(true).simplification, LightSimplification::ALL);
+        assert_eq!(level(false).simplification, LightSimplification::NONE);
+        // However quick it is, a picture with simplified light is not complete.
+        let quick = measured(true, 0.1, 0.1);
+        let first = MissingLightVolumes { count: 0, ..missing };
+        assert!(!quick.preview_level([100, 70], first).is_full());
+        assert!(quick.preview_level([100, 70], MissingLightVolumes::NONE).is_full());
     }
 
     #[test]
@@ -336,10 +350,10 @@ mod tests {
         let software = measured(true, 600.0, 1000.0);
         assert!(
             !software
-                .preview_level([800, 600], MissingLightVolumes { count: 1, has_usable: true })
+                .preview_level([800, 600], MissingLightVolumes { has_usable: true, ..ONE })
                 .prefiltered_light
         );
-        assert!(!software.preview_level([800, 600], MissingLightVolumes::default()).prefiltered_light);
+        assert!(!software.preview_level([800, 600], MissingLightVolumes::NONE).prefiltered_light);
     }
 
     #[test]

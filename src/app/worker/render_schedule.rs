@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::mailbox::Mailbox;
+use super::mailbox::{Mailbox, RefinementHold};
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_volume::Dataset;
@@ -44,8 +44,8 @@ pub(super) struct RenderSchedule {
     pub is_closed: bool,
     frame_request: Option<FrameRequest>,
     last_change: Instant,
-    /// True while the look is about to change automatically.
-    holds_refinement: bool,
+    /// Hold while the look is about to change automatically.
+    refinement_hold: RefinementHold,
     /// Request whose light volumes were filled while refinement was held.
     prepared_request: Option<FrameRequest>,
     /// True if a picture was published that the window had not taken when the mailbox was last read.
@@ -65,7 +65,7 @@ impl RenderSchedule {
             is_closed: false,
             frame_request: None,
             last_change: Instant::now(),
-            holds_refinement: false,
+            refinement_hold: RefinementHold::Off,
             prepared_request: None,
             is_frame_pending: false,
             published: None,
@@ -76,7 +76,7 @@ impl RenderSchedule {
     /// Takes the window's new requests out of the mailbox.
     pub(super) fn read(&mut self, mailbox: &mut Mailbox) {
         self.is_closed = mailbox.closed;
-        self.holds_refinement = mailbox.holds_refinement;
+        self.refinement_hold = mailbox.refinement_hold;
         if let Some(scene) = mailbox.scene.take() {
             (self.next_scene, self.next_dataset) = (Some(scene), None);
             self.frame_request = None;
@@ -98,7 +98,7 @@ impl RenderSchedule {
 
     /// Returns true if the mailbox contains anything that was not read yet.
     pub(super) fn has_news(&self, mailbox: &Mailbox) -> bool {
-        mailbox.has_changes(self.is_frame_pending) || mailbox.holds_refinement != self.holds_refinement
+        mailbox.has_changes(self.is_frame_pending) || mailbox.refinement_hold != self.refinement_hold
     }
 
     /// Takes the scene that replaces the present one, and resets what is on screen.
@@ -125,7 +125,12 @@ impl RenderSchedule {
 
     /// Returns true if a picture waits until the look has changed; its light volumes are filled meanwhile.
     pub(super) fn is_on_hold(&self, purpose: RenderPurpose) -> bool {
-        purpose != RenderPurpose::Preview && self.holds_refinement
+        purpose != RenderPurpose::Preview && self.refinement_hold == RefinementHold::BeforeDrawing
+    }
+
+    /// Returns true if a picture is dropped until the look has changed.
+    pub(super) fn is_stopped(&self, purpose: RenderPurpose) -> bool {
+        purpose != RenderPurpose::Preview && self.refinement_hold == RefinementHold::AtOnce
     }
 
     /// Records that everything a picture needs before it is drawn is complete.
@@ -138,8 +143,12 @@ impl RenderSchedule {
         let Some(frame_request) = &self.frame_request else { return NextRender::OnMailboxChange };
         let shown = self.published.as_ref().filter(|(shown, _)| shown == frame_request);
         let is_finished = shown.is_some_and(|(shown, quality)| *quality == shown.final_quality());
-        let waits =
-            shown.is_some() && self.holds_refinement && self.prepared_request.as_ref() == Some(frame_request);
+        let waits = shown.is_some()
+            && match self.refinement_hold {
+                RefinementHold::Off => false,
+                RefinementHold::BeforeDrawing => self.prepared_request.as_ref() == Some(frame_request),
+                RefinementHold::AtOnce => true,
+            };
         if is_finished || waits || self.failed_request.as_ref() == Some(frame_request) {
             return NextRender::OnMailboxChange;
         }

@@ -9,7 +9,9 @@ use std::time::Duration;
 use eframe::egui;
 
 use super::jobs::panic_message;
-use super::mailbox::{BalanceRequest, FinishedFrame, Mailbox, RenderStatistics, SharedMailbox};
+use super::mailbox::{
+    BalanceRequest, FinishedFrame, Mailbox, RefinementHold, RenderStatistics, SharedMailbox,
+};
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_render::{GpuContext, GpuError};
@@ -90,11 +92,11 @@ impl RenderThread {
         id
     }
 
-    /// Holds full-quality pictures while `holds`, since the look is about to change automatically.
-    pub(crate) fn hold_refinement(&self, holds: bool) {
+    /// Holds full-quality pictures, since the look is about to change automatically, or releases them.
+    pub(crate) fn hold_refinement(&self, hold: RefinementHold) {
         let mut mailbox = self.shared.mailbox();
-        if mailbox.holds_refinement != holds {
-            mailbox.holds_refinement = holds;
+        if mailbox.refinement_hold != hold {
+            mailbox.refinement_hold = hold;
             self.shared.changed.notify_one();
         }
     }

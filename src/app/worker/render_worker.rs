@@ -12,7 +12,8 @@ use eframe::egui::{self, ColorImage};
 use super::brightness::BrightnessTracker;
 use super::difference::PictureDifference;
 use super::mailbox::{BalanceRequest, FinishedFrame, RenderStatistics, SharedMailbox};
-use super::quality::{MissingLightVolumes, QualityController, QualityLevel};
+use super::missing_light_volumes::MissingLightVolumes;
+use super::quality::{QualityController, QualityLevel};
 use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
@@ -208,7 +209,9 @@ impl RenderWorker {
         let [width, height] = *size;
         let pixels = if looks.right.is_some() { [2 * width, height] } else { *size };
         let last_full_keys = self.last_full_request.as_ref().map(|(_, keys)| keys);
-        self.controller.preview_level(pixels, missing_light_volumes(last_full_keys, frame_request.keys()))
+        let sky_intensity = looks.left.sky.intensity;
+        let missing = MissingLightVolumes::new(last_full_keys, frame_request.keys(), sky_intensity);
+        self.controller.preview_level(pixels, missing)
     }
 
     /// Returns the renderer's options for a look at a quality level.
@@ -244,6 +247,10 @@ impl RenderWorker {
         }
         loop {
             let stage = job.stage();
+            if self.agenda.is_stopped(*purpose) {
+                self.shared.mailbox().figures.refinement_progress = None;
+                return Ok(None);
+            }
             if self.agenda.is_on_hold(*purpose)
                 && matches!(stage, Some(RenderStage::Eye | RenderStage::Display))
             {
@@ -383,16 +390,4 @@ fn renderer_request(
         size: quality.size(size),
         preview_resolution: quality.light_resolution,
     }
-}
-
-/// Counts the full-quality light volumes that a picture would have to fill; sky visibility counts as one, since it
-/// takes about as long, and multiple scattering as four.
-fn missing_light_volumes(last_full: Option<&FrameKeys>, full: &FrameKeys) -> MissingLightVolumes {
-    // The first look has filled all of them.
-    let Some(last_full) = last_full else { return MissingLightVolumes::default() };
-    let lights = full.count_lights_missing_in(last_full);
-    let sky = usize::from(full.sky.is_some() && full.sky != last_full.sky);
-    let bounces = 4 * usize::from(full.bounces.is_some() && full.bounces != last_full.bounces);
-    let count = lights + sky + bounces;
-    MissingLightVolumes { count, has_usable: full.lights.iter().flatten().count() > lights }
 }

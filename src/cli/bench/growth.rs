@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::report::{CaseTimings, round_to_microsecond};
 use crate::cli::CliError;
 use chiaroscuro_render::{GpuContext, RenderOptions, Renderer, ShaderLibrary, TestSwitches, WorkOptions};
-use chiaroscuro_scene::{ShadowAlgorithm, first_look};
+use chiaroscuro_scene::{LightSimplification, ShadowAlgorithm, first_look};
 use chiaroscuro_volume::{Dataset, synthetic};
 
 /// Numbers of voxels along each axis of the test clouds.
@@ -100,7 +100,8 @@ fn light_builds(
     frames: usize,
     compiles: bool,
 ) -> Result<CaseTimings, CliError> {
-    let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
+    let first = first_look::first_settings(loaded.volume(), loaded.histogram());
+    let mut settings = LightSimplification::ALL.apply(&first);
     settings.shadows.algorithm = algorithm;
     // The picture is irrelevant here, but requests the light volume.
     let size = [64; 2];

@@ -111,6 +111,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let mut ratios = serde_json::Map::new();
     let context = GpuContext::headless()?;
     let mut orbits = Vec::new();
+    let mut bench_scene_orbit_ms = None;
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
         let opened = args.look.read_volume(volume, &control_with_size_warning(volume))?;
         let loaded = args.look.adapter_dataset(volume, opened, &context)?;
@@ -156,7 +157,12 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             bench.scattering(&mut cases, &mut found)?;
         }
         if wants("first-look") {
-            bench.first_look(&mut cases)?;
+            let orbit_ms = match bench_scene_orbit_ms {
+                Some(known_ms) => known_ms,
+                None => first_look::bench_scene_orbit_ms(&context)?,
+            };
+            bench_scene_orbit_ms = Some(orbit_ms);
+            bench.first_look(orbit_ms, &mut cases, &mut found)?;
         }
         let several = args.volumes.len() > 1;
         let name = |ratio| if several { format!("{}: {ratio}", loaded.volume().name()) } else { ratio };
@@ -323,13 +329,14 @@ fn print_table(result: &Value) -> Result<(), CliError> {
         print_line(line)?;
     }
     // The first-look and read cases have tables of their own.
-    if cases.iter().all(|case| case["name"] == "first-look" || case["name"] == "read") {
-        return Ok(());
+    let has_own_table = |case: &&Value| case["name"] == "first-look" || case["name"] == "read";
+    let timed: Vec<&Value> = cases.iter().filter(|case| !has_own_table(case)).collect();
+    if !timed.is_empty() {
+        print_line(
+            "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
+        )?;
     }
-    print_line(
-        "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
-    )?;
-    for case in result["cases"].as_array().into_iter().flatten() {
+    for case in timed {
         let number = |value: &Value| value.as_f64().map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         print_line(&format!(
             "{:<27} {:<13} {:>8} {:>9} {:>6} {:>8} {:>13} {:>8}",

@@ -12,7 +12,16 @@ use crate::harness::{DroppedFile, SCENE, adjusted_window, click, wait_until};
 
 /// Creates a window of a usual size without a file argument; `storage` is its folder for state.
 pub(crate) fn start_window(storage: Option<&std::path::Path>) -> Harness<'static, App> {
-    let options = WindowOptions { storage: storage.map(Into::into), ..WindowOptions::default() };
+    // Scenes have the light of their presets.
+    let adjust = |mut settings: Settings| {
+        settings.shadows.keep_balanced = false;
+        settings
+    };
+    let options = WindowOptions {
+        storage: storage.map(Into::into),
+        adjust: Some(Box::new(adjust)),
+        ..WindowOptions::default()
+    };
     let mut harness = adjusted_window(options, Vec2::new(1100.0, 760.0));
     harness.run_steps(10);
     harness

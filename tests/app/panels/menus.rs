@@ -32,7 +32,7 @@ fn all_rows_of_menus_are_reached_in_low_windows() {
     for size in SIZES {
         harness.set_size(size);
         harness.run_steps(6);
-        for (menu, last) in [("File", "Quit"), ("View", "Theme"), ("Light", "Fill"), ("Presets", "Chair")] {
+        for (menu, last) in [("File", "Quit"), ("View", "Theme"), ("Light", "Rim"), ("Presets", "Chair")] {
             open_menu(&mut harness, menu);
             if menu_row_bottom(&harness, last) > size.y {
                 let rows = menu_row_rect(&harness, last);

@@ -6,7 +6,7 @@ use eframe::egui::{Event, Key, Rect, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, wait_until_idle, window};
+use crate::harness::{click, first_look_window, wait_until_idle, window};
 
 fn settings<'h>(harness: &'h Harness<'_, App>) -> &'h Settings {
     harness.state().settings()
@@ -32,8 +32,8 @@ fn set(harness: &mut Harness<'_, App>, name: &str, value: f64) {
 
 #[test]
 fn untouched_settings_have_no_reset_button() {
-    let mut harness = window();
-    for light in ["Light Key, on", "Light Fill, on"] {
+    let mut harness = first_look_window();
+    for light in ["Light Key, on", "Light Rim, on"] {
         click(&mut harness, light);
         assert_eq!(reset_button_count(&harness), 0, "{light}");
     }
@@ -47,11 +47,11 @@ fn untouched_settings_have_no_reset_button() {
 
 #[test]
 fn arrows_of_fields_and_of_sections_put_back_the_first_look() {
-    let mut harness = window();
-    click(&mut harness, "Light Fill, on");
+    let mut harness = first_look_window();
+    click(&mut harness, "Light Rim, on");
     let first = settings(&harness).lights.clone();
     let intensity = first[1].intensity;
-    assert!(intensity < 0.5, "a fill is another than what a new light is: {intensity}");
+    assert!(intensity < 0.9, "a rim light is another than what a new light is: {intensity}");
     for arrow in ["Reset Intensity", "Reset Lights"] {
         set(&mut harness, "Intensity", 0.77);
         assert_eq!(reset_button_count(&harness), 2, "one of the field, and one of the section");
@@ -87,7 +87,7 @@ fn settings_of_a_light_are_indented_under_it_and_controls_stand_in_one_column() 
         assert!((indented.left() - strength.left()).abs() < 1.5, "{indented} over {strength}");
     }
     // The next light of the list follows.
-    assert!(widget_rect(&harness, Role::CheckBox, "Fill on").top() > name.bottom());
+    assert!(widget_rect(&harness, Role::CheckBox, "Rim on").top() > name.bottom());
 }
 
 #[test]

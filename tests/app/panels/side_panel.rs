@@ -167,11 +167,14 @@ fn tips_say_what_other_resolutions_of_soft_light_take() {
         harness.get_all_by_label("Advanced").nth(at).expect("as many as before").click();
         harness.run_steps(8);
     }
-    for at in 0..harness.get_all_by_label("Quarter").count() {
-        let place = harness.get_all_by_label("Quarter").nth(at).expect("as many as before").rect();
-        harness.hover_at(place.center());
-        harness.run_steps(12);
-        tips.extend(harness.query_all_by_label_contains(" about ").map(|tip| format!("{tip:?}")));
+    // The first look has a quarter of the resolution for some of them, and half of it for others.
+    for resolution in ["Quarter", "Half"] {
+        for at in 0..harness.get_all_by_label(resolution).count() {
+            let place = harness.get_all_by_label(resolution).nth(at).expect("as many as before").rect();
+            harness.hover_at(place.center());
+            harness.run_steps(12);
+            tips.extend(harness.query_all_by_label_contains(" about ").map(|tip| format!("{tip:?}")));
+        }
     }
     let saying = |words: &str| tips.iter().filter(|tip| tip.contains(words)).count();
     assert!(saying("Each light volume takes about ") >= 1, "{tips:#?}");

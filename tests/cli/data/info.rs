@@ -169,7 +169,7 @@ fn a_floor_is_as_dark_as_the_exposure_asks() {
     assert_eq!(settings["floor"]["on"], true, "a box gets a floor");
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
     let shown = number(&settings["floor"]["color"][0]) * number(&settings["output"]["exposure"]);
-    assert!((shown - 0.36).abs() < 1e-5, "{shown}");
+    assert!((shown - 0.30).abs() < 1e-5, "{shown}");
 }
 
 #[test]

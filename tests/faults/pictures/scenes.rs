@@ -3,7 +3,7 @@
 use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
 use chiaroscuro_scene::{
     ControlPoint, LightGeometry, LightSettings, Projection, QualityPreset, Settings, ShadowAlgorithm,
-    first_look,
+    SkyMode, first_look,
 };
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::{DAffine3, DMat3, DVec3};
@@ -42,6 +42,7 @@ pub(super) fn random_scene(seed: u64) -> RandomScene {
     // Light that is clipped at 1 is not linear.
     (settings.shadows.gain, settings.shadows.balance) = (1.0, 1.0);
     (settings.shading.emission, settings.shading.ambient) = (0.0, 0.0);
+    settings.sky.mode = SkyMode::Off;
     settings.camera.azimuth_deg = random_share(&mut random) * 360.0;
     settings.camera.elevation_deg = random_share(&mut random) * 180.0 - 90.0;
     settings.camera.projection = [Projection::Perspective, Projection::Orthographic][random.below(2)];

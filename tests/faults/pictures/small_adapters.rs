@@ -3,7 +3,7 @@
 use chiaroscuro_render::{
     GpuContext, GpuError, RenderOptions, Renderer, device_descriptor, downsample_to_fit,
 };
-use chiaroscuro_scene::{RenderEngine, first_look};
+use chiaroscuro_scene::{LightSimplification, RenderEngine, first_look};
 use chiaroscuro_volume::{Dataset, LoadControl};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
@@ -54,7 +54,9 @@ fn check_limits(names: &[&str], limits: &[(u32, u64, u64)]) {
         let volume = || open(name, &LoadOptions::default(), &LoadControl::new()).expect("a volume");
         let dataset = Dataset::new(volume());
         for engine in [RenderEngine::Gather, RenderEngine::Scatter] {
-            let mut settings = first_look::first_settings(dataset.volume(), dataset.histogram());
+            // Point lights, whose volumes have the full resolution.
+            let first = first_look::first_settings(dataset.volume(), dataset.histogram());
+            let mut settings = LightSimplification::ALL.apply(&first);
             settings.sampling.engine = engine;
             // Refusals come before any work; large volumes that are not refused would take too long.
             if dataset.volume().dims()[0] > 200 && engine == RenderEngine::Scatter {

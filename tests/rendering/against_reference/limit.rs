@@ -3,7 +3,7 @@
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
 use chiaroscuro_render::Renderer;
-use chiaroscuro_scene::{LightGeometry, QualityPreset, Settings, SlabMode, first_look};
+use chiaroscuro_scene::{LightGeometry, QualityPreset, Settings, SkyMode, SlabMode, first_look};
 use chiaroscuro_volume::synthetic::builtin;
 
 use crate::common::{Dataset, context, render};
@@ -44,6 +44,10 @@ fn exact_is_the_limit() {
     for name in ["chair", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(24)).expect("a built-in volume"));
         let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
+        settings.sky.mode = SkyMode::Off;
+        // Without the thinner surfaces of small volumes.
+        settings.layer_mut().transfer =
+            first_look::transfer_for_kind(loaded.volume(), loaded.histogram(), None);
         settings.lights = vec![scenes::light(LightGeometry::Parallel, [-2.2, -1.2, 1.6])];
         let (thin, thinner) =
             (limit_picture(&loaded, &settings, 8.0), limit_picture(&loaded, &settings, 16.0));

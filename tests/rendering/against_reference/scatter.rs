@@ -117,6 +117,7 @@ fn both_engines_make_nearly_the_same_picture_by_default() {
     let loaded = Dataset::new(builtin("cloud", Some(64)).expect("the cloud"));
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
+    scenes::use_hard_light(&mut settings, loaded.volume());
     settings.camera.distance = 2.6;
     settings.sampling.slabs = SlabMode::Even;
     settings.sampling.slab = 0.5;

@@ -30,5 +30,5 @@ fn the_first_picture_after_the_warm_up_compiles_nothing() {
 
 #[test]
 fn pipelines_without_warm_up_are_counted() {
-    assert_eq!(pipelines_after_warm_up(|settings| settings.floor.on = true), 1, "the floor");
+    assert_eq!(pipelines_after_warm_up(|settings| settings.floor.on = true), 7, "the floor and its maps");
 }

@@ -3,7 +3,7 @@
 
 use chiaroscuro_render::{RenderOptions, Renderer, plan::picture_frame};
 use chiaroscuro_scene::{
-    LightGeometry, OpacityLength, Projection, QualityPreset, Settings, ShadowAlgorithm,
+    LightGeometry, OpacityLength, Projection, QualityPreset, Settings, ShadowAlgorithm, SkyMode,
     first_look::{self, FirstLookOptions},
 };
 use chiaroscuro_volume::{KindName, synthetic::builtin};
@@ -63,6 +63,9 @@ fn pictures_are_as_bright_as_a_path_tracers() {
         // A ramp of opacities, also for the box, which is a mask.
         let wishes = FirstLookOptions { data_kind: Some(KindName::Scalar), ..FirstLookOptions::default() };
         let mut settings = first_look::first_settings_with(loaded.volume(), loaded.histogram(), wishes);
+        settings.sky.mode = SkyMode::Off;
+        settings.layer_mut().transfer =
+            first_look::transfer_for_kind(loaded.volume(), loaded.histogram(), Some(KindName::Scalar));
         scenes::use_earlier_first_look(&mut settings);
         make_isotropic(&mut settings);
         settings.camera.projection = Projection::Orthographic;

@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 
 use crate::common::{Dataset, context, render};
 use crate::compare::{channels_f32, compare};
-use crate::scenes::use_earlier_first_look;
+use crate::scenes::{use_earlier_first_look, use_hard_light};
 use crate::thresholds::{
     LEG_STRIPES, LEG_STRIPES_RATIO, PREVIEW_BRIGHTNESS, PREVIEW_BRIGHTNESS_SIDE_LIT, PREVIEW_STRIPES,
     PREVIEW_UNEXPOSED,
@@ -81,6 +81,7 @@ fn previews_stay_as_bright_as_pictures() {
     for (name, near_field, is_lit_aside) in looks {
         let volume = builtin(name, Some(64)).expect("a volume");
         let mut home = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
+        use_hard_light(&mut home, &volume);
         home.shadows.near_field = near_field;
         // Ambient light as when the limits were measured: first looks have had less since.
         home.shading.ambient = 0.15;
@@ -132,6 +133,7 @@ fn previews_of_flat_faces_show_no_stripes() {
     let context = context();
     let volume = builtin("chair", Some(64)).expect("a volume");
     let mut settings = first_look::first_settings(&volume, &Histogram::from_volume(&volume));
+    use_hard_light(&mut settings, &volume);
     let loaded = Dataset::new(volume);
     let mut renderer = Renderer::new(&context).expect("a renderer");
     settings.sampling.kernel = ReconstructionKernel::Prefiltered;

@@ -2,7 +2,8 @@
 
 use crate::common::{Dataset, context, render};
 use crate::scenes::{
-    self, axis_camera, linear_extinction, make_isotropic, use_earlier_first_look, use_paper_shadows,
+    self, axis_camera, linear_extinction, make_isotropic, use_earlier_first_look, use_hard_light,
+    use_paper_shadows,
 };
 use crate::thresholds::{
     DIRECT_BEER_LAMBERT, EDGE_CENTRE, EDGE_WIDTH, EDGE_WIDTHS, MIN_COMPARED_LIGHT, SELF_SHADOW,
@@ -182,6 +183,7 @@ fn cures_brighten_and_splatting_is_slightly_darker() {
     let volume = chiaroscuro_volume::synthetic::builtin("chair", Some(48)).expect("the chair");
     let histogram = Histogram::from_volume(&volume);
     let mut settings = first_look::first_settings(&volume, &histogram);
+    use_hard_light(&mut settings, &volume);
     use_earlier_first_look(&mut settings);
     use_paper_shadows(&mut settings);
     let loaded = Dataset::new(volume);

@@ -60,7 +60,7 @@ fn search_lights(
     dataset: &Dataset,
     settings: &Settings,
 ) -> Result<Option<LightSearchResult>, GpuError> {
-    let search = LightSearch::new(renderer.shaders(), dataset, settings, SearchedLight::KeyAndFill);
+    let search = LightSearch::new(renderer.shaders(), dataset, settings, SearchedLight::KeyAndRim);
     match search.and_then(LightSearch::run) {
         Err(err @ (GpuError::OutOfMemory { .. } | GpuError::OverLimit { .. })) => {
             log::warn!("the light search was skipped: {err}");

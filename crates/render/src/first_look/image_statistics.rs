@@ -12,7 +12,7 @@ const SHADOWED_LOSS: f64 = 0.3;
 
 /// Target of the automatic exposure for the median luminance: a little above the 18 % that photographers expose for,
 /// because the background is dark.
-const TARGET_MEDIAN: f64 = 0.20;
+const TARGET_MEDIAN: f64 = 0.26;
 
 /// Range of the automatic exposure: half a stop down, not quite one up. Beyond that the settings are at fault, and
 /// intentionally dark pictures stay dark.
@@ -131,9 +131,9 @@ mod tests {
     #[test]
     fn exposures_bring_the_median_to_its_place() {
         let even = |value: f32| vec![grey(value); 99];
-        assert!((automatic_exposure(&even(0.2)) - 1.0).abs() < 1e-6);
-        assert!((automatic_exposure(&even(0.16)) - 1.25).abs() < 1e-6);
-        assert!((automatic_exposure(&even(0.25)) - 0.8).abs() < 1e-6);
+        assert!((automatic_exposure(&even(0.26)) - 1.0).abs() < 1e-6);
+        assert!((automatic_exposure(&even(0.208)) - 1.25).abs() < 1e-6);
+        assert!((automatic_exposure(&even(0.325)) - 0.8).abs() < 1e-6);
         assert_eq!(automatic_exposure(&even(0.01)), 1.8, "what is dark is not made up");
         assert_eq!(automatic_exposure(&even(0.9)), 0.7);
         // A tenth is bright: limited to 0.9, whatever the median.
@@ -141,7 +141,7 @@ mod tests {
         bright.iter_mut().take(10).for_each(|texel| *texel = grey(0.75));
         assert!((automatic_exposure(&bright) - 1.2).abs() < 1e-6);
         // Barely opaque pixels do not count, nor does the background seen through the others.
-        let mut half = vec![[0.12, 0.12, 0.12, 0.6]; 9];
+        let mut half = vec![[0.156, 0.156, 0.156, 0.6]; 9];
         half.extend(vec![[0.4, 0.4, 0.4, 0.4]; 90]);
         assert!((automatic_exposure(&half) - 1.0).abs() < 1e-6);
         assert_eq!((automatic_exposure(&[]), automatic_exposure(&even(0.0))), (1.0, 1.0));

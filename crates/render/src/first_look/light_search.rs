@@ -10,7 +10,9 @@ use super::image_statistics::{automatic_exposure, visible_fraction};
 use super::score::LightingScore;
 use super::small_volume::{downsampled_volume, fast_settings};
 use crate::{GpuError, Renderer, ShaderLibrary};
-use chiaroscuro_scene::{LightDirection, LightSettings, Settings, first_look, key_and_fill};
+use chiaroscuro_scene::{
+    LightDirection, LightSettings, LightSimplification, Settings, first_look, key_and_rim,
+};
 use chiaroscuro_volume::Dataset;
 
 /// Minimum gain over the current position, in bits: smaller ones are invisible side by side, and opening similar
@@ -29,8 +31,8 @@ const MIN_VISIBLE_FRACTION: f64 = 0.005;
 /// Light whose position is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchedLight {
-    /// Key light of a first look; its fill light follows on the opposite side.
-    KeyAndFill,
+    /// Key light of a first look; its rim light follows on the opposite side.
+    KeyAndRim,
     /// Light of the settings with this index; the others are not moved.
     Light(usize),
 }
@@ -112,6 +114,7 @@ pub struct LightSearch {
     renderer: Renderer,
     small: Dataset,
     settings: Settings,
+    sought: SearchedLight,
     candidates: VecDeque<LightCandidate>,
     start: Option<LightSuggestion>,
     scored: Vec<(DVec3, LightSuggestion)>,
@@ -140,7 +143,8 @@ impl LightSearch {
         sought: SearchedLight,
     ) -> Result<Self, GpuError> {
         let small = downsampled_volume(dataset)?;
-        let quick = fast_settings(settings, dataset.volume(), small.volume());
+        let quick =
+            fast_settings(&LightSimplification::ALL.apply(settings), dataset.volume(), small.volume());
         let as_they_are = LightCandidate { direction: None, lights: settings.lights.clone(), cost: 0.0 };
         let others = LightDirection::search_candidates()
             .into_iter()
@@ -150,6 +154,7 @@ impl LightSearch {
             candidates: std::iter::once(as_they_are).chain(others).collect(),
             small,
             settings: quick,
+            sought,
             start: None,
             scored: Vec::new(),
             unlit: Vec::new(),
@@ -164,7 +169,8 @@ impl LightSearch {
         let Some(LightCandidate { direction: way, lights, cost }) = self.candidates.pop_front() else {
             return Ok(false);
         };
-        let quick = Settings { lights: lights.clone(), ..self.settings.clone() };
+        let drawn = drawn_lights(&lights, self.sought);
+        let quick = LightSimplification::ALL.apply(&Settings { lights: drawn, ..self.settings.clone() });
         let seen = if self.start.is_none() {
             BrightnessPictures::draw(&mut self.renderer, &self.small, &quick)?
         } else {
@@ -220,12 +226,22 @@ impl LightSearch {
     }
 }
 
+/// Returns the lights that pictures of the search are drawn with: the rim light of a first look casts no shadows, as
+/// filling its volume would double the time and hardly change which place of the key light is best.
+fn drawn_lights(lights: &[LightSettings], sought: SearchedLight) -> Vec<LightSettings> {
+    let mut drawn = lights.to_vec();
+    if sought == SearchedLight::KeyAndRim {
+        drawn.iter_mut().skip(1).for_each(|light| light.casts_shadows = false);
+    }
+    drawn
+}
+
 /// Returns the lights with the selected one moved to a position; `None` if there is no such light.
 fn candidate(settings: &Settings, place: LightDirection, sought: SearchedLight) -> Option<LightCandidate> {
     let way = place.view_direction();
     let cost = if place.is_right() { RIGHT_SIDE_COST_BITS } else { 0.0 };
     let lights = match sought {
-        SearchedLight::KeyAndFill => key_and_fill(&settings.camera, place).to_vec(),
+        SearchedLight::KeyAndRim => key_and_rim(&settings.camera, place).to_vec(),
         SearchedLight::Light(index) => {
             let mut lights = settings.lights.clone();
             let light = lights.get_mut(index)?;

@@ -9,14 +9,19 @@ use crate::light::march::MarchVariant;
 use crate::output::display::DisplayVariant;
 use crate::pipelines::pipeline_variant::{LightCount, PipelineVariant, SingleVariant};
 use crate::volume::pyramid::PrefilterVariant;
-use crate::{GpuError, ShaderLibrary};
+use crate::{GpuError, RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro_scene::{
-    ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SlabMode,
+    ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SkyMode,
+    SkySettings, SlabMode, first_look,
 };
-use chiaroscuro_volume::CancelToken;
+use chiaroscuro_volume::{CancelToken, Dataset, synthetic::builtin};
 
 /// Number of lights in a first look.
-const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 1 };
+const FIRST_LIGHTS: LightCount = LightCount { all: 2, shadowed: 2 };
+
+/// Edge of the volume that is drawn to compile the passes of soft light, in voxels, and the size of its picture.
+const WARM_UP_VOXELS: usize = 32;
+const WARM_UP_SIZE: [u32; 2] = [16, 12];
 
 /// Kernels and slabs of previews and of pictures.
 const KERNELS_AND_SLABS: [(ReconstructionKernel, SlabMode); 2] = [
@@ -40,7 +45,23 @@ impl ShaderLibrary {
             &DisplayVariant { samples: 1, is_linear: false, is_deep: false },
             cancel,
         )?;
-        self.warm_up_passes(&Clipping::default(), cancel)
+        self.warm_up_passes(&Clipping::default(), cancel)?;
+        self.warm_up_soft_light(false, cancel)
+    }
+
+    /// Compiles the passes of soft light, by drawing a small volume's first look, with a floor or without.
+    fn warm_up_soft_light(&self, has_floor: bool, cancel: &CancelToken) -> Result<(), GpuError> {
+        let Ok(volume) = builtin("chair", Some(WARM_UP_VOXELS)) else { return Ok(()) };
+        if cancel.is_cancelled() {
+            return Ok(());
+        }
+        let dataset = Dataset::new(volume);
+        let mut look = first_look::first_settings(dataset.volume(), dataset.histogram());
+        // As many blocks per voxel as in large volumes.
+        look.shadows.least_blocks = 1;
+        look.floor.on = has_floor;
+        let mut renderer = Renderer::with_shaders(&self.context, self.clone())?;
+        renderer.draw(&dataset, &look, WARM_UP_SIZE, &RenderOptions::default())
     }
 
     fn compile_unless_cancelled(
@@ -62,9 +83,11 @@ impl ShaderLibrary {
     pub fn warm_up_optional(&self, cancel: &CancelToken) -> Result<(), GpuError> {
         for (kernel, _) in KERNELS_AND_SLABS {
             let shadows = ShadowSettings { kernel, ..ShadowSettings::default() };
-            let settings = Settings { shadows, ..Settings::default() };
+            let sky = SkySettings { mode: SkyMode::Gradient, ..SkySettings::default() };
+            let settings = Settings { shadows, sky, ..Settings::default() };
             self.compile_unless_cancelled(&FloorVariant::from_settings(&settings, FIRST_LIGHTS), cancel)?;
         }
+        self.warm_up_soft_light(true, cancel)?;
         let plane = ClipPlane { on: true, ..ClipPlane::default() };
         self.warm_up_passes(&Clipping { plane, ..Clipping::default() }, cancel)
     }
@@ -76,6 +99,7 @@ impl ShaderLibrary {
                 let settings = Settings {
                     sampling: SamplingSettings { kernel, slabs, ..SamplingSettings::default() },
                     shadows: ShadowSettings { kernel, ..ShadowSettings::default() },
+                    sky: SkySettings { mode: SkyMode::Gradient, ..SkySettings::default() },
                     cuts: cuts.clone(),
                     ..Settings::default()
                 };

@@ -8,7 +8,7 @@ use crate::pipelines::layouts::ATTENUATION;
 use crate::pipelines::uniforms;
 use crate::plan::ActiveLight;
 use crate::volume::VolumeContext;
-use chiaroscuro_scene::{LightArea, LightGeometry, SceneLight, Settings, area_light_points};
+use chiaroscuro_scene::{LightArea, LightGeometry, SceneLight, Settings};
 use chiaroscuro_volume::math::SceneSpace;
 
 /// Light with its attenuation volume.
@@ -46,7 +46,7 @@ pub(crate) fn light_uniform(
         cone_cos_outer: cone.cos_outer as f32,
         last_step_extension: volume.map_or(0.0, |volume| 0.5 * volume.divisor as f64 * scene.smallest_edge())
             as f32,
-        points: light.area.map_or(1, |_| area_light_points(settings.shadows.area.samples)),
+        points: light.sample_count(settings.shadows.area.samples),
         shape: light.area.map_or(0, |area| area.shape as u32),
         near_steps: light.near_field_steps(settings.effective_near_field()),
         area_right: border(|area| area.right),

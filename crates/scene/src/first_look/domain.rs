@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use chiaroscuro_volume::{DataKind, FileDimension, Modality, ValueMeaning, Volume};
+use super::histogram_above;
+use chiaroscuro_volume::{DataKind, FileDimension, Histogram, Modality, ValueMeaning, Volume};
 
 /// Domain of a volume, which decides its palette.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub(super) enum DataDomain {
     Bone,
     /// Tissue in magnetic resonance imaging.
     MagneticResonance,
+    /// Vessels in magnetic resonance angiography.
+    Vessels,
     /// Machines and other objects in industrial CT.
     Metal,
     /// Fluorescence and other light microscopy.
@@ -30,11 +33,12 @@ pub(super) enum DataDomain {
 
 impl DataDomain {
     #[cfg(test)]
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::Unknown,
         Self::SoftTissue,
         Self::Bone,
         Self::MagneticResonance,
+        Self::Vessels,
         Self::Metal,
         Self::Fluorescence,
         Self::Molecule,
@@ -57,6 +61,15 @@ impl DataDomain {
 
     /// Returns the domain of a volume whose object begins at a density.
     pub(super) fn detect(volume: &Volume, start: f64) -> Self {
+        let domain = Self::detect_whole(volume, start);
+        if domain == Self::MagneticResonance && share_above(volume, start) < MAX_VESSEL_SHARE {
+            return Self::Vessels;
+        }
+        domain
+    }
+
+    /// Returns the domain regardless of how much the object fills.
+    fn detect_whole(volume: &Volume, start: f64) -> Self {
         if let Some(said) = Self::from_channels(volume).or_else(|| Self::from_hints(volume)) {
             return said;
         }
@@ -92,6 +105,16 @@ impl DataDomain {
 
 /// One nanometre in millimetres: no light microscope has voxels as small.
 const NANOMETRE_MM: f64 = 1e-6;
+
+/// Largest share of the voxels that vessels fill: those of an angiography of the head have 0.3 to 1.5 %, and heads and
+/// brains more than a tenth.
+const MAX_VESSEL_SHARE: f64 = 0.03;
+
+/// Returns the share of a volume's voxels above a density.
+fn share_above(volume: &Volume, density: f64) -> f64 {
+    let histogram = Histogram::from_volume(volume);
+    histogram_above(&histogram, density).total as f64 / histogram.total.max(1) as f64
+}
 
 fn is_hounsfield(volume: &Volume) -> bool {
     matches!(volume.kind().kind, DataKind::HounsfieldCt { .. })

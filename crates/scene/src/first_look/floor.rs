@@ -19,7 +19,7 @@ const MIN_ELEVATION_DEG: f64 = 8.0;
 
 /// Displayed brightness of a fully lit floor in a first look, as a share of white in sRGB: as bright as material, and
 /// dark enough that the eye stays with that.
-const TARGET_GREY: f64 = 0.36;
+const TARGET_GREY: f64 = 0.30;
 
 /// Range of the floor's grey. A darker one would show no shadow (a tenth of sRGB is a hundredth of the light), and
 /// none is lighter than the default floor.
@@ -57,9 +57,10 @@ const MIN_LARGEST_PART: f64 = 0.9;
 /// Height of the lowest part of an object, as a share of its height.
 const BASE_HEIGHT: f64 = 0.03;
 
-/// Width of an object's lowest part from which it stands, as a share of the object's width in both directions: the
-/// legs of a chair, not the cap of a ball, which has a third, and a half of twenty cells.
-const MIN_BASE_WIDTH: f64 = 0.6;
+/// Width of an object's lowest part from which it rests on a floor, as a share of the object's width in both
+/// directions: the legs of a chair have nearly all, the roots of a tooth a half, the cap of a ball a third. Less is a
+/// tip.
+const MIN_BASE_WIDTH: f64 = 0.3;
 
 /// Share of an object's lowest part on the volume's face from which the object is cut off there.
 const MAX_FACE_SHARE: f64 = 0.3;
@@ -69,7 +70,7 @@ const MAX_FACE_SHARE: f64 = 0.3;
 enum ObjectBase {
     /// Cut off by the boundary of the data.
     Cut,
-    /// Too narrow to stand: it would fall over, or roll.
+    /// Tip, on which nothing stands.
     Narrow,
     /// Broad enough to stand on.
     Broad,
@@ -147,6 +148,10 @@ mod tests {
         p.length() < 12.0
     }
 
+    fn spindle(p: DVec3) -> bool {
+        p.truncate().length() < 12.0 - p.z.abs()
+    }
+
     fn block(p: DVec3) -> bool {
         p.abs().max_element() < 12.0
     }
@@ -165,8 +170,9 @@ mod tests {
         for (name, is_there, shadowed, expected) in [
             ("block", block as fn(DVec3) -> bool, 0.5, true),
             ("table", table, 0.5, true),
-            ("ball", ball, 0.5, false),
-            ("ball without shadows", ball, 0.01, true),
+            ("ball", ball, 0.5, true),
+            ("spindle", spindle, 0.5, false),
+            ("spindle without shadows", spindle, 0.01, true),
             ("pieces", pieces, 0.5, false),
         ] {
             assert_eq!(needs_floor(&look(), &volume(is_there), shadowed), expected, "{name}");

@@ -10,14 +10,14 @@ mod domain;
 mod empty_look_fallback;
 mod floor;
 mod frame;
-mod isosurfaces;
+mod lighting;
 mod look_proposals;
 mod object;
 mod palette;
 mod reveal;
 #[cfg(test)]
 mod robustness_tests;
-mod threshold;
+mod surface;
 mod transfer;
 mod view_selection;
 
@@ -29,11 +29,13 @@ pub use self::look_proposals::{LookProposal, propose_looks};
 
 use self::data_kind_override::{data_kind, find_transfer_as_kind};
 use self::domain::DataDomain;
+use self::lighting::{evenly_lit, shading, soft_shadows, weak_sky, wide_floor};
 use self::object::VisibleObject;
-use self::transfer::TransferStyle;
+use self::surface::{isosurfaces, threshold};
+use self::transfer::{FirstTransfer, TransferStyle};
 use super::{
-    Camera, ClassificationOrder, LightingRig, ObjectRotation, OpacityLength, PhongShading, QualityPreset,
-    ReconstructionKernel, SceneAxis, Settings, ShadowSettings,
+    Camera, ClassificationOrder, LightingRig, ObjectRotation, OpacityLength, QualityPreset,
+    ReconstructionKernel, SceneAxis, Settings, ShadowSettings, SkySettings,
 };
 use chiaroscuro_volume::{DataKind, DensityMapping, Histogram, KindName, Volume};
 
@@ -77,16 +79,41 @@ fn with_robust_range<T>(
 
 /// Returns the first look at a volume that shows its robust range.
 fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstLookOptions) -> Settings {
-    let kind = data_kind(volume, wishes.data_kind);
     let found = find_transfer_as_kind(volume, histogram, wishes.data_kind);
+    let (domain, style) = (found.domain, found.style);
+    let settings = framed_look(volume, histogram, wishes, found);
+    if matches!(style, TransferStyle::Picture | TransferStyle::KnownObject) {
+        return settings;
+    }
+    let mut settings = with_hidden_material(settings, volume, histogram, wishes, domain);
+    // Label maps, masks and small objects have the edges of voxels, and densities of molecules a conventional contour.
+    if settings.sampling.classification == ClassificationOrder::Post
+        && !(data_kind(volume, wishes.data_kind) == DataKind::Mask || domain == DataDomain::Molecule)
+        && surface::sharpen_edges(&mut settings.layer_mut().transfer, volume)
+    {
+        frame_object(&mut settings, volume);
+    }
+    settings
+}
+
+/// Returns a look with a transfer function, framed.
+fn framed_look(
+    volume: &Volume,
+    histogram: &Histogram,
+    wishes: FirstLookOptions,
+    found: FirstTransfer,
+) -> Settings {
+    let kind = data_kind(volume, wishes.data_kind);
     let (domain, style) = (found.domain, found.style);
     let wished_up = if volume.is_anatomical() { Some(SceneAxis::PlusZ) } else { wishes.up };
     let mut settings = Settings {
         camera: Camera { up: wished_up.unwrap_or_default(), ..Camera::default() },
         lights: Vec::new(),
         shading: if style == TransferStyle::Picture { evenly_lit() } else { shading(found.domain) },
+        sky: if style == TransferStyle::Picture { SkySettings::default() } else { weak_sky() },
         // An automatic look stays as bright as without shadows.
-        shadows: ShadowSettings { keep_balanced: true, ..ShadowSettings::default() },
+        shadows: ShadowSettings { keep_balanced: true, ..soft_shadows() },
+        floor: wide_floor(),
         volume: *volume.corrections(),
         ..Settings::default()
     }
@@ -110,9 +137,18 @@ fn look_over_robust_range(volume: &Volume, histogram: &Histogram, wishes: FirstL
     if style == TransferStyle::Veiled {
         settings = frame_veil(settings, volume);
     }
-    if matches!(style, TransferStyle::Picture | TransferStyle::KnownObject) {
-        return settings;
-    }
+    settings
+}
+
+/// Returns the look with small objects, material inside and skin shown, and other material if it shows nothing.
+fn with_hidden_material(
+    mut settings: Settings,
+    volume: &Volume,
+    histogram: &Histogram,
+    wishes: FirstLookOptions,
+    domain: DataDomain,
+) -> Settings {
+    let kind = data_kind(volume, wishes.data_kind);
     if let Some(small) = reveal::show_small_objects(&settings, volume, histogram, kind) {
         settings = small.settings;
         if small.are_alone {
@@ -152,7 +188,7 @@ fn choose_view_and_lights(settings: &mut Settings, volume: &Volume) {
     let object = VisibleObject::from_settings(settings, volume);
     view_selection::choose_view(&mut settings.camera, volume, &object);
     frame::frame_object(settings, volume, &object);
-    settings.lights = LightingRig::KeyAndFill.lights(&settings.camera);
+    settings.lights = LightingRig::KeyAndRim.lights(&settings.camera);
 }
 
 /// Frames a veil as if it were opaque; otherwise it is too transparent to count as visible.
@@ -175,25 +211,6 @@ pub fn set_up_axis(settings: &mut Settings, volume: &Volume, up: SceneAxis) {
         settings.rotate_object(ObjectRotation::MakeUpright(up));
         frame_object(settings, volume);
     }
-}
-
-/// Ambient coefficient of a first look. With this and the fill of its lights, shadows darken 0.155 of an object's
-/// pixels by 30 % or more (the median of thirteen volumes), and nothing is nearly black; with the default of 0.15,
-/// and a fill of 0.18, it was 0.117.
-const FIRST_LOOK_AMBIENT: f64 = 0.10;
-
-/// Returns the shading of a domain: metal has strong highlights.
-fn shading(domain: DataDomain) -> PhongShading {
-    let usual = PhongShading { ambient: FIRST_LOOK_AMBIENT, ..PhongShading::default() };
-    match domain {
-        DataDomain::Metal => PhongShading { specular: 0.5, shininess: 48.0, ..usual },
-        _ => usual,
-    }
-}
-
-/// Returns the shading of pictures: every place is as bright as its colour, without a relief.
-fn evenly_lit() -> PhongShading {
-    PhongShading { ambient: 1.0, diffuse: 0.0, specular: 0.0, ..PhongShading::default() }
 }
 
 /// Frames the visible object from the camera's current direction, and puts the floor under it.

@@ -216,7 +216,7 @@ impl Settings {
 
     /// Returns true if material attenuates the light of a sky.
     pub fn has_sky_volume(&self) -> bool {
-        self.sky.is_on() && self.shadows.algorithm.is_on()
+        self.sky.is_on() && self.sky.density_scale > 0.0 && self.shadows.algorithm.is_on()
     }
 
     /// Returns true if shadows are coloured: transmittance is per colour component.

@@ -168,7 +168,8 @@ pub const MAX_LIGHT_SAMPLES: u32 = 64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct AreaLightSampling {
-    /// Number of sample points per light.
+    /// Number of sample points per light of 40° or more; narrower ones have fewer
+    /// ([`crate::SceneLight::sample_count`]).
     pub samples: u32,
     /// Finest resolution of the light volume: penumbrae have no fine detail.
     pub resolution: LightVolumeResolution,

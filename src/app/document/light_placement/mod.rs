@@ -1,8 +1,8 @@
 //! Automatic light placement at the end of a first look.
 //!
-//! A background search for the light whose shadows show most starts when the first picture is on screen, and its
-//! result is eased in. A look that the user has edited by then is left alone. Times are in seconds of any monotonic
-//! clock.
+//! A background search for the light whose shadows show most starts when the first picture is on screen, preview or
+//! not, and its result is eased in. A light that would move later than two seconds after that picture, or after the
+//! user has touched anything, stays where it is. Times are in seconds of any monotonic clock.
 
 use glam::DVec3;
 
@@ -19,10 +19,12 @@ pub(crate) struct LightPlacementFrame<'a> {
     pub now_s: f64,
     /// Settings of the look in this frame.
     pub settings: &'a Settings,
-    /// True if the full-quality picture of the look is on screen.
-    pub picture_complete: bool,
+    /// True if a picture of the look is on screen, preview or not.
+    pub is_shown: bool,
     /// True while the user holds a pointer button or a key, or edits text.
     pub user_active: bool,
+    /// Longest time from the first picture to the movement of lights, in seconds.
+    pub limit_s: f64,
 }
 
 /// Action that the window has to take.
@@ -36,6 +38,9 @@ pub(crate) enum LightPlacementAction {
     Set(Box<Settings>),
 }
 
+/// Usual longest time from the first picture to the movement of lights, in seconds: later, it looks like a mistake.
+pub(crate) const SEARCH_LIMIT_S: f64 = 2.0;
+
 /// Progress of the light placement.
 #[derive(Debug, Clone, Default)]
 enum LightPlacementPhase {
@@ -44,9 +49,11 @@ enum LightPlacementPhase {
     Done,
     /// Search is due and not yet started.
     Due,
-    Searching,
-    /// Search has found lights, and the user holds a button or a key.
-    Waiting(Box<LightSearchResult>),
+    Searching {
+        since_s: f64,
+    },
+    /// Search has found lights.
+    Complete(Box<LightSearchResult>),
     Easing {
         from: Box<Settings>,
         to: Box<Settings>,
@@ -73,6 +80,11 @@ impl LightPlacement {
         !matches!(self.phase, LightPlacementPhase::Done)
     }
 
+    /// Returns true while lights are sought.
+    pub(crate) fn is_searching(&self) -> bool {
+        matches!(self.phase, LightPlacementPhase::Searching { .. } | LightPlacementPhase::Complete(_))
+    }
+
     /// Stops the placement, since the user has edited the look.
     pub(crate) fn stop(&mut self) {
         self.phase = LightPlacementPhase::Done;
@@ -90,7 +102,9 @@ impl LightPlacement {
     #[must_use]
     pub(crate) fn restarted(self) -> Self {
         let phase = match self.phase {
-            LightPlacementPhase::Searching | LightPlacementPhase::Easing { .. } => LightPlacementPhase::Due,
+            LightPlacementPhase::Searching { .. } | LightPlacementPhase::Easing { .. } => {
+                LightPlacementPhase::Due
+            }
             other => other,
         };
         Self { phase, ..self }
@@ -98,18 +112,16 @@ impl LightPlacement {
 
     /// Takes the result of a search; without one, the lights stay.
     pub(crate) fn set_result(&mut self, found: Result<Option<LightSearchResult>, GpuError>) {
-        if !matches!(self.phase, LightPlacementPhase::Searching) {
-            return;
-        }
+        let LightPlacementPhase::Searching { since_s } = self.phase else { return };
         self.phase = match found {
-            Ok(Some(found)) => LightPlacementPhase::Waiting(Box::new(found)),
+            Ok(Some(found)) => LightPlacementPhase::Complete(Box::new(found)),
             Ok(None) => LightPlacementPhase::Done,
             Err(err) => {
                 // The search is optional: the reason of its failure matters only to developers.
                 log::warn!("the search for a light position failed: {err}");
                 // After the loss of the device, a successor window searches again.
                 if matches!(err, GpuError::DeviceLost(_)) {
-                    LightPlacementPhase::Searching
+                    LightPlacementPhase::Searching { since_s }
                 } else {
                     LightPlacementPhase::Done
                 }
@@ -119,7 +131,7 @@ impl LightPlacement {
 
     /// Decides on the action for this frame.
     pub(crate) fn next_action(&mut self, moment: LightPlacementFrame<'_>) -> LightPlacementAction {
-        let LightPlacementFrame { now_s, settings, picture_complete: complete, user_active: held } = moment;
+        let LightPlacementFrame { now_s, settings, is_shown, user_active: held, limit_s } = moment;
         if !self.is_due() {
             return LightPlacementAction::Nothing;
         }
@@ -128,12 +140,19 @@ impl LightPlacement {
             self.stop();
             return LightPlacementAction::Nothing;
         }
+        if held && !matches!(self.phase, LightPlacementPhase::Easing { .. }) {
+            self.stop();
+            return LightPlacementAction::Nothing;
+        }
         match std::mem::take(&mut self.phase) {
-            LightPlacementPhase::Due if complete && !held => {
-                self.phase = LightPlacementPhase::Searching;
+            LightPlacementPhase::Due if is_shown => {
+                self.phase = LightPlacementPhase::Searching { since_s: now_s };
                 LightPlacementAction::Search
             }
-            LightPlacementPhase::Waiting(found) if !held => {
+            LightPlacementPhase::Searching { since_s } if now_s - since_s >= limit_s => {
+                LightPlacementAction::Nothing
+            }
+            LightPlacementPhase::Complete(found) => {
                 let (from, to) = (Box::new(settings.clone()), Box::new(found.apply(settings)));
                 if from == to {
                     return LightPlacementAction::Nothing;

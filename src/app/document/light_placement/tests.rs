@@ -56,8 +56,9 @@ impl PlacementTestWindow {
         match self.lights.next_action(LightPlacementFrame {
             now_s,
             settings: &self.settings,
-            picture_complete: complete,
+            is_shown: complete,
             user_active: held,
+            limit_s: SEARCH_LIMIT_S,
         }) {
             LightPlacementAction::Nothing => {}
             LightPlacementAction::Search => {
@@ -139,20 +140,38 @@ fn what_somebody_has_touched_is_left_alone() {
 }
 
 #[test]
-fn turning_the_volume_does_not_matter_but_hands_come_first() {
-    let mut window = PlacementTestWindow::new();
-    window.run(0.05);
-    window.held = true;
-    for _ in 0..60 {
+fn a_touch_ends_the_search() {
+    for after_s in [0.0, 0.05] {
+        let mut window = PlacementTestWindow::new();
+        window.run(after_s);
+        let lights = window.settings.lights.clone();
+        window.held = true;
         window.settings.camera.orbit(3.0, 0.0);
         window.frame();
+        window.held = false;
+        window.run(2.0);
+        assert!(window.set.is_empty() && window.settings.lights == lights && !window.lights.is_due());
     }
-    assert!(window.set.is_empty(), "not while something is held");
-    window.held = false;
+    // Lights that move already finish their way, whatever the view.
+    let mut window = PlacementTestWindow::new();
+    window.run(0.25);
+    assert!(!window.set.is_empty());
+    window.held = true;
+    window.settings.camera.orbit(3.0, 0.0);
     let camera = window.settings.camera.clone();
     window.run(1.0);
-    assert_eq!(window.settings.lights, proposed());
-    assert_eq!(window.settings.camera, camera);
+    assert_eq!((&window.settings.lights, &window.settings.camera), (&proposed(), &camera));
+}
+
+#[test]
+fn lights_do_not_move_after_two_seconds() {
+    let mut window = PlacementTestWindow::new();
+    window.run(0.05);
+    window.searching = Some(window.now_s + SEARCH_LIMIT_S);
+    assert!(window.lights.is_searching());
+    let before = window.settings.clone();
+    window.run(3.0);
+    assert!(window.settings == before && !window.lights.is_due() && !window.lights.is_searching());
 }
 
 #[test]
@@ -172,8 +191,13 @@ fn a_search_that_fails_or_finds_nothing_better_changes_nothing() {
     }
     let mut none = LightPlacement::default();
     let settings = Settings::default();
-    let moment =
-        LightPlacementFrame { now_s: 1.0, settings: &settings, picture_complete: true, user_active: false };
+    let moment = LightPlacementFrame {
+        now_s: 1.0,
+        settings: &settings,
+        is_shown: true,
+        user_active: false,
+        limit_s: SEARCH_LIMIT_S,
+    };
     assert!(!none.is_due() && none.next_action(moment) == LightPlacementAction::Nothing);
 }
 

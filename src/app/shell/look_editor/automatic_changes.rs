@@ -10,6 +10,7 @@ use crate::app::document::auto_balance::{BalanceAction, BalanceFrame};
 use crate::app::document::light_placement::{LightPlacementAction, LightPlacementFrame};
 use crate::app::text;
 use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
+use crate::app::worker::mailbox::RefinementHold;
 use chiaroscuro_render::{GpuError, LightSearch, LightSearchResult, Renderer, SearchedLight, ShaderLibrary};
 
 /// Pause between two candidate positions: long enough for another thread to take the device.
@@ -48,18 +49,25 @@ impl LookEditor {
             self.look_tasks.light_search.discard();
         }
         let now_s = ctx.input(|input| input.time);
-        let is_complete = !is_opening && self.is_complete();
+        let is_shown = !is_opening && self.viewport.displays(&self.shown_looks());
         let document = &mut self.document;
         let moment = LightPlacementFrame {
             now_s,
             settings: &document.settings,
             // The search refers to the picture with the final balance, so a pending change comes first.
-            picture_complete: is_complete && !document.keep_balanced.is_due(&document.settings),
+            is_shown: is_shown && !document.keep_balanced.is_due(&document.settings),
             user_active: is_user_active(ctx),
+            limit_s: self.light_search_limit_s,
         };
         match document.first_lights.next_action(moment) {
             LightPlacementAction::Nothing => {}
-            LightPlacementAction::Search => self.start_light_search(shaders, ctx),
+            LightPlacementAction::Search => {
+                self.start_light_search(shaders, ctx);
+                // The search may end without a result.
+                ctx.request_repaint_after(
+                    Duration::try_from_secs_f64(self.light_search_limit_s).unwrap_or(Duration::MAX),
+                );
+            }
             LightPlacementAction::Set(next) => {
                 document.apply_placed_lights(*next, now_s);
                 ctx.request_repaint();
@@ -72,7 +80,7 @@ impl LookEditor {
         let Some(dataset) = self.viewport.dataset() else { return self.document.first_lights.stop() };
         let (shaders, settings) = (shaders.clone(), self.document.settings.clone());
         let task = move |job: &JobControl| -> Result<Option<LightSearchResult>, GpuError> {
-            let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndFill)?;
+            let mut search = LightSearch::new(shaders, &dataset, &settings, SearchedLight::KeyAndRim)?;
             while search.step()? {
                 if job.token().is_cancelled() {
                     return Ok(None);
@@ -109,7 +117,15 @@ impl LookEditor {
         let (held, busy, has_its_volume) =
             (is_user_active(ctx), self.look_tasks.balance.is_running(), !is_opening && !self.is_correcting());
         let is_due = self.document.keep_balanced.is_due(&self.document.settings);
-        self.viewport.hold_refinement(is_due && !held && !busy && has_its_volume);
+        self.viewport.hold_refinement(if held || busy || !has_its_volume {
+            RefinementHold::Off
+        } else if self.document.first_lights.is_searching() {
+            RefinementHold::AtOnce
+        } else if is_due {
+            RefinementHold::BeforeDrawing
+        } else {
+            RefinementHold::Off
+        });
         let act = self.document.keep_balanced.next_action(BalanceFrame {
             now_s,
             settings: &self.document.settings,

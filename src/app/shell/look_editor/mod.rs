@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use self::automatic_changes::LookTasks;
 use crate::app::document::Document;
+use crate::app::document::light_placement::SEARCH_LIMIT_S;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
 use crate::app::text;
@@ -32,6 +33,8 @@ pub(crate) struct LookEditor {
     pub messages: MessageLog,
     /// Tasks whose results change the look.
     pub look_tasks: LookTasks,
+    /// Longest time from the first picture to the movement of its lights, in seconds.
+    pub light_search_limit_s: f64,
     /// State that outlives a run.
     pub memory: PersistentState,
 }
@@ -44,6 +47,7 @@ impl LookEditor {
             viewport,
             messages: MessageLog::default(),
             look_tasks: LookTasks::default(),
+            light_search_limit_s: SEARCH_LIMIT_S,
             memory,
         }
     }

@@ -173,7 +173,7 @@ impl LightShapeKey {
             },
             hood_deg: hooded.then_some([half_angle_deg, rim_deg]),
             density_scale,
-            area: area.map(|area| (area, samples)),
+            area: area.map(|area| (area, light.sample_count(samples))),
         }
     }
 }

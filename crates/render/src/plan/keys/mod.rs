@@ -79,10 +79,17 @@ impl FrameKeys {
 
     /// Returns the number of light volumes of this picture that another picture does not have.
     pub fn count_lights_missing_in(&self, other: &Self) -> usize {
-        self.lights
-            .iter()
-            .flatten()
-            .filter(|key| !other.lights.iter().flatten().any(|known| known == *key))
-            .count()
+        self.lights_missing_in(other).count()
+    }
+
+    /// Returns true if another picture does not have the volume of each light with a size.
+    pub fn lacks_area_light_in(&self, other: &Self) -> bool {
+        self.lights_missing_in(other).any(|key| key.samples() > 1)
+    }
+
+    /// Returns the keys of light volumes that another picture does not have.
+    fn lights_missing_in<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = &'a LightKey> {
+        let keys = self.lights.iter().flatten();
+        keys.filter(|key| !other.lights.iter().flatten().any(|known| known == *key))
     }
 }

@@ -45,11 +45,11 @@ const FROM_ABOVE_DEG: f64 = 48.0;
 const BEHIND_DEG: f64 = 180.0;
 const LEFT_PROFILE_DEG: f64 = 120.0;
 
-/// Sky intensity beside other lights: it brings out hollows, and the lights still dominate.
-const SOFT_SKY: f64 = 0.3;
+/// Sky intensity of soft light: as much as that of the key light on a surface that it grazes.
+const SOFT_SKY: f64 = 0.5;
 
-/// Angular width in degrees of a light with soft shadows: half a metre seen from three and a half.
-const SOFT_DEG: f64 = 8.0;
+/// Angular width in degrees of a light with soft shadows: a window across a room.
+const SOFT_DEG: f64 = 30.0;
 
 /// Colour of fired clay, with which modellers judge form by light alone.
 const CLAY_COLOR: [f32; 3] = [0.80, 0.76, 0.72];
@@ -65,7 +65,7 @@ pub fn propose_looks(first: &Settings, volume: &Volume, histogram: &Histogram) -
     all.push(proposal("Rim light", "lit from behind: outlines shine", lit(LightingRig::Rim)));
     all.push(proposal(
         "Soft light",
-        "a sky all around: dark hollows, and shadows with soft edges",
+        "a bright sky all around and a light as wide as a window: soft shadows",
         soft_light_look(first),
     ));
     all.push(proposal("Clay", "one neutral colour: shape by light alone", clay_look(first)));

@@ -3,11 +3,11 @@
 
 use super::super::transfer;
 use super::LookProposal;
-use crate::{Background, LightSettings, LightShape, LightingRig, MAX_LIGHTS, Settings, SkyMode, SkySettings};
+use crate::{Background, LightSettings, LightShape, LightingRig, Settings, SkyMode, SkySettings};
 
-/// Angular width in degrees of the key light of a cover: a softbox of a metre from nearly five, whose shadows keep
-/// their shape and lose their hard edge.
-const COVER_KEY_DEG: f64 = 12.0;
+/// Angular width in degrees of the key light of a cover: a softbox of a metre from three, twice as wide as in a first
+/// look.
+const COVER_KEY_DEG: f64 = 20.0;
 
 /// Sky intensity of a cover: hollows get colour and keep their depth.
 const COVER_SKY: f64 = 0.2;
@@ -42,11 +42,7 @@ const BLACK: Background = Background { top: [0.0; 3], bottom: [0.03, 0.035, 0.04
 pub(super) fn publication_looks(first: &Settings) -> [LookProposal; 4] {
     let proposal = |name, description, settings| LookProposal { name, description, settings };
     [
-        proposal(
-            "Cover",
-            "a large light, a rim from behind, a weak sky and bounced light in a dark studio",
-            cover_look(first),
-        ),
+        proposal("Cover", "a larger light and bounced light in a dark studio", cover_look(first)),
         proposal("Journal", "soft light in a light studio, for print", journal_look(first)),
         proposal("Atlas", "even light on a page, form by its hollows", atlas_look(first)),
         proposal("Glass", "translucent, with bright outlines on black", glass_look(first)),
@@ -72,10 +68,6 @@ fn widen_key(settings: &mut Settings, angle_deg: f64) {
 fn cover_look(first: &Settings) -> Settings {
     let mut cover = Settings { sky: sky(SkyMode::Gradient, COVER_SKY), ..first.clone() };
     widen_key(&mut cover, COVER_KEY_DEG);
-    let back = LightingRig::KeyFillBack.lights(&first.camera).pop();
-    if cover.lights.len() < MAX_LIGHTS {
-        cover.lights.extend(back);
-    }
     cover.scattering.bounces = cover.scattering.bounces.max(COVER_BOUNCES);
     cover.output.background = STUDIO;
     cover
@@ -136,14 +128,10 @@ mod tests {
     }
 
     #[test]
-    fn lights_beyond_the_largest_number_stay_as_they_are() {
+    fn looks_without_a_light_have_none_to_widen() {
         let volume = ball(200.0, 0.0);
         let mut first = first_settings(&volume, &Histogram::from_volume(&volume));
-        first.lights.resize(MAX_LIGHTS, LightSettings::default());
-        let [cover, ..] = publication_looks(&first);
-        assert_eq!(cover.settings.lights.len(), MAX_LIGHTS);
         first.lights.clear();
-        // Without a light there is none to widen, and the rim is alone.
-        assert_eq!(publication_looks(&first).map(|look| look.settings.lights.len()), [1, 0, 0, 3]);
+        assert_eq!(publication_looks(&first).map(|look| look.settings.lights.len()), [0, 0, 0, 3]);
     }
 }

@@ -15,31 +15,52 @@ pub(super) struct DomainPalette(&'static [Lch]);
 #[cfg(test)]
 const LIGHTNESS: std::ops::RangeInclusive<f64> = 0.6..=0.96;
 
-/// Palette for unknown data: sand to ivory, the warmth of a photograph of plaster.
-const UNKNOWN: DomainPalette =
-    DomainPalette(&[[0.68, 0.052, 62.0], [0.79, 0.044, 74.0], [0.92, 0.026, 88.0]]);
+/// Palette for unknown data: light wood to sand, and porcelain for what is densest.
+const UNKNOWN: DomainPalette = DomainPalette(&[
+    [0.66, 0.078, 56.0],
+    [0.75, 0.07, 66.0],
+    [0.83, 0.04, 80.0],
+    [0.9, 0.008, 90.0],
+    [0.94, 0.016, 235.0],
+]);
 
 /// Palette for soft tissue: muscle to fat.
 const SOFT_TISSUE: DomainPalette =
-    DomainPalette(&[[0.66, 0.088, 38.0], [0.76, 0.07, 54.0], [0.88, 0.045, 76.0]]);
+    DomainPalette(&[[0.62, 0.115, 30.0], [0.74, 0.085, 48.0], [0.88, 0.055, 80.0]]);
 
-/// Palette for bone, in shades of ivory.
-const BONE: DomainPalette = DomainPalette(&[[0.74, 0.06, 66.0], [0.84, 0.045, 82.0], [0.94, 0.022, 92.0]]);
+/// Palette for bone: the red of marrow and of vessels with contrast agent, then ivory.
+const BONE: DomainPalette =
+    DomainPalette(&[[0.66, 0.11, 34.0], [0.77, 0.075, 60.0], [0.87, 0.045, 82.0], [0.95, 0.02, 94.0]]);
 
-/// Palette for magnetic resonance: warm grey to ivory.
+/// Palette for magnetic resonance: muscle to fat, paler than in life.
 const MAGNETIC_RESONANCE: DomainPalette =
-    DomainPalette(&[[0.69, 0.026, 52.0], [0.8, 0.022, 70.0], [0.93, 0.016, 88.0]]);
+    DomainPalette(&[[0.68, 0.07, 34.0], [0.78, 0.055, 54.0], [0.88, 0.045, 80.0], [0.94, 0.025, 92.0]]);
 
-/// Palette for metal: steel, hardly blue.
-const METAL: DomainPalette = DomainPalette(&[[0.68, 0.01, 255.0], [0.78, 0.008, 250.0], [0.9, 0.005, 245.0]]);
+/// Palette for vessels in magnetic resonance.
+const VESSELS: DomainPalette =
+    DomainPalette(&[[0.61, 0.13, 26.0], [0.7, 0.12, 32.0], [0.82, 0.085, 50.0], [0.89, 0.05, 70.0]]);
+
+/// Palette for metal: steel, hardly blue, and brass for what is densest.
+const METAL: DomainPalette = DomainPalette(&[
+    [0.68, 0.028, 255.0],
+    [0.77, 0.014, 250.0],
+    [0.84, 0.004, 245.0],
+    [0.86, 0.03, 80.0],
+    [0.87, 0.07, 82.0],
+]);
 
 /// Palette for fluorescence: the green of the most common dye.
 const FLUORESCENCE: DomainPalette =
     DomainPalette(&[[0.66, 0.13, 150.0], [0.78, 0.125, 148.0], [0.92, 0.075, 140.0]]);
 
-/// Palette for molecules: cool white.
-const MOLECULE: DomainPalette =
-    DomainPalette(&[[0.74, 0.04, 248.0], [0.84, 0.028, 240.0], [0.95, 0.01, 230.0]]);
+/// Palette for molecules: cool white, and gold for what is densest.
+const MOLECULE: DomainPalette = DomainPalette(&[
+    [0.72, 0.055, 248.0],
+    [0.82, 0.035, 240.0],
+    [0.88, 0.004, 230.0],
+    [0.9, 0.035, 85.0],
+    [0.89, 0.075, 85.0],
+]);
 
 /// Palette for simulations: blue over green to yellow, in even steps of hue and lightness.
 const SIMULATION: DomainPalette = DomainPalette(&[
@@ -67,6 +88,7 @@ impl DomainPalette {
             DataDomain::SoftTissue => &SOFT_TISSUE,
             DataDomain::Bone => &BONE,
             DataDomain::MagneticResonance => &MAGNETIC_RESONANCE,
+            DataDomain::Vessels => &VESSELS,
             DataDomain::Metal => &METAL,
             DataDomain::Fluorescence => &FLUORESCENCE,
             DataDomain::Molecule => &MOLECULE,

@@ -43,7 +43,7 @@ pub(crate) fn add_skin(settings: Settings, volume: &Volume, water: f64) -> Setti
     }
     let mut body = settings.with_transfer(transfer::opaque_transfer(&with_skin));
     frame_largest_part(&mut body, volume);
-    body.lights = LightingRig::KeyAndFill.lights(&body.camera);
+    body.lights = LightingRig::KeyAndRim.lights(&body.camera);
     body.with_transfer(with_skin)
 }
 

@@ -306,7 +306,10 @@ mod tests {
         let plain = crate::first_look::transfer_for_kind(&volume, &Histogram::from_volume(&volume), None);
         let (own, shown) = (plain.sample(1000.0).color, look(&volume).layer().transfer.sample(1000.0).color);
         let apart = own.iter().zip(shown).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(apart < 0.05, "{own:?} {shown:?}");
+        // Colours between the dimmest and the brightest seeds are mixed: within a fifth of what those span.
+        let ends = [900.0, 1170.0].map(|value| plain.sample(value).color);
+        let span = ends[0].iter().zip(ends[1]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 0.2 * span, "{own:?} {shown:?} {span}");
     }
 
     #[test]

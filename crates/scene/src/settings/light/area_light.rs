@@ -88,7 +88,7 @@ impl LightShape {
 
 /// Returns the number of points that represent an area light if `samples` are asked for: a multiple of four, which
 /// mirrors at two axes need, or a single one.
-pub fn area_light_points(samples: u32) -> u32 {
+pub(super) fn area_light_points(samples: u32) -> u32 {
     if samples < 2 { 1 } else { samples.max(4) / 4 * 4 }
 }
 
@@ -205,11 +205,11 @@ impl SceneLight {
         }
     }
 
-    /// Returns point lights that represent this one, as many as [`area_light_points`] makes of `samples`, or the light
-    /// itself if it is a point.
+    /// Returns point lights that represent this one, [`Self::sample_count`] of them, or the light itself if it is
+    /// a point.
     pub fn sample_lights(&self, samples: u32) -> Vec<Self> {
         let Some(area) = &self.area else { return vec![*self] };
-        let count = area_light_points(samples);
+        let count = self.sample_count(samples);
         (0..count)
             .map(|index| {
                 let at = area.shape.sample_point(index, count);
@@ -229,7 +229,7 @@ impl SceneLight {
     }
 
     /// Returns the distance from the middle of the volume. The extent of a parallel light is that of one at distance 1.
-    fn distance(&self) -> f64 {
+    pub(super) fn distance(&self) -> f64 {
         match self.kind {
             LightGeometry::Parallel => 1.0,
             LightGeometry::Perspective => DVec3::from(self.position).length(),
@@ -291,7 +291,7 @@ mod tests {
     fn points_lie_on_the_shape_and_around_its_middle() {
         for shape in [LightShape::Disc, LightShape::Rectangle, LightShape::Ball] {
             let points = points(&light(shape));
-            let mean = points.iter().sum::<DVec3>() / 64.0;
+            let mean = points.iter().sum::<DVec3>() / points.len() as f64;
             assert!((mean - DVec3::NEG_Y * 4.0).length() < 0.03, "{shape:?}: {mean}");
             for point in points {
                 let from = point + DVec3::Y * 4.0;
@@ -361,7 +361,7 @@ mod tests {
         let sun = LightSettings {
             kind: LightGeometry::Parallel,
             shape: LightShape::Disc,
-            angle_deg: 20.0,
+            angle_deg: 40.0,
             ..LightSettings::default()
         };
         let resolved = sun.resolve(&Camera::default());
@@ -370,8 +370,8 @@ mod tests {
             .iter()
             .map(|point| point.direction().angle_between(resolved.direction()).to_degrees())
             .fold(0.0, f64::max);
-        // The outermost of four rings lies in the middle of its area, at √(50/64) of the sine of 10°.
-        assert!((farthest - 8.83).abs() < 0.01, "{farthest}");
+        // The outermost of four rings lies in the middle of its area, at √(50/64) of the sine of 20°.
+        assert!((farthest - 17.60).abs() < 0.01, "{farthest}");
         // The angular size does not depend on the distance.
         let outside = LightSettings { position: sun.position.map(|c| 3.0 * c), ..sun.clone() };
         assert_eq!(outside.resolve(&Camera::default()).area, resolved.area);

@@ -6,6 +6,7 @@ pub(crate) mod direction_sets;
 pub(crate) mod environment_map;
 pub(crate) mod horizon_clipping;
 pub(crate) mod point_weights;
+mod sample_count;
 pub(crate) mod scattering;
 pub(crate) mod sky;
 

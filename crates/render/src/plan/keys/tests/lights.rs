@@ -8,6 +8,8 @@ use chiaroscuro_scene::{LightLock, LightShape, LightVolumeResolution, SkyMode, a
 fn the_size_of_a_light_is_part_of_its_volume_alone() {
     let mut before = request();
     before.settings.lights[1].shape = LightShape::Disc;
+    // Wide enough for all points.
+    before.settings.lights[1].angle_deg = 40.0;
     before.settings.lights[2].shape = LightShape::Rectangle;
     for (path, value, expected) in [
         ("lights.1.angle_deg", "5", ChangeEffect::OneLight),

@@ -1,8 +1,10 @@
 //! Brightness of pictures: measurement, and exposure compensation that makes previews as bright as full quality.
 
+mod exposure_compensation;
+
 use std::time::{Duration, Instant};
 
-use super::exposure_compensation::{ExposureCompensation, PreviewClass};
+use self::exposure_compensation::{ExposureCompensation, PreviewClass};
 use super::quality::QualityLevel;
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_render::{
@@ -144,6 +146,7 @@ fn preview_class(quality: QualityLevel, report: &RenderReport) -> PreviewClass {
     PreviewClass {
         scale: quality.scale,
         quick_eye: quality.prefiltered_eye,
+        simplification: quality.simplification,
         light_divisor: report.light_divisor,
     }
 }

@@ -26,7 +26,7 @@ const MERIT_FACTOR: f64 = 3.0;
 const USUAL_VOLUME_SHARE: (f64, f64) = (0.08, 0.9);
 
 /// Statistics of the isosurfaces at densities 0, 1/n, 2/n, …
-pub(super) struct IsosurfaceStatistics {
+pub(crate) struct IsosurfaceStatistics {
     /// Number of neighbour pairs across the isovalue.
     area: Vec<f64>,
     /// Sum of the density differences of these pairs.
@@ -95,7 +95,7 @@ fn reverse_cumulative_sums(counts: &[f64]) -> Vec<f64> {
 
 impl IsosurfaceStatistics {
     /// Computes the statistics of a volume. Missing voxels are on neither side.
-    pub(super) fn measure(volume: &Volume) -> Self {
+    pub(crate) fn measure(volume: &Volume) -> Self {
         let [nx, ny, nz] = volume.dims();
         let voxels = volume.voxel_count() as f64;
         let missing = volume.missing();
@@ -186,7 +186,7 @@ impl IsosurfaceStatistics {
 
     /// Returns `start`, the density at which the object begins, unless mainly the volume's box would be shown: then
     /// that of the best isosurface that is not.
-    pub(super) fn threshold_avoiding_box(&self, start: f64) -> f64 {
+    pub(crate) fn threshold_avoiding_box(&self, start: f64) -> f64 {
         let bins = HISTOGRAM_BINS;
         let first = ((start * bins as f64) as usize).min(bins - 1);
         if self.box_share(first) <= MAX_BOX_SHARE {
@@ -196,18 +196,18 @@ impl IsosurfaceStatistics {
     }
 
     /// Returns the mean change of density from voxel to voxel across an isosurface; `None` if it is empty.
-    pub(super) fn slope(&self, density: f64) -> Option<f64> {
+    pub(crate) fn slope(&self, density: f64) -> Option<f64> {
         let bin = density_bin(density as f32);
         (self.area[bin] > 0.0).then(|| self.contrast[bin] / self.area[bin])
     }
 
     /// Returns the compactness of the region above a density: 0 for single voxels, nearly 1 for large pieces.
-    pub(super) fn compactness(&self, density: f64) -> f64 {
+    pub(crate) fn compactness(&self, density: f64) -> f64 {
         self.compactness_of_bin(density_bin(density as f32))
     }
 
     /// Returns the number of voxels above a density.
-    pub(super) fn inside(&self, density: f64) -> f64 {
+    pub(crate) fn inside(&self, density: f64) -> f64 {
         self.inside[density_bin(density as f32)]
     }
 
@@ -218,7 +218,7 @@ impl IsosurfaceStatistics {
     }
 
     /// Returns the density of the best isosurface that is not mainly the volume's box.
-    pub(super) fn best_threshold(&self) -> Option<f64> {
+    pub(crate) fn best_threshold(&self) -> Option<f64> {
         let bins = HISTOGRAM_BINS;
         let largest = self.area.iter().copied().fold(0.0, f64::max);
         let best_below = |most: f64| {

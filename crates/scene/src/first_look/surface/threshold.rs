@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::histogram_above;
+use super::super::histogram_above;
 use super::isosurfaces::IsosurfaceStatistics;
 use chiaroscuro_volume::{Histogram, Volume};
 
@@ -11,10 +11,10 @@ use chiaroscuro_volume::{Histogram, Volume};
 const SPLIT_WEIGHT: f64 = 0.65;
 
 /// Smallest distance of the threshold above the background: five steps of 8-bit data.
-pub(super) const MIN_ABOVE_BACKGROUND: f64 = 0.02;
+pub(crate) const MIN_ABOVE_BACKGROUND: f64 = 0.02;
 
 /// Returns the threshold for a background level `margin`, in data with Otsu's split at `split`.
-pub(super) fn threshold_above_margin(margin: f64, split: f64) -> f64 {
+pub(crate) fn threshold_above_margin(margin: f64, split: f64) -> f64 {
     (margin + SPLIT_WEIGHT * (split - margin)).max(margin + MIN_ABOVE_BACKGROUND)
 }
 
@@ -35,15 +35,15 @@ const MIN_BRIGHT_SHARE: f64 = 0.25;
 
 /// Boundary of an object in its values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ObjectThreshold {
+pub(crate) struct ObjectThreshold {
     /// Density at which the object begins.
-    pub(super) start: f64,
+    pub(crate) start: f64,
     /// Increase of density per voxel at the boundary.
-    pub(super) slope: f64,
+    pub(crate) slope: f64,
 }
 
 /// Finds the density at which the object begins, and its slope.
-pub(super) fn object_threshold(volume: &Volume, histogram: &Histogram) -> ObjectThreshold {
+pub(crate) fn object_threshold(volume: &Volume, histogram: &Histogram) -> ObjectThreshold {
     let isosurfaces = IsosurfaceStatistics::measure(volume);
     let start = isosurfaces.threshold_avoiding_box(background_threshold(volume, histogram));
     let start = threshold_above_rim(volume, &isosurfaces, histogram, start);
@@ -108,7 +108,7 @@ const NEGLIGIBLE_VOXELS: f64 = 4.0;
 
 /// Returns the density that splits the histogram into the two most compact classes (Otsu's method). Of splits that
 /// are equally good but for a few voxels, as between two distant classes, the lowest.
-pub(super) fn otsu_threshold(histogram: &Histogram) -> f64 {
+pub(crate) fn otsu_threshold(histogram: &Histogram) -> f64 {
     let bins = histogram.counts.len() as f64;
     let (total, sum) = histogram
         .counts
@@ -139,7 +139,7 @@ pub(super) fn otsu_threshold(histogram: &Histogram) -> f64 {
 /// Returns the level of the volume's border, in densities transformed by `level`: the median of the six faces' 98th
 /// percentiles. One or two faces that cut through the object do not matter. Missing voxels do not count, and a border
 /// without any voxels has level 0.
-pub(super) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn border_level(volume: &Volume, level: impl Fn(f64) -> f64) -> f64 {
     let [nx, ny, nz] = volume.dims();
     let face = |u: usize, v: usize, at: &dyn Fn(usize, usize) -> [usize; 3]| {
         // A sample of at most 128² voxels per face is enough.

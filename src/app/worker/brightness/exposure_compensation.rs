@@ -4,6 +4,8 @@
 //! luminance is off by up to a third. The error is known wherever a preview was followed by the full-quality picture
 //! of the same request, and hardly changes during a movement: previews are multiplied by the inverse ratio.
 
+use chiaroscuro_scene::LightSimplification;
+
 /// Class of previews that share a brightness error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PreviewClass {
@@ -11,6 +13,8 @@ pub(crate) struct PreviewClass {
     pub scale: u32,
     /// True if the eye pass uses the prefiltered kernel.
     pub quick_eye: bool,
+    /// Parts of the light that are left out.
+    pub simplification: LightSimplification,
     /// Data voxels per voxel of the coarsest light volume, along each axis.
     pub light_divisor: usize,
 }
@@ -68,7 +72,12 @@ fn exposure_ratio(whole: f64, preview: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const COARSE: PreviewClass = PreviewClass { scale: 2, quick_eye: true, light_divisor: 4 };
+    const COARSE: PreviewClass = PreviewClass {
+        scale: 2,
+        quick_eye: true,
+        simplification: LightSimplification::ALL,
+        light_divisor: 4,
+    };
     const FINE: PreviewClass = PreviewClass { scale: 1, light_divisor: 1, ..COARSE };
 
     #[test]
