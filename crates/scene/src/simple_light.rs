@@ -45,8 +45,8 @@ mod tests {
 
     #[test]
     fn each_part_is_left_out_alone() {
-        let mut soft = Settings::default();
-        soft.lights = vec![LightSettings { shape: LightShape::Disc, ..LightSettings::default() }];
+        let disc = LightSettings { shape: LightShape::Disc, ..LightSettings::default() };
+        let mut soft = Settings { lights: vec![disc], ..Settings::default() };
         soft.sky.mode = SkyMode::White;
         soft.scattering.bounces = 3;
         let seen = |parts: LightSimplification| {

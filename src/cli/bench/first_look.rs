@@ -148,7 +148,7 @@ impl VolumeBenchmark<'_> {
 impl VolumeBenchmark<'_> {
     /// Returns the CPU times of the first full picture under simplified light, and of completing its light, in
     /// milliseconds.
-    fn draw_steps(&mut self, look: &Settings) -> Result<[Option<f64>; 2], CliError> {
+    fn draw_steps(&self, look: &Settings) -> Result<[Option<f64>; 2], CliError> {
         let mut renderer = Renderer::with_shaders(self.renderer.context(), self.renderer.shaders())?;
         let mut clock = CpuClock::start();
         let mut draw = |look: &Settings| {
