@@ -13,21 +13,20 @@ use chiaroscuro_render::{
     mean_luminance, shadowed_fraction, visible_fraction,
 };
 use chiaroscuro_scene::{
-    LightSimplification, PRESETS, Settings, ShadowAlgorithm, first_look, lch_from_lab, oklab_from_linear,
+    LightSimplification, Settings, ShadowAlgorithm, first_look, lch_from_lab, oklab_from_linear,
 };
 use chiaroscuro_volume::{DataKind, Dataset, synthetic};
 
-/// Preset of the bench scene.
-const BENCH_SCENE_PRESET: &str = "bench/creature";
+/// Built-in volume of the scene whose orbit frame is the unit of the bound, its edge in voxels, and that of its picture
+/// in pixels: a sparse volume as large as that of the other cases.
+const UNIT_VOLUME: &str = "chair";
+const UNIT_VOXELS: usize = 256;
+const UNIT_PIXELS: u32 = 512;
 
-/// Edge of the bench scene's volume in voxels, and of its picture in pixels.
-const BENCH_SCENE_VOXELS: usize = 256;
-const BENCH_SCENE_PIXELS: u32 = 512;
+/// Number of orbit frames of that scene, of which the quickest counts.
+const UNIT_FRAMES: usize = 4;
 
-/// Number of orbit frames of the bench scene, of which the quickest counts.
-const BENCH_SCENE_FRAMES: usize = 4;
-
-/// Bounds of the CPU time to a first picture under simplified light: orbit frames of the bench scene, and milliseconds
+/// Bounds of the CPU time to a first picture under simplified light: orbit frames of that scene, and milliseconds
 /// per voxel for reading and statistics.
 const ORBIT_FRAMES: f64 = 10.0;
 const VOXEL_MS: f64 = 0.25e-3;
@@ -41,22 +40,18 @@ const MIN_CHROMA: f64 = 0.03;
 const HUE_CLASS_DEG: f64 = 30.0;
 const MIN_HUE_SHARE: f64 = 0.03;
 
-/// Returns the CPU time of an orbit frame of the bench scene, in milliseconds: the unit of the bound.
-pub(super) fn bench_scene_orbit_ms(context: &GpuContext) -> Result<f64, CliError> {
-    let dataset = Dataset::new(synthetic::builtin("creature", Some(BENCH_SCENE_VOXELS))?);
-    let mut settings = Settings::default();
-    if let Some(preset) = PRESETS.iter().find(|preset| preset.name == BENCH_SCENE_PRESET) {
-        settings = preset.apply(&settings, &dataset.volume().ranges()).map_err(|source| {
-            CliError::Preset { what: "preset", path: BENCH_SCENE_PRESET.to_owned(), source }
-        })?;
-    }
+/// Returns the CPU time of an orbit frame of a scene of 256 voxels, in milliseconds: the unit of the bound.
+pub(super) fn unit_orbit_ms(context: &GpuContext) -> Result<f64, CliError> {
+    let dataset = Dataset::new(synthetic::builtin(UNIT_VOLUME, Some(UNIT_VOXELS))?);
+    let first = first_look::first_settings(dataset.volume(), dataset.histogram());
+    let mut settings = LightSimplification::ALL.apply(&first);
     let mut renderer = Renderer::new(context)?;
     let mut quickest = f64::INFINITY;
     // The first frame fills the light volume.
-    for frame in 0..=BENCH_SCENE_FRAMES {
+    for frame in 0..=UNIT_FRAMES {
         settings.camera.azimuth_deg += STEP_DEG;
         let mut clock = CpuClock::start();
-        renderer.draw(&dataset, &settings, [BENCH_SCENE_PIXELS; 2], &RenderOptions::default())?;
+        renderer.draw(&dataset, &settings, [UNIT_PIXELS; 2], &RenderOptions::default())?;
         context.wait()?;
         if let Some(ms) = clock.lap().filter(|_| frame > 0) {
             quickest = quickest.min(ms);
@@ -82,7 +77,7 @@ fn count_hues(light: &[[f32; 4]]) -> usize {
 impl VolumeBenchmark<'_> {
     /// Measures the first look, independently of the look of the benchmark.
     ///
-    /// `orbit_ms`: time of an orbit frame of the bench scene.
+    /// `orbit_ms`: result of [`unit_orbit_ms`].
     pub(super) fn first_look(
         &mut self,
         orbit_ms: f64,

@@ -111,7 +111,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let mut ratios = serde_json::Map::new();
     let context = GpuContext::headless()?;
     let mut orbits = Vec::new();
-    let mut bench_scene_orbit_ms = None;
+    let mut unit_orbit_ms = None;
     for volume in args.volumes.iter().filter(|_| args.only.as_deref() != Some("growth")) {
         let opened = args.look.read_volume(volume, &control_with_size_warning(volume))?;
         let loaded = args.look.adapter_dataset(volume, opened, &context)?;
@@ -157,11 +157,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             bench.scattering(&mut cases, &mut found)?;
         }
         if wants("first-look") {
-            let orbit_ms = match bench_scene_orbit_ms {
+            let orbit_ms = match unit_orbit_ms {
                 Some(known_ms) => known_ms,
-                None => first_look::bench_scene_orbit_ms(&context)?,
+                None => first_look::unit_orbit_ms(&context)?,
             };
-            bench_scene_orbit_ms = Some(orbit_ms);
+            unit_orbit_ms = Some(orbit_ms);
             bench.first_look(orbit_ms, &mut cases, &mut found)?;
         }
         let several = args.volumes.len() > 1;
