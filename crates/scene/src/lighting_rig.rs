@@ -15,8 +15,8 @@ const FILL_INTENSITY: f64 = 0.10;
 /// shape, and lose the hard edge of a lamp.
 const SOFTBOX_DEG: f64 = 10.0;
 
-/// Position of the rim light in view space, right, up and towards the viewer, for a key light on the left: 65° behind
-/// the image plane's side, so that it grazes what the viewer sees, and a little above, so that hollows stay dark.
+/// Position of the rim light in view space, right, up and towards the viewer, for a key light on the left: 40° behind
+/// the image plane, so that it grazes what the viewer sees, and above the middle, so that hollows stay dark.
 const RIM_PLACE: [f64; 3] = [0.75, 0.5, -0.75];
 
 /// Intensity of the rim light relative to a key of 1: its line is brighter than the side in shadow, and no brighter

@@ -10,8 +10,8 @@ const NEARLY_BLACK: f64 = 0.01;
 /// Fraction of its light that a pixel must lose to shadows to count as shadowed.
 const SHADOWED_LOSS: f64 = 0.3;
 
-/// Target of the automatic exposure for the median luminance: a little above the 18 % that photographers expose for,
-/// because the background is dark.
+/// Target of the automatic exposure for the median luminance: half a stop above the 18 % that photographers expose
+/// for, because the background is dark.
 const TARGET_MEDIAN: f64 = 0.26;
 
 /// Range of the automatic exposure: half a stop down, not quite one up. Beyond that the settings are at fault, and

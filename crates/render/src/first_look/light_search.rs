@@ -11,7 +11,7 @@ use super::score::LightingScore;
 use super::small_volume::{downsampled_volume, fast_settings};
 use crate::{GpuError, Renderer, ShaderLibrary};
 use chiaroscuro_scene::{
-    LightDirection, LightSettings, LightSimplification, Settings, first_look, key_and_rim,
+    LightDirection, LightSettings, LightShape, LightSimplification, Settings, first_look, key_and_rim,
 };
 use chiaroscuro_volume::Dataset;
 
@@ -170,7 +170,7 @@ impl LightSearch {
             return Ok(false);
         };
         let drawn = drawn_lights(&lights, self.sought);
-        let quick = LightSimplification::ALL.apply(&Settings { lights: drawn, ..self.settings.clone() });
+        let quick = Settings { lights: drawn, ..self.settings.clone() };
         let seen = if self.start.is_none() {
             BrightnessPictures::draw(&mut self.renderer, &self.small, &quick)?
         } else {
@@ -226,10 +226,13 @@ impl LightSearch {
     }
 }
 
-/// Returns the lights that pictures of the search are drawn with: the rim light of a first look casts no shadows, as
-/// filling its volume would double the time and hardly change which place of the key light is best.
+/// Returns the lights that pictures of the search are drawn with: points, and the rim light of a first look casts no
+/// shadows, as filling its volume would double the time and hardly change which place of the key light is best.
 fn drawn_lights(lights: &[LightSettings], sought: SearchedLight) -> Vec<LightSettings> {
     let mut drawn = lights.to_vec();
+    for light in &mut drawn {
+        light.shape = LightShape::Point;
+    }
     if sought == SearchedLight::KeyAndRim {
         drawn.iter_mut().skip(1).for_each(|light| light.casts_shadows = false);
     }

@@ -51,10 +51,10 @@ impl ShaderLibrary {
 
     /// Compiles the passes of soft light, by drawing a small volume's first look, with a floor or without.
     fn warm_up_soft_light(&self, has_floor: bool, cancel: &CancelToken) -> Result<(), GpuError> {
-        let Ok(volume) = builtin("chair", Some(WARM_UP_VOXELS)) else { return Ok(()) };
         if cancel.is_cancelled() {
             return Ok(());
         }
+        let Ok(volume) = builtin("chair", Some(WARM_UP_VOXELS)) else { return Ok(()) };
         let dataset = Dataset::new(volume);
         let mut look = first_look::first_settings(dataset.volume(), dataset.histogram());
         // As many blocks per voxel as in large volumes.

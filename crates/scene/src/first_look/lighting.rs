@@ -6,9 +6,9 @@ use crate::{
     SkySettings,
 };
 
-/// Ambient coefficient of a first look. With this and the fill of its lights, shadows darken 0.155 of an object's
-/// pixels by 30 % or more (the median of thirteen volumes), and nothing is nearly black; with the default of 0.15,
-/// and a fill of 0.18, it was 0.117.
+/// Ambient coefficient of a first look if its sky, which replaces ambient light, is switched off. Shadows of a key and
+/// a weak fill light darken 0.155 of an object's pixels by 30 % or more then (the median of thirteen volumes), and
+/// nothing is nearly black; with the default of 0.15, and a fill of 0.18, it was 0.117.
 const FIRST_LOOK_AMBIENT: f64 = 0.10;
 
 /// Returns the shading of a domain: metal has strong highlights.
@@ -20,8 +20,7 @@ pub(super) fn shading(domain: DataDomain) -> PhongShading {
     }
 }
 
-/// Intensity of the sky of a first look: shadows keep three quarters of their depth, and hollows are darker than what
-/// faces the sky.
+/// Intensity of the sky of a first look: twice the ambient light that it replaces, because hollows get less of it.
 const SKY_INTENSITY: f64 = 0.2;
 
 /// Directions of the sky of a first look, with a resolution of a quarter. Against twice the directions at half the

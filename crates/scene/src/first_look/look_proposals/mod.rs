@@ -45,7 +45,7 @@ const FROM_ABOVE_DEG: f64 = 48.0;
 const BEHIND_DEG: f64 = 180.0;
 const LEFT_PROFILE_DEG: f64 = 120.0;
 
-/// Sky intensity of soft light: as much as that of the key light on a surface that it grazes.
+/// Sky intensity of soft light: as much as the key light on a surface that is turned 60° from it.
 const SOFT_SKY: f64 = 0.5;
 
 /// Angular width in degrees of a light with soft shadows: a window across a room.
