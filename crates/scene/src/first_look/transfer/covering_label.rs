@@ -18,13 +18,21 @@ const MIN_INSIDE_SHARE: f64 = 0.75;
 /// enough that the veil is visible.
 const VEIL_TRANSMITTANCE: f64 = 0.75;
 
+/// Colour of a veil that the file gives none: neutral and light, so that it does not tint what is behind it.
+const VEIL_COLOR: [f32; 3] = [0.88, 0.85, 0.82];
+
 /// Makes a label that hides all others a veil; `opacity_unit` is the length to which opacities refer.
 pub(crate) fn make_cover_translucent(labels: &mut LabelTable, volume: &Volume, opacity_unit: OpacityLength) {
     let Some(CountedLabel { number, voxels }) = find_cover(volume) else { return };
     let scene = volume.scene();
     let voxel = scene.scene_from_index.matrix3.determinant().abs();
     let thickness = (voxels as f64 * voxel).cbrt() / opacity_unit.scene_units(&scene).max(1e-9);
-    labels.entry_mut(number).opacity = 1.0 - VEIL_TRANSMITTANCE.powf(1.0 / thickness.max(1.0));
+    let has_color = volume.metadata().labels.get(number).is_some_and(|label| label.color.is_some());
+    let cover = labels.entry_mut(number);
+    cover.opacity = 1.0 - VEIL_TRANSMITTANCE.powf(1.0 / thickness.max(1.0));
+    if !has_color {
+        cover.color = VEIL_COLOR;
+    }
 }
 
 /// Returns the label that hides all others, if any.
@@ -123,8 +131,9 @@ mod tests {
         assert_eq!(find_cover(&organs).map(|label| label.number), Some(7));
         let mut labels = LabelTable::default();
         make_cover_translucent(&mut labels, &organs, OpacityLength::Voxels(1.0));
-        let opacity = labels.look_or_default(7).opacity;
+        let LabelLook { opacity, color, .. } = labels.look_or_default(7).into_owned();
         assert!((0.005..0.02).contains(&opacity), "{opacity}");
+        assert_eq!(color, VEIL_COLOR);
         assert_eq!(labels.len(), 1, "others stay as they are");
         // Balls side by side, a single one, and a speck beside a ball: all are visible.
         let beside = balls(&[(1, [9.0, 15.5, 15.5], 7.0), (2, [22.0, 15.5, 15.5], 7.0)]);
