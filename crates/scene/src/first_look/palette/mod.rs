@@ -15,13 +15,14 @@ pub(super) struct DomainPalette(&'static [Lch]);
 #[cfg(test)]
 const LIGHTNESS: std::ops::RangeInclusive<f64> = 0.6..=0.96;
 
-/// Palette for unknown data: light wood to sand, and porcelain for what is densest.
+/// Palette for unknown data: the red of fired clay where material is thin or faint, sand, and porcelain for what is
+/// densest.
 const UNKNOWN: DomainPalette = DomainPalette(&[
-    [0.66, 0.078, 56.0],
-    [0.75, 0.07, 66.0],
-    [0.83, 0.04, 80.0],
+    [0.65, 0.09, 40.0],
+    [0.75, 0.08, 64.0],
+    [0.83, 0.045, 80.0],
     [0.9, 0.008, 90.0],
-    [0.94, 0.016, 235.0],
+    [0.94, 0.018, 235.0],
 ]);
 
 /// Palette for soft tissue: muscle to fat.

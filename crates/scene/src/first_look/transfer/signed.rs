@@ -38,11 +38,11 @@ const MIN_SHARE_OF_FULL: f64 = 0.1;
 const MIN_STEP_RATIO: f64 = 1.15;
 
 /// Transmittance of the known part of a field, as thick as a cube of its voxels: strong values on its far side are
-/// visible through it, and so is its outline.
-const VEIL_TRANSMITTANCE: f64 = 0.55;
+/// visible through it in their own colours, and so is its outline. With 0.55 it is grey smoke.
+const VEIL_TRANSMITTANCE: f64 = 0.72;
 
-/// Grey of the glass, as light as the palest colours of the field.
-const GLASS_COLOR: [f32; 3] = [0.8; 3];
+/// White of the glass, whose haze is then bright.
+const GLASS_COLOR: [f32; 3] = [0.93; 3];
 
 /// Returns the known part of a masked field as a veil: all values from just above zero to the threshold.
 fn known_part_veil(volume: &Volume, threshold: f64) -> Option<[ControlPoint; 6]> {
