@@ -22,11 +22,12 @@ fn cell_at(walk: CellRay, k: i32) -> vec3f {
     return floor(walk.origin + walk.step * f32(k));
 }
 
-// Distances of a cell to the nearest visible ones. Cells outside the grid take the values at its border: if the
-// border is that far from any visible cell, so is everything outside it.
+// Distances of a cell to the nearest visible ones: x to any, y to those that attenuate light. Cells outside the grid
+// take the values at its border: if the border is that far from any visible cell, so is everything outside it.
+// Textures hold x, and the bits in which y differs: one channel suffices where they are the same everywhere.
 fn cell_distances(distances: texture_3d<f32>, cell: vec3f) -> vec2i {
-    let stored = textureSampleLevel(distances, nearest, (cell + 0.5) * grid.cell_scale, 0.0).rg;
-    return vec2i(stored * 255.0 + 0.5);
+    let stored = vec2i(textureSampleLevel(distances, nearest, (cell + 0.5) * grid.cell_scale, 0.0).rg * 255.0 + 0.5);
+    return vec2i(stored.x, stored.x ^ stored.y);
 }
 
 // First slab beyond the cube of empty cells around `cell`. `empty` is the number of layers of that cube: 1 is the

@@ -265,6 +265,7 @@ impl VolumeBenchmark<'_> {
         let mut build = self.case("light-build", &samples, rebuilds);
         build["wall_ms"] = json!({ "median": round_to_microsecond(samples.light_build()) });
         build["cpu_ms"] = Value::Null;
+        build["host_ms"] = Value::Null;
         cases.push(build);
         Ok(samples)
     }
@@ -333,17 +334,18 @@ fn print_table(result: &Value) -> Result<(), CliError> {
     let timed: Vec<&Value> = cases.iter().filter(|case| !has_own_table(case)).collect();
     if !timed.is_empty() {
         print_line(
-            "case                        volume         wall ms    cpu ms    eye    march  back-project     rays",
+            "case                        volume         wall ms    cpu ms  host ms    eye    march  back-project     rays",
         )?;
     }
     for case in timed {
         let number = |value: &Value| value.as_f64().map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         print_line(&format!(
-            "{:<27} {:<13} {:>8} {:>9} {:>6} {:>8} {:>13} {:>8}",
+            "{:<27} {:<13} {:>8} {:>9} {:>8} {:>6} {:>8} {:>13} {:>8}",
             text(&case["name"]),
             format!("{} {}", text(&case["volume"]), case["dims"][0]),
             number(&case["wall_ms"]["median"]),
             number(&case["cpu_ms"]["median"]),
+            case["host_ms"]["median"].as_f64().map_or("–".to_owned(), |ms| format!("{ms:.2}")),
             number(&case["stages"]["eye"]),
             number(&case["stages"]["light_march"]),
             number(&case["stages"]["light_backproject"]),

@@ -10,6 +10,7 @@ use chiaroscuro_render::RenderReport;
 pub(super) struct CaseTimings {
     wall_ms: Vec<f64>,
     cpu_ms: Vec<f64>,
+    host_ms: Vec<f64>,
     eye_ms: Vec<f64>,
     light_march_ms: Vec<f64>,
     light_backproject_ms: Vec<f64>,
@@ -34,6 +35,7 @@ impl CaseTimings {
         if let (Some(before), Some(after)) = (cpu, process_cpu_ms()) {
             self.cpu_ms.push(after - before);
         }
+        self.host_ms.push(report.host_ms);
         self.eye_ms.push(report.eye_ms);
         self.light_march_ms.push(report.light_march_ms);
         self.light_backproject_ms.push(report.light_backproject_ms);
@@ -91,6 +93,8 @@ impl CaseTimings {
             "frames": self.wall_ms.len(),
             "wall_ms": spread_json(&self.wall_ms),
             "cpu_ms": spread_json(&self.cpu_ms),
+            // Layout, recording and submission, without waiting for the adapter.
+            "host_ms": spread_json(&self.host_ms),
             "stages": {
                 "eye": round_to_microsecond(median(&self.eye_ms)),
                 "light_march": round_to_microsecond(median(&self.light_march_ms)),

@@ -127,6 +127,7 @@ impl RenderJob<'_> {
         context.queue.submit([encoder.finish()]);
         self.steps.pop_front();
         self.finish_products();
+        self.report.host_ms += start.elapsed().as_secs_f64() * 1000.0;
         if self.options.work.timed {
             context.wait()?;
         }

@@ -34,6 +34,9 @@ pub struct RenderReport {
     pub eye_ms: f64,
     /// Time of the display pass and of reading back, in milliseconds.
     pub readback_ms: f64,
+    /// Wall time of the host's own work in milliseconds: planning, layout, recording and submission, without waiting
+    /// for the adapter and without reading back.
+    pub host_ms: f64,
     /// GPU time of all light volumes, in milliseconds; `None` if the adapter has no timestamps.
     pub light_gpu_ms: Option<f64>,
     /// GPU time of the eye pass, in milliseconds; `None` if the adapter has no timestamps.

@@ -45,8 +45,9 @@ impl ChunkSchedule {
     ) -> Self {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
+        let completion = CompletionDepths::new(scene, view, light);
         for (brick, cells) in light.filled_cells.bricks() {
-            let slabs = final_slabs(scene, view, light, brick);
+            let slabs = completion.slabs(brick);
             for list in &mut chunks[(slabs.start() / chunk) as usize..=(slabs.end() / chunk) as usize] {
                 list.push(brick_list::brick_entry((brick, cells)));
             }
@@ -77,30 +78,46 @@ fn brick_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 
     })
 }
 
-/// Returns the slabs, from the first to the last, that complete any voxel of a brick.
-fn final_slabs(
-    scene: &SceneSpace,
-    view: &LightView,
-    light: &LightVolume,
-    brick: [usize; 3],
-) -> RangeInclusive<u32> {
-    let step = light.divisor as f64;
-    let corner = |side: usize| {
-        let at = |axis: usize| {
-            let voxel = brick[axis] * BRICK_EDGE + if side >> axis & 1 == 0 { 0 } else { BRICK_EDGE - 1 };
-            (voxel as f64 + 0.5) * step - 0.5
-        };
-        scene.scene_from_index.transform_point3(DVec3::new(at(0), at(1), at(2)))
-    };
-    let frame = &view.frame;
-    let depths = (0..8).map(|side| (corner(side) - view.anchor).dot(view.axes.z_axis));
-    let (near, far) =
-        depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(near, far), z| (near.min(z), far.max(z)));
-    // One slab of slack each for the quadrature points and for the rounding of the shader.
-    let final_slab = |depth: f64| (depth - frame.first_depth) / frame.slab + 2.0 * view.kernel_slabs() - 0.5;
-    let last = f64::from(frame.slab_count.max(1) - 1);
-    let clamp = |slab: f64| slab.clamp(0.0, last) as u32;
-    clamp(final_slab(near).floor() - 1.0)..=clamp(final_slab(far).floor() + 1.0)
+/// Depths at which the voxels of bricks are complete: linear in the brick's coordinates.
+struct CompletionDepths {
+    /// Last slab that reaches the first voxel of brick 0, fractional.
+    first: f64,
+    /// Slabs from a brick to the next along each axis of the grid.
+    per_brick: DVec3,
+    /// Range of the slabs of a brick's voxels relative to its first voxel, with slack on either side.
+    within: [f64; 2],
+    /// Last slab of the view.
+    last: f64,
+}
+
+impl CompletionDepths {
+    fn new(scene: &SceneSpace, view: &LightView, light: &LightVolume) -> Self {
+        let frame = &view.frame;
+        let step = light.divisor as f64;
+        let slab_of = |place: DVec3| (place.dot(view.axes.z_axis) - frame.first_depth) / frame.slab;
+        let voxel = scene.scene_from_index.transform_point3(DVec3::splat(0.5 * step - 0.5));
+        let per_voxel = scene.scene_from_index.matrix3.transpose() * view.axes.z_axis * (step / frame.slab);
+        let across = (BRICK_EDGE - 1) as f64 * per_voxel;
+        // One slab of slack each for the quadrature points and for the rounding of the shader.
+        let slack = 1.0;
+        Self {
+            first: slab_of(voxel - view.anchor) + 2.0 * view.kernel_slabs() - 0.5,
+            per_brick: BRICK_EDGE as f64 * per_voxel,
+            within: [
+                across.min(DVec3::ZERO).element_sum() - slack,
+                across.max(DVec3::ZERO).element_sum() + slack,
+            ],
+            last: f64::from(frame.slab_count.max(1) - 1),
+        }
+    }
+
+    /// Returns the slabs, from the first to the last, that complete any voxel of a brick.
+    fn slabs(&self, brick: [usize; 3]) -> RangeInclusive<u32> {
+        let slab = self.first + self.per_brick.dot(DVec3::from(brick.map(|at| at as f64)));
+        let [low, high] = self.within.map(|beyond| slab + beyond);
+        // Casts round towards zero, which is down between the limits.
+        (low.clamp(0.0, self.last) as u32)..=(high.clamp(0.0, self.last) as u32)
+    }
 }
 
 /// Returns the map from index space to light axes: x and y in pixels of the anchor plane, z in scene units.

@@ -4,6 +4,8 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::preclassified::PreclassifiedVoxels;
 use super::{GpuVolume, PassPyramids, PyramidViews, brick_dims};
 use crate::pipelines::pipeline_variant::GridBoundaries;
@@ -186,7 +188,8 @@ pub(crate) struct TransferTables {
     colors: Vec<TransferTable>,
     /// Distances in cells to the nearest cell that is visible to the eye.
     pub eye_distances: wgpu::TextureView,
-    /// Distances in cells: r to the nearest cell occupied in either table, g to the nearest that attenuates light.
+    /// Distances in cells: r to the nearest cell occupied in either table, g the bits in which the distance to the
+    /// nearest cell that attenuates light differs, if they differ anywhere.
     pub light_distances: wgpu::TextureView,
     /// Distances to cells occupied in either table; the light of eye samples is looked up near them.
     occupied_distances: Arc<CellDistances>,
@@ -264,22 +267,29 @@ impl TransferTables {
             Arc::new(eye.distances.min(&lighting.distances))
         };
         let dims = shown.dims;
-        let pairs: Vec<u8> =
-            shown.values.iter().zip(&lighting.distances.values).flat_map(|(r, g)| [*r, *g]).collect();
-        let eye_distances = upload_distances(
-            context,
-            "Tables::eye_distances",
-            dims,
-            &eye.distances.values,
-            wgpu::TextureFormat::R8Unorm,
-        )?;
-        let light_distances = upload_distances(
-            context,
-            "Tables::light_distances",
-            dims,
-            &pairs,
-            wgpu::TextureFormat::Rg8Unorm,
-        )?;
+        let upload_one = |label, distances: &CellDistances| {
+            upload_distances(context, label, dims, &distances.values, wgpu::TextureFormat::R8Unorm)
+        };
+        let eye_distances = upload_one("Tables::eye_distances", &eye.distances)?;
+        let light_distances = if Arc::ptr_eq(&shown, &lighting.distances) {
+            if Arc::ptr_eq(&shown, &eye.distances) {
+                eye_distances.clone()
+            } else {
+                upload_one("Tables::light_distances", &shown)?
+            }
+        } else {
+            let mut pairs = vec![[0; 2]; shown.values.len()];
+            let distances = shown.values.par_iter().zip(&lighting.distances.values);
+            // As `density/cells.wgsl` reads them.
+            pairs.par_iter_mut().zip(distances).for_each(|(pair, (any, light))| *pair = [*any, any ^ light]);
+            upload_distances(
+                context,
+                "Tables::light_distances",
+                dims,
+                pairs.as_flattened(),
+                wgpu::TextureFormat::Rg8Unorm,
+            )?
+        };
         let tables = Self {
             eye,
             lighting,

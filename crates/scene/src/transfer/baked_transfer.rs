@@ -82,6 +82,10 @@ fn integrals(means: &[[f64; 4]]) -> Vec<[f32; 4]> {
     std::iter::once([0.0; 4]).chain(steps).collect()
 }
 
+/// Largest number of runs of visible entries with which a range is compared one by one, which takes less time than
+/// looking up counts of entries.
+const MAX_COMPARED_RUNS: usize = 4;
+
 impl BakedTransfer {
     /// Creates a table from [`LUT_SIZE`] entries between which the function is linear.
     pub(super) fn new(entries: Vec<[f32; 4]>) -> Self {
@@ -132,20 +136,36 @@ impl BakedTransfer {
     }
 
     /// Returns a test for extinction at any density in `[min, max]`. It includes the table entries around the range,
-    /// since values between entries are interpolated.
+    /// since values between entries are interpolated, and one more on either side, since densities are rounded when
+    /// they are uploaded.
     pub fn visibility_test(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
-        // counts[i] is the number of entries below i that have extinction.
+        let is_visible: Vec<bool> = self.entries.iter().map(|entry| entry[3] > 0.0).collect();
+        // Of runs of visible entries, the entries two before the first and two behind the last: ranges that touch
+        // neither lie beyond them.
+        let mut runs: Vec<[f32; 2]> = Vec::new();
+        let mut at = 0.0;
+        for run in is_visible.chunk_by(|a, b| a == b) {
+            let end = at + run.len() as f32;
+            if run[0] {
+                runs.push([at - 2.0, end + 1.0]);
+            }
+            at = end;
+        }
+        // counts[i] is the number of visible entries below i.
         let counts: Vec<u32> = std::iter::once(0)
-            .chain(self.entries.iter().scan(0, |seen, entry| {
-                *seen += u32::from(entry[3] > 0.0);
+            .chain(is_visible.iter().scan(0, |seen, &visible| {
+                *seen += u32::from(visible);
                 Some(*seen)
             }))
             .collect();
         let last = LUT_SIZE - 1;
         move |min, max| {
-            // One entry of slack on either side: densities are rounded when they are uploaded.
-            let low = ((min * last as f32).floor() as usize).saturating_sub(1).min(last);
-            let high = ((max * last as f32).ceil() as usize + 1).min(last);
+            let (min, max) = (min * last as f32, max * last as f32);
+            if runs.len() <= MAX_COMPARED_RUNS {
+                return runs.iter().any(|&[before, behind]| max > before && min < behind);
+            }
+            let low = (min.floor() as usize).saturating_sub(1).min(last);
+            let high = (max.ceil() as usize + 1).min(last);
             counts[high + 1] > counts[low]
         }
     }

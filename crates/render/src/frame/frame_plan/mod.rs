@@ -59,11 +59,14 @@ impl Renderer {
         request: RenderRequest,
         options: &RenderOptions,
     ) -> Result<RenderJob<'_>, GpuError> {
+        let start = Instant::now();
         let request = with_resolved_labels(request, dataset);
         let keys = FrameKeys::new(&request, options);
         let mut planner = self.plan_frame(dataset, request, options, keys)?;
         let placement = planner.place_volumes()?;
-        planner.into_job(placement)
+        let job = planner.into_job(placement)?;
+        job.report.host_ms = start.elapsed().as_secs_f64() * 1000.0;
+        Ok(job)
     }
 
     /// Loads the volume of a picture, and starts its report and its plan.

@@ -27,24 +27,26 @@ impl CellDistances {
     /// Computes the distances to the cells of a set.
     pub fn from_set(set: &CellSet) -> Self {
         let dims = set.dims.map(|n| n * CELLS_PER_BRICK_EDGE);
-        let [nx, ny, _] = dims;
-        let mut values = vec![MAX_CELL_DISTANCE; dims.iter().product()];
-        values.par_chunks_mut(nx * ny).enumerate().for_each(|(z, plane)| {
-            for (y, row) in plane.chunks_mut(nx).enumerate() {
-                let first =
-                    set.dims[0] * (y / CELLS_PER_BRICK_EDGE + set.dims[1] * (z / CELLS_PER_BRICK_EDGE));
-                let shift = CELLS_PER_BRICK_EDGE * (y % CELLS_PER_BRICK_EDGE)
-                    + CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE * (z % CELLS_PER_BRICK_EDGE);
-                for (cells, mask) in row.chunks_mut(CELLS_PER_BRICK_EDGE).zip(&set.masks[first..]) {
-                    for (x, cell) in cells.iter_mut().enumerate() {
-                        *cell = if mask >> (shift + x) & 1 == 1 { 0 } else { MAX_CELL_DISTANCE };
-                    }
-                }
-                spread_along(row);
+        let [nx, ny, nz] = dims;
+        let plane = nx * ny;
+        let mut values = vec![0; plane * nz];
+        if values.is_empty() {
+            return Self { dims, values };
+        }
+        // Each thread computes some planes, and those around them that members beyond may be nearest to.
+        let most = usize::from(MAX_CELL_DISTANCE);
+        let planes = nz.div_ceil(rayon::current_num_threads()).max(most);
+        values.par_chunks_mut(plane * planes).enumerate().for_each(|(at, target)| {
+            let (first, end) = (at * planes, at * planes + target.len() / plane);
+            let (low, high) = (first.saturating_sub(most), (end + most).min(nz));
+            let mut spread = vec![MAX_CELL_DISTANCE; plane * (high - low)];
+            for (row, line) in spread.chunks_mut(nx).enumerate() {
+                write_members(set, [row % ny, low + row / ny], line);
             }
-            spread_across(plane, nx);
+            spread_through(&mut spread, nx, ny);
+            target.copy_from_slice(&spread[plane * (first - low)..plane * (end - low)]);
         });
-        Self { dims, values: spread_through(&values, nx * ny) }
+        Self { dims, values }
     }
 
     /// Returns the minimum distance at the faces of a grid whose last cells along x, y and z are `last`. The last
@@ -52,114 +54,130 @@ impl CellDistances {
     pub fn min_at_faces(&self, last: [usize; 3]) -> u8 {
         let [nx, ny, _] = self.dims;
         let is_at_face = |c: usize, axis: usize| c == 0 || c + 1 >= last[axis];
-        let least_in = |(z, plane): (usize, &[u8])| {
-            let whole = is_at_face(z, 2);
-            let rows = plane.chunks(nx).enumerate();
-            let least = rows.map(|(y, row)| {
-                let cells = row.iter().enumerate();
-                let at_faces = cells.filter(|(x, _)| whole || is_at_face(y, 1) || is_at_face(*x, 0));
-                at_faces.map(|(_, distance)| *distance).min().unwrap_or(MAX_CELL_DISTANCE)
-            });
-            least.min().unwrap_or(MAX_CELL_DISTANCE)
-        };
-        self.values.par_chunks(nx * ny).enumerate().map(least_in).min().unwrap_or(MAX_CELL_DISTANCE)
+        let behind = last[0].saturating_sub(1).min(nx);
+        let least = |cells: &[u8]| cells.iter().copied().min().unwrap_or(MAX_CELL_DISTANCE);
+        let planes = self.values.chunks(nx * ny).enumerate().map(|(z, plane)| {
+            if is_at_face(z, 2) {
+                return least(plane);
+            }
+            let row = |(y, row): (usize, &[u8])| {
+                if is_at_face(y, 1) { least(row) } else { least(&row[..1]).min(least(&row[behind..])) }
+            };
+            plane.chunks(nx).enumerate().map(row).min().unwrap_or(MAX_CELL_DISTANCE)
+        });
+        planes.min().unwrap_or(MAX_CELL_DISTANCE)
     }
 
     /// Returns the minimum of two distance fields on the same grid.
     #[must_use]
     pub fn min(&self, other: &Self) -> Self {
-        let values = self.values.iter().zip(&other.values).map(|(a, b)| *a.min(b)).collect();
-        Self { dims: self.dims, values }
+        let pairs = self.values.par_iter().zip(&other.values);
+        Self { dims: self.dims, values: pairs.map(|(a, b)| *a.min(b)).collect() }
     }
 
     /// Returns the cells up to `reach` from the set, on a grid of `bricks` with cells `factor` times as large: a
     /// coarse cell is a member if any of its cells is near enough.
     pub fn cells_within(&self, reach: u8, factor: usize, bricks: [usize; 3]) -> CellSet {
-        let [nx, ny, nz] = self.dims;
-        let holds = |cell: [usize; 3]| {
-            let [xs, ys, zs] = [(cell[0], nx), (cell[1], ny), (cell[2], nz)]
-                .map(|(c, n)| (c * factor).min(n)..((c + 1) * factor).min(n));
-            zs.clone().any(|z| {
-                ys.clone().any(|y| {
-                    let row = nx * (y + ny * z);
-                    self.values[row + xs.start..row + xs.end].iter().any(|&distance| distance <= reach)
-                })
-            })
-        };
+        let fine = self.dims.map(|n| n / CELLS_PER_BRICK_EDGE);
+        let [nx, ny, _] = self.dims;
         let mask = |at: usize| {
-            let brick = [at % bricks[0], at / bricks[0] % bricks[1], at / (bricks[0] * bricks[1])];
-            let bit = |cell: usize| {
-                let [x, y, z] = brick.map(|c| c * CELLS_PER_BRICK_EDGE);
-                let at = [
-                    x + cell % CELLS_PER_BRICK_EDGE,
-                    y + cell / CELLS_PER_BRICK_EDGE % CELLS_PER_BRICK_EDGE,
-                    z + cell / 16,
-                ];
-                u64::from(holds(at)) << cell
-            };
-            (0..CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE).map(bit).sum()
+            let brick = [at % fine[0], at / fine[0] % fine[1], at / (fine[0] * fine[1])];
+            let [x, y, z] = brick.map(|c| c * CELLS_PER_BRICK_EDGE);
+            let rows = (0..CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE).map(|row| {
+                let [j, k] = [row % CELLS_PER_BRICK_EDGE, row / CELLS_PER_BRICK_EDGE];
+                let first = x + nx * (y + j + ny * (z + k));
+                let mut cells = [0; CELLS_PER_BRICK_EDGE];
+                cells.copy_from_slice(&self.values[first..first + CELLS_PER_BRICK_EDGE]);
+                u64::from(near_cells(cells, reach)) << (CELLS_PER_BRICK_EDGE * row)
+            });
+            rows.fold(0, |mask, row| mask | row)
         };
-        CellSet { dims: bricks, masks: (0..bricks.iter().product()).into_par_iter().map(mask).collect() }
+        let count = fine.iter().product::<usize>();
+        let all = CellSet { dims: fine, masks: (0..count).into_par_iter().map(mask).collect() };
+        if factor == 1 && bricks == fine { all } else { all.coarsened(factor, bricks) }
     }
 }
 
-// Chebyshev's distance separates by axis: the distance over three axes is the minimum over the third axis of
-// max(distance over the first two, step).
+/// Returns a mask of the cells of a row of a brick whose distances are at most `reach`.
+fn near_cells(distances: [u8; CELLS_PER_BRICK_EDGE], reach: u8) -> u32 {
+    // A byte's highest bit is set by this sum if its distance, of at most MAX_CELL_DISTANCE, is larger.
+    let beyond = 0x7f - u32::from(reach.min(MAX_CELL_DISTANCE));
+    let sums = u32::from_le_bytes(distances) + beyond * 0x0101_0101;
+    // The product has the bits 0, 8, 16 and 24 side by side, from bit 24 on.
+    ((!sums >> 7 & 0x0101_0101).wrapping_mul(1 << 24 | 1 << 17 | 1 << 10 | 1 << 3)) >> 24
+}
 
-/// Propagates distances along a row of cells.
+/// Writes the distances along x to members of a set into a row of cells that is full of the maximum.
+fn write_members(set: &CellSet, [y, z]: [usize; 2], row: &mut [u8]) {
+    let first = set.dims[0] * (y / CELLS_PER_BRICK_EDGE + set.dims[1] * (z / CELLS_PER_BRICK_EDGE));
+    let shift = CELLS_PER_BRICK_EDGE * (y % CELLS_PER_BRICK_EDGE)
+        + CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE * (z % CELLS_PER_BRICK_EDGE);
+    let masks = &set.masks[first..first + set.dims[0]];
+    if masks.iter().all(|mask| mask >> shift & 0xf == 0) {
+        return;
+    }
+    for (cells, mask) in row.chunks_mut(CELLS_PER_BRICK_EDGE).zip(masks) {
+        for (x, cell) in cells.iter_mut().enumerate() {
+            *cell = if mask >> (shift + x) & 1 == 1 { 0 } else { MAX_CELL_DISTANCE };
+        }
+    }
+    spread_along(row);
+}
+
+/// Propagates distances along a row of cells, of which members have 0 and all others the maximum: by steps of 1, 2,
+/// 4, 8 and 16 cells, whose sums are all distances up to the maximum.
 fn spread_along(row: &mut [u8]) {
-    let before = row.to_vec();
-    if before.iter().all(|&distance| distance == MAX_CELL_DISTANCE) {
-        return;
-    }
-    for step in 1..usize::from(MAX_CELL_DISTANCE).min(row.len()) {
-        include(&mut row[step..], &before, step);
-        let end = row.len() - step;
-        include(&mut row[..end], &before[step..], step);
-    }
-}
-
-/// Propagates distances along the columns of a plane of rows.
-fn spread_across(plane: &mut [u8], row: usize) {
-    let before = plane.to_vec();
-    if before.iter().all(|&distance| distance == MAX_CELL_DISTANCE) {
-        return;
-    }
-    for (at, target) in plane.chunks_mut(row).enumerate() {
-        min_over_lines(target, &before, at, row);
+    let mut before = row.to_vec();
+    let length = row.len();
+    for step in [1, 2, 4, 8, 16].into_iter().filter(|&step| step < length) {
+        before.copy_from_slice(row);
+        let nearer = |known: &mut u8, other: u8| *known = (*known).min(other + step as u8);
+        row[step..].iter_mut().zip(&before).for_each(|(known, &other)| nearer(known, other));
+        row.iter_mut().zip(&before[step..]).for_each(|(known, &other)| nearer(known, other));
     }
 }
 
-/// Propagates distances from plane to plane.
-fn spread_through(planes: &[u8], plane: usize) -> Vec<u8> {
-    let mut spread = planes.to_vec();
-    spread
-        .par_chunks_mut(plane)
-        .enumerate()
-        .for_each(|(at, target)| min_over_lines(target, planes, at, plane));
-    spread
-}
-
-/// Updates `target` with the minimum, over lines of `length` values, of max(value, distance from line `at`).
-fn min_over_lines(target: &mut [u8], lines: &[u8], at: usize, length: usize) {
-    let count = lines.len() / length;
-    for step in 1..usize::from(MAX_CELL_DISTANCE).min(count.max(1)) {
-        // Lines further away cannot improve any distance.
-        if target.iter().all(|&known| usize::from(known) <= step) {
-            break;
-        }
-        if step <= at {
-            include(target, &lines[(at - step) * length..], step);
-        }
-        if at + step < count {
-            include(target, &lines[(at + step) * length..], step);
-        }
+/// Propagates distances along x through planes of `ny` rows of `nx` cells, in two passes in opposite directions
+/// (A. Rosenfeld and J. Pfaltz, Pattern Recognition 1, 1968): a cell is one further than the nearest of its neighbours
+/// in the rows before. A path to the nearest member goes along its row, then forwards, then backwards.
+fn spread_through(distances: &mut [u8], nx: usize, ny: usize) {
+    let far = vec![MAX_CELL_DISTANCE; nx];
+    let mut nearest = vec![MAX_CELL_DISTANCE; nx + 2];
+    let rows = distances.len() / nx;
+    for row in 0..rows {
+        let (before, rest) = distances.split_at_mut(row * nx);
+        let line = |back: usize, is_there: bool| {
+            if is_there && back <= row { &before[(row - back) * nx..(row - back + 1) * nx] } else { &far[..] }
+        };
+        let (has_previous, has_next) = (row % ny > 0, row % ny + 1 < ny);
+        let neighbours =
+            [line(1, has_previous), line(ny + 1, has_previous), line(ny, true), line(ny - 1, has_next)];
+        include_neighbours(&mut rest[..nx], neighbours, &mut nearest);
+    }
+    for row in (0..rows).rev() {
+        let (before, behind) = distances.split_at_mut((row + 1) * nx);
+        let line = |forth: usize, is_there: bool| {
+            let is_there = is_there && row + forth < rows;
+            if is_there { &behind[(forth - 1) * nx..forth * nx] } else { &far[..] }
+        };
+        let (has_previous, has_next) = (row % ny > 0, row % ny + 1 < ny);
+        let neighbours =
+            [line(1, has_next), line(ny + 1, has_next), line(ny, true), line(ny - 1, has_previous)];
+        include_neighbours(&mut before[row * nx..], neighbours, &mut nearest);
     }
 }
 
-fn include(target: &mut [u8], line: &[u8], step: usize) {
-    for (known, &other) in target.iter_mut().zip(line) {
-        *known = (*known).min(other.max(step as u8));
+/// Updates a row with distances that are one larger than the nearest in neighbouring rows, up to a cell aside.
+/// `nearest` is scratch space for a row and a cell on either side, which stay at the maximum.
+fn include_neighbours(row: &mut [u8], [a, b, c, d]: [&[u8]; 4], nearest: &mut [u8]) {
+    let count = row.len();
+    let columns = a.iter().zip(b).zip(c.iter().zip(d));
+    for (least, ((a, b), (c, d))) in nearest[1..=count].iter_mut().zip(columns) {
+        *least = (*a).min(*b).min((*c).min(*d));
+    }
+    let columns = nearest.iter().zip(&nearest[1..]).zip(&nearest[2..]);
+    for (known, ((left, middle), right)) in row.iter_mut().zip(columns) {
+        *known = (*known).min((*left).min(*middle).min(*right) + 1);
     }
 }
 

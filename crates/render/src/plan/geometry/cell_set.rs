@@ -111,8 +111,9 @@ impl CellSet {
     /// Iterates over the members, brick by brick.
     pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         self.bricks().flat_map(|(brick, mask)| {
-            let bits = (0..u64::BITS as usize).filter(move |bit| mask >> bit & 1 == 1);
-            bits.map(move |bit| {
+            let rest = |left: &u64| Some(left & (left - 1)).filter(|&left| left != 0);
+            std::iter::successors(Some(mask), rest).map(move |left| {
+                let bit = left.trailing_zeros() as usize;
                 let within = [
                     bit % CELLS_PER_BRICK_EDGE,
                     bit / CELLS_PER_BRICK_EDGE % CELLS_PER_BRICK_EDGE,

@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::plan::LightView;
 use chiaroscuro_volume::math::SceneSpace;
@@ -16,6 +17,9 @@ pub const TILE_ROW_BIT: u32 = 15;
 
 /// Bit set in the entry of a tile that is in no earlier chunk: light arrives there unattenuated.
 pub const TILE_FIRST_BIT: u32 = 31;
+
+/// Minimum number of boxes that a thread projects at a time: a tenth of a millisecond of work.
+const MIN_BOXES_PER_TASK: usize = 1024;
 
 /// Mark of a tile that is in no earlier chunk.
 const FIRST_MARK: u32 = 1 << TILE_FIRST_BIT;
@@ -59,13 +63,13 @@ impl MarchTiles {
         }
         let turned = DAffine3::from_mat3(view.axes.transpose());
         let local_from_index = turned * DAffine3::from_translation(-view.anchor) * scene.scene_from_index;
-        for [low, high] in boxes {
+        let extent = |&[low, high]: &[DVec3; 2]| {
             let corner = local_from_index.transform_point3(low);
-            let edges = local_from_index.matrix3 * DMat3::from_diagonal(high - low);
-            if let Some(extent) = box_extent(view, corner, edges) {
-                marked.mark(extent);
-            }
-        }
+            box_extent(view, corner, local_from_index.matrix3 * DMat3::from_diagonal(high - low))
+        };
+        let boxes: Vec<_> = boxes.collect();
+        let extents: Vec<_> = boxes.par_iter().with_min_len(MIN_BOXES_PER_TASK).map(extent).collect();
+        extents.into_iter().flatten().for_each(|extent| marked.mark(extent));
         marked.into_tiles()
     }
 
@@ -85,6 +89,17 @@ struct BoxExtent {
 /// `None` if it is completely behind the light.
 fn box_extent(view: &LightView, corner: DVec3, edges: DMat3) -> Option<BoxExtent> {
     let frame = &view.frame;
+    if frame.inverse_distance == 0.0 {
+        // Pixels of parallel light are equally wide at all depths.
+        let scale = DVec3::new(frame.pitch, frame.pitch, frame.slab).recip();
+        let first = view.first_pixel.extend(frame.first_depth / frame.slab + 0.5);
+        let sum = |limit: fn(DVec3, DVec3) -> DVec3| {
+            let [x, y, z] = [edges.x_axis, edges.y_axis, edges.z_axis].map(|edge| limit(edge, DVec3::ZERO));
+            (corner + x + y + z) * scale - first
+        };
+        let (low, high) = (sum(DVec3::min) - ROUNDING_MARGIN, sum(DVec3::max) + ROUNDING_MARGIN);
+        return Some(BoxExtent { pixels: [low.truncate(), high.truncate()], slabs: [low.z, high.z] });
+    }
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut nearest = f64::INFINITY;
     for side in 0..8 {
@@ -126,12 +141,11 @@ impl TileMarks {
     }
 
     fn mark(&mut self, BoxExtent { pixels: [low, high], slabs: [first, last] }: BoxExtent) {
-        let Some(chunks) = pieces_covering(first, last, f64::from(self.chunk), self.chunks.len()) else {
+        let Some(chunks) = pieces_covering(first, last, self.chunk, self.chunks.len()) else {
             return;
         };
-        let edge = f64::from(TILE_EDGE);
         let [Some(columns), Some(rows)] =
-            [0, 1].map(|axis| pieces_covering(low[axis], high[axis], edge, self.size[axis] as usize))
+            [0, 1].map(|axis| pieces_covering(low[axis], high[axis], TILE_EDGE, self.size[axis] as usize))
         else {
             return;
         };
@@ -164,10 +178,14 @@ impl TileMarks {
 
 /// Returns the range of pieces of a length, out of `count`, that contain the integers around `low` … `high`; `None`
 /// if they are all outside.
-fn pieces_covering(low: f64, high: f64, length: f64, count: usize) -> Option<RangeInclusive<usize>> {
-    let (first, last) = ((low.floor() / length).floor(), (high.ceil() / length).floor());
-    let end = count as f64 - 1.0;
-    (last >= 0.0 && first <= end).then(|| first.max(0.0) as usize..=last.min(end) as usize)
+fn pieces_covering(low: f64, high: f64, length: u32, count: usize) -> Option<RangeInclusive<usize>> {
+    // One less where the cast, which saturates, rounds a fraction up towards zero. Faster than `floor`, which is a
+    // call on processors that are not known to have an instruction for it.
+    let floor = |at: f64| (at as i64).saturating_sub(i64::from((at as i64) as f64 > at));
+    let piece = |at: i64| at.div_euclid(i64::from(length));
+    let (first, last) = (piece(floor(low)), piece(floor(-high).saturating_neg()));
+    let end = count as i64 - 1;
+    (last >= 0 && first <= end).then(|| first.max(0) as usize..=last.min(end) as usize)
 }
 
 #[cfg(test)]
