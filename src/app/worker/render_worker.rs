@@ -263,6 +263,7 @@ impl RenderWorker {
             let more = job.step()?;
             context.wait()?;
             let took_ms = start.elapsed().as_secs_f64() * 1000.0;
+            job.learn_pace(took_ms);
             total_ms += took_ms;
             match stage {
                 Some(RenderStage::LightMarch | RenderStage::LightBackproject) => light_ms += took_ms,

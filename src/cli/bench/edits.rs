@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
+use super::VolumeBenchmark;
 use super::report::CaseTimings;
-use super::{VolumeBenchmark, WARM_UP_FRAMES};
 use crate::cli::CliError;
 
 /// Displacement of all control points per edit, relative to the value range: enough to change the set of visible
@@ -17,13 +17,13 @@ impl VolumeBenchmark<'_> {
         let mut samples = CaseTimings::default();
         let span = self.loaded.volume().shown_range().span();
         let before: u64 = self.renderer.light_rebuilds().iter().sum();
-        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
+        for frame in self.alternating_frames() {
             let mut settings = self.settings.clone();
             let step = (frame % 7) as f64 - 3.0;
             for point in &mut settings.layer_mut().transfer.points {
                 point.value += step * EDIT_SHARE * span;
             }
-            self.frame(&settings, (frame >= WARM_UP_FRAMES).then_some(&mut samples))?;
+            self.alternate(frame, &settings, &mut samples)?;
         }
         let rebuilds = self.renderer.light_rebuilds().iter().sum::<u64>() - before;
         cases.push(self.case("tf-edit", &samples, rebuilds));
@@ -33,10 +33,10 @@ impl VolumeBenchmark<'_> {
     /// Measures changes of the background, which only the display pass reads.
     pub(super) fn background(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
         let mut samples = CaseTimings::default();
-        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
+        for frame in self.alternating_frames() {
             let mut settings = self.settings.clone();
             settings.output.background.top = [frame as f32 / 2000.0; 3];
-            self.frame(&settings, (frame >= WARM_UP_FRAMES).then_some(&mut samples))?;
+            self.alternate(frame, &settings, &mut samples)?;
         }
         cases.push(self.case("background", &samples, 0));
         Ok(())

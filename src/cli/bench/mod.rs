@@ -221,21 +221,56 @@ impl VolumeBenchmark<'_> {
         }
     }
 
+    /// Number of frames of a case that is timed by [`Self::alternate`].
+    fn alternating_frames(&self) -> std::ops::Range<usize> {
+        0..WARM_UP_FRAMES + 2 * usize::from(self.args.frames)
+    }
+
+    /// Draws frame number `frame` of a case. After those of the warm-up, frames are drawn as users see them, of which
+    /// the whole is timed, and waiting after each step, of which the stages are. Returns true if the whole was timed.
+    fn alternate(
+        &mut self,
+        frame: usize,
+        settings: &Settings,
+        samples: &mut CaseTimings,
+    ) -> Result<bool, CliError> {
+        // The threads of a software driver delay the host, unless it waits for them.
+        let is_host_delayed = self.renderer.context().is_software();
+        if frame >= WARM_UP_FRAMES && frame % 2 == 1 {
+            self.frame(settings, None)?;
+            samples.add_stages(self.renderer.report());
+            if is_host_delayed {
+                samples.add_host(self.renderer.report());
+            }
+            return Ok(false);
+        }
+        let mut draw = || {
+            self.renderer.draw(self.loaded, settings, self.args.size, &RenderOptions::default())?;
+            Ok::<_, CliError>(self.renderer.report().clone())
+        };
+        if frame < WARM_UP_FRAMES {
+            return draw().map(|_| false);
+        }
+        samples.time_whole(draw)?;
+        if !is_host_delayed {
+            samples.add_host(self.renderer.report());
+        }
+        Ok(true)
+    }
+
     /// Times an orbit of the camera, alternately with and without shadows, so that other load on the machine slows
     /// both alike.
     fn orbit(&mut self, cases: &mut Vec<Value>) -> Result<(CaseTimings, CaseTimings), CliError> {
         let (mut with, mut without) = (CaseTimings::default(), CaseTimings::default());
         let mut rebuilds = 0;
-        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
+        for frame in self.alternating_frames() {
             let mut settings = self.settings.clone();
             settings.camera.azimuth_deg += STEP_DEG * frame as f64;
             let mut unshadowed = settings.clone();
             unshadowed.shadows.algorithm = ShadowAlgorithm::Off;
-            let timed = frame >= WARM_UP_FRAMES;
             let before: u64 = self.renderer.light_rebuilds().iter().sum();
-            self.frame(&settings, timed.then_some(&mut with))?;
-            self.frame(&unshadowed, timed.then_some(&mut without))?;
-            if timed {
+            self.alternate(frame, &settings, &mut with)?;
+            if self.alternate(frame, &unshadowed, &mut without)? {
                 rebuilds += self.renderer.light_rebuilds().iter().sum::<u64>() - before;
             }
         }
@@ -248,16 +283,14 @@ impl VolumeBenchmark<'_> {
     fn light_drag(&mut self, cases: &mut Vec<Value>) -> Result<CaseTimings, CliError> {
         let mut samples = CaseTimings::default();
         let mut rebuilds = 0;
-        for frame in 0..WARM_UP_FRAMES + usize::from(self.args.frames) {
+        for frame in self.alternating_frames() {
             let mut settings = self.settings.clone();
             if let Some(light) = settings.lights.first_mut() {
                 let turn = glam::DQuat::from_rotation_z((STEP_DEG * (frame + 1) as f64).to_radians());
                 light.position = (turn * glam::DVec3::from(light.position)).into();
             }
-            let timed = frame >= WARM_UP_FRAMES;
             let before: u64 = self.renderer.light_rebuilds().iter().sum();
-            self.frame(&settings, timed.then_some(&mut samples))?;
-            if timed {
+            if self.alternate(frame, &settings, &mut samples)? {
                 rebuilds += self.renderer.light_rebuilds().iter().sum::<u64>() - before;
             }
         }

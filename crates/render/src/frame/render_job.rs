@@ -15,6 +15,7 @@ use crate::eye::eye_pass::EyePass;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
+use crate::resources::submission_pace::StepKind;
 use crate::scatter::eye::EyeScatter;
 use crate::scatter::voxels::ScatterState;
 use crate::{GpuError, RenderOptions};
@@ -58,6 +59,8 @@ pub struct RenderJob<'r> {
     pub(super) role: TargetRole,
     pub(super) steps: VecDeque<RenderStep>,
     pub(super) step_count: usize,
+    /// Kind and number of the steps submitted last, until the pace has learned from them.
+    pub(super) submitted: Option<(StepKind, u32)>,
 }
 
 impl RenderJob<'_> {
@@ -103,29 +106,31 @@ impl RenderJob<'_> {
         self.step_count = self.step_count - before + self.steps.len();
     }
 
-    /// Submits the next step. Returns true if there are more; after the last one the new picture is the one that the
-    /// renderer reads back.
+    /// Submits the next steps: as many of a kind as the adapter takes at a time, or one if times are reported. Returns
+    /// true if there are more; after the last one the new picture is the one that the renderer reads back.
     ///
     /// # Errors
     /// Returns the device's error.
     pub fn step(&mut self) -> Result<bool, GpuError> {
         self.finish_products();
-        let next = self.steps.front().and_then(|step| Some((step.clone(), step.stage()?)));
-        let Some((step, stage)) = next else { return Ok(false) };
+        let Some(stage) = self.stage() else { return Ok(false) };
         let start = Instant::now();
-        let GpuTools { context, pool, .. } = self.tools;
+        let GpuTools { context, pool, pace, .. } = self.tools;
         let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let clock = self.gpu_clock.filter(|_| self.options.work.timed);
         if let Some(clock) = clock {
             clock.start(&mut encoder);
         }
         pool.begin_submission();
-        self.encode(&step, &mut encoder)?;
+        let most = if self.options.work.timed { 1 } else { pace.steps(stage.kind()) };
+        let recorded = self.record_steps(stage.kind(), most, &mut encoder);
         if let Some(clock) = clock {
             clock.stop(&mut encoder);
         }
+        // Products of earlier steps count as complete, so these are submitted even if a later one failed.
         context.queue.submit([encoder.finish()]);
-        self.steps.pop_front();
+        let count = recorded?;
+        self.submitted = Some((stage.kind(), count));
         self.finish_products();
         self.report.host_ms += start.elapsed().as_secs_f64() * 1000.0;
         if self.options.work.timed {
@@ -134,5 +139,47 @@ impl RenderJob<'_> {
         let took = start.elapsed().as_secs_f64() * 1000.0;
         self.report.add(stage, took, clock.map(|clock| clock.read_ms(context)).transpose()?);
         Ok(!self.is_done())
+    }
+
+    /// Records up to `most` steps of a kind into the encoder, and returns their number. Volumes end a submission, so
+    /// that their filling can be timed.
+    fn record_steps(
+        &mut self,
+        kind: StepKind,
+        most: u32,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<u32, GpuError> {
+        let mut count = 0;
+        while count < most {
+            if count > 0 && kind == StepKind::Picture {
+                self.finish_products();
+            }
+            let is_next = |step: &RenderStep| step.stage().is_some_and(|stage| stage.kind() == kind);
+            let Some(step) = self.steps.front().filter(|step| is_next(step)).cloned() else { break };
+            self.encode(&step, encoder)?;
+            self.steps.pop_front();
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    /// Returns true if the time of the last submission tells how many steps to submit at a time.
+    pub(super) fn awaits_pace(&self) -> bool {
+        self.submitted.is_some_and(|(kind, _)| self.tools.pace.grows(kind))
+    }
+
+    /// Adapts the number of steps per submission to the time of the last one, from its beginning until the adapter had
+    /// finished it.
+    pub fn learn_pace(&mut self, took_ms: f64) {
+        self.learn_pace_of(1, took_ms);
+    }
+
+    /// Adapts the number of steps per submission to the time that the last `submissions` took together.
+    pub(super) fn learn_pace_of(&mut self, submissions: u32, took_ms: f64) {
+        let pace = &self.tools.pace;
+        match self.submitted.take() {
+            Some((kind, count)) if submissions == 1 => pace.learn(kind, count, took_ms),
+            _ => pace.slow_down(submissions, took_ms),
+        }
     }
 }

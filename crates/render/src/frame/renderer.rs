@@ -147,16 +147,22 @@ impl Renderer {
         // Limits the queued submissions: few if the work may be interrupted.
         let most = if interrupt.is_cancellable() { 4 } else { 64 };
         let mut unfinished = 0;
-        while job.step()? {
-            if interrupt.should_stop() {
+        let mut submitted = Instant::now();
+        loop {
+            let has_more = job.step()?;
+            if has_more && interrupt.should_stop() {
                 return Err(GpuError::Cancelled);
             }
             unfinished += 1;
-            if unfinished % most == 0 {
+            if !has_more || unfinished == most || job.awaits_pace() {
                 context.wait()?;
+                job.learn_pace_of(unfinished, milliseconds(submitted));
+                (unfinished, submitted) = (0, Instant::now());
+            }
+            if !has_more {
+                return Ok(());
             }
         }
-        context.wait()
     }
 
     /// Drops everything on the GPU. After an error, products may not match their keys. Also frees the most memory.

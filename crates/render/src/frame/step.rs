@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 use crate::eye::{antialiasing, floor};
+use crate::resources::submission_pace::StepKind;
 use crate::resources::work_part::WorkPart;
 use crate::scattered_light::steps::ScatteringStep;
 use crate::volume::transfer_tables::{TransferTable, TransferTables};
@@ -146,6 +147,18 @@ pub(crate) enum RenderStep {
     Display,
     /// Marks a product whose steps have all been recorded as complete; records no commands.
     Finish(FrameProduct),
+}
+
+impl RenderStage {
+    /// Returns the kind of steps that this stage's are submitted with.
+    pub(super) fn kind(self) -> StepKind {
+        match self {
+            Self::Upload | Self::Pyramid => StepKind::Volume,
+            Self::LightMarch | Self::LightBackproject | Self::LightRaycast => StepKind::Light,
+            Self::Sky | Self::ScatteredLight => StepKind::Ambient,
+            Self::Eye | Self::Display => StepKind::Picture,
+        }
+    }
 }
 
 impl RenderStep {

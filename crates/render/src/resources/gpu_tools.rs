@@ -1,6 +1,7 @@
 //! Device, pipelines and pool: the tools of every pass, independent of the volume.
 
 use super::resource_pool::ResourcePool;
+use super::submission_pace::SubmissionPace;
 use crate::{GpuContext, GpuError, ShaderLibrary};
 
 /// Device with its pipelines and the resources that successive pictures share.
@@ -9,6 +10,7 @@ pub(crate) struct GpuTools {
     pub context: GpuContext,
     pub shaders: ShaderLibrary,
     pub pool: ResourcePool,
+    pub pace: SubmissionPace,
     /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
     pub placeholder: wgpu::TextureView,
 }
@@ -33,6 +35,7 @@ impl GpuTools {
             context: context.clone(),
             shaders,
             pool: ResourcePool::default(),
+            pace: SubmissionPace::default(),
             placeholder: texel.create_view(&wgpu::TextureViewDescriptor::default()),
         })
     }

@@ -7,5 +7,6 @@ pub(super) mod pass;
 pub(super) mod product_cache;
 pub(super) mod resource_pool;
 pub(super) mod sheet_ring;
+pub(super) mod submission_pace;
 pub(super) mod textures;
 pub(super) mod work_part;

@@ -49,7 +49,7 @@ pub(crate) struct VolumeContext<'a> {
 impl<'a> VolumeContext<'a> {
     /// Combines the tools of a device with a volume.
     pub(crate) fn new(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
-        let GpuTools { context, shaders, pool, placeholder } = tools;
+        let GpuTools { context, shaders, pool, placeholder, .. } = tools;
         Self { context, shaders, volume, placeholder, pool }
     }
 }

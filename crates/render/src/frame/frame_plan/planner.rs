@@ -155,6 +155,7 @@ impl<'r> FramePlanner<'r> {
             eye_sheets: None,
             role,
             step_count: self.steps.len(),
+            submitted: None,
             steps: self.steps.into(),
             request: self.request,
         })
