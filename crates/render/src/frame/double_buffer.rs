@@ -74,6 +74,15 @@ impl DoubleBuffer {
         }
     }
 
+    /// Drops the textures of the spare target, of which some may be missing after an error. They stay if there is not
+    /// even memory for a pixel: the next picture reports that.
+    pub(crate) fn drop_back(&mut self, context: &GpuContext) {
+        let texel = TargetShape { size: [1; 2], ..self.back.shape };
+        if let Ok(texel) = RenderTarget::new(context, texel) {
+            self.back = texel;
+        }
+    }
+
     /// Invalidates the pictures in both targets.
     pub(crate) fn invalidate(&mut self) {
         self.front.invalidate();

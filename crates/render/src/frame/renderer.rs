@@ -172,6 +172,7 @@ impl Renderer {
         self.targets.invalidate();
         // Pending work may still report errors about dropped resources.
         self.tools.context.wait().ok();
+        self.targets.drop_back(&self.tools.context);
     }
 }
 

@@ -19,13 +19,13 @@ const MAX_GROWTH: u32 = 4;
 /// Kind of steps that last about as long as each other, and are submitted together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StepKind {
-    /// Upload and derived volumes.
+    /// Steps that upload the volume, and fill what is derived from it.
     Volume,
-    /// Light volumes.
+    /// Steps that fill light volumes.
     Light,
-    /// Sky visibility and scattered light.
+    /// Steps that compute sky visibility and scattered light.
     Ambient,
-    /// Linear picture, floor and display.
+    /// Steps that draw the linear picture, the floor and the display.
     Picture,
 }
 

@@ -373,26 +373,6 @@ mod tests {
         }
     }
 
-    /// Tests combs of a few teeth, which are compared one by one, and of many, which are counted.
-    #[test]
-    fn ranges_between_visible_values_are_empty() {
-        for teeth in [1, 3, 40] {
-            let width = LUT_SIZE / teeth;
-            let is_visible = |entry: usize| entry % width > width / 2;
-            let entries = (0..LUT_SIZE).map(|entry| [1.0, 1.0, 1.0, f32::from(u8::from(is_visible(entry)))]);
-            let visible = BakedTransfer::new(entries.collect()).visibility_test();
-            let density = |entry: f32| entry / (LUT_SIZE - 1) as f32;
-            for first in 0..LUT_SIZE - 4 {
-                for last in first..first + 4 {
-                    let expected = (first.saturating_sub(1)..=(last + 1).min(LUT_SIZE - 1)).any(is_visible);
-                    // Between entries, so that rounding of densities does not matter.
-                    let (min, max) = (density(first as f32 + 0.2), density(last as f32 - 0.2).max(0.0));
-                    assert_eq!(visible(min, max), expected, "{teeth}: {first} {last}");
-                }
-            }
-        }
-    }
-
     #[test]
     fn full_opacity_stays_finite() {
         let solid = TransferFunction {

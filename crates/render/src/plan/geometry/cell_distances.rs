@@ -80,20 +80,20 @@ impl CellDistances {
     pub fn cells_within(&self, reach: u8, factor: usize, bricks: [usize; 3]) -> CellSet {
         let fine = self.dims.map(|n| n / CELLS_PER_BRICK_EDGE);
         let [nx, ny, _] = self.dims;
-        let mask = |at: usize| {
-            let brick = [at % fine[0], at / fine[0] % fine[1], at / (fine[0] * fine[1])];
-            let [x, y, z] = brick.map(|c| c * CELLS_PER_BRICK_EDGE);
-            let rows = (0..CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE).map(|row| {
+        let mut masks = vec![0; fine.iter().product()];
+        // The cells of a row of bricks lie in 16 rows.
+        masks.par_chunks_mut(fine[0].max(1)).enumerate().for_each(|(at, masks)| {
+            let [y, z] = [at % fine[1], at / fine[1]].map(|c| c * CELLS_PER_BRICK_EDGE);
+            for row in 0..CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE {
                 let [j, k] = [row % CELLS_PER_BRICK_EDGE, row / CELLS_PER_BRICK_EDGE];
-                let first = x + nx * (y + j + ny * (z + k));
-                let mut cells = [0; CELLS_PER_BRICK_EDGE];
-                cells.copy_from_slice(&self.values[first..first + CELLS_PER_BRICK_EDGE]);
-                u64::from(near_cells(cells, reach)) << (CELLS_PER_BRICK_EDGE * row)
-            });
-            rows.fold(0, |mask, row| mask | row)
-        };
-        let count = fine.iter().product::<usize>();
-        let all = CellSet { dims: fine, masks: (0..count).into_par_iter().map(mask).collect() };
+                let first = nx * (y + j + ny * (z + k));
+                let (bricks, _) = self.values[first..first + nx].as_chunks();
+                for (mask, &cells) in masks.iter_mut().zip(bricks) {
+                    *mask |= u64::from(near_cells(cells, reach)) << (CELLS_PER_BRICK_EDGE * row);
+                }
+            }
+        });
+        let all = CellSet { dims: fine, masks };
         if factor == 1 && bricks == fine { all } else { all.coarsened(factor, bricks) }
     }
 }
