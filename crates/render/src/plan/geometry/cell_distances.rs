@@ -113,7 +113,7 @@ fn write_members(set: &CellSet, [y, z]: [usize; 2], row: &mut [u8]) {
     let shift = CELLS_PER_BRICK_EDGE * (y % CELLS_PER_BRICK_EDGE)
         + CELLS_PER_BRICK_EDGE * CELLS_PER_BRICK_EDGE * (z % CELLS_PER_BRICK_EDGE);
     let masks = &set.masks[first..first + set.dims[0]];
-    if masks.iter().all(|mask| mask >> shift & 0xf == 0) {
+    if masks.iter().all(|mask| (mask >> shift).trailing_zeros() as usize >= CELLS_PER_BRICK_EDGE) {
         return;
     }
     for (cells, mask) in row.chunks_mut(CELLS_PER_BRICK_EDGE).zip(masks) {
