@@ -251,9 +251,9 @@ impl VolumeBenchmark<'_> {
         if frame < WARM_UP_FRAMES {
             return draw().map(|_| false);
         }
-        samples.time_whole(draw)?;
+        let report = samples.time_whole(draw)?;
         if !is_host_delayed {
-            samples.add_host(self.renderer.report());
+            samples.add_host(&report);
         }
         Ok(true)
     }

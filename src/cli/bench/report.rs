@@ -28,21 +28,17 @@ pub(super) struct CaseTimings {
 impl CaseTimings {
     /// Runs one frame and records its timings, with those of its stages.
     pub(super) fn time<E>(&mut self, frame: impl FnOnce() -> Result<RenderReport, E>) -> Result<(), E> {
-        let mut report = None;
-        self.time_whole(|| {
-            let found = frame()?;
-            report = Some(found.clone());
-            Ok(found)
-        })?;
-        if let Some(report) = report {
-            self.add_stages(&report);
-            self.add_host(&report);
-        }
+        let report = self.time_whole(frame)?;
+        self.add_stages(&report);
+        self.add_host(&report);
         Ok(())
     }
 
-    /// Runs one frame and records its times as a whole.
-    pub(super) fn time_whole<E>(&mut self, frame: impl FnOnce() -> Result<RenderReport, E>) -> Result<(), E> {
+    /// Runs one frame, records its times as a whole, and returns its report.
+    pub(super) fn time_whole<E>(
+        &mut self,
+        frame: impl FnOnce() -> Result<RenderReport, E>,
+    ) -> Result<RenderReport, E> {
         let cpu = process_cpu_ms();
         let start = std::time::Instant::now();
         let report = frame()?;
@@ -51,7 +47,7 @@ impl CaseTimings {
             self.cpu_ms.push(after - before);
         }
         self.rendered = (report.size, report.light_divisor);
-        Ok(())
+        Ok(report)
     }
 
     /// Records the host's share of a frame.

@@ -140,8 +140,8 @@ impl BakedTransfer {
     /// they are uploaded.
     pub fn visibility_test(&self) -> impl Fn(f32, f32) -> bool + Sync + use<> {
         let is_visible: Vec<bool> = self.entries.iter().map(|entry| entry[3] > 0.0).collect();
-        // Of runs of visible entries, the entries two before the first and two behind the last: ranges that touch
-        // neither lie beyond them.
+        // Runs of visible entries, each as an open interval that ends two entries before its first and two behind its
+        // last: a range that overlaps it includes or neighbours a visible entry.
         let mut runs: Vec<[f32; 2]> = Vec::new();
         let mut at = 0.0;
         for run in is_visible.chunk_by(|a, b| a == b) {
