@@ -20,10 +20,7 @@ struct SlabFace {
     depth: f32,
     value: FaceValue,
     presence: f32,
-#if PRECLASSIFY
-#else
     integral: IntegralPlace,
-#endif
 }
 
 #if PRECLASSIFY
@@ -40,7 +37,8 @@ fn face_at(ray: Ray, depth: f32) -> SlabFace {
     let p = ray.origin + ray.direction * depth;
     let level = kernel_level(eye.frame, depth);
 #if PRECLASSIFY
-    return SlabFace(depth, preclassified_at(p, level), 1.0);
+    let value = preclassified_at(p, level);
+    return SlabFace(depth, value, 1.0, integral_place(value.r));
 #else
     let density = field_at(p, level).density;
     return SlabFace(depth, density, presence_at(p, level), integral_place(density));
@@ -155,11 +153,7 @@ fn with_part(sum: SlabSum, tau: f32, place: f32, length: f32, a: FaceValue, b: F
 fn with_slab(sum: SlabSum, before: SlabFace, behind: SlabFace, obliquity: f32, share: f32) -> SlabSum {
     let length = share * (behind.depth - before.depth);
     let present = 0.5 * length * obliquity * (before.presence + behind.presence);
-#if PRECLASSIFY
-    let extinction = extinction_of(Field(0.5 * (before.value.r + behind.value.r)));
-#else
     let extinction = mean_extinction(before.integral, behind.integral);
-#endif
     return with_part(sum, extinction * present, before.depth, length, before.value, behind.value);
 }
 

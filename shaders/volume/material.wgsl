@@ -116,7 +116,7 @@ const MIN_INTEGRATED_DISTANCE = 0.125;
 struct IntegralPlace {
     position: f32,
     integral: f32,
-    // Mean over the entry of the position.
+    // Mean over the entry of the position; with pre-classification, extinction there.
     mean: f32,
 }
 
@@ -125,7 +125,13 @@ fn integral_place(density: f32) -> IntegralPlace {
     let low = min(u32(at), TABLE_SIZE - 2u);
     let first = table.integrals[low].a;
     let mean = table.integrals[low + 1u].a - first;
-    return IntegralPlace(at, first + mean * (at - f32(low)), mean);
+    let integral = first + mean * (at - f32(low));
+#if PRECLASSIFY
+    // The mean over the first entry would be that of faint material, which empty space is not.
+    return IntegralPlace(at, integral, extinction_of(Field(density)));
+#else
+    return IntegralPlace(at, integral, mean);
+#endif
 }
 
 // Mean extinction over the densities between two.
@@ -202,7 +208,8 @@ fn lighting_extinction(met: LightingField) -> Transmittance {
 #endif
 }
 
-// Integral of the extinction of light up to what the field holds at a point; with pre-classification, extinction there.
+// Integral of the extinction of light up to what the field holds at a point; with pre-classification and coloured
+// shadows, extinction there.
 struct LightIntegralPlace {
     position: f32,
     integral: Transmittance,
@@ -222,16 +229,21 @@ fn integral_up_to(density: f32) -> LightIntegralPlace {
     return LightIntegralPlace(at, first + mean * (at - f32(low)), mean);
 }
 
-#if PRECLASSIFY
 fn light_integral_place(met: LightingField) -> LightIntegralPlace {
+#if PRECLASSIFY
+#if COLORED
+    // Each colour has a place of its own in the table, which is a straight line.
     let extinction = lighting_extinction(met);
     return LightIntegralPlace(0.0, extinction, extinction);
-}
 #else
-fn light_integral_place(met: LightingField) -> LightIntegralPlace {
-    return integral_up_to(met.density);
-}
+    var place = integral_up_to(met);
+    place.mean = lighting_extinction(met);
+    return place;
 #endif
+#else
+    return integral_up_to(met.density);
+#endif
+}
 
 // Mean extinction of light where the field changes linearly from one place to another.
 fn mean_light_extinction(a: LightIntegralPlace, b: LightIntegralPlace) -> Transmittance {

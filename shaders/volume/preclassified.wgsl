@@ -1,5 +1,10 @@
-// Pre-classification, level 0: materials of the voxels, blurred like densities (volume/prefilter.wgsl).//
+// Pre-classification, level 0: materials of the voxels, blurred like densities (volume/prefilter.wgsl). With crisp edges
+// a wider blur takes its place where its opacity is higher, which is outside of flat and of convex shapes: the table
+// makes their edges steep there (crates/scene/src/transfer/crisp_ramp.rs), and the steps of voxels would show. Thin
+// structures keep the narrow blur.
+//
 // A workgroup classifies its 8 × 8 × 4 texels and those around them, each once.
+#option CRISP: edges of labels become steep
 #import "volume/levels.wgsl"
 #import "volume/material.wgsl"
 
@@ -44,6 +49,9 @@ fn main(
     }
     workgroupBarrier();
     var sum = vec4f(0.0);
+#if CRISP
+    var wide = vec4f(0.0);
+#endif
     for (var z = 0u; z < 3u; z += 1u) {
         for (var y = 0u; y < 3u; y += 1u) {
             for (var x = 0u; x < 3u; x += 1u) {
@@ -51,10 +59,19 @@ fn main(
                 // [1, 10, 1] / 12 along each axis.
                 let weights = select(vec3f(1.0 / 12.0), vec3f(5.0 / 6.0), side == vec3u(1u));
                 let at = local + side;
-                sum += weights.x * weights.y * weights.z * materials[at.x + WIDTH * (at.y + WIDTH * at.z)];
+                let material = materials[at.x + WIDTH * (at.y + WIDTH * at.z)];
+                sum += weights.x * weights.y * weights.z * material;
+#if CRISP
+                // [1, 2, 1] / 4 along each axis.
+                let wide_weights = select(vec3f(0.25), vec3f(0.5), side == vec3u(1u));
+                wide += wide_weights.x * wide_weights.y * wide_weights.z * material;
+#endif
             }
         }
     }
+#if CRISP
+    sum = select(sum, wide, wide.r > sum.r);
+#endif
     let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;

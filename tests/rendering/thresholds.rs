@@ -398,3 +398,5 @@ pub(crate) const COVERAGE_ROUNDING: f64 = 0.01;
 pub(crate) const EDGES_OF_MANY_SAMPLES: [f64; 2] = [0.6, 0.6];
 /// Grain of an oblique plate with four phases of its slabs, relative to one: the strongest wave of the grain cancels.
 pub(crate) const GRAIN_OF_SHIFTED_SLABS: f64 = 0.6;
+/// Pixels that a crisp outline of labels covers in part, relative to a wide one: its ramp is half as wide.
+pub(crate) const MAX_CRISP_EDGE_SHARE: f64 = 0.6;

@@ -51,9 +51,7 @@ pub use light_march::ViewSheets;
 
 use glam::DVec3;
 
-use chiaroscuro_scene::{
-    BakedTransfer, ClassificationOrder, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings,
-};
+use chiaroscuro_scene::{BakedTransfer, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings};
 use chiaroscuro_volume::{ValueRange, Volume, math::SceneSpace};
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
 use kernel::KernelProfile;
@@ -170,15 +168,16 @@ impl<'a> Reference<'a> {
             presence = presence.map(|presence| presence.quantised(254.0));
         }
         let scene = volume.scene();
-        let classified =
-            (settings.sampling.classification == ClassificationOrder::Pre).then(|| {
-                let tables = ALL_TRANSFER_SIDES
-                    .map(|side| transfer_table(settings, side, options.color, (range, &scene)));
-                let (width, rounding) = (kernel_width(options.fault), options.rounding);
-                Box::new(tables.map(|table| {
-                    ClassifiedVoxels::classify(&field, &table, presence.as_ref(), width, rounding)
-                }))
-            });
+        let classification = settings.classification();
+        let classified = classification.is_pre().then(|| {
+            let tables =
+                ALL_TRANSFER_SIDES.map(|side| transfer_table(settings, side, options.color, (range, &scene)));
+            let (width, rounding) = (kernel_width(options.fault), options.rounding);
+            Box::new(tables.map(|table| {
+                let table = (&table, classification.has_crisp_edges());
+                ClassifiedVoxels::classify(&field, table, presence.as_ref(), width, rounding)
+            }))
+        });
         Self { settings, options, scene, range, field, pyramid, presence, presence_changes, classified }
     }
 

@@ -153,7 +153,7 @@ impl<'r> ShadowRays<'r> {
     /// ends of steps; `forward` is a scene unit in index space.
     fn integrated_depth(&self, point: DVec3, forward: DVec3, step: f64, end: f64) -> f64 {
         let reference = self.reference;
-        let table = IntegratedTable::new(self.table.clone());
+        let table = IntegratedTable::new(self.table.clone(), reference.classified.is_some());
         let sampled = |way: f64| {
             let at = point + forward * way + reference.kernel_shift();
             let density = gather::density(reference, TransferSide::Lighting, &self.profile, at, 0.0);

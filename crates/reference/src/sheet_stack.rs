@@ -9,7 +9,7 @@ use super::field::classified::{ClassifiedVoxels, TransferSide, associated, unass
 use super::kernel::KernelProfile;
 use super::{Reference, ReferenceFault, ReferenceWeights, footprint, gather};
 use chiaroscuro_render::plan::SheetFrame;
-use chiaroscuro_scene::{BakedTransfer, ClassificationOrder, ReconstructionKernel, SlabQuadrature};
+use chiaroscuro_scene::{BakedTransfer, ReconstructionKernel, SlabQuadrature};
 
 /// Lower limit of the presence by which sums over present voxels are divided; below it nothing is visible.
 const MIN_PRESENCE: f64 = 1e-4;
@@ -172,10 +172,8 @@ impl<'r> SheetStack<'r> {
         let point = self.material_at([i, j, k])?;
         let [r, g, b, extinction] = material;
         // Presence is already part of the spread extinction of classified voxels.
-        let there = match self.reference.settings.sampling.classification {
-            ClassificationOrder::Post => self.presence_at([i, j, k]),
-            ClassificationOrder::Pre => 1.0,
-        };
+        let is_pre = self.reference.settings.classification().is_pre();
+        let there = if is_pre { 1.0 } else { self.presence_at([i, j, k]) };
         let optical_depth = there * extinction * self.uncut_length([i, j, k], width, point);
         (optical_depth > 0.0).then_some(SlabContribution { point, rgb: [r, g, b], optical_depth })
     }
@@ -235,11 +233,9 @@ impl<'r> SheetStack<'r> {
         let Self { reference, side, profile, .. } = self;
         let at = point + reference.kernel_shift();
         let density = gather::density(reference, *side, profile, at, level);
-        let presence = match reference.settings.sampling.classification {
-            ClassificationOrder::Post => reference.presence(profile, at, level),
-            // Already part of the spread extinction of classified voxels.
-            ClassificationOrder::Pre => 1.0,
-        };
+        // Already part of the spread extinction of classified voxels.
+        let is_pre = reference.settings.classification().is_pre();
+        let presence = if is_pre { 1.0 } else { reference.presence(profile, at, level) };
         (density, presence)
     }
 

@@ -18,9 +18,10 @@ const QUADRATURES: [(SlabQuadrature, ControlText); 2] =
 const SLABS: [(SlabMode, ControlText); 2] =
     [(SlabMode::ByNeed, text::sampling::ADAPTIVE_SLABS), (SlabMode::Even, text::sampling::UNIFORM_SLABS)];
 
-const CLASSIFICATIONS: [(ClassificationOrder, ControlText); 2] = [
+const CLASSIFICATIONS: [(ClassificationOrder, ControlText); 3] = [
     (ClassificationOrder::Post, text::sampling::CLASSIFIED_SHEETS),
     (ClassificationOrder::Pre, text::sampling::CLASSIFIED_VOXELS),
+    (ClassificationOrder::PreCrisp, text::sampling::CLASSIFIED_CRISP_VOXELS),
 ];
 
 const ENGINES: [(RenderEngine, ControlText); 2] =

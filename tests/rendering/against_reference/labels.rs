@@ -1,10 +1,12 @@
 //! Label maps with a table of looks, against the reference.
 
+use chiaroscuro_reference::ReferenceFault;
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{ClassificationOrder, LabelLook, LabelTable, Settings};
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
+use super::mutations::differs_in_volume;
 use super::{SIZE, check_volume, round_to_f16};
 use crate::common::{Dataset, context, render};
 use crate::compare::{channels_f32, compare};
@@ -44,6 +46,26 @@ fn labels_are_classified_by_their_table_before_they_are_spread() {
     let settings = look(numbers);
     assert_eq!(settings.sampling.classification, ClassificationOrder::Post, "whatever it says");
     check_volume("labels", label_map(numbers), &settings, Some(round_to_f16));
+}
+
+#[test]
+fn crisp_labels_have_a_wider_blur_and_steep_edges() {
+    let numbers = [0, 3, 9, 40, 250];
+    let mut settings = look(numbers);
+    settings.sampling.classification = ClassificationOrder::PreCrisp;
+    check_volume("crisp labels", label_map(numbers), &settings, Some(round_to_f16));
+}
+
+#[test]
+fn mistakes_at_crisp_edges_are_noticed() {
+    let numbers = [0, 3, 9, 40, 250];
+    let mut settings = look(numbers);
+    settings.sampling.classification = ClassificationOrder::PreCrisp;
+    let differs = |from, to| differs_in_volume(label_map(numbers), &settings, from, to, ReferenceFault::None);
+    let choice = "select(sum, wide, wide.r > sum.r)";
+    assert!(!differs(choice, "select(sum, wide, wide.r >= sum.r)"), "alike where both are");
+    assert!(differs(choice, "wide"));
+    assert!(differs("vec3f(0.25), vec3f(0.5)", "vec3f(0.24), vec3f(0.52)"));
 }
 
 /// Label numbers change no bit unless their order changes, which the table's look-ups round differently.

@@ -54,7 +54,7 @@ pub(super) fn differs_in_look(
 }
 
 /// Compares a damaged GPU path with a damaged reference, for a given look and volume.
-fn differs_in_volume(
+pub(super) fn differs_in_volume(
     volume: Volume,
     settings: &Settings,
     from: &str,
@@ -65,7 +65,8 @@ fn differs_in_volume(
     let mut renderer = damaged_renderer(from, to);
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = ReferenceOptions { fault, rounding: Some(rounding), ..ReferenceOptions::default() };
-    let reference = Reference::new(loaded.volume(), settings, options);
+    let drawn = settings.resolved_for(loaded.volume());
+    let reference = Reference::new(loaded.volume(), &drawn, options);
     let expected = reference.attenuations();
     let found = full_attenuation(&mut renderer, &loaded, settings, 0);
     let values = &expected[0].as_ref().expect("the light casts shadows").values;

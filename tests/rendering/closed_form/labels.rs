@@ -2,14 +2,15 @@
 //! and 9.
 
 use chiaroscuro_scene::{
-    ClassificationOrder, ControlPoint, NearFieldRay, ReconstructionKernel, RenderEngine, Settings,
-    ShadowAlgorithm, TransferFunction,
+    ClassificationOrder, ControlPoint, LabelLook, LabelTable, NearFieldRay, ReconstructionKernel,
+    RenderEngine, Settings, ShadowAlgorithm, TransferFunction,
 };
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
 use crate::common::{Dataset, render};
+use crate::thresholds::MAX_CRISP_EDGE_SHARE;
 
 with_both_engines! {
     labels_between_are_not_seen
@@ -102,4 +103,44 @@ fn labels_between_are_not_seen(engine: RenderEngine) {
             assert!((a - b).abs() < 1e-3 * b.max(0.1), "{near_field:?}: {shadowed:?} {unshadowed:?}");
         }
     }
+}
+
+/// Label map of an opaque cube, and of a single voxel beside it.
+fn cube_and_voxel() -> Dataset {
+    let label = |at: usize| {
+        let voxel = [at % N, at / N % N, at / N / N];
+        u8::from(voxel.iter().all(|c| (6..20).contains(c)) || voxel == [26, 16, 16])
+    };
+    let values = (0..N * N * N).map(label).collect();
+    Dataset::new(Volume::with_spacing("cube", [N; 3], DVec3::ONE, Samples::U8(values)).expect("a volume"))
+}
+
+/// Returns the opacities along the row of pixels through the middle of the picture.
+fn middle_row(classification: ClassificationOrder) -> Vec<f32> {
+    const SIDE: u32 = 384;
+    let mut labels = LabelTable::default();
+    *labels.entry_mut(1) = LabelLook { opacity: 0.95, visible: true, ..LabelLook::default_for(1) };
+    let mut settings = base(RenderEngine::Gather, 0.1).with_labels(labels);
+    settings.sampling.classification = classification;
+    let picture = render(&mut renderer(), &cube_and_voxel(), &settings, [SIDE; 2]);
+    let row = (SIDE / 2 * SIDE) as usize;
+    picture.linear[row..row + SIDE as usize].iter().map(|texel| texel[3]).collect()
+}
+
+/// Outlines of labels, which a picture that shows each voxel many pixels wide blurs most.
+#[test]
+fn crisp_labels_have_narrow_outlines_and_lose_no_voxel() {
+    let [wide, crisp] = [ClassificationOrder::Pre, ClassificationOrder::PreCrisp].map(middle_row);
+    let partly = |row: &[f32]| row.iter().filter(|alpha| (0.05..0.95).contains(*alpha)).count();
+    let most = |row: &[f32]| row.iter().copied().fold(0.0, f32::max);
+    assert!(most(&wide) > 0.99 && most(&crisp) > 0.99);
+    // The single voxel is the last run of opacity.
+    let of_voxel = |row: &[f32]| {
+        let runs: Vec<&[f32]> = row.chunk_by(|a, b| (*a > 0.02) == (*b > 0.02)).collect();
+        most(runs.iter().rev().find(|run| run[0] > 0.02).copied().unwrap_or_default())
+    };
+    let cube = |row: &[f32]| partly(row.split_at(row.len() * 2 / 3).0);
+    let share = cube(&crisp) as f64 / cube(&wide) as f64;
+    assert!(share <= MAX_CRISP_EDGE_SHARE, "{} of {} pixels", cube(&crisp), cube(&wide));
+    assert!(of_voxel(&crisp) > 0.9 * of_voxel(&wide), "{} {}", of_voxel(&crisp), of_voxel(&wide));
 }

@@ -75,7 +75,7 @@ struct AdaptiveRay<'a, 'r> {
 impl<'r> Reference<'r> {
     /// Renders [`Self::picture`] with adaptive slabs.
     pub(super) fn picture_adaptive(&self, stack: &SheetStack<'r>, shader: &Shader<'r>) -> Vec<[f64; 4]> {
-        let table = IntegratedTable::new(self.gathered_table(TransferSide::Eye));
+        let table = IntegratedTable::new(self.gathered_table(TransferSide::Eye), self.classified.is_some());
         let seen = |pixel: usize| {
             let nothing = Face { depth: 0.0, density: 0.0, rgb: DVec3::ZERO, presence: 0.0 };
             let mut ray = AdaptiveRay {
@@ -204,9 +204,6 @@ impl AdaptiveRay<'_, '_> {
 
     /// Returns the mean extinction between two densities.
     fn extinction_between(&self, a: f64, b: f64) -> f64 {
-        if self.reference.classified(TransferSide::Eye).is_some() {
-            return self.table.extinction_at(0.5 * (a + b));
-        }
         self.table.mean_between(a, b)[3]
     }
 

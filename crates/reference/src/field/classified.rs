@@ -34,10 +34,10 @@ pub(crate) struct ClassifiedVoxels {
 
 impl ClassifiedVoxels {
     /// Classifies the densities of voxels. If some are missing, `presence` is their presence pyramid: missing voxels
-    /// have substitute values, and the spread values are multiplied by presence.
+    /// have substitute values, and the spread values are multiplied by presence. Edges are made steep if `is_crisp`.
     pub(crate) fn classify(
         densities: &DensityField,
-        table: &BakedTransfer,
+        (table, is_crisp): (&BakedTransfer, bool),
         presence: Option<&Pyramid>,
         width: f64,
         rounding: Option<Rounding>,
@@ -49,9 +49,16 @@ impl ClassifiedVoxels {
             let shares = densities.densities.iter().map(share).collect();
             DensityField { dims: densities.dims, densities: shares, border: beyond }
         };
+        let field = DensityField { border: BorderMode::Zero, ..field_of(3) };
+        if is_crisp {
+            let fields = [3, 0, 1, 2].map(field_of);
+            let pyramids = Pyramid::with_wide_outskirts(fields.each_ref(), width, rounding, presence);
+            let [shares, r, g, b] = pyramids;
+            return Self { field, shares, colors: [r, g, b], table: table.crisp_ramp() };
+        }
         let spread = |channel: usize| Pyramid::with_presence(&field_of(channel), width, rounding, presence);
         Self {
-            field: DensityField { border: BorderMode::Zero, ..field_of(3) },
+            field,
             shares: spread(3),
             colors: [0, 1, 2].map(spread),
             table: BakedTransfer::linear_ramp(table.max_extinction()),

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::classified::associated;
 use chiaroscuro_scene::{BakedTransfer, LUT_SIZE};
 
 /// Distance of two densities, in entries, below which the mean over their entry stands for the mean between them.
@@ -10,11 +11,13 @@ const MIN_DISTANCE: f64 = 0.125;
 /// Lookup table of a transfer function that is integrated between densities.
 pub(crate) struct IntegratedTable {
     table: BakedTransfer,
+    /// `true` if it is that of classified voxels, of which shares of the largest extinction are spread.
+    is_of_shares: bool,
 }
 
 impl IntegratedTable {
-    pub(crate) fn new(table: BakedTransfer) -> Self {
-        Self { table }
+    pub(crate) fn new(table: BakedTransfer, is_of_shares: bool) -> Self {
+        Self { table, is_of_shares }
     }
 
     /// Returns the position of a density in the table, in entries.
@@ -33,16 +36,16 @@ impl IntegratedTable {
     pub(crate) fn mean_between(&self, from: f64, to: f64) -> [f64; 4] {
         let (mut a, mut b) = (Self::position(from), Self::position(to));
         if (b - a).abs() < MIN_DISTANCE {
+            if self.is_of_shares {
+                // The mean over the first entry would be that of faint material, which empty space is not.
+                let [near, far] = [from, to].map(|share| associated(self.table.sample(share)));
+                return std::array::from_fn(|i| 0.5 * (near[i] + far[i]));
+            }
             let entry = (0.5 * (a + b)).min((LUT_SIZE - 2) as f64).floor();
             (a, b) = (entry, entry + 1.0);
         }
         let (first, last) = (self.integral(a), self.integral(b));
         std::array::from_fn(|i| (last[i] - first[i]) / (b - a))
-    }
-
-    /// Returns the extinction at a density.
-    pub(crate) fn extinction_at(&self, density: f64) -> f64 {
-        self.table.sample(density)[3]
     }
 
     /// Returns the linear colour at a density.

@@ -42,8 +42,34 @@ impl Pyramid {
         rounding: Option<Rounding>,
         presence: Option<&Self>,
     ) -> Self {
+        Self::from_finest(blurred(field, prefilter_weights(width)), rounding, presence)
+    }
+
+    /// Creates the pyramids of fields as [`Self::with_presence`] does, but with a wider blur, [1, 2, 1]/4 along each
+    /// axis, wherever that of the first field is larger.
+    pub(crate) fn with_wide_outskirts<const N: usize>(
+        fields: [&DensityField; N],
+        width: f64,
+        rounding: Option<Rounding>,
+        presence: Option<&Self>,
+    ) -> [Self; N] {
+        let narrow = fields.map(|field| blurred(field, prefilter_weights(width)));
+        let wide = fields.map(|field| blurred(field, [0.25, 0.5, 0.25]));
+        let texels = narrow[0].values.iter().zip(&wide[0].values);
+        let is_wide: Vec<bool> = texels.map(|(narrow, wide)| wide > narrow).collect();
+        let mut finest = narrow;
+        for (finest, wide) in finest.iter_mut().zip(&wide) {
+            for ((value, wide), _) in
+                finest.values.iter_mut().zip(&wide.values).zip(&is_wide).filter(|(_, is_wide)| **is_wide)
+            {
+                *value = *wide;
+            }
+        }
+        finest.map(|finest| Self::from_finest(finest, rounding, presence))
+    }
+
+    fn from_finest(mut finest: PyramidLevel, rounding: Option<Rounding>, presence: Option<&Self>) -> Self {
         let round = |value: f64| rounding.map_or(value, |round| f64::from(round(value as f32)));
-        let mut finest = prefiltered(field, width);
         if let Some(presence) = presence {
             finest
                 .values
@@ -102,10 +128,14 @@ impl Pyramid {
     }
 }
 
-/// Blurs a field: Σ over the 27 neighbours of a, 1 − 2a or a per axis. Variance 2a + 1/6 (the tent's) = ⅓.
-fn prefiltered(field: &DensityField, width: f64) -> PyramidLevel {
+/// Returns the weights a, 1 − 2a, a of the blur along each axis; the variance 2a + 1/6 (the tent's) is ⅓ for width 1.
+fn prefilter_weights(width: f64) -> [f64; 3] {
     let a = (width * width / 3.0 - 1.0 / 6.0) / 2.0;
-    let weights = [a, 1.0 - 2.0 * a, a];
+    [a, 1.0 - 2.0 * a, a]
+}
+
+/// Blurs a field: the sum over the 27 neighbours, weighted along each axis.
+fn blurred(field: &DensityField, weights: [f64; 3]) -> PyramidLevel {
     let dims = field.dims.map(|n| (n + 2 * PAD).next_multiple_of(1 << MAX_LEVEL));
     let values = texels(dims, |texel| {
         let [x, y, z] = texel.map(|t| t as i64 - PAD as i64);

@@ -56,7 +56,10 @@ impl<'r> NearField<'r> {
         let kernel = reference.gathered_kernel(reference.settings.sampling.kernel);
         Self {
             reference,
-            lighting: IntegratedTable::new(reference.gathered_table(TransferSide::Lighting)),
+            lighting: IntegratedTable::new(
+                reference.gathered_table(TransferSide::Lighting),
+                reference.classified.is_some(),
+            ),
             sharp: reference.profile(kernel),
             soft: reference.profile(ReconstructionKernel::Prefiltered),
             remaining: reference.attenuating_region(),

@@ -18,9 +18,7 @@ use crate::resources::pass;
 use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuContext, GpuError, RenderOptions};
-use chiaroscuro_scene::{
-    ClassificationOrder, DepositMode, MAX_LIGHTS, NearFieldRay, Projection, Settings, ShadowAlgorithm,
-};
+use chiaroscuro_scene::{DepositMode, MAX_LIGHTS, NearFieldRay, Projection, Settings, ShadowAlgorithm};
 use chiaroscuro_volume::math::{Aabb, SceneSpace};
 
 /// Parameters of the eye pass of one picture, besides the volume.
@@ -104,7 +102,7 @@ impl EyePass {
         }
         let dilation = if options.switches.empty_space_skipping { i32::from(seen) } else { UNLIMITED_REACH };
         // Normals of classified voxels come from the next pyramid level.
-        let is_classified = settings.sampling.classification == ClassificationOrder::Pre;
+        let is_classified = settings.classification().is_pre();
         let levels = PyramidLevels::for_stretch(stretch_level > 0.0 || is_classified);
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
         let variant =
@@ -149,7 +147,7 @@ impl EyePass {
     /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
     /// volumes have none.
     pub(crate) fn gradients<'a>(&self, gpu: VolumeContext<'a>) -> Option<&'a wgpu::TextureView> {
-        if self.variant.shading.classification == ClassificationOrder::Pre {
+        if self.variant.shading.is_preclassified {
             return None;
         }
         gpu.volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))
@@ -304,7 +302,7 @@ impl EyeVariant {
                 is_cut: is_cut(cuts.visible_part())
                     || (casts_rays || near_steps > 0) && is_cut(cuts.shadowing_part()),
                 sides: shading.sides,
-                classification: sampling.classification,
+                is_preclassified: settings.classification().is_pre(),
                 sky: SkyVariant::from_settings(settings),
                 has_scattered_light: settings.has_bounces(),
                 is_anisotropic: settings.scattering.anisotropy != 0.0,

@@ -101,7 +101,7 @@ pub(crate) struct FloorVariant {
 impl FloorVariant {
     /// Creates the variant for this number of lights.
     pub(crate) fn from_settings(settings: &Settings, lights: LightCount) -> Self {
-        let colored = settings.has_colored_shadows().then_some(settings.sampling.classification);
+        let colored = settings.has_colored_shadows().then_some(settings.classification());
         Self {
             rays: RaycastVariant::from_settings(settings),
             lights,
@@ -126,7 +126,8 @@ impl PipelineVariant for FloorVariant {
         constants.extend(self.lights.constants());
         constants.push(self.sky.constant());
         constants.push(flag("COLORED", self.shadow_classification.is_some()));
-        constants.push(flag("PRECLASSIFY", self.shadow_classification == Some(ClassificationOrder::Pre)));
+        constants
+            .push(flag("PRECLASSIFY", self.shadow_classification.is_some_and(ClassificationOrder::is_pre)));
         constants
     }
 }

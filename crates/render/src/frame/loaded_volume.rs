@@ -15,7 +15,7 @@ use crate::volume::preclassified::PreclassifiedVoxels;
 use crate::volume::presence::PresenceTexture;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
-use chiaroscuro_scene::{ClassificationOrder, Settings, SheetOrder};
+use chiaroscuro_scene::{Settings, SheetOrder};
 use chiaroscuro_volume::Dataset;
 
 /// Inputs for finding or creating the products of a picture.
@@ -121,24 +121,27 @@ impl LoadedVolume {
     ) -> Result<(), GpuError> {
         let tables = &mut self.tables.product;
         tables.set_materials(None, None);
-        if settings.sampling.classification == ClassificationOrder::Post {
+        let classification = settings.classification();
+        if !classification.is_pre() {
             return Ok(());
         }
+        let is_crisp = classification.has_crisp_edges();
         let baked = [&tables.eye, &tables.lighting]
             .map(|table| (Arc::clone(table.baked()), Arc::clone(&table.occupied_bricks)));
         // Pre-classified voxels of earlier tables are reused for their textures.
         let (needed, mut reusable): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
             .into_iter()
-            .partition(|known| baked.iter().any(|(baked, _)| known.matches(baked)));
+            .partition(|known| baked.iter().any(|(baked, _)| known.matches(baked, is_crisp)));
         self.materials = needed;
         let mut found = [None, None];
         for ((baked, occupied), found) in baked.iter().zip(&mut found) {
-            let known = self.materials.iter().find(|known| known.matches(baked));
+            let known = self.materials.iter().find(|known| known.matches(baked, is_crisp));
             let materials = if let Some(known) = known {
                 Arc::clone(known)
             } else {
                 let left = reusable.pop().and_then(Arc::into_inner);
-                let fresh = Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, occupied, left)?);
+                let fresh = PreclassifiedVoxels::new(context, &self.volume, baked, is_crisp, occupied, left)?;
+                let fresh = Arc::new(fresh);
                 self.materials.push(Arc::clone(&fresh));
                 fresh
             };
@@ -160,8 +163,8 @@ impl LoadedVolume {
     ) -> Result<Arc<ScatterVoxels>, GpuError> {
         // Sheets of summed densities are 0 where no voxel is splatted; voxels splatted one by one are needed even at
         // the lowest density, if that is visible.
-        let by_voxel = settings.sampling.classification == ClassificationOrder::Pre
-            || settings.sampling.order == SheetOrder::EveryFootprint;
+        let by_voxel =
+            settings.classification().is_pre() || settings.sampling.order == SheetOrder::EveryFootprint;
         let all = by_voxel && self.tables.product.has_extinction_at_zero();
         if let Some(known) = self.scatter_voxels.as_ref().filter(|known| known.has_empty_bricks || !all) {
             return Ok(Arc::clone(known));

@@ -3,9 +3,7 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use chiaroscuro_scene::{
-    ClassificationOrder, ClippedPart, DepositMode, LitSides, ReconstructionKernel, Settings, SlabQuadrature,
-};
+use chiaroscuro_scene::{ClippedPart, DepositMode, LitSides, ReconstructionKernel, Settings, SlabQuadrature};
 
 /// Override constants and conditions of a shader, by name.
 pub(crate) type ShaderConstants = Vec<(&'static str, f64)>;
@@ -181,8 +179,8 @@ pub(crate) struct ShadingVariant {
     pub is_combined: bool,
     pub is_cut: bool,
     pub sides: LitSides,
-    /// Classification before or after reconstruction.
-    pub classification: ClassificationOrder,
+    /// `true` if voxels are classified before reconstruction.
+    pub is_preclassified: bool,
     pub sky: SkyVariant,
     /// `true` if scattered light is looked up in a volume.
     pub has_scattered_light: bool,
@@ -198,7 +196,7 @@ impl ShadingVariant {
         let mut constants = self.lights.constants();
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("ONE_SIDED", self.sides == LitSides::One));
-        constants.push(flag("PRECLASSIFY", self.classification == ClassificationOrder::Pre));
+        constants.push(flag("PRECLASSIFY", self.is_preclassified));
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }

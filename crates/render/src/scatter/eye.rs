@@ -16,7 +16,7 @@ use crate::resources::pass;
 use crate::volume::VolumeContext;
 use crate::volume::transfer_tables::{TransferTables, upload_distances};
 use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{ClassificationOrder, Settings, SheetOrder};
+use chiaroscuro_scene::{Settings, SheetOrder};
 use chiaroscuro_volume::BRICK_EDGE;
 
 /// Number of slabs per submission: each is splatted and composited, which takes a software adapter some milliseconds.
@@ -76,10 +76,8 @@ impl EyeScatter {
         // Slices of voxels are one voxel apart.
         let ahead = if order == SheetOrder::ImageAligned { frame.gradient_steps().slabs } else { 1 };
         let seen = bricks_to_splat(frame, &tables.eye.occupied_bricks, options);
-        let quantity = match sampling.classification {
-            ClassificationOrder::Post => SplatQuantity::Density,
-            ClassificationOrder::Pre => SplatQuantity::Material,
-        };
+        let is_pre = settings.classification().is_pre();
+        let quantity = if is_pre { SplatQuantity::Material } else { SplatQuantity::Density };
         let splat =
             SplatParameters { kernel: sampling.kernel, quadrature: sampling.quadrature, order, quantity };
         let scatterer =

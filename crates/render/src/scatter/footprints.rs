@@ -12,7 +12,6 @@ use crate::pipelines::uniforms;
 use crate::pipelines::uniforms::FootprintPhaseUniform;
 use crate::resources::pass;
 use crate::volume::{PyramidLevels, VolumeContext};
-use chiaroscuro_scene::ClassificationOrder;
 use chiaroscuro_volume::BRICK_EDGE;
 
 /// Pipeline variant of the pass that composites footprints.
@@ -109,7 +108,7 @@ impl FootprintPhases {
         }
         let VolumeContext { context, shaders, .. } = gpu;
         // Footprints carry the densities of voxels, which are classified one by one.
-        let shading = ShadingVariant { classification: ClassificationOrder::Post, ..eye.shading_variant() };
+        let shading = ShadingVariant { is_preclassified: false, ..eye.shading_variant() };
         let variant = FootprintsVariant { shading, footprints: scatterer.variant() };
         let pipeline = shaders.pipeline(&variant)?;
         let own = pass::bind(

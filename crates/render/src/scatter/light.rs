@@ -19,7 +19,7 @@ use crate::volume::brick_list::{self, BrickEntry};
 use crate::volume::transfer_tables::upload_distances;
 use crate::volume::{PyramidLevels, VolumeContext};
 use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{ClassificationOrder, DepositMode, Settings, SheetOrder};
+use chiaroscuro_scene::{DepositMode, Settings, SheetOrder};
 
 /// Pipeline variant of the march over scattered sheets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -88,10 +88,8 @@ impl LightScatterer {
     ) -> Result<Self, GpuError> {
         let seen = bricks_to_splat(&view.frame, &tables.lighting.occupied_bricks, options);
         let shadows = &settings.shadows;
-        let quantity = match settings.sampling.classification {
-            ClassificationOrder::Post => SplatQuantity::Density,
-            ClassificationOrder::Pre => SplatQuantity::Extinction,
-        };
+        let is_pre = settings.classification().is_pre();
+        let quantity = if is_pre { SplatQuantity::Extinction } else { SplatQuantity::Density };
         let table = tables.lighting_of_color(color);
         let splat = SplatParameters {
             kernel: shadows.kernel,

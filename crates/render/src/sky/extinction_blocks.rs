@@ -9,7 +9,7 @@ use crate::volume::cell_list::CellList;
 use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{VolumeContext, brick_dims};
 use crate::{GpuError, RenderOptions};
-use chiaroscuro_scene::{ClassificationOrder, Settings};
+use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::CELL_EDGE;
 
 /// Pass that fills blocks of extinction, with a shader that imports `sky/places.wgsl`.
@@ -88,7 +88,7 @@ impl BlocksPass<'_> {
             one_color: self.one_color,
             ends: gpu.volume.possible_boundaries(),
             is_cut: is_cut(shading),
-            classification: settings.sampling.classification,
+            is_preclassified: settings.classification().is_pre(),
         };
         let pipeline = gpu.shaders.pipeline_into(&variant, self.format)?;
         let uniform = uniforms::BlocksUniform {
@@ -126,7 +126,7 @@ struct BlocksVariant {
     one_color: bool,
     ends: GridBoundaries,
     is_cut: bool,
-    classification: ClassificationOrder,
+    is_preclassified: bool,
 }
 
 impl PipelineVariant for BlocksVariant {
@@ -138,7 +138,7 @@ impl PipelineVariant for BlocksVariant {
         let mut constants = self.ends.constants().to_vec();
         constants.push(flag("ONE_COLOR", self.one_color));
         constants.push(flag("CUT", self.is_cut));
-        constants.push(flag("PRECLASSIFY", self.classification == ClassificationOrder::Pre));
+        constants.push(flag("PRECLASSIFY", self.is_preclassified));
         // Sample points are fetched from the pyramid: the prefiltered kernel, with stretch.
         constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
         constants

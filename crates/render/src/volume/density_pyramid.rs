@@ -5,7 +5,7 @@ use super::gradients::gradient_texture;
 use super::textures::pyramid_texture;
 use super::{PyramidViews, gradients};
 use crate::{GpuContext, GpuError};
-use chiaroscuro_scene::{ClassificationOrder, RenderEngine, Settings};
+use chiaroscuro_scene::{RenderEngine, Settings};
 use chiaroscuro_volume::Volume;
 
 /// Textures of the pyramid of densities and of its gradients.
@@ -56,5 +56,5 @@ impl DensityPyramid {
 /// Returns true if pictures with these settings read the pyramid: all but those that gather voxels classified first.
 pub(crate) fn needs_density_pyramid(settings: &Settings) -> bool {
     let sampling = &settings.sampling;
-    sampling.classification == ClassificationOrder::Post || sampling.engine == RenderEngine::Scatter
+    !sampling.classification.is_pre() || sampling.engine == RenderEngine::Scatter
 }

@@ -25,6 +25,8 @@ use chiaroscuro_volume::memory_budget_bytes;
 pub(crate) struct PreclassifiedVoxels {
     /// Transfer function that the voxels are classified with.
     baked: Arc<BakedTransfer>,
+    /// `true` if edges are made steep.
+    is_crisp: bool,
     texture: wgpu::Texture,
     pub views: PyramidViews,
     /// Table that converts relative to absolute extinction, bound in place of the transfer function.
@@ -37,7 +39,7 @@ pub(crate) struct PreclassifiedVoxels {
 
 impl PreclassifiedVoxels {
     /// Creates the texture for a volume, or takes that of `reusable`; nothing is classified yet. `occupied` are the
-    /// bricks of the volume in which the transfer function has extinction.
+    /// bricks of the volume in which the transfer function has extinction; edges are made steep if `is_crisp`.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the texture.
@@ -45,10 +47,12 @@ impl PreclassifiedVoxels {
         context: &GpuContext,
         volume: &GpuVolume,
         baked: &Arc<BakedTransfer>,
+        is_crisp: bool,
         occupied: &BrickSet,
         reusable: Option<Self>,
     ) -> Result<Self, GpuError> {
-        let shares = BakedTransfer::linear_ramp(baked.max_extinction());
+        let shares =
+            if is_crisp { baked.crisp_ramp() } else { BakedTransfer::linear_ramp(baked.max_extinction()) };
         let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
         let dims = volume.volume.dims();
         let mut bricks = pyramid::level_bricks(dims, occupied.dims, |at| occupied.members[at]);
@@ -65,6 +69,7 @@ impl PreclassifiedVoxels {
         };
         Ok(Self {
             baked: Arc::clone(baked),
+            is_crisp,
             views: PyramidViews::new(&texture),
             texture,
             table,
@@ -93,9 +98,9 @@ impl PreclassifiedVoxels {
         })
     }
 
-    /// Returns true if the voxels are classified with the entries of this transfer function.
-    pub(crate) fn matches(&self, baked: &BakedTransfer) -> bool {
-        self.baked.entries == baked.entries
+    /// Returns true if the voxels are classified with the entries of this transfer function, and with such edges.
+    pub(crate) fn matches(&self, baked: &BakedTransfer, is_crisp: bool) -> bool {
+        self.is_crisp == is_crisp && self.baked.entries == baked.entries
     }
 
     /// Marks the pyramid as complete.
@@ -125,7 +130,10 @@ impl PreclassifiedVoxels {
         let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
         let bricks = &self.bricks[level as usize][range.clone()];
         let pipeline = match level {
-            0 => shaders.pipeline(&MaterialsVariant { has_missing: volume.presence.is_some() })?,
+            0 => shaders.pipeline(&MaterialsVariant {
+                has_missing: volume.presence.is_some(),
+                is_crisp: self.is_crisp,
+            })?,
             _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), self.texture.format())?,
         };
         let source = match level {
@@ -172,6 +180,7 @@ fn bytes(texels: u64) -> u64 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct MaterialsVariant {
     has_missing: bool,
+    is_crisp: bool,
 }
 
 impl PipelineVariant for MaterialsVariant {
@@ -180,6 +189,6 @@ impl PipelineVariant for MaterialsVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![flag("MISSING", self.has_missing)]
+        vec![flag("MISSING", self.has_missing), flag("CRISP", self.is_crisp)]
     }
 }

@@ -119,7 +119,7 @@ mod tests {
         );
         assert_eq!((&labels.camera, &labels.lights), (&first.camera, &first.lights));
         assert_eq!(labels.floor, FloorSettings { height: first.floor.height, ..mine.floor.clone() });
-        assert_eq!(labels.sampling.classification, ClassificationOrder::Pre);
+        assert_eq!(labels.sampling.classification, ClassificationOrder::PreCrisp);
         assert_eq!(labels.sampling.engine, RenderEngine::Scatter);
         let kept = |look: &Settings| {
             (look.cuts.clone(), look.output.clone(), look.shadows.clone(), look.kept.clone())

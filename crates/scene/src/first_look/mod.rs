@@ -124,7 +124,7 @@ fn framed_look(
     if let DataKind::LabelMap { .. } = kind {
         // Numbers between two labels mean nothing, and no label is an outlier.
         settings.layer_mut().range = transfer::range_of_labels(volume);
-        settings.sampling.classification = ClassificationOrder::Pre;
+        settings.sampling.classification = ClassificationOrder::PreCrisp;
         // Sharper than the B-spline, which would round off the shapes of voxels.
         (settings.sampling.kernel, settings.shadows.kernel) =
             (ReconstructionKernel::Prefiltered, ReconstructionKernel::Prefiltered);

@@ -217,9 +217,15 @@ impl Settings {
     }
 
     /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
-    /// between two labels mean nothing.
+    /// between two labels mean nothing. Edges are made steep only by gathering and for light of one colour: colours
+    /// attenuate by shares of extinction that a curve would change.
     pub fn classification(&self) -> ClassificationOrder {
-        if self.layer().labels.is_empty() { self.sampling.classification } else { ClassificationOrder::Pre }
+        let can_be_crisp = !self.uses_scattering_engine() && !self.has_colored_shadows();
+        match self.sampling.classification {
+            ClassificationOrder::PreCrisp if can_be_crisp => ClassificationOrder::PreCrisp,
+            ClassificationOrder::Post if self.layer().labels.is_empty() => ClassificationOrder::Post,
+            _ => ClassificationOrder::Pre,
+        }
     }
 
     /// Returns the settings as used for rendering a volume: if it is shown by labels, the transfer function is made

@@ -322,10 +322,7 @@ impl Settings {
     }
 
     fn gathering_kernel(&self, chosen: ReconstructionKernel) -> ReconstructionKernel {
-        match self.sampling.classification {
-            ClassificationOrder::Post => chosen,
-            ClassificationOrder::Pre => ReconstructionKernel::Prefiltered,
-        }
+        if self.sampling.classification.is_pre() { ReconstructionKernel::Prefiltered } else { chosen }
     }
 
     /// Returns the thickness of even slabs with the same look, in smallest voxel edges: adaptive slabs cost as much,

@@ -74,6 +74,24 @@ pub enum ClassificationOrder {
     /// Pre-classification, of the voxels, whose colours and extinctions are then spread: as blurred as the kernel.
     /// Rays to lights are still post-classified.
     Pre,
+    /// Pre-classification whose blurred edges are made steep again, for labels: outlines stay crisp where voxels are
+    /// larger than pixels ([`crate::BakedTransfer::crisp_ramp`]).
+    PreCrisp,
+}
+
+impl ClassificationOrder {
+    /// Returns true if voxels are classified before kernels spread them.
+    pub fn is_pre(self) -> bool {
+        match self {
+            Self::Post => false,
+            Self::Pre | Self::PreCrisp => true,
+        }
+    }
+
+    /// Returns true if edges of voxels that are classified first are made steep.
+    pub fn has_crisp_edges(self) -> bool {
+        self == Self::PreCrisp
+    }
 }
 
 /// Compositing order of the scattering engine's eye pass.

@@ -7,6 +7,7 @@ mod add_point;
 pub(super) mod baked_transfer;
 pub(super) mod color_map;
 pub(super) mod colored_shadows;
+mod crisp_ramp;
 mod freehand;
 pub(super) mod label_colors;
 pub(super) mod oklab;

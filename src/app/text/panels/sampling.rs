@@ -47,6 +47,11 @@ pub(crate) const CLASSIFIED_VOXELS: ControlText = control_text(
     "Pre-classification: colours and opacities are blurred, not values, so that labels stay apart. \
      Gathered with the quick kernel",
 );
+pub(crate) const CLASSIFIED_CRISP_VOXELS: ControlText = control_text(
+    "Crisp voxels",
+    "As Voxels, with narrow edges: outlines of labels stay crisp where voxels are larger than pixels. \
+     Coloured shadows and the scattering engine keep wide edges",
+);
 
 pub(crate) const ENGINE: ControlText =
     control_text("Sheets", "How sheets are filled, for the eye and for lights");

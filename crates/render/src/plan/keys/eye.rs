@@ -112,7 +112,7 @@ impl ShadowRaysKey {
         Self {
             opacity: OpacityKey::new(settings),
             transmission: TransmissionKey::new(settings),
-            classification: settings.sampling.classification,
+            classification: settings.classification(),
             shadows: settings.shadows.clone(),
         }
     }

@@ -247,6 +247,7 @@ fn every_setting_causes_what_the_design_says() {
         ("lighting.linked", "false", ChangeEffect::Nothing),
         ("lighting.curve.interpolation", "extinction", ChangeEffect::Nothing),
         ("sampling.classification", "pre", ChangeEffect::Nothing),
+        ("sampling.classification", "pre_crisp", ChangeEffect::AllLights),
         ("sampling.slabs", "by_need", ChangeEffect::Eye),
         ("lighting.scale", "0.5", ChangeEffect::AllLights),
     ] {
