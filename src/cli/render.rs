@@ -3,18 +3,22 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::CliError;
 use super::image_args::ImageArgs;
 use super::output::{copy_to_stdout, finish_output, open_destination, warn_empty_picture, warn_line};
+use super::process::StageTimes;
 use super::scene::SceneArgs;
 use chiaroscuro_files::{
     OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
 use chiaroscuro_media::{check_picture, marks_layer, write_picture};
-use chiaroscuro_render::{BandProgress, RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance};
-use chiaroscuro_scene::{ImageRecord, LookRecord, VolumeRecord};
+use chiaroscuro_render::{
+    BandProgress, GpuContext, RenderOptions, Renderer, WorkOptions, dark_fraction, mean_luminance,
+};
+use chiaroscuro_scene::{ImageRecord, ImageSpec, LookRecord, Settings, VolumeRecord};
+use chiaroscuro_volume::Dataset;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -36,6 +40,7 @@ pub(super) struct RenderArgs {
 
 /// Renders one picture, and a report if requested.
 pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    let mut times = StageTimes::new();
     let say = |text: &str| {
         if args.progress {
             warn_line(text);
@@ -52,43 +57,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     }
     say("loading the volume");
     let (loaded, context) = args.scene.load()?;
+    times.end("volume_and_adapter");
     let look = args.scene.look(&loaded)?;
+    times.end("first_look");
     let mut renderer = Renderer::new(&context)?;
     say("determining the look");
     let settings = look.settings(&mut renderer, &loaded)?;
+    times.end("light_search");
+    let shaders = renderer.shaders();
+    times.attribute("light_search", "shaders", shaders.compile_ms());
     say("rendering");
-    let mut report = None;
-    if args.report.is_some() {
-        // The report measures a whole picture including light volumes, so the renderer starts without caches.
-        renderer = Renderer::new(&context)?;
-        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
-        let picture = renderer.render(&loaded, &settings, image_spec.size, &options)?;
-        let took = renderer.report();
-        report = Some(json!({
-            "adapter": context.info.name,
-            "driver": format!("{} {}", context.info.driver, context.info.driver_info),
-            "image_size": image_spec.size,
-            "volume_dims": loaded.volume().dims(),
-            "volume_file_dims": loaded.volume().file_dims(),
-            "stages_ms": {
-                "upload": took.upload_ms,
-                "bricks": took.tables_ms,
-                "light_march": took.light_march_ms,
-                "light_backproject": took.light_backproject_ms,
-                "light_raycast": took.light_raycast_ms,
-                "eye": took.eye_ms,
-                "readback": took.readback_ms,
-            },
-            "light_rebuilds": renderer.light_rebuilds(),
-            "slabs": took.slabs,
-            "splats": renderer.splat_count()?,
-            "peak_gpu_bytes": took.peak_gpu_bytes,
-            "mean_luminance": mean_luminance(&picture.linear),
-            "dark_share": dark_fraction(&picture.linear, settings.output.exposure),
-            "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(&settings).unwrap_or_default())),
-            "settings": settings,
-        }));
-    }
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
         .with_choice(loaded.volume().contents().choice());
     let picture_record = ImageRecord::new(image_spec, context.description());
@@ -96,6 +74,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);
     let (layer, mut first) = (marks_layer(&image_spec, &settings, loaded.volume()), 0);
     let mut rows = || -> Result<_, CliError> {
+        times.end("encoding_and_file");
         let BandProgress { drawn, total } = bands.progress();
         if total > 1 && drawn < total {
             say(&format!("part {} of {total}", drawn + 1));
@@ -105,12 +84,20 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
             layer.composite_over(&image_spec, first, rows);
             first += rows.count(&image_spec);
         }
+        times.end("picture");
         Ok(rows)
     };
+    let compiled = shaders.compile_ms();
     write_picture(output.path(), &image_spec, Some(&record), &mut rows)?;
+    times.end("encoding_and_file");
+    times.attribute("picture", "shaders", shaders.compile_ms() - compiled);
     if bands.is_empty() {
         warn_empty_picture();
     }
+    let report = match &report_to {
+        Some(_) => Some(measured_report(&context, renderer, &loaded, &settings, &image_spec, &times)?),
+        None => None,
+    };
     // A report without its picture would be misleading, so it is written last.
     let is_told = report_to.as_ref().is_some_and(OutputDestination::is_standard_output);
     if let Some((to, report)) = report_to.zip(report) {
@@ -118,4 +105,49 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         copy_to_stdout(to)?;
     }
     if is_told { copy_to_stdout(output) } else { finish_output(output) }
+}
+
+/// Draws the picture again as a whole, light volumes included, to measure it, and returns the report; `times` are those
+/// from the start of the program to the picture in its file.
+fn measured_report(
+    context: &GpuContext,
+    drawn_with: Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    image_spec: &ImageSpec,
+    times: &StageTimes,
+) -> Result<Value, CliError> {
+    let mut renderer = Renderer::with_shaders(context, drawn_with.shaders())?;
+    // Its volumes are not needed any more.
+    drop(drawn_with);
+    let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
+    let picture = renderer.render(loaded, settings, image_spec.size, &options)?;
+    let took = renderer.report();
+    Ok(json!({
+        "adapter": context.info.name,
+        "driver": format!("{} {}", context.info.driver, context.info.driver_info),
+        "image_size": image_spec.size,
+        "volume_dims": loaded.volume().dims(),
+        "volume_file_dims": loaded.volume().file_dims(),
+        // The adapter is opened while the volume is read.
+        "adapter_ms": { "instance": context.opening_ms[0], "device": context.opening_ms[1] },
+        "to_picture_ms": times.to_json(),
+        "stages_ms": {
+            "upload": took.upload_ms,
+            "bricks": took.tables_ms,
+            "light_march": took.light_march_ms,
+            "light_backproject": took.light_backproject_ms,
+            "light_raycast": took.light_raycast_ms,
+            "eye": took.eye_ms,
+            "readback": took.readback_ms,
+        },
+        "light_rebuilds": renderer.light_rebuilds(),
+        "slabs": took.slabs,
+        "splats": renderer.splat_count()?,
+        "peak_gpu_bytes": took.peak_gpu_bytes,
+        "mean_luminance": mean_luminance(&picture.linear),
+        "dark_share": dark_fraction(&picture.linear, settings.output.exposure),
+        "settings_hash": format!("{:016x}", fingerprint(&serde_json::to_string(settings).unwrap_or_default())),
+        "settings": settings,
+    }))
 }

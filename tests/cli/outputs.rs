@@ -92,6 +92,13 @@ fn a_dash_is_standard_output() {
     let report = standard_output(&folder, &format!("{RENDER} -o p.png --report -"));
     let report: serde_json::Value = serde_json::from_slice(&report).expect("nothing but the report");
     assert_eq!(report["image_size"][1], 12);
+    let stages = report["to_picture_ms"].as_object().expect("times from the start to the picture");
+    let of = |stage: &str| stages[stage].as_f64().expect("a time");
+    let named: f64 = stages.keys().filter(|stage| *stage != "all").map(|stage| of(stage)).sum();
+    assert!(
+        (named - of("all")).abs() < 1e-6 * named && of("shaders") > 0.0 && of("picture") > 0.0,
+        "{stages:?}"
+    );
     folder.run_failing(&format!("{RENDER} -o - --report -"), 2);
     folder.run_failing("turntable builtin:sphere:16 --frames 2 -o -", 2);
     assert_eq!(folder.names(), ["l.nrrd", "p.png"]);

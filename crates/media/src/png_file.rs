@@ -85,6 +85,7 @@ pub(super) fn write<E: From<ExportError>>(
         png::BitDepth::Sixteen
     });
     encoder.set_color(if image_spec.transparent { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_compression(png::Compression::Fast);
     add_software_text(&mut encoder).map_err(not_encoded)?;
     if let Some(record) = record {
         encoder.add_itxt_chunk(RECORD_KEY.to_owned(), record.to_owned()).map_err(not_encoded)?;

@@ -126,9 +126,15 @@ impl LoadArgs {
         if let Some(choice) = choice {
             options.choice = options.choice.with_fallback(choice);
         }
-        // The file is read first, so that its errors are reported before those of the adapter.
-        let whole = open_with_size_warning(source, &options)?;
-        let context = GpuContext::headless()?;
+        // Drivers take up to half a second to open an adapter, meanwhile the file is read. Its errors are reported
+        // before those of the adapter.
+        let (whole, context) = std::thread::scope(|scope| {
+            let context = scope.spawn(GpuContext::headless);
+            let whole = open_with_size_warning(source, &options);
+            (whole, context.join())
+        });
+        let whole = whole?;
+        let context = context.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }
 }

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use super::binding::{BindingGroup, BindingSlot, ShaderPipeline, ring_format};
 use super::layouts::layouts;
@@ -27,6 +29,8 @@ pub struct ShaderLibrary {
     /// Bind-group layouts, by the address of their slots and the format of targets.
     groups: Arc<Mutex<HashMap<LayoutKey, BindingGroup>>>,
     cache: Option<PipelineCache>,
+    /// Time of all compilations, in microseconds.
+    compile_us: Arc<AtomicU64>,
 }
 
 impl ShaderLibrary {
@@ -38,6 +42,7 @@ impl ShaderLibrary {
             pipelines: Arc::default(),
             groups: Arc::default(),
             cache: None,
+            compile_us: Arc::default(),
         }
     }
 
@@ -131,13 +136,20 @@ impl ShaderLibrary {
             return Ok(pipeline.clone());
         }
         // The lock is released while compiling: the window must not wait for variants that another thread makes.
+        let begun = Instant::now();
         let pipeline = self.compile(shader, &constants, target)?;
+        self.compile_us.fetch_add(begun.elapsed().as_micros() as u64, Ordering::Relaxed);
         pipelines().insert(key, pipeline.clone());
         Ok(pipeline)
     }
 
+    /// Returns the time that compilations have taken so far, in milliseconds: of parsing and checking sources, of
+    /// translation for the driver and, as far as it compiles at once, of the driver.
+    pub fn compile_ms(&self) -> f64 {
+        self.compile_us.load(Ordering::Relaxed) as f64 / 1000.0
+    }
+
     /// Returns the number of pipelines made so far.
-    #[cfg(feature = "testing")]
     pub fn pipeline_count(&self) -> usize {
         self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
