@@ -55,8 +55,7 @@ def start_rows(folder):
     for path in sorted(folder.glob("*.start.json")):
         report = json.loads(path.read_text())
         stages = ", ".join(f"{stage} {ms:.0f}" for stage, ms in report["to_picture_ms"].items() if ms >= 0.5)
-        adapter = ", ".join(f"{part} {ms:.0f}" for part, ms in report["adapter_ms"].items())
-        yield f"{path.stem.removesuffix('.start')}: {stages} ms (adapter, beside the volume: {adapter})"
+        yield f"{path.stem.removesuffix('.start')}: {stages} ms"
 
 
 def main(folder):

@@ -129,8 +129,6 @@ fn measured_report(
         "image_size": image_spec.size,
         "volume_dims": loaded.volume().dims(),
         "volume_file_dims": loaded.volume().file_dims(),
-        // The adapter is opened while the volume is read.
-        "adapter_ms": { "instance": context.opening_ms[0], "device": context.opening_ms[1] },
         "to_picture_ms": times.to_json(),
         "stages_ms": {
             "upload": took.upload_ms,

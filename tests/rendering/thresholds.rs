@@ -386,10 +386,8 @@ pub(crate) const FLAT_EXACT: [f64; 3] = [0.002, 0.002, 0.007];
 /// Tilted plates with *Exact*: thinner slabs change nothing; texture filters have weights of 8 bits, and those of the
 /// oracle are exact.
 pub(crate) const TILTED_EXACT: [f64; 3] = [0.0025, 0.0035, 0.012];
-
 /// Opacity of peaks of ± 4 of 255, and of ± 0.2 % of the range, which is four entries of the table wide; relative.
 pub(crate) const NARROW_PEAKS: [f64; 2] = [0.01, 0.03];
-
 /// Coverage of pixels beside an edge, and coverages that count as one: the transmittance behind ten voxels of an
 /// opacity of 0.99 is none, and a fortieth of a voxel at the edge is not hard.
 pub(crate) const COVERAGE_ROUNDING: f64 = 0.01;
@@ -398,5 +396,5 @@ pub(crate) const COVERAGE_ROUNDING: f64 = 0.01;
 pub(crate) const EDGES_OF_MANY_SAMPLES: [f64; 2] = [0.6, 0.6];
 /// Grain of an oblique plate with four phases of its slabs, relative to one: the strongest wave of the grain cancels.
 pub(crate) const GRAIN_OF_SHIFTED_SLABS: f64 = 0.6;
-/// Pixels that a crisp outline of labels covers in part, relative to a wide one: its ramp is half as wide.
+/// Pixels partly covered by a crisp outline of labels, relative to a wide one: its ramp is half as wide.
 pub(crate) const MAX_CRISP_EDGE_SHARE: f64 = 0.6;

@@ -46,8 +46,6 @@ pub struct GpuContext {
     pub has_byte_volumes: bool,
     /// `true` if 16-bit normalised textures are available for density.
     pub has_unorm16: bool,
-    /// Time to make an instance and find the adapter, and time to open the device, in milliseconds; 0 if the caller did.
-    pub opening_ms: [f64; 2],
     /// Errors that no error scope caught, kept until they are taken.
     device_errors: DeviceErrors,
     /// Set when the device is lost.
@@ -88,13 +86,10 @@ impl GpuContext {
     /// Returns an error if there is no adapter, or if it cannot store the textures that the renderer needs.
     pub fn headless() -> Result<Self, GpuError> {
         check_driver_address_space()?;
-        let begun = Instant::now();
         let adapter = adapters::fastest_adapter()?;
-        let found = begun.elapsed();
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
             .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
-        let opening_ms = [found, begun.elapsed() - found].map(|took| took.as_secs_f64() * 1000.0);
-        Ok(Self { opening_ms, ..Self::new(&adapter, device, queue)? })
+        Self::new(&adapter, device, queue)
     }
 
     /// Creates a context on a device that the caller opened with [`device_descriptor`], or with more features. Sets
@@ -165,7 +160,6 @@ impl GpuContext {
             storage_format,
             has_byte_volumes: byte_volumes,
             has_unorm16: unorm16,
-            opening_ms: [0.0; 2],
             device_errors: complaints,
             is_lost: lost,
         })

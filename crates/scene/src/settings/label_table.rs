@@ -7,8 +7,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    ClassificationOrder, ColorMixing, ControlPoint, Easing, MAX_NAME_CHARS, MAX_POINTS, OpacityInterpolation,
-    Settings, TransferFunction, label_color,
+    ColorMixing, ControlPoint, Easing, MAX_NAME_CHARS, MAX_POINTS, OpacityInterpolation, Settings,
+    TransferFunction, label_color,
 };
 use chiaroscuro_files::sanitised_line;
 use chiaroscuro_volume::{DensityMapping, LabelSet, ValueRanges, Volume};
@@ -216,18 +216,6 @@ impl Settings {
         }
     }
 
-    /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
-    /// between two labels mean nothing. Edges are made steep only by gathering and for light of one colour: colours
-    /// attenuate by shares of extinction that a curve would change.
-    pub fn classification(&self) -> ClassificationOrder {
-        let can_be_crisp = !self.uses_scattering_engine() && !self.has_colored_shadows();
-        match self.sampling.classification {
-            ClassificationOrder::PreCrisp if can_be_crisp => ClassificationOrder::PreCrisp,
-            ClassificationOrder::Post if self.layer().labels.is_empty() => ClassificationOrder::Post,
-            _ => ClassificationOrder::Pre,
-        }
-    }
-
     /// Returns the settings as used for rendering a volume: if it is shown by labels, the transfer function is made
     /// of their looks over their classes, light uses the same, and voxels are classified before they are spread. Keys
     /// do not change.
@@ -250,7 +238,10 @@ mod tests {
     use half::f16;
 
     use super::*;
-    use crate::{AppliedSettings, BakedTransfer, OpacityLength, apply_path, load_json, settings_to_json};
+    use crate::{
+        AppliedSettings, BakedTransfer, ClassificationOrder, OpacityLength, apply_path, load_json,
+        settings_to_json,
+    };
     use chiaroscuro_volume::{MAX_CLASSES, Samples};
 
     /// Creates a volume with the given labels in a row.

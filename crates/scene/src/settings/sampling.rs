@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::Settings;
+
 /// Reconstruction kernel with which voxels are spread over space.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -91,6 +93,20 @@ impl ClassificationOrder {
     /// Returns true if edges of voxels that are classified first are made steep.
     pub fn has_crisp_edges(self) -> bool {
         self == Self::PreCrisp
+    }
+}
+
+impl Settings {
+    /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
+    /// between two labels mean nothing. Edges are made steep only by gathering and for light of one colour: colours
+    /// attenuate by shares of extinction that a curve would change.
+    pub fn classification(&self) -> ClassificationOrder {
+        let can_be_crisp = !self.uses_scattering_engine() && !self.has_colored_shadows();
+        match self.sampling.classification {
+            ClassificationOrder::PreCrisp if can_be_crisp => ClassificationOrder::PreCrisp,
+            ClassificationOrder::Post if self.layer().labels.is_empty() => ClassificationOrder::Post,
+            _ => ClassificationOrder::Pre,
+        }
     }
 }
 

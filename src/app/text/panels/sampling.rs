@@ -48,7 +48,7 @@ pub(crate) const CLASSIFIED_VOXELS: ControlText = control_text(
      Gathered with the quick kernel",
 );
 pub(crate) const CLASSIFIED_CRISP_VOXELS: ControlText = control_text(
-    "Crisp voxels",
+    "Crisp",
     "As Voxels, with narrow edges: outlines of labels stay crisp where voxels are larger than pixels. \
      Coloured shadows and the scattering engine keep wide edges",
 );
