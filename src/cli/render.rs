@@ -118,7 +118,7 @@ fn measured_report(
     times: &StageTimes,
 ) -> Result<Value, CliError> {
     let mut renderer = Renderer::with_shaders(context, drawn_with.shaders())?;
-    // Its volumes are not needed any more.
+    // Frees the textures of the first renderer, so that the adapter holds the volume once.
     drop(drawn_with);
     let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
     let picture = renderer.render(loaded, settings, image_spec.size, &options)?;
