@@ -234,14 +234,9 @@ impl VolumeBenchmark<'_> {
         settings: &Settings,
         samples: &mut CaseTimings,
     ) -> Result<bool, CliError> {
-        // The threads of a software driver delay the host, unless it waits for them.
-        let is_host_delayed = self.renderer.context().is_software();
         if frame >= WARM_UP_FRAMES && frame % 2 == 1 {
             self.frame(settings, None)?;
             samples.add_stages(self.renderer.report());
-            if is_host_delayed {
-                samples.add_host(self.renderer.report());
-            }
             return Ok(false);
         }
         let mut draw = || {
@@ -252,9 +247,7 @@ impl VolumeBenchmark<'_> {
             return draw().map(|_| false);
         }
         let report = samples.time_whole(draw)?;
-        if !is_host_delayed {
-            samples.add_host(&report);
-        }
+        samples.add_host(&report);
         Ok(true)
     }
 

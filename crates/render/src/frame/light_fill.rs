@@ -49,7 +49,7 @@ pub(crate) struct LightFill {
     pub back_projected_bricks: Option<BrickSet>,
     /// Bricks of the margin that have yet to be cleared.
     pub margin: Vec<BrickEntry>,
-    /// Bricks of the light volume, for ray casting and normalisation.
+    /// Bricks of the light volume, for ray casting, normalisation and averages; empty where none of these follows.
     pub bricks: Vec<BrickEntry>,
     /// View that is being marched.
     pub march_state: Option<MarchState>,
@@ -115,6 +115,12 @@ impl LightFill {
             let normals = key.has_weighted_points().then(normals).transpose()?;
             AreaLightAverage::new(context, &light, key.samples(), fresh, normals)
         });
+        let is_averaged = average.is_some() || fresh.has_colors();
+        let bricks = if !splats || scatters || is_averaged {
+            fresh.filled_cells.cells.bricks().map(brick_entry).collect()
+        } else {
+            Vec::new()
+        };
         let reverse_reach = reverse_reach(&all, &volume.scene, fresh.divisor);
         Ok(Self {
             light_index: index,
@@ -125,12 +131,12 @@ impl LightFill {
             average: average.transpose()?,
             colors: fresh.has_colors().then(|| ColorVolumes::new(context, fresh)).transpose()?,
             back_projected_bricks: scatters
-                .then(|| back_projected_bricks(volume, &fresh.filled_cells, fresh.divisor, &all)),
+                .then(|| back_projected_bricks(volume, &fresh.filled_cells.cells, fresh.divisor, &all)),
             views: geometries.into_iter().enumerate().flat_map(point_views).collect(),
             reverse_reach,
             reach: fresh.reach.saturating_add(reverse_reach),
             margin: fresh.uncleared_margin(),
-            bricks: fresh.filled_cells.bricks().map(brick_entry).collect(),
+            bricks,
             march_state: None,
             scatters,
         })

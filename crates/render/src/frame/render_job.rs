@@ -1,7 +1,6 @@
 //! Job: the work for one picture in steps, which borrows the renderer until it is done or dropped.
 
 use std::collections::VecDeque;
-use std::time::Instant;
 
 use super::caches::scattered_light_volumes::ScatteredLightPlace;
 use super::caches::sky_volumes::SkyPlace;
@@ -16,6 +15,7 @@ use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
 use crate::resources::submission_pace::StepKind;
+use crate::resources::host_clock::HostClock;
 use crate::scatter::eye::EyeScatter;
 use crate::scatter::voxels::ScatterState;
 use crate::{GpuError, RenderOptions};
@@ -114,7 +114,7 @@ impl RenderJob<'_> {
     pub fn step(&mut self) -> Result<bool, GpuError> {
         self.finish_products();
         let Some(stage) = self.stage() else { return Ok(false) };
-        let start = Instant::now();
+        let start = HostClock::start();
         let GpuTools { context, pool, pace, .. } = self.tools;
         let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let clock = self.gpu_clock.filter(|_| self.options.work.timed);
@@ -132,11 +132,11 @@ impl RenderJob<'_> {
         let count = recorded?;
         self.submitted = Some((stage.kind(), count));
         self.finish_products();
-        self.report.host_ms += start.elapsed().as_secs_f64() * 1000.0;
+        self.report.host_ms += start.cpu_ms();
         if self.options.work.timed {
             context.wait()?;
         }
-        let took = start.elapsed().as_secs_f64() * 1000.0;
+        let took = start.wall_ms();
         self.report.add(stage, took, clock.map(|clock| clock.read_ms(context)).transpose()?);
         Ok(!self.is_done())
     }

@@ -34,8 +34,8 @@ pub struct RenderReport {
     pub eye_ms: f64,
     /// Time of the display pass and of reading back, in milliseconds.
     pub readback_ms: f64,
-    /// Wall time of the host's own work in milliseconds: planning, layout, recording and submission, without waiting
-    /// for the adapter and without reading back.
+    /// Time of the host's own work in milliseconds: wall time of planning, and CPU time of layout, recording and
+    /// submission, without waiting for the adapter and without reading back.
     pub host_ms: f64,
     /// GPU time of all light volumes, in milliseconds; `None` if the adapter has no timestamps.
     pub light_gpu_ms: Option<f64>,

@@ -46,7 +46,7 @@ impl ChunkSchedule {
         let count = view.frame.slab_count.div_ceil(chunk).max(1);
         let mut chunks = vec![Vec::new(); count as usize];
         let completion = CompletionDepths::new(scene, view, light);
-        for (brick, cells) in light.filled_cells.bricks() {
+        for (brick, cells) in light.filled_cells.cells.bricks() {
             let slabs = completion.slabs(brick);
             for list in &mut chunks[(slabs.start() / chunk) as usize..=(slabs.end() / chunk) as usize] {
                 list.push(brick_list::brick_entry((brick, cells)));
@@ -72,7 +72,7 @@ fn brick_boxes(light: &LightVolume, reach: i32) -> impl Iterator<Item = [DVec3; 
     // (`density/cells.wgsl`).
     let beyond = DVec3::splat(2.0 * f64::from(reach));
     let edge = (BRICK_EDGE * light.divisor) as f64;
-    light.filled_cells.bricks().map(move |(brick, _)| {
+    light.filled_cells.cells.bricks().map(move |(brick, _)| {
         let low = edge * DVec3::from(brick.map(|at| at as f64));
         [low - beyond, low + edge + beyond]
     })

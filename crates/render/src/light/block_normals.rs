@@ -50,7 +50,8 @@ impl BlockNormals {
         let opacity =
             context.texture(&texture_3d("BlockNormals::opacity", size, context.storage_format, usages))?;
         let attenuating = attenuating_cells(tables, options, normals.dims, divisor, 0);
-        let listed = cells_around(&whole.filled_cells, divisor / (CELL_EDGE * whole.divisor), normals.dims);
+        let listed =
+            cells_around(&whole.filled_cells.cells, divisor / (CELL_EDGE * whole.divisor), normals.dims);
         Ok(Self {
             normals,
             opacity: opacity.create_view(&wgpu::TextureViewDescriptor::default()),
@@ -118,8 +119,8 @@ impl BlockNormals {
 fn cells_around(filled: &CellSet, ratio: usize, dims: [usize; 3]) -> CellSet {
     let bricks = brick_dims(dims);
     let mut around = CellSet { dims: bricks, masks: vec![0; bricks.iter().product()] };
-    for cell in filled.cells() {
-        // The block of the cell, and those beside it.
+    for cell in filled.cubes_within(ratio) {
+        // The block of the cells, and those beside it.
         let ends = cell.map(|at| [(at / ratio).saturating_sub(1), at / ratio + 1].map(|at| at / CELL_EDGE));
         for corner in 0..8 {
             around.insert([0, 1, 2].map(|axis| ends[axis][corner >> axis & 1]));

@@ -1,7 +1,5 @@
 //! Combined light: one volume with the diffuse light of all shadowed lights.
 
-use std::sync::Arc;
-
 use super::light_uniform::{LightInput, attenuation_bindings};
 use super::light_volume::LightVolume;
 use crate::pipelines::binding::{bind_buffer, bind_view};
@@ -9,7 +7,7 @@ use crate::pipelines::pipeline_variant::{
     GridBoundaries, PipelineVariant, ShaderConstants, ShadingVariant, SkyVariant,
 };
 use crate::pipelines::uniforms;
-use crate::plan::CellSet;
+use crate::resources::filled_cells::FilledCells;
 use crate::resources::pass;
 use crate::volume::brick_list::{self, BrickEntry};
 use crate::volume::transfer_tables::TransferTables;
@@ -46,7 +44,7 @@ pub(crate) struct CombinedLight {
     /// View of the texture of linear RGB.
     pub view: wgpu::TextureView,
     /// Cells that are filled with values.
-    pub filled: Arc<CellSet>,
+    pub filled: FilledCells,
 }
 
 /// Shading of the picture for which light is combined.
@@ -69,7 +67,7 @@ impl CombinedLight {
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         ))?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { dims: like.dims, divisor: like.divisor, view, filled: Arc::clone(&like.filled_cells) })
+        Ok(Self { dims: like.dims, divisor: like.divisor, view, filled: like.filled_cells.clone() })
     }
 
     /// Returns the scale from index space to texture coordinates: (p + ½) × lookup.

@@ -9,6 +9,7 @@ use crate::plan::{
     BrickSet, CellSet, FloorPlane, LightKey, LightView, NearFieldOffset, reverse_reach_voxels,
 };
 use crate::resources::fill_time::FillStopwatch;
+use crate::resources::filled_cells::{CellMargin, FilledCells};
 use crate::resources::pass;
 use crate::volume::brick_list::{self, BrickEntry};
 use crate::volume::{GpuVolume, VolumeContext, texture_3d};
@@ -30,15 +31,15 @@ pub(crate) struct LightVolume {
     /// Map of the light at the floor, if it is looked up.
     pub floor: Option<FloorShadowMap>,
     /// Cells (of light voxels) that hold values, or will when the volume is complete.
-    pub filled_cells: Arc<CellSet>,
+    pub filled_cells: FilledCells,
     /// Maximum distance, in data cells, of the filled cells from visible ones.
     pub reach: u8,
     /// Offsets of lookups towards the light, most recent first.
     pub lookup_offsets: Vec<NearFieldOffset>,
     /// Cells around the filled ones, which only previews look up and which are fully lit.
-    margin: CellSet,
-    /// Cells of the margin already cleared, by this volume or the previous one with the same texture.
-    cleared_cells: Option<CellSet>,
+    margin: CellMargin,
+    /// Margin already cleared, by this volume or the previous one with the same texture.
+    cleared_margin: Option<CellMargin>,
     /// Stopwatch for the filling of the volume.
     pub fill_time: FillStopwatch,
 }
@@ -49,7 +50,7 @@ pub(crate) struct LightVolumeExtent {
     /// Cells (of light voxels) to be filled.
     pub filled: Arc<CellSet>,
     /// Cells around the filled ones, to be cleared.
-    pub margin: CellSet,
+    pub margin: CellMargin,
     /// Maximum distance, in data cells, of the cells to be filled from visible ones.
     pub reach: u8,
     /// Offsets of lookups towards the light.
@@ -83,23 +84,23 @@ impl LightVolume {
             (LightVolumePrecision::Byte, true) => wgpu::TextureFormat::Rgba8Unorm,
             (LightVolumePrecision::Half, true) => wgpu::TextureFormat::Rgba16Float,
         };
-        let volume_with = |texture, view, cleared: Option<CellSet>| Self {
+        let volume_with = |texture, view, cleared_margin: Option<CellMargin>| Self {
             dims,
             divisor,
             texture,
             view,
             floor,
             margin,
-            cleared_cells: cleared,
-            filled_cells: filled,
+            cleared_margin,
+            filled_cells: FilledCells::new(filled),
             reach,
             lookup_offsets: aheads,
             fill_time: FillStopwatch::default(),
         };
         let fits = |known: &Self| known.dims == dims && known.texture.format() == format;
         if let Some(at) = recyclable.iter().position(fits) {
-            let Self { texture, view, cleared_cells: cleared, .. } = recyclable.swap_remove(at);
-            return Ok(volume_with(texture, view, cleared));
+            let Self { texture, view, cleared_margin, .. } = recyclable.swap_remove(at);
+            return Ok(volume_with(texture, view, cleared_margin));
         }
         let texture = attenuation_texture(context, dims, format)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -122,21 +123,20 @@ impl LightVolume {
             view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
             texture,
             floor: None,
-            filled_cells: Arc::clone(&self.filled_cells),
+            filled_cells: self.filled_cells.clone(),
             reach: self.reach,
             lookup_offsets: self.lookup_offsets.clone(),
-            margin: CellSet::default(),
-            cleared_cells: None,
+            margin: CellMargin::default(),
+            cleared_margin: None,
             fill_time: FillStopwatch::default(),
         })
     }
 
     /// Returns the part of the margin that has yet to be cleared; empty while a light is dragged.
     pub(crate) fn uncleared_margin(&self) -> Vec<BrickEntry> {
-        let list = |cells: &CellSet| cells.bricks().map(brick_list::brick_entry).collect();
-        self.cleared_cells
-            .as_ref()
-            .map_or_else(|| list(&self.margin), |cleared| list(&self.margin.difference(cleared)))
+        let cleared = self.cleared_margin.as_ref();
+        let rest = cleared.map_or_else(|| self.margin.cells(), |cleared| self.margin.difference(cleared));
+        rest.bricks().map(brick_list::brick_entry).collect()
     }
 
     /// Sets the listed cells to fully lit.
@@ -175,7 +175,7 @@ impl LightVolume {
     /// Starts filling: starts the stopwatch, and counts the margin as cleared.
     pub(crate) fn begin_filling(&mut self) {
         self.fill_time.begin();
-        self.cleared_cells = Some(self.margin.clone());
+        self.cleared_margin = Some(self.margin.clone());
     }
 
     /// Returns true if the volume holds the attenuation of red, green and blue light.

@@ -2,7 +2,9 @@
 
 pub(super) mod cache_entry;
 pub(super) mod fill_time;
+pub(super) mod filled_cells;
 pub(super) mod gpu_tools;
+pub(super) mod host_clock;
 pub(super) mod pass;
 pub(super) mod product_cache;
 pub(super) mod resource_pool;

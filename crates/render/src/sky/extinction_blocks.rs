@@ -1,5 +1,7 @@
 //! Downsampled extinction: mean over blocks of voxels, for sweeps of light.
 
+use std::sync::Arc;
+
 use crate::pipelines::binding::{NamedResource, bind_buffer};
 use crate::pipelines::pipeline_variant::{GridBoundaries, PipelineVariant, ShaderConstants, flag, is_cut};
 use crate::pipelines::uniforms;
@@ -61,15 +63,15 @@ pub(crate) fn attenuating_cells(
     dims: [usize; 3],
     divisor: usize,
     margin: usize,
-) -> CellSet {
+) -> Arc<CellSet> {
     let bricks = brick_dims(dims);
     if !options.switches.empty_space_skipping {
-        return CellSet::full(bricks);
+        return Arc::new(CellSet::full(bricks));
     }
     // The sample points of a block are at most as many cells from its centre as half its edge has voxels.
     let around = divisor / 2 + (margin * divisor).div_ceil(CELL_EDGE);
     let reach = stretch_reach(pyramid_level(divisor)).saturating_add(around as u8);
-    tables.lighting.cells_within(reach, divisor, bricks)
+    tables.attenuating_cells(reach, divisor, bricks)
 }
 
 impl BlocksPass<'_> {

@@ -2,6 +2,7 @@
 
 pub(super) mod brick_list;
 pub(super) mod cell_list;
+pub(super) mod cell_set_cache;
 pub(crate) mod density_pyramid;
 pub(super) mod gradients;
 pub(super) mod preclassified;

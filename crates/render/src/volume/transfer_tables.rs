@@ -1,19 +1,19 @@
 //! Transfer-function tables on the GPU, and the cells that are visible with them.
 
-use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::cell::Cell;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::cell_set_cache::{CellRequirement, CellSetCache, OccupiedCells};
 use super::preclassified::PreclassifiedVoxels;
 use super::{GpuVolume, PassPyramids, PyramidViews, brick_dims};
 use crate::pipelines::pipeline_variant::GridBoundaries;
-use crate::plan::{BrickSet, CellDistances, CellSet, NearFieldOffset, TablesKey};
+use crate::plan::{BrickSet, CellDistances, CellSet, FloorPlane, NearFieldOffset, TablesKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::{BakedTransfer, LIGHT_COLORS, Settings};
-use chiaroscuro_volume::{CELL_EDGE, CellOccupancy};
+use chiaroscuro_volume::{CELL_EDGE, CellOccupancy, math::SceneSpace};
 
 /// Distance in voxels between opposite faces from which on no unstretched kernel reaches both: twice `EDGE_REACH` in
 /// `shaders/density/presence.wgsl`.
@@ -128,11 +128,6 @@ impl TransferTable {
         self.distances.values[x + width * (y + height * z)] == 0
     }
 
-    /// Returns the cells of `divisor`³ voxels, on a grid of `bricks`, within `reach` data cells of occupied cells.
-    pub(crate) fn cells_within(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> CellSet {
-        self.distances.cells_within(reach, divisor, bricks)
-    }
-
     /// Returns the lookup table on the CPU.
     pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
         &self.baked
@@ -193,23 +188,11 @@ pub(crate) struct TransferTables {
     pub light_distances: wgpu::TextureView,
     /// Distances to cells occupied in either table; the light of eye samples is looked up near them.
     occupied_distances: Arc<CellDistances>,
-    /// Cells of light volumes that recent pictures have needed, most recent first.
-    needed_cells: RefCell<VecDeque<(CellRequirement, Arc<CellSet>)>>,
+    /// Cells of light volumes and of blocks that recent pictures have needed.
+    cell_sets: CellSetCache,
+    /// Floor asked about last, and whether something below it attenuates light.
+    below_floor: Cell<Option<(FloorPlane, bool)>>,
 }
-
-/// Parameters of the cell set that a picture needs of a light volume.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct CellRequirement {
-    /// Maximum distance, in data cells, from cells occupied in either table.
-    pub reach: u8,
-    /// Number of data voxels per light voxel, along an axis.
-    pub divisor: usize,
-    /// Offset of near-field lookups towards the light.
-    pub offset: NearFieldOffset,
-}
-
-/// Maximum number of cached sets of needed cells: for eight lights, two settings and two resolutions.
-const MAX_CACHED_SETS: usize = 32;
 
 /// Transfer tables for a key, and how many of them had to be baked.
 pub(crate) struct TableBakeResult {
@@ -297,7 +280,8 @@ impl TransferTables {
             eye_distances,
             light_distances,
             occupied_distances: shown,
-            needed_cells: RefCell::default(),
+            cell_sets: CellSetCache::default(),
+            below_floor: Cell::default(),
         };
         Ok(TableBakeResult { tables, baked })
     }
@@ -337,31 +321,38 @@ impl TransferTables {
 
     /// Returns the cells of a light volume that a picture needs, cached.
     pub(crate) fn needed_cells(&self, volume: &GpuVolume, needs: CellRequirement) -> Arc<CellSet> {
-        let known = self
-            .needed_cells
-            .borrow()
-            .iter()
-            .find(|(known, _)| *known == needs)
-            .map(|(_, set)| Arc::clone(set));
-        if let Some(known) = known {
-            return known;
-        }
-        let CellRequirement { reach, divisor, offset: ahead } = needs;
-        let dims = volume.volume.dims();
-        let coarse = brick_dims(dims.map(|n| n.div_ceil(divisor)));
-        let fresh = if ahead == NearFieldOffset::default() {
-            self.occupied_distances.cells_within(reach, divisor, coarse)
-        } else {
+        self.cell_sets.get_or_make(OccupiedCells::Any, needs, || {
+            let CellRequirement { reach, divisor, offset: ahead } = needs;
+            let dims = volume.volume.dims();
+            let coarse = brick_dims(dims.map(|n| n.div_ceil(divisor)));
+            if ahead == NearFieldOffset::default() {
+                return self.occupied_distances.cells_within(reach, divisor, coarse);
+            }
             let still = CellRequirement { divisor: 1, offset: NearFieldOffset::default(), ..needs };
             let around = self.needed_cells(volume, still);
             let moved = ahead.shifted_cells((*around).clone(), dims.map(|n| (n - 1) / 2));
             if divisor > 1 { moved.coarsened(divisor, coarse) } else { moved }
-        };
-        let fresh = Arc::new(fresh);
-        let mut needed = self.needed_cells.borrow_mut();
-        needed.truncate(MAX_CACHED_SETS - 1);
-        needed.push_front((needs, Arc::clone(&fresh)));
-        fresh
+        })
+    }
+
+    /// Returns the cells of `divisor`³ voxels, on a grid of `bricks`, within `reach` data cells of those that attenuate
+    /// light; cached.
+    pub(crate) fn attenuating_cells(&self, reach: u8, divisor: usize, bricks: [usize; 3]) -> Arc<CellSet> {
+        let needs = CellRequirement { reach, divisor, offset: NearFieldOffset::default() };
+        self.cell_sets.get_or_make(OccupiedCells::Attenuating, needs, || {
+            self.lighting.distances.cells_within(reach, divisor, bricks)
+        })
+    }
+
+    /// Returns true if something below a floor attenuates light; known for the floor asked last.
+    pub(crate) fn has_attenuation_below(&self, floor: FloorPlane, scene: &SceneSpace) -> bool {
+        if let Some((_, has_below)) = self.below_floor.get().filter(|(known, _)| *known == floor) {
+            return has_below;
+        }
+        let table = &self.lighting;
+        let has_below = floor.has_below(scene, &table.occupied_bricks, |cell| table.occupies(cell));
+        self.below_floor.set(Some((floor, has_below)));
+        has_below
     }
 
     /// Returns true if either transfer function has extinction at the lowest density, which is also the density

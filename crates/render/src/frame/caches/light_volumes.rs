@@ -10,9 +10,11 @@ use crate::light::combined_light::CombinedLight;
 use crate::light::light_volume::{LightVolume, LightVolumeExtent};
 use crate::plan::{CellSet, FloorPlane, LightKey, MAX_CELL_DISTANCE, NearFieldOffset, lookup_reach};
 use crate::resources::cache_entry::CacheEntry;
+use crate::resources::filled_cells::CellMargin;
 use crate::resources::product_cache::ProductCache;
 use crate::volume::GpuVolume;
-use crate::volume::transfer_tables::{CellRequirement, TransferTables};
+use crate::volume::cell_set_cache::CellRequirement;
+use crate::volume::transfer_tables::TransferTables;
 use chiaroscuro_scene::{NearFieldRay, ShadowAlgorithm};
 
 /// Minimum number of cached light volumes beyond those of the current picture: undoing a drag finds them again, and
@@ -30,10 +32,6 @@ pub(crate) struct LightEntries {
     pub builds: Vec<LightFill>,
     /// Number of bricks of the combined volume, if it has to be filled.
     pub bricks_to_combine: Option<usize>,
-}
-
-fn covers(needed: &Arc<CellSet>, filled: &Arc<CellSet>) -> bool {
-    Arc::ptr_eq(needed, filled) || needed.is_subset(filled)
 }
 
 impl LoadedVolume {
@@ -64,7 +62,7 @@ impl LoadedVolume {
         let is_usable = self
             .combined
             .as_ref()
-            .is_some_and(|known| known.is_valid_for(combined_key) && covers(&needed, &known.product.filled));
+            .is_some_and(|known| known.is_valid_for(combined_key) && known.product.filled.covers(&needed));
         if is_usable {
             return Ok(LightEntries::default());
         }
@@ -73,7 +71,7 @@ impl LoadedVolume {
         // Lights are only combined if at least one casts shadows.
         if let Some(slot) = placed.slots.iter().flatten().next() {
             let like = &self.lights[*slot].product;
-            placed.bricks_to_combine = Some(like.filled_cells.bricks().count());
+            placed.bricks_to_combine = Some(like.filled_cells.cells.bricks().count());
             let fresh = CombinedLight::new(context, like)?;
             self.combined = Some(CacheEntry::incomplete(combined_key.clone(), fresh));
         }
@@ -199,10 +197,7 @@ impl<'a> LightNeeds<'a> {
         {
             return None;
         }
-        let table = &self.tables.lighting;
-        let has_below =
-            place.has_below(&self.volume.scene, &table.occupied_bricks, |cell| table.occupies(cell));
-        (!has_below).then_some(place)
+        (!self.tables.has_attenuation_below(place, &self.volume.scene)).then_some(place)
     }
 
     /// Returns the distance from visible cells, in data cells, up to which a volume is read.
@@ -223,7 +218,7 @@ impl<'a> LightNeeds<'a> {
         let least = self.cells(key, least_reach, self.lookup_offset(index, key));
         let floor = self.floor(key);
         let has_floor = floor.is_none() || known.floor.as_ref().map(|map| map.extent) == floor;
-        has_floor && covers(&least, &known.filled_cells)
+        has_floor && known.filled_cells.covers(&least)
     }
 
     /// Returns the extent of a new volume with these offsets of look-ups.
@@ -233,7 +228,7 @@ impl<'a> LightNeeds<'a> {
             sets.reduce(|a, b| Arc::new(a.union(&b))).unwrap_or_default()
         };
         let filled = all(self.reach);
-        let margin = all(self.reach.max(max_stretch_reach())).difference(&filled);
+        let margin = CellMargin::new(all(self.reach.max(max_stretch_reach())), Arc::clone(&filled));
         let reach = self.read_reach(key.resolution().divisor(), &aheads);
         LightVolumeExtent { filled, margin, reach, floor: self.floor(key), aheads }
     }

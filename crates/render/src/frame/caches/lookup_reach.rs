@@ -8,7 +8,8 @@ use crate::plan::{
     CellSet, MAX_STRETCH_LEVEL, NearFieldOffset, RenderRequest, bias_reach, lookup_reach, picture_frame,
     slab_reach, stretch_reach,
 };
-use crate::volume::transfer_tables::{CellRequirement, TransferTables};
+use crate::volume::cell_set_cache::CellRequirement;
+use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{GpuVolume, brick_dims};
 use chiaroscuro_scene::{MAX_BIAS_VOXELS, NearFieldRay, SKY_LOOKUP_DISTANCE};
 

@@ -177,7 +177,7 @@ impl RenderJob<'_> {
         let loaded = &self.loaded.product;
         let (Some(target), Some(pass)) = (&loaded.combined, &self.combine_pass) else { return Ok(()) };
         let lights = light_inputs(&self.lights, &self.light_indices, loaded);
-        let list: Vec<_> = target.product.filled.bricks().map(brick_entry).collect();
+        let list: Vec<_> = target.product.filled.cells.bricks().map(brick_entry).collect();
         let gpu = VolumeContext::new(self.tools, &loaded.volume);
         let shading = CombinedLightShading { eye: pass.uniform(), shading: pass.shading_variant() };
         target.product.fill(gpu, &loaded.tables.product, shading, &lights, &list[bricks.clone()], encoder)

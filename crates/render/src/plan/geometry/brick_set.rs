@@ -72,7 +72,20 @@ impl BrickSet {
 
     /// Iterates over the coordinates of the members.
     pub fn positions(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
-        (0..self.members.len()).filter(|&at| self.members[at]).map(|at| self.position(at))
+        self.positions_in_rows(|_| true)
+    }
+
+    /// Iterates over the coordinates of the members in those rows along x that are wanted, by their y and z.
+    pub fn positions_in_rows(
+        &self,
+        is_wanted: impl Fn([usize; 2]) -> bool,
+    ) -> impl Iterator<Item = [usize; 3]> {
+        let [nx, ny, _] = self.dims;
+        let rows = self.members.chunks(nx.max(1)).enumerate();
+        rows.filter(move |(row, _)| is_wanted([row % ny, row / ny])).flat_map(move |(row, members)| {
+            let members = members.iter().enumerate().filter(|(_, member)| **member);
+            members.map(move |(x, _)| [x, row % ny, row / ny])
+        })
     }
 
     /// Returns the distance of every brick to the nearest member, limited to 255; 0 for members.

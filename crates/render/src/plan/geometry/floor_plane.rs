@@ -50,15 +50,15 @@ impl FloorPlane {
         is_occupied: impl Fn([usize; 3]) -> bool,
     ) -> bool {
         let up = self.up.direction();
-        let axes = scene.scene_from_index.matrix3.to_cols_array_2d().map(DVec3::from);
-        // Height of the highest corner of a cube above its centre, for an edge in voxels.
-        let rise = |edge: f64| axes.iter().map(|axis| 0.5 * edge * axis.dot(up).abs()).sum::<f64>();
+        // Heights are linear in index space.
+        let rise_per_voxel = scene.scene_from_index.matrix3.transpose() * up;
+        let first_height = scene.scene_from_index.translation.dot(up);
+        let corner = 0.5 * rise_per_voxel.abs().element_sum();
         // True if a brick or cell lies completely below the floor, at least `down` voxels deep.
         let is_below = |at: [usize; 3], edge: usize, down: f64| {
             let edge = edge as f64;
             let middle = DVec3::from(at.map(|at| (at as f64 + 0.5) * edge - 0.5));
-            let height = scene.scene_from_index.transform_point3(middle).dot(up);
-            height + rise(edge + 2.0 * down) < self.height
+            first_height + rise_per_voxel.dot(middle) + corner * (edge + 2.0 * down) < self.height
         };
         let cells_of = |brick: [usize; 3]| {
             (0..PER_BRICK.pow(3)).map(move |at| {
@@ -66,8 +66,11 @@ impl FloorPlane {
                 std::array::from_fn(|axis| brick[axis] * PER_BRICK + within[axis])
             })
         };
-        let mut cells =
-            bricks.positions().filter(|brick| is_below(*brick, BRICK_EDGE, 0.0)).flat_map(cells_of);
+        // The lowest brick of a row is at one of its ends.
+        let ends = [0, bricks.dims[0].saturating_sub(1)];
+        let rows =
+            bricks.positions_in_rows(|[y, z]| ends.iter().any(|&x| is_below([x, y, z], BRICK_EDGE, 0.0)));
+        let mut cells = rows.filter(|brick| is_below(*brick, BRICK_EDGE, 0.0)).flat_map(cells_of);
         cells.any(|cell| is_below(cell, CELL_EDGE, MIN_DEPTH_BELOW) && is_occupied(cell))
     }
 
