@@ -16,7 +16,7 @@ use crate::plan::picture_frame;
 use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 use crate::resources::pass;
 use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
-use crate::volume::{PyramidLevels, VolumeContext};
+use crate::volume::{GpuVolume, PyramidLevels, VolumeContext};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{DepositMode, MAX_LIGHTS, NearFieldRay, Projection, Settings, ShadowAlgorithm};
 use chiaroscuro_volume::math::{Aabb, SceneSpace};
@@ -146,11 +146,11 @@ impl EyePass {
 
     /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
     /// volumes have none.
-    pub(crate) fn gradients<'a>(&self, gpu: VolumeContext<'a>) -> Option<&'a wgpu::TextureView> {
+    pub(crate) fn gradients<'a>(&self, volume: &'a GpuVolume) -> Option<&'a wgpu::TextureView> {
         if self.variant.shading.is_preclassified {
             return None;
         }
-        gpu.volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))
+        volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))
     }
 
     /// Returns true if pixels are wider than voxels somewhere in the view.
@@ -179,6 +179,12 @@ impl EyePass {
         self.cast_rays(gpu, tables, looked_up, ray, rows, encoder)
     }
 
+    /// Returns the pipeline variant for a volume and its tables.
+    pub(crate) fn pipeline_variant(&self, volume: &GpuVolume, tables: &TransferTables) -> EyeVariant {
+        let ends = tables.boundaries(volume, self.dilation, self.frame.max_stretch_level());
+        self.variant.with_gradients(self.gradients(volume).is_some()).with_boundaries(ends)
+    }
+
     /// Records a dispatch of one ray through each of all or some pixels, in some rows of a picture.
     pub(super) fn cast_rays(
         &self,
@@ -189,11 +195,9 @@ impl EyePass {
         rows: std::ops::Range<u32>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), GpuError> {
-        let VolumeContext { context, shaders, .. } = gpu;
-        let gradients = self.gradients(gpu);
-        let ends = tables.boundaries(gpu.volume, self.dilation, self.frame.max_stretch_level());
-        let variant = self.variant.with_gradients(gradients.is_some()).with_boundaries(ends);
-        let pipeline = shaders.pipeline(&variant)?;
+        let VolumeContext { context, shaders, volume, .. } = gpu;
+        let gradients = self.gradients(volume);
+        let pipeline = shaders.pipeline(&self.pipeline_variant(volume, tables))?;
         let tiles = pass::tile_workgroups([self.frame.size[0], rows.end - rows.start]);
         let runs = pass::interleaved_runs(context, tiles);
         let mut uniform =

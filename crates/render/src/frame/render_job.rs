@@ -11,11 +11,12 @@ use super::report::RenderReport;
 use super::step::{RenderStage, RenderStep, split_into_bands};
 use crate::context::gpu_clock::GpuClock;
 use crate::eye::eye_pass::EyePass;
+use crate::pipelines::shader_library::PipelinePreparation;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
-use crate::resources::submission_pace::StepKind;
 use crate::resources::host_clock::HostClock;
+use crate::resources::submission_pace::StepKind;
 use crate::scatter::eye::EyeScatter;
 use crate::scatter::voxels::ScatterState;
 use crate::{GpuError, RenderOptions};
@@ -52,6 +53,8 @@ pub struct RenderJob<'r> {
     /// Shading parameters with the volume of each light, for filling the combined volume.
     pub(super) combine_pass: Option<EyePass>,
     pub(super) eye_pass: EyePass,
+    /// Compilation of its pipeline, if that was missing.
+    pub(super) _eye_preparation: Option<PipelinePreparation>,
     pub(super) scattering: Option<ScatterState>,
     /// Sheets of the eye, for the scattering engine.
     pub(super) eye_sheets: Option<EyeScatter>,
@@ -129,10 +132,10 @@ impl RenderJob<'_> {
         }
         // Products of earlier steps count as complete, so these are submitted even if a later one failed.
         context.queue.submit([encoder.finish()]);
+        self.report.host_ms += start.cpu_ms();
         let count = recorded?;
         self.submitted = Some((stage.kind(), count));
         self.finish_products();
-        self.report.host_ms += start.cpu_ms();
         if self.options.work.timed {
             context.wait()?;
         }

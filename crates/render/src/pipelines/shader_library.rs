@@ -25,13 +25,16 @@ pub struct ShaderLibrary {
     pub(crate) context: GpuContext,
     /// Text replacement in the joined source; see [`Self::with_mutation`].
     mutation: Option<(String, String)>,
-    pipelines: Arc<Mutex<HashMap<PipelineKey, ShaderPipeline>>>,
+    pipelines: Arc<Mutex<HashMap<PipelineKey, PipelineSlot>>>,
     /// Bind-group layouts, by the address of their slots and the format of targets.
     groups: Arc<Mutex<HashMap<LayoutKey, BindingGroup>>>,
     cache: Option<PipelineCache>,
-    /// Time of all compilations, in microseconds.
-    compile_us: Arc<AtomicU64>,
+    /// Time that callers have waited for compilations, in microseconds.
+    wait_us: Arc<AtomicU64>,
 }
+
+/// Place of a pipeline, locked while it is compiled.
+type PipelineSlot = Arc<Mutex<Option<ShaderPipeline>>>;
 
 impl ShaderLibrary {
     /// Creates an empty library for a device.
@@ -42,7 +45,7 @@ impl ShaderLibrary {
             pipelines: Arc::default(),
             groups: Arc::default(),
             cache: None,
-            compile_us: Arc::default(),
+            wait_us: Arc::default(),
         }
     }
 
@@ -129,29 +132,55 @@ impl ShaderLibrary {
         variant: &impl PipelineVariant,
         target: wgpu::TextureFormat,
     ) -> Result<ShaderPipeline, GpuError> {
-        let (shader, constants) = (variant.shader(), variant.constants());
-        let key = PipelineKey::new(shader, &constants, target);
-        let pipelines = || self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = pipelines().get(&key) {
-            return Ok(pipeline.clone());
-        }
-        // The lock is released while compiling: the window must not wait for variants that another thread makes.
+        let key = PipelineKey::new(variant, target);
+        let slot = self.slot(&key);
+        // Only this pipeline is locked: the window must not wait for variants that another thread makes.
         let begun = Instant::now();
-        let pipeline = self.compile(shader, &constants, target)?;
-        self.compile_us.fetch_add(begun.elapsed().as_micros() as u64, Ordering::Relaxed);
-        pipelines().insert(key, pipeline.clone());
-        Ok(pipeline)
+        let mut pipeline = lock(&slot);
+        let found = match &*pipeline {
+            Some(known) => known.clone(),
+            None => pipeline.insert(self.compile(&key)?).clone(),
+        };
+        self.wait_us.fetch_add(begun.elapsed().as_micros() as u64, Ordering::Relaxed);
+        Ok(found)
     }
 
-    /// Returns the time that compilations have taken so far, in milliseconds: of parsing and checking sources, of
-    /// translation for the driver and, as far as it compiles at once, of the driver.
+    /// Starts to compile a variant on another thread, so that it is ready or nearly so when [`Self::pipeline`] asks for
+    /// it; `None` if it is known or being compiled. Errors are left to that call.
+    pub(crate) fn prepare(&self, variant: &impl PipelineVariant) -> Option<PipelinePreparation> {
+        let key = PipelineKey::new(variant, self.context.storage_format);
+        let slot = self.slot(&key);
+        let is_missing = slot.try_lock().is_ok_and(|pipeline| pipeline.is_none());
+        let library = self.clone();
+        let compile = move || {
+            let mut pipeline = lock(&slot);
+            if pipeline.is_none() {
+                *pipeline = library.compile(&key).ok();
+            }
+        };
+        let start = || std::thread::Builder::new().name("pipeline".to_owned()).spawn(compile).ok();
+        is_missing.then(start).flatten().map(|thread| PipelinePreparation(Some(thread)))
+    }
+
+    /// Returns the time that callers have waited for compilations so far, in milliseconds: for parsing and checking
+    /// sources, for translation for the driver and, as far as it compiles at once, for the driver.
     pub fn compile_ms(&self) -> f64 {
-        self.compile_us.load(Ordering::Relaxed) as f64 / 1000.0
+        self.wait_us.load(Ordering::Relaxed) as f64 / 1000.0
     }
 
     /// Returns the number of pipelines made so far.
     pub fn pipeline_count(&self) -> usize {
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
+        let is_made = |slot: &&PipelineSlot| slot.try_lock().is_ok_and(|pipeline| pipeline.is_some());
+        lock(&self.pipelines).values().filter(is_made).count()
+    }
+
+    /// Returns the place of a pipeline, empty if it is new.
+    fn slot(&self, key: &PipelineKey) -> PipelineSlot {
+        let mut pipelines = lock(&self.pipelines);
+        match pipelines.get(key) {
+            Some(known) => Arc::clone(known),
+            None => Arc::clone(pipelines.entry(key.clone()).or_default()),
+        }
     }
 
     /// Returns the bind groups of a shader; equal ones share one layout.
@@ -163,7 +192,7 @@ impl ShaderLibrary {
         let declared = layouts().find(|(known, _)| *known == shader);
         let (_, groups) =
             declared.ok_or_else(|| GpuError::Internal(format!("there is no layout for {shader}")))?;
-        let mut known = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = lock(&self.groups);
         let group = |slots: &&'static [BindingSlot]| {
             let fresh = || BindingGroup::new(&self.context, slots, target);
             known.entry((slots, target)).or_insert_with(fresh).clone()
@@ -171,12 +200,9 @@ impl ShaderLibrary {
         Ok(groups.iter().map(group).collect())
     }
 
-    fn compile(
-        &self,
-        shader: &'static str,
-        constants: &[(&'static str, f64)],
-        target: wgpu::TextureFormat,
-    ) -> Result<ShaderPipeline, GpuError> {
+    fn compile(&self, key: &PipelineKey) -> Result<ShaderPipeline, GpuError> {
+        let &PipelineKey { shader, ref constants, target } = key;
+        let constants: Vec<_> = constants.iter().map(|(name, bits)| (*name, f64::from_bits(*bits))).collect();
         // Mesa's compiler does not check its allocations and crashes the process when one fails.
         if self.context.is_software() {
             check_address_space(&format!("the pipeline of {shader}"), COMPILER_ADDRESS_BYTES)?;
@@ -185,7 +211,7 @@ impl ShaderLibrary {
             constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
         };
         let mut source = Self::preprocessed_source(shader, self.context.storage_format, target, &value)?;
-        let overrides = override_constants(constants)?;
+        let overrides = override_constants(&constants)?;
         if let Some((from, to)) = &self.mutation {
             source = source.replace(from, to);
         }
@@ -236,11 +262,28 @@ struct PipelineKey {
 }
 
 impl PipelineKey {
-    fn new(shader: &'static str, constants: &[(&'static str, f64)], target: wgpu::TextureFormat) -> Self {
-        let mut constants: Vec<_> = constants.iter().map(|(name, value)| (*name, value.to_bits())).collect();
+    fn new(variant: &impl PipelineVariant, target: wgpu::TextureFormat) -> Self {
+        let mut constants: Vec<_> =
+            variant.constants().into_iter().map(|(name, value)| (name, value.to_bits())).collect();
         constants.sort_unstable();
-        Self { shader, constants, target }
+        Self { shader: variant.shader(), constants, target }
     }
+}
+
+/// Compilation of a pipeline on another thread, which must end before the program may.
+#[derive(Debug)]
+pub(crate) struct PipelinePreparation(Option<std::thread::JoinHandle<()>>);
+
+impl Drop for PipelinePreparation {
+    fn drop(&mut self) {
+        // A panic is repeated by the thread that needs the pipeline.
+        let _ = self.0.take().map(std::thread::JoinHandle::join);
+    }
+}
+
+/// Locks what a thread that panicked has not left half done.
+fn lock<T>(shared: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn resolve_imports(name: &str, seen: &mut Vec<String>, joined: &mut String) -> Result<(), GpuError> {

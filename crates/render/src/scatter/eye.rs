@@ -136,7 +136,7 @@ impl EyeScatter {
             }
             return if is_last { self.resolve(gpu, picture, encoder) } else { Ok(()) };
         }
-        let gradients = eye.gradients(gpu);
+        let gradients = eye.gradients(gpu.volume);
         let variant = ScatterEyeVariant {
             shading: eye.shading_variant(),
             sampling: eye.sampling_variant(gradients.is_some()),

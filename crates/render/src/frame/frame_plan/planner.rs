@@ -15,6 +15,7 @@ use crate::frame::report::RenderReport;
 use crate::frame::step::{FrameProduct, RenderStep};
 use crate::light::light_uniform::LightInput;
 use crate::output::render_target::TargetShape;
+use crate::pipelines::shader_library::PipelinePreparation;
 use crate::plan::{ActiveLights, AntialiasedKey, EyeKey, FloorKey, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
@@ -133,6 +134,9 @@ impl<'r> FramePlanner<'r> {
         self.steps.extend(placement.bounces.steps());
         let passes = self.shading_passes(&placement);
         let role = self.append_picture_steps(&passes.eye, scattering.as_ref())?;
+        // The largest shader is compiled while light is computed.
+        let is_gathered = self.drawn_in.is_none() && scattering.is_none();
+        let eye_preparation = is_gathered.then(|| self.prepare_eye(&passes.eye)).flatten();
         let bytes = self.targets.bytes() + self.loaded.product.bytes() + self.tools.pool.bytes();
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
         Ok(RenderJob {
@@ -151,6 +155,7 @@ impl<'r> FramePlanner<'r> {
             scattered_light: placement.bounces,
             combine_pass: passes.combine,
             eye_pass: passes.eye,
+            _eye_preparation: eye_preparation,
             scattering,
             eye_sheets: None,
             role,
@@ -159,6 +164,12 @@ impl<'r> FramePlanner<'r> {
             steps: self.steps.into(),
             request: self.request,
         })
+    }
+
+    /// Starts to compile the pipeline of the eye pass, if it is missing.
+    fn prepare_eye(&self, eye: &EyePass) -> Option<PipelinePreparation> {
+        let LoadedVolume { volume, tables, .. } = &self.loaded.product;
+        self.tools.shaders.prepare(&eye.pipeline_variant(volume, &tables.product))
     }
 
     /// Prepares the shading of the picture's lights, and reports its size.
