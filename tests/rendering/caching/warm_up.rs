@@ -1,5 +1,6 @@
-//! Test of the pipeline warm-up: the pipelines compiled ahead of time are those of the first picture.
+//! Tests of pipelines that are compiled ahead of time or by another thread.
 
+use chiaroscuro_render::plan::RenderRequest;
 use chiaroscuro_render::{RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::{CancelToken, Dataset, synthetic::builtin};
@@ -31,4 +32,39 @@ fn the_first_picture_after_the_warm_up_compiles_nothing() {
 #[test]
 fn pipelines_without_warm_up_are_counted() {
     assert_eq!(pipelines_after_warm_up(|settings| settings.floor.on = true), 7, "the floor and its maps");
+}
+
+#[test]
+fn threads_share_the_pipelines_that_one_of_them_compiles() {
+    let context = context();
+    let dataset = Dataset::new(builtin("sphere", Some(24)).expect("the sphere"));
+    let settings = first_look::first_settings(dataset.volume(), dataset.histogram());
+    let draw = |shaders: &ShaderLibrary| {
+        let mut renderer = Renderer::with_shaders(&context, shaders.clone()).expect("a renderer");
+        let options = RenderOptions::default();
+        renderer.render(&dataset, &settings, [64, 48], &options).expect("a picture").linear
+    };
+    let alone = ShaderLibrary::new(&context);
+    let expected = draw(&alone);
+    let shared = ShaderLibrary::new(&context);
+    let pictures: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..3).map(|_| scope.spawn(|| draw(&shared))).collect();
+        threads.into_iter().map(|thread| thread.join().expect("no panic")).collect()
+    });
+    assert!(pictures.iter().all(|picture| *picture == expected));
+    assert_eq!(shared.pipeline_count(), alone.pipeline_count());
+}
+
+#[test]
+fn a_picture_that_is_given_up_while_its_pipeline_is_compiled_harms_nothing() {
+    let context = context();
+    let dataset = Dataset::new(builtin("sphere", Some(24)).expect("the sphere"));
+    let settings = first_look::first_settings(dataset.volume(), dataset.histogram());
+    let mut renderer = Renderer::new(&context).expect("a renderer");
+    let request =
+        RenderRequest { volume: dataset.volume().id(), settings, size: [64, 48], preview_resolution: None };
+    drop(renderer.begin(&dataset, request.clone(), &RenderOptions::default()).expect("a job"));
+    let mut job = renderer.begin(&dataset, request, &RenderOptions::default()).expect("a job");
+    while job.step().expect("a step") {}
+    assert!(job.is_done());
 }

@@ -10,7 +10,7 @@ use crate::plan::CellSet;
 /// Pictures ask for the same set again and again, so the last one that was found to be covered is remembered.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FilledCells {
-    /// Filled cells.
+    /// Cells that hold values.
     pub(crate) cells: Arc<CellSet>,
     /// Set that was found to be covered last.
     covered: RefCell<Option<Arc<CellSet>>>,
