@@ -150,7 +150,9 @@ impl ShaderLibrary {
     pub(crate) fn prepare(&self, variant: &impl PipelineVariant) -> Option<PipelinePreparation> {
         let key = PipelineKey::new(variant, self.context.storage_format);
         let slot = self.slot(&key);
-        let is_missing = slot.try_lock().is_ok_and(|pipeline| pipeline.is_none());
+        if slot.try_lock().map_or(true, |pipeline| pipeline.is_some()) {
+            return None;
+        }
         let library = self.clone();
         let compile = move || {
             let mut pipeline = lock(&slot);
@@ -158,8 +160,8 @@ impl ShaderLibrary {
                 *pipeline = library.compile(&key).ok();
             }
         };
-        let start = || std::thread::Builder::new().name("pipeline".to_owned()).spawn(compile).ok();
-        is_missing.then(start).flatten().map(|thread| PipelinePreparation(Some(thread)))
+        let thread = std::thread::Builder::new().name("pipeline".to_owned()).spawn(compile).ok()?;
+        Some(PipelinePreparation(Some(thread)))
     }
 
     /// Returns the time that callers have waited for compilations so far, in milliseconds: for parsing and checking
@@ -270,7 +272,8 @@ impl PipelineKey {
     }
 }
 
-/// Compilation of a pipeline on another thread, which must end before the program may.
+/// Compilation of a pipeline on another thread; dropping it waits for that thread, since drivers crash where a program
+/// ends while they compile.
 #[derive(Debug)]
 pub(crate) struct PipelinePreparation(Option<std::thread::JoinHandle<()>>);
 

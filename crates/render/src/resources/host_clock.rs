@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Clock for what a thread works, without what drivers' threads do meanwhile: software drivers draw with the
+/// Clock for the work of one thread: its CPU time, without that of a driver's threads. Software drivers draw on the
 /// processors that the thread needs, and take them as soon as a submission wakes them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HostClock {
@@ -17,8 +17,8 @@ impl HostClock {
         Self { started: Instant::now(), cpu: thread_cpu_time() }
     }
 
-    /// Returns the milliseconds since the start: CPU time of the thread, which is the one that started the clock;
-    /// wall time if the system does not tell.
+    /// Returns the CPU time since the start of the thread that started the clock, in milliseconds; wall time if the
+    /// system does not tell.
     pub(crate) fn cpu_ms(&self) -> f64 {
         let worked = thread_cpu_time().zip(self.cpu).map(|(now, start)| now.saturating_sub(start));
         worked.unwrap_or_else(|| self.started.elapsed()).as_secs_f64() * 1000.0
