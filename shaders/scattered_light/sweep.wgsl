@@ -49,7 +49,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let ray = swept_ray(rays, id.xy);
+    let ray = swept_ray(rays, id.xy, 1.0);
     var light = incoming_radiance(rays);
     for (var n = ray.span.x; n <= ray.span.y; n += 1.0) {
         let found = textureSampleLevel(medium, clamped, place_in_blocks(rays, ray, n), 0.0) * rays.step;

@@ -24,7 +24,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy > rays.size)) {
         return;
     }
-    let ray = swept_ray(rays, max(id.xy, vec2u(1u)) - 1u);
+    let ray = swept_ray(rays, max(id.xy, vec2u(1u)) - 1u, 1.0);
     let end = floor(slice_of_floor(rays, ray) + 0.5);
     let is_beside = any(id.xy == vec2u(0u));
     var t = 1.0;

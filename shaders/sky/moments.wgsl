@@ -35,6 +35,10 @@ const MAX_START_SLICES = 2.0;
 // provides sheets a block farther around. Only blocks well inside material would need more, which nothing looks up.
 const MAX_START_DISTANCE = 2.5;
 
+// Distance in rays and layers that texture coordinates keep from those of other directions: rounding of coordinates in
+// a texture of 2048 layers moves them by up to 2.5e-4 of a layer.
+const ROUNDING_MARGIN = 5e-4;
+
 // Start of a ray in front of a surface, relative to the point at that height on the normal: on the ray from the
 // surface itself, so that nothing shifts against the surroundings, unless that is too far away.
 fn ray_start(rays: SweepRaysUniform, normal: vec3f, height: f32) -> vec3f {
@@ -45,12 +49,14 @@ fn ray_start(rays: SweepRaysUniform, normal: vec3f, height: f32) -> vec3f {
 
 // Transmittance of the ray from a position in blocks to the sky; 1 outside the grid.
 fn transmittance_from(rays: SweepRaysUniform, start: vec3f) -> f32 {
-    var ray = ray_coordinates(rays, start);
-    // Layers beyond these belong to other directions.
-    ray.z = clamp(ray.z, 0.0, to_sweep_axes(rays, vec3f(sweep.dims)).x - 1.0);
+    // Rays and layers beyond these belong to other directions.
+    let ends = vec3f(vec2f(rays.size), to_sweep_axes(rays, vec3f(sweep.dims)).x) - 1.0;
+    let ray = clamp(ray_coordinates(rays, start), vec3f(ROUNDING_MARGIN), ends - ROUNDING_MARGIN);
     let passed = textureSampleLevel(sheets, clamped, place_of_ray(rays, ray), 0.0).r;
-    let outside = max(-start, start + 1.0 - vec3f(sweep.dims)) - 0.5;
-    return mix(passed, 1.0, saturate(2.0 * max(outside.x, max(outside.y, outside.z))));
+    let outside = max(-start, start + 1.0 - vec3f(sweep.dims));
+    let most = max(outside.x, max(outside.y, outside.z));
+    // From the faces of the outermost blocks on.
+    return mix(passed, 1.0, saturate((most - 0.5) / (MAX_DISTANCE_OUTSIDE - 0.5)));
 }
 
 @compute @workgroup_size(64)

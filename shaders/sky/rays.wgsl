@@ -4,6 +4,9 @@
 // Maximum number of directions in a batch.
 const MAX_SKY_RAYS = 8;
 
+// Distance from the grid, in blocks, from which on rays start in the open (sky/moments.wgsl).
+const MAX_DISTANCE_OUTSIDE = 1.0;
+
 struct SweepRaysUniform {
     // Unit vector towards the light, in scene space.
     direction_to_light: vec3f,

@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (any(id.xy >= rays.size)) {
         return;
     }
-    let ray = swept_ray(rays, id.xy);
+    let ray = swept_ray(rays, id.xy, 1.0 + MAX_DISTANCE_OUTSIDE);
     var t = 1.0;
     var n = ray.span.x;
     for (; n <= ray.span.y && t > DARKNESS; n += 1.0) {

@@ -7,19 +7,19 @@
 // (crates/render/src/plan/geometry/sweep_tiles.rs).
 @group(0) @binding(4) var<storage, read> tiles: array<u32>;
 
-// First and last slice in which a ray is less than a block from the grid, along one axis across the slices.
-fn slices_near_grid(start: f32, drift: f32, blocks: f32, last: f32) -> vec2f {
+// First and last slice in which a ray is less than `margin` blocks from the grid, along one axis across the slices.
+fn slices_near_grid(start: f32, drift: f32, blocks: f32, last: f32, margin: f32) -> vec2f {
     let speed = select(drift, 1e-6, abs(drift) < 1e-6);
-    let a = (-1.0 - start) / speed;
-    let b = (blocks - start) / speed;
+    let a = (-margin - start) / speed;
+    let b = (blocks - 1.0 + margin - start) / speed;
     return clamp(vec2f(floor(min(a, b)), ceil(max(a, b))), vec2f(0.0, -1.0), vec2f(last + 1.0, last));
 }
 
 // First and last slice of a ray that crosses the first slice at `start`, in a grid of `size` blocks, turned to the
-// rays. Empty if the first is larger.
-fn slices_of_ray(rays: SweepRaysUniform, ray: vec2u, start: vec2f, size: vec3f) -> vec2f {
-    let u = slices_near_grid(start.x, rays.drift.x, size.y, size.x - 1.0);
-    let v = slices_near_grid(start.y, rays.drift.y, size.z, size.x - 1.0);
+// rays, and that is looked up less than `margin` blocks from the grid. Empty if the first is larger.
+fn slices_of_ray(rays: SweepRaysUniform, ray: vec2u, start: vec2f, size: vec3f, margin: f32) -> vec2f {
+    let u = slices_near_grid(start.x, rays.drift.x, size.y, size.x - 1.0, margin);
+    let v = slices_near_grid(start.y, rays.drift.y, size.z, size.x - 1.0, margin);
     let tile = ray / TILE_EDGE;
     let columns = (rays.size.x + TILE_EDGE - 1u) / TILE_EDGE;
     let entry = tiles[rays.first_tile + tile.y * columns + tile.x];
@@ -38,10 +38,12 @@ struct SweptRay {
     span: vec2f,
 }
 
-fn swept_ray(rays: SweepRaysUniform, ray: vec2u) -> SweptRay {
+// Rays that are interpolated at a place are less than a block from it in some slice next to it, so a ray is followed
+// as far as it is less than `margin` blocks from the grid: 1 if only blocks look it up, and more if other places do.
+fn swept_ray(rays: SweepRaysUniform, ray: vec2u, margin: f32) -> SweptRay {
     let size = to_sweep_axes(rays, vec3f(sweep.dims));
     let start = vec2f(ray) + rays.first;
-    return SweptRay(start, size.x - 1.0, slices_of_ray(rays, ray, start, size));
+    return SweptRay(start, size.x - 1.0, slices_of_ray(rays, ray, start, size, margin));
 }
 
 // Place in slice n of a ray, as texture coordinates of the blocks with their border.

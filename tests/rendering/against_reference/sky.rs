@@ -167,7 +167,7 @@ fn mistakes_in_surfaces_are_noticed() {
         ("sky/sharpened_blocks.wgsl", "(most - own)", "0.8 * (most - own)"),
         ("sky/extinction_blocks.wgsl", "blocks.max_depth", "1.2 * blocks.max_depth"),
         ("sky/sweep.wgsl", "max(depth, 0.0)", "abs(depth)"),
-        ("sky/moments.wgsl", "saturate(2.0 *", "saturate(0.0 *"),
+        ("sky/moments.wgsl", "saturate((most - 0.5)", "saturate((most + 1.5)"),
         ("sky/moments.wgsl", "geometry.along_z, n", "geometry.along_y, n"),
     ];
     for (shader, from, to) in mistakes {

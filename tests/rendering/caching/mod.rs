@@ -9,6 +9,7 @@ use crate::scenes;
 use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
 mod bit_exactness;
+mod needed_blocks;
 mod recomputes;
 mod warm_up;
 

@@ -11,10 +11,11 @@ use crate::resources::gpu_tools::GpuTools;
 use crate::resources::textures::read_floats;
 use crate::scatter::light::{LightScatterer, ScatterTarget};
 use crate::scatter::voxels::ScatterState;
+use crate::sky::block_texture::BlockTexture;
 use crate::volume::VolumeContext;
 use crate::{GpuError, RenderOptions, Renderer, WorkOptions};
 use chiaroscuro_scene::{ImageSpec, Settings};
-use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume::{CELL_EDGE, Dataset};
 
 impl Renderer {
     /// Begins a picture like [`Self::bands`], in parts of at most `edge` samples along an edge and `samples` in all.
@@ -65,6 +66,33 @@ impl Renderer {
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
         self.texels(&found.product.blocks.view)
+    }
+
+    /// Draws a picture, and returns the sky visibility of the blocks that it looks up, V₁ along x, y and z of the scene
+    /// and V₀; `None` for all others.
+    ///
+    /// # Errors
+    /// Returns an error if the device fails.
+    pub fn needed_sky_visibility(
+        &mut self,
+        dataset: &Dataset,
+        settings: &Settings,
+        size: [u32; 2],
+    ) -> Result<Vec<Option<[f32; 4]>>, GpuError> {
+        let none = || GpuError::NothingDrawn("sky");
+        let settings = settings.resolved_for(dataset.volume()).into_owned();
+        self.draw(dataset, &settings, size, &RenderOptions::default())?;
+        let request =
+            RenderRequest { volume: dataset.volume().id(), settings, size, preview_resolution: None };
+        let key = SkyKey::new(&request).ok_or_else(none)?;
+        let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
+        let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
+        let BlockTexture { dims: [nx, ny, _], ref view, .. } = found.product.blocks;
+        let filled = &found.product.filled_cells;
+        let moments = self.texels(view)?.into_iter().enumerate();
+        let is_filled =
+            |at: usize| filled.contains([at % nx, at / nx % ny, at / (nx * ny)].map(|n| n / CELL_EDGE));
+        Ok(moments.map(|(at, moment)| is_filled(at).then_some(moment)).collect())
     }
 
     /// Returns the scattered light of each block of voxels: linear RGB, and 1.
