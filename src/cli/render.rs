@@ -56,7 +56,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         check_writable(to.path())?;
     }
     say("loading the volume");
-    let (loaded, context) = args.scene.load()?;
+    let (loaded, context) = args.scene.load_timed(&mut times)?;
     times.end("volume_and_adapter");
     let look = args.scene.look(&loaded)?;
     times.end("first_look");

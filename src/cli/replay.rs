@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::CliError;
 use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
+use super::process::StageTimes;
 use super::scene::{LoadArgs, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
@@ -79,7 +80,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(output) = &args.output {
         check_overwrites(&[&args.picture, &source], &[output], args.force)?;
     }
-    let (volume, context) = args.load.open_chosen(&source, stated.map(|stated| &stated.choice))?;
+    let (volume, context) =
+        args.load.open(&source, stated.map(|stated| &stated.choice), &mut StageTimes::from_now())?;
     if stated.is_some_and(|of| !of.matches_content(volume.opened_id())) {
         return Err(unusable(format!("{} is another volume than that of the picture", source.display())));
     }

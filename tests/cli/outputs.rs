@@ -94,11 +94,18 @@ fn a_dash_is_standard_output() {
     assert_eq!(report["image_size"][1], 12);
     let stages = report["to_picture_ms"].as_object().expect("times from the start to the picture");
     let of = |stage: &str| stages[stage].as_f64().expect("a time");
-    let named: f64 = stages.keys().filter(|stage| *stage != "all").map(|stage| of(stage)).sum();
+    let named: f64 = stages
+        .keys()
+        .filter(|stage| !["all", "parallel"].contains(&stage.as_str()))
+        .map(|stage| of(stage))
+        .sum();
     assert!(
         (named - of("all")).abs() < 1e-6 * named && of("shaders") > 0.0 && of("picture") > 0.0,
         "{stages:?}"
     );
+    for part in ["volume", "instance", "device"] {
+        assert!(stages["parallel"][part].as_f64() > Some(0.0), "{part}: {stages:?}");
+    }
     folder.run_failing(&format!("{RENDER} -o - --report -"), 2);
     folder.run_failing("turntable builtin:sphere:16 --frames 2 -o -", 2);
     assert_eq!(folder.names(), ["l.nrrd", "p.png"]);

@@ -29,5 +29,5 @@ pub use marks::{
 pub use picture_file::{
     PictureFormat, check_picture, may_carry_record, picture_size, read_picture, read_record, write_picture,
 };
-pub use png_file::{encode_png, export_png};
+pub use png_file::{encode_png, encode_shown, export_png};
 pub use rows::{PicturePixels, PixelRows};

@@ -28,12 +28,24 @@ pub fn export_png(
     path: &Path,
 ) -> Result<(), ExportError> {
     check_extension(path, &["png"], "pictures of this kind are written as .png")?;
-    let bytes = if transparent {
+    Ok(write_atomically(path, &encode_shown(size, shown, transparent, record)?)?)
+}
+
+/// Encodes a picture like [`export_png`], and returns the bytes of the file.
+///
+/// # Errors
+/// When the number of bytes does not match the pixels.
+pub fn encode_shown(
+    size: [u32; 2],
+    shown: &[u8],
+    transparent: bool,
+    record: Option<&str>,
+) -> Result<Vec<u8>, ExportError> {
+    Ok(if transparent {
         encode_png(size, png::ColorType::Rgba, shown, record)?
     } else {
         encode_png(size, png::ColorType::Rgb, &rgb(shown), record)?
-    };
-    Ok(write_atomically(path, &bytes)?)
+    })
 }
 
 /// Encodes bytes of colours as PNG, with a record if there is one.

@@ -47,7 +47,7 @@ pub use self::readback::statistics::LightVolumeStatistics;
 pub use self::readback::tiled::{BandProgress, PictureBands};
 pub use context::check_driver_address_space;
 pub use context::error::GpuError;
-pub use context::{GpuContext, device_descriptor};
+pub use context::{GpuContext, OpeningTimes, device_descriptor};
 pub use first_look::{
     LightSearch, LightSearchResult, LightSuggestion, LightingScore, MeasuredSettings, SearchedLight,
     UndecidedPart, automatic_exposure, complete_first_look, dark_fraction, downsampled_volume, first_look,

@@ -1,9 +1,14 @@
-//! Benchmark of loading: the time from a file to its first picture, stage by stage, and the memory that it takes.
+//! Benchmark of loading: the time from a file to its first picture in another file, stage by stage, and the memory
+//! that it takes.
 //!
-//! *Read* ends when all voxels are decoded and in native byte order. *Statistics* are computed from the voxels: the
-//! range of values and its robust part, content id, histogram, bounds of bricks and cells, kind of data. *Upload* is
-//! the transfer to the adapter, with the pyramid. *First look* is the additional time for the automatic look, and
-//! *picture* that for a light volume and a picture at full quality.
+//! *Instance* and *device* open the adapter. *Read* ends when all voxels are decoded and in native byte order.
+//! *Statistics* are computed from the voxels: the range of values and its robust part, content id, histogram, bounds
+//! of bricks and cells, kind of data. *First look* chooses the settings, *light search* the lights and their
+//! brightness by small pictures. *Upload* is the transfer to the adapter, with the pyramid. *Picture* fills the light
+//! volumes and draws at full quality, *encoding* makes a PNG, and *file* writes it. *Shaders* is what all of them
+//! waited for pipelines, which each repetition compiles anew, from the cache of the driver if it has one.
+//!
+//! `render` does the same, but opens the adapter while it reads.
 
 use std::path::Path;
 use std::time::Instant;
@@ -13,16 +18,32 @@ use serde_json::{Value, json};
 use super::report::{CaseTimings, round_to_microsecond, spread_json};
 use super::{BenchArgs, VolumeBenchmark, case_json};
 use crate::cli::CliError;
+use crate::cli::output::open_destination;
+use crate::cli::process::StageTimes;
 use crate::cli::scene::control_with_size_warning;
+use chiaroscuro_files::{OutputDestination, write_atomically};
+use chiaroscuro_media::encode_shown;
 use chiaroscuro_render::{
-    GpuContext, RenderOptions, RenderStage, Renderer, ShaderLibrary, WorkOptions, first_look,
+    GpuContext, RenderOptions, RenderReport, RenderStage, Renderer, ShaderLibrary, WorkOptions,
     plan::RenderRequest,
 };
-use chiaroscuro_scene::{Settings, first_look};
+use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::{Dataset, LoadControl};
 
 /// Names of the stages, in their order.
-pub(super) const STAGES: [&str; 5] = ["read", "statistics", "upload", "first_look", "picture"];
+pub(super) const STAGES: [&str; 11] = [
+    "instance",
+    "device",
+    "shaders",
+    "read",
+    "statistics",
+    "upload",
+    "first_look",
+    "light_search",
+    "picture",
+    "encoding",
+    "file",
+];
 
 /// Maximum number of frames: loading takes seconds, and a median needs no more.
 const MAX_FRAMES: usize = 3;
@@ -32,9 +53,10 @@ const MAX_FRAMES: usize = 3;
 struct LoadStageTimes([Vec<f64>; STAGES.len()]);
 
 impl LoadStageTimes {
-    fn add(&mut self, took_ms: &[f64]) {
-        for (all, &took) in self.0.iter_mut().zip(took_ms) {
-            all.push(took);
+    /// Adds the times of a repetition, of the stages that it has.
+    fn add(&mut self, took_ms: impl Fn(&str) -> Option<f64>) {
+        for (stage, all) in STAGES.iter().zip(&mut self.0) {
+            all.extend(took_ms(stage));
         }
     }
 
@@ -49,6 +71,15 @@ struct AdapterMemory {
     all: u64,
     light: u64,
     peak: u64,
+}
+
+/// Renderer that has drawn the first picture of a file, with all that is freed with it.
+struct FirstPicture {
+    times: StageTimes,
+    renderer: Renderer,
+    report: RenderReport,
+    _dataset: Dataset,
+    _output: OutputDestination,
 }
 
 /// Stopwatch for the wall-clock time since the last call.
@@ -86,7 +117,11 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
         dataset.volume().kind();
         looking += lap.lap_ms();
         if frame > 0 {
-            stages.add(&[read, looking]);
+            stages.add(|stage| match stage {
+                "read" => Some(read),
+                "statistics" => Some(looking),
+                _ => None,
+            });
         }
         if frame == usize::from(args.frames) {
             cases.push(json!({
@@ -116,65 +151,88 @@ fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Res
 }
 
 impl VolumeBenchmark<'_> {
-    /// Times the way from a file, or the formula of a built-in volume, to its first picture at full quality, and
-    /// measures its memory. Pipelines are compiled beforehand.
+    /// Times the way from a file, or the formula of a built-in volume, to its first picture at full quality in a file,
+    /// and measures its memory.
     pub(super) fn load(
         &self,
-        context: &GpuContext,
         source: &Path,
         wants: impl Fn(&str) -> bool,
         cases: &mut Vec<Value>,
     ) -> Result<(), CliError> {
-        let shaders = ShaderLibrary::new(context);
         let (mut samples, mut stages) = (CaseTimings::default(), LoadStageTimes::default());
-        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
         for frame in 0..=usize::from(self.args.frames).min(MAX_FRAMES) {
-            let mut took = [0.0; STAGES.len()];
-            let mut bytes = AdapterMemory::default();
-            let mut warm_up = CaseTimings::default();
-            let keep = if frame == 0 { &mut warm_up } else { &mut samples };
-            let mut loaded = None;
-            keep.time(|| {
-                let mut lap = LapTimer::start();
-                let control = control_with_size_warning(source);
-                let volume = self.args.look.read_volume(source, &control)?;
-                [took[0], took[1]] = split_read_time(&mut lap, &control);
-                let dataset = self.args.look.adapter_dataset(source, volume, context)?;
-                dataset.volume().kind();
-                took[1] += lap.lap_ms();
-                let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
-                upload(&mut renderer, &dataset, &self.settings)?;
-                let uploaded = renderer.report().upload_ms;
-                took[2] = lap.lap_ms();
-                renderer.draw(&dataset, &self.settings, self.args.size, &options)?;
-                took[4] = lap.lap_ms();
-                let mut report = renderer.report().clone();
-                report.upload_ms += uploaded;
-                bytes = AdapterMemory {
+            let mut first = CaseTimings::default();
+            let timings = if frame == 0 { &mut first } else { &mut samples };
+            let mut last = None;
+            timings.time(|| {
+                let picture = self.first_picture(source)?;
+                let report = picture.report.clone();
+                // Freed after the clock has stopped.
+                last = Some(picture);
+                Ok::<_, CliError>(report)
+            })?;
+            let Some(FirstPicture { times, renderer, report, .. }) = last else { continue };
+            if frame == 0 && wants("memory") {
+                cases.push(self.memory(&AdapterMemory {
                     all: renderer.gpu_bytes(),
                     light: renderer.light_bytes(),
                     peak: report.peak_gpu_bytes,
-                };
-                loaded = Some(dataset);
-                Ok::<_, CliError>(report)
-            })?;
-            if frame == 0 && wants("memory") {
-                cases.push(self.memory(&bytes));
+                }));
                 if !wants("load") {
                     return Ok(());
                 }
             }
-            if let Some(dataset) = loaded {
-                took[3] = first_look_ms(context, &shaders, &dataset)?;
-            }
             if frame > 0 {
-                stages.add(&took);
+                stages.add(|stage| Some(times.ms(stage)));
             }
         }
         let mut case = case_json("load", self.loaded, self.args.size, &self.settings, &samples, 1);
         case["load_ms"] = stages.json();
         cases.push(case);
         Ok(())
+    }
+
+    /// Makes the first picture of a file, from the opening of the adapter on, and writes it to a temporary file.
+    fn first_picture(&self, source: &Path) -> Result<FirstPicture, CliError> {
+        let mut times = StageTimes::from_now();
+        let output = open_destination(Path::new("-"), "png")?;
+        let context = GpuContext::headless()?;
+        times.end("device");
+        times.attribute("device", "instance", context.opening_times().instance_ms);
+        let shaders = ShaderLibrary::new(&context);
+        times.end("shaders");
+        let mut compiled = 0.0;
+        let mut end = |times: &mut StageTimes, stage: &'static str| {
+            times.end(stage);
+            let compile_ms = shaders.compile_ms();
+            times.attribute(stage, "shaders", compile_ms - std::mem::replace(&mut compiled, compile_ms));
+        };
+        let control = control_with_size_warning(source);
+        let volume = self.args.look.read_volume(source, &control)?;
+        times.end("read");
+        times.attribute("read", "statistics", control.analysis_time().as_secs_f64() * 1000.0);
+        let dataset = self.args.look.adapter_dataset(source, volume, &context)?;
+        dataset.volume().kind();
+        times.end("statistics");
+        let look = self.args.look.look(&dataset)?;
+        times.end("first_look");
+        let mut renderer = Renderer::with_shaders(&context, shaders.clone())?;
+        upload(&mut renderer, &dataset, &self.settings)?;
+        let uploaded = renderer.report().upload_ms;
+        end(&mut times, "upload");
+        let settings = look.settings(&mut renderer, &dataset)?;
+        end(&mut times, "light_search");
+        let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
+        renderer.draw(&dataset, &settings, self.args.size, &options)?;
+        let mut report = renderer.report().clone();
+        report.upload_ms += uploaded;
+        let shown = renderer.read_display()?;
+        end(&mut times, "picture");
+        let bytes = encode_shown(self.args.size, &shown, false, None)?;
+        times.end("encoding");
+        write_atomically(output.path(), &bytes)?;
+        times.end("file");
+        Ok(FirstPicture { times, renderer, report, _dataset: dataset, _output: output })
     }
 
     fn memory(&self, &AdapterMemory { all, light, peak }: &AdapterMemory) -> Value {
@@ -189,16 +247,6 @@ impl VolumeBenchmark<'_> {
             "bytes_per_voxel": { "all": per_voxel(all), "light": per_voxel(light), "peak": per_voxel(peak) },
         })
     }
-}
-
-/// Returns the time of a first look, in milliseconds, for a volume that has been uploaded but nothing else.
-fn first_look_ms(context: &GpuContext, shaders: &ShaderLibrary, dataset: &Dataset) -> Result<f64, CliError> {
-    let mut renderer = Renderer::with_shaders(context, shaders.clone())?;
-    let settings = first_look::first_settings(dataset.volume(), dataset.histogram());
-    upload(&mut renderer, dataset, &settings)?;
-    let mut lap = LapTimer::start();
-    first_look(&mut renderer, dataset)?;
-    Ok(lap.lap_ms())
 }
 
 /// Formats the rows of the table of loading stages.

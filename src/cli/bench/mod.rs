@@ -142,7 +142,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
             bench.background(&mut cases)?;
         }
         if wants("load") || wants("memory") {
-            bench.load(&context, volume, wants, &mut cases)?;
+            bench.load(volume, wants, &mut cases)?;
         }
         if wants("paper") {
             bench.paper(&mut cases, &mut found)?;

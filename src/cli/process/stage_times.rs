@@ -13,6 +13,8 @@ pub(crate) struct StageTimes {
     last: Instant,
     /// Names and milliseconds, in their order.
     stages: Vec<(&'static str, f64)>,
+    /// Names and milliseconds of what threads did beside each other within a stage.
+    parallel: Vec<(&'static str, f64)>,
 }
 
 impl StageTimes {
@@ -20,7 +22,17 @@ impl StageTimes {
     /// executable and read the arguments.
     pub(crate) fn new() -> Self {
         let before = process_age_ms().map(|age| ("start", age));
-        Self { last: Instant::now(), stages: before.into_iter().collect() }
+        Self { stages: before.into_iter().collect(), ..Self::from_now() }
+    }
+
+    /// Starts the clock, without regard to what the process did before.
+    pub(crate) fn from_now() -> Self {
+        Self { last: Instant::now(), stages: Vec::new(), parallel: Vec::new() }
+    }
+
+    /// Records the time of a part of a stage that another thread did beside it.
+    pub(crate) fn add_parallel(&mut self, part: &'static str, ms: f64) {
+        self.parallel.push((part, ms));
     }
 
     /// Ends a stage, which began when the one before ended.
@@ -45,11 +57,20 @@ impl StageTimes {
         }
     }
 
-    /// Returns the milliseconds of each stage, and of all together.
+    /// Returns the milliseconds of a stage; 0 if it was not ended.
+    pub(crate) fn ms(&self, stage: &str) -> f64 {
+        self.stages.iter().find(|(known, _)| *known == stage).map_or(0.0, |(_, ms)| *ms)
+    }
+
+    /// Returns the milliseconds of each stage, of all together, and of the parts that ran beside each other.
     pub(crate) fn to_json(&self) -> Value {
-        let all: f64 = self.stages.iter().map(|(_, ms)| ms).sum();
-        let stages = self.stages.iter().map(|(stage, ms)| ((*stage).to_owned(), json!(ms)));
-        Value::Object(stages.chain([("all".to_owned(), json!(all))]).collect::<Map<_, _>>())
+        let object = |times: &[(&'static str, f64)]| {
+            times.iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect::<Map<_, _>>()
+        };
+        let mut found = object(&self.stages);
+        found.insert("all".to_owned(), json!(self.stages.iter().map(|(_, ms)| ms).sum::<f64>()));
+        found.insert("parallel".to_owned(), Value::Object(object(&self.parallel)));
+        Value::Object(found)
     }
 }
 
@@ -88,5 +109,17 @@ mod tests {
         let order: Vec<_> =
             times.stages.iter().map(|(stage, _)| *stage).filter(|stage| *stage != "start").collect();
         assert_eq!(order, ["volume", "look", "shaders"]);
+        assert_eq!((times.ms("shaders"), times.ms("nothing")), (3.0, 0.0));
+    }
+
+    #[test]
+    fn parts_that_ran_beside_each_other_are_told_apart_from_stages() {
+        let mut times = StageTimes::from_now();
+        times.end("volume_and_adapter");
+        times.add_parallel("volume", 7.0);
+        times.add_parallel("device", 5.0);
+        let told = times.to_json();
+        assert_eq!(told["parallel"], json!({"volume": 7.0, "device": 5.0}));
+        assert_eq!(told["all"], told["volume_and_adapter"], "the parts are not counted again");
     }
 }

@@ -1,12 +1,14 @@
 //! Command-line arguments for reading a volume.
 
 use std::path::Path;
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
 use super::{downsampled_to_fit, open_with_size_warning};
 use crate::cli::CliError;
-use chiaroscuro_render::GpuContext;
+use crate::cli::process::StageTimes;
+use chiaroscuro_render::{GpuContext, OpeningTimes};
 use chiaroscuro_volume::{Downsampling, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType};
 use chiaroscuro_volume_io::{Endian, LoadOptions, RawFormat};
 
@@ -110,17 +112,14 @@ impl LoadArgs {
         is_said.then_some(Portion { region: self.region, thinning })
     }
 
-    /// Loads a volume, and opens the adapter.
-    pub(crate) fn open(&self, source: &Path) -> Result<(Volume, GpuContext), CliError> {
-        self.open_chosen(source, None)
-    }
-
-    /// Loads a volume like [`Self::open`]. `choice` selects one of several volumes and the portion that was read
-    /// earlier; arguments of the command line take precedence.
-    pub(crate) fn open_chosen(
+    /// Loads a volume, and opens the adapter; records in `times` what both of them took beside each other. `choice`
+    /// selects one of several volumes and the portion that was read earlier; arguments of the command line take
+    /// precedence.
+    pub(crate) fn open(
         &self,
         source: &Path,
         choice: Option<&VolumeChoice>,
+        times: &mut StageTimes,
     ) -> Result<(Volume, GpuContext), CliError> {
         let mut options = self.load_options()?;
         if let Some(choice) = choice {
@@ -128,13 +127,19 @@ impl LoadArgs {
         }
         // Drivers take up to half a second to open an adapter, meanwhile the file is read. Its errors are reported
         // before those of the adapter.
-        let (whole, context) = std::thread::scope(|scope| {
+        let begin = Instant::now();
+        let (whole, read_ms, context) = std::thread::scope(|scope| {
             let context = scope.spawn(GpuContext::headless);
             let whole = open_with_size_warning(source, &options);
-            (whole, context.join())
+            let read_ms = begin.elapsed().as_secs_f64() * 1000.0;
+            (whole, read_ms, context.join())
         });
         let whole = whole?;
         let context = context.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        let OpeningTimes { instance_ms, device_ms } = context.opening_times();
+        times.add_parallel("volume", read_ms);
+        times.add_parallel("instance", instance_ms);
+        times.add_parallel("device", device_ms);
         Ok((downsampled_to_fit(source, whole, &context)?, context))
     }
 }

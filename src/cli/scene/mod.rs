@@ -24,6 +24,7 @@ use self::option_values::{EngineArg, KindArg, QualityArg, ShadowArg};
 use self::preset_or_session::PresetOrSession;
 use super::CliError;
 use super::output::{check_overwrites, warn_line};
+use super::process::StageTimes;
 use chiaroscuro_media::read_environment_map;
 use chiaroscuro_render::{GpuContext, downsample_to_fit, downsampled_volume};
 use chiaroscuro_scene::{
@@ -127,7 +128,12 @@ fn dataset_with_warning(volume: Volume) -> Dataset {
 impl SceneArgs {
     /// Loads the volume, and opens the adapter that renders it.
     pub(super) fn load(&self) -> Result<(Dataset, GpuContext), CliError> {
-        let (volume, context) = self.look.load.open(&self.file)?;
+        self.load_timed(&mut StageTimes::from_now())
+    }
+
+    /// Loads like [`Self::load`], and records in `times` what volume and adapter took beside each other.
+    pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
+        let (volume, context) = self.look.load.open(&self.file, None, times)?;
         Ok((dataset_with_warning(self.look.corrected(&self.file, volume)?), context))
     }
 

@@ -1,6 +1,7 @@
-//! Selection of the graphics adapter, and the error message if there is none.
+//! Selection of the graphics adapter, the features of its device, and the error message if there is none.
 
 use super::ADAPTER_HELP;
+use super::gpu_clock::GpuClock;
 use crate::GpuError;
 use chiaroscuro_files::sanitised;
 
@@ -15,6 +16,26 @@ const MAX_LISTED_ADAPTERS: usize = 8;
 
 /// Maximum length, in bytes, of an adapter's or variable's name in an error message.
 const MAX_NAME_BYTES: usize = 80;
+
+/// Optional features, requested where the adapter has them.
+pub(super) const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::PIPELINE_CACHE)
+    .union(GpuClock::FEATURES);
+
+/// Returns the descriptor for a device of this adapter.
+///
+/// It has the features that the renderer can use, and the adapter's real limits instead of the defaults (which refuse
+/// a 2049-voxel axis and a 9000-pixel window on any card).
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("chiaroscuro"),
+        required_features: adapter.features() & OPTIONAL_FEATURES,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }
+}
 
 /// Returns the fastest adapter among those that the environment variables allow.
 ///

@@ -3,6 +3,7 @@
 mod adapters;
 mod address_space;
 mod device_errors;
+mod device_state;
 pub(super) mod error;
 pub(super) mod gpu_clock;
 mod texture_formats;
@@ -12,10 +13,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use self::adapters::OPTIONAL_FEATURES;
+pub use self::adapters::device_descriptor;
 pub use self::address_space::check_driver_address_space;
 pub(super) use self::address_space::{COMPILER_ADDRESS_BYTES, check_address_space};
 use self::device_errors::DeviceErrors;
-use self::gpu_clock::GpuClock;
+use self::device_state::DeviceState;
+pub use self::device_state::OpeningTimes;
 pub(super) use self::texture_formats::pair_format;
 use super::GpuError;
 use chiaroscuro_files::{
@@ -48,8 +52,7 @@ pub struct GpuContext {
     pub has_unorm16: bool,
     /// Errors that no error scope caught, kept until they are taken.
     device_errors: DeviceErrors,
-    /// Set when the device is lost.
-    is_lost: Arc<AtomicBool>,
+    state: Arc<DeviceState>,
 }
 
 /// Longest wait for submitted work before the device counts as lost. Parts of pictures are sized to take a tenth of a
@@ -59,37 +62,21 @@ const DEVICE_TIMEOUT: Duration = Duration::from_mins(2);
 /// Interval at which a waiting thread checks that the device is not lost.
 const LOSS_CHECK_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Optional features, requested where the adapter has them.
-const OPTIONAL_FEATURES: wgpu::Features = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
-    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
-    .union(wgpu::Features::FLOAT32_FILTERABLE)
-    .union(wgpu::Features::PIPELINE_CACHE)
-    .union(GpuClock::FEATURES);
-
-/// Returns the descriptor for a device of this adapter.
-///
-/// It has the features that the renderer can use, and the adapter's real limits instead of the defaults (which refuse
-/// a 2049-voxel axis and a 9000-pixel window on any card).
-pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
-    wgpu::DeviceDescriptor {
-        label: Some("chiaroscuro"),
-        required_features: adapter.features() & OPTIONAL_FEATURES,
-        required_limits: adapter.limits(),
-        ..Default::default()
-    }
-}
-
 impl GpuContext {
     /// Opens a device without a window: on the adapter named by `WGPU_ADAPTER_NAME`, else on the fastest.
     ///
     /// # Errors
     /// Returns an error if there is no adapter, or if it cannot store the textures that the renderer needs.
     pub fn headless() -> Result<Self, GpuError> {
+        let begin = Instant::now();
         check_driver_address_space()?;
         let adapter = adapters::fastest_adapter()?;
+        let instance = begin.elapsed();
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
             .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
-        Self::new(&adapter, device, queue)
+        let opened = begin.elapsed().saturating_sub(instance);
+        let [instance_ms, device_ms] = [instance, opened].map(|took| took.as_secs_f64() * 1000.0);
+        Self::with_opening_times(&adapter, device, queue, OpeningTimes { instance_ms, device_ms })
     }
 
     /// Creates a context on a device that the caller opened with [`device_descriptor`], or with more features. Sets
@@ -100,6 +87,16 @@ impl GpuContext {
     /// Returns an error if the adapter cannot store the textures that the renderer needs, or if the device was opened
     /// without the feature for it.
     pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
+        Self::with_opening_times(adapter, device, queue, OpeningTimes::default())
+    }
+
+    /// Creates a context like [`Self::new`] on a device that took this time to open.
+    fn with_opening_times(
+        adapter: &wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        opening_times: OpeningTimes,
+    ) -> Result<Self, GpuError> {
         let features = device.features();
         let usable = |format: wgpu::TextureFormat| {
             let can = format.guaranteed_format_features(features);
@@ -141,10 +138,10 @@ impl GpuContext {
             log::error!("{err}");
             for_errors.store(err);
         }));
-        let lost = Arc::new(AtomicBool::new(false));
-        let (for_loss, flag) = (complaints.clone(), Arc::clone(&lost));
+        let state = Arc::new(DeviceState { is_lost: AtomicBool::new(false), opening_times });
+        let (for_loss, shared) = (complaints.clone(), Arc::clone(&state));
         device.set_device_lost_callback(move |reason, message| {
-            flag.store(true, Ordering::Relaxed);
+            shared.is_lost.store(true, Ordering::Relaxed);
             let why = if message.is_empty() { format!("{reason:?}") } else { message };
             let err = GpuError::DeviceLost(why);
             log::error!("{err}");
@@ -161,7 +158,7 @@ impl GpuContext {
             has_byte_volumes: byte_volumes,
             has_unorm16: unorm16,
             device_errors: complaints,
-            is_lost: lost,
+            state,
         })
     }
 
@@ -210,6 +207,11 @@ impl GpuContext {
         adapters.into_iter().find(|adapter| adapter.get_info() == self.info)
     }
 
+    /// Returns the time in which [`Self::headless`] opened this context.
+    pub fn opening_times(&self) -> OpeningTimes {
+        self.state.opening_times
+    }
+
     /// Returns true if the adapter is a software driver on the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
@@ -226,9 +228,9 @@ impl GpuContext {
             match self
                 .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOSS_CHECK_INTERVAL) })
             {
-                Err(wgpu::PollError::Timeout) if self.is_lost.load(Ordering::Relaxed) => {}
+                Err(wgpu::PollError::Timeout) if self.state.is_lost.load(Ordering::Relaxed) => {}
                 Err(wgpu::PollError::Timeout) if begin.elapsed() > DEVICE_TIMEOUT => {
-                    self.is_lost.store(true, Ordering::Relaxed);
+                    self.state.is_lost.store(true, Ordering::Relaxed);
                     let why =
                         format!("{} has not answered for {} s", self.info.name, DEVICE_TIMEOUT.as_secs());
                     return Err(GpuError::DeviceLost(why));
@@ -238,14 +240,14 @@ impl GpuContext {
                 Ok(_) => {}
             }
             self.check()?;
-            return if self.is_lost.load(Ordering::Relaxed) { Err(self.lost_error()) } else { Ok(()) };
+            return if self.state.is_lost.load(Ordering::Relaxed) { Err(self.lost_error()) } else { Ok(()) };
         }
     }
 
     /// Polls the device. wgpu panics if it finds the device lost; the panic is caught and recorded as a loss.
     fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
         catch_unwind(AssertUnwindSafe(|| self.device.poll(how))).unwrap_or_else(|_| {
-            self.is_lost.store(true, Ordering::Relaxed);
+            self.state.is_lost.store(true, Ordering::Relaxed);
             Ok(wgpu::PollStatus::QueueEmpty)
         })
     }
@@ -253,10 +255,10 @@ impl GpuContext {
     /// Returns true if the device is lost for good: after a driver update, sleep, or removal of the card. To be
     /// checked before each use of the device, which might panic otherwise.
     pub fn is_lost(&self) -> bool {
-        if !self.is_lost.load(Ordering::Relaxed) {
+        if !self.state.is_lost.load(Ordering::Relaxed) {
             self.poll(wgpu::PollType::Poll).ok();
         }
-        self.is_lost.load(Ordering::Relaxed)
+        self.state.is_lost.load(Ordering::Relaxed)
     }
 
     /// Destroys the device, for fault injection.
@@ -267,7 +269,7 @@ impl GpuContext {
     /// Returns true if the device is already known to be lost. Does not poll, unlike [`Self::is_lost`], and so never
     /// blocks a thread that is waiting for the device.
     pub fn is_known_lost(&self) -> bool {
-        self.is_lost.load(Ordering::Relaxed)
+        self.state.is_lost.load(Ordering::Relaxed)
     }
 
     /// Builds the error for a lost device.
@@ -282,7 +284,7 @@ impl GpuContext {
     pub fn check(&self) -> Result<(), GpuError> {
         let complaint = self.device_errors.take();
         // Errors of a lost device are meaningless: every resource on it is invalid.
-        let is_lost = self.is_lost.load(Ordering::Relaxed);
+        let is_lost = self.state.is_lost.load(Ordering::Relaxed);
         match complaint {
             Some(complaint) if is_lost && !matches!(complaint, GpuError::DeviceLost(_)) => {
                 Err(self.lost_error())
