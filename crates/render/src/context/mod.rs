@@ -225,9 +225,8 @@ impl GpuContext {
         let begin = Instant::now();
         std::thread::sleep(fault::adapter_delay());
         loop {
-            match self
-                .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(LOSS_CHECK_INTERVAL) })
-            {
+            let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(LOSS_CHECK_INTERVAL) };
+            match self.poll(&all) {
                 Err(wgpu::PollError::Timeout) if self.state.is_lost.load(Ordering::Relaxed) => {}
                 Err(wgpu::PollError::Timeout) if begin.elapsed() > DEVICE_TIMEOUT => {
                     self.state.is_lost.store(true, Ordering::Relaxed);
@@ -245,8 +244,12 @@ impl GpuContext {
     }
 
     /// Polls the device. wgpu panics if it finds the device lost; the panic is caught and recorded as a loss.
-    fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        catch_unwind(AssertUnwindSafe(|| self.device.poll(how))).unwrap_or_else(|_| {
+    ///
+    /// It also panics in the rare case that a wait has just ended without success when another thread notices that the
+    /// queue is empty. A second attempt then succeeds, but not on a lost device.
+    fn poll(&self, how: &wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        let attempt = || catch_unwind(AssertUnwindSafe(|| self.device.poll(how.clone())));
+        attempt().or_else(|_| attempt()).unwrap_or_else(|_| {
             self.state.is_lost.store(true, Ordering::Relaxed);
             Ok(wgpu::PollStatus::QueueEmpty)
         })
@@ -256,7 +259,7 @@ impl GpuContext {
     /// checked before each use of the device, which might panic otherwise.
     pub fn is_lost(&self) -> bool {
         if !self.state.is_lost.load(Ordering::Relaxed) {
-            self.poll(wgpu::PollType::Poll).ok();
+            self.poll(&wgpu::PollType::Poll).ok();
         }
         self.state.is_lost.load(Ordering::Relaxed)
     }
