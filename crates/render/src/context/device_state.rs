@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 /// State of a device that all clones of its context share.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct DeviceState {
     /// Set when the device is lost.
     pub(super) is_lost: AtomicBool,

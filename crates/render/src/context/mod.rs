@@ -52,6 +52,7 @@ pub struct GpuContext {
     pub has_unorm16: bool,
     /// Errors that no error scope caught, kept until they are taken.
     device_errors: DeviceErrors,
+    /// State that all clones share.
     state: Arc<DeviceState>,
 }
 
