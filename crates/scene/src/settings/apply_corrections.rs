@@ -18,6 +18,8 @@ impl Settings {
         self.volume.sanitise();
         let [old, new] = [before, self.volume].map(|by| volume.corrected_scene(&by).mm_per_unit);
         let longer = new / old;
+        let (before_scale, after_scale) = (before.value_scale, self.volume.value_scale);
+        self.mode.isovalue = self.mode.isovalue.map(|value| before_scale.convert(after_scale, value));
         for layer in self.layers.iter_mut() {
             if let OpacityLength::Mm(mm) = layer.opacity_unit
                 && longer != 1.0
@@ -26,7 +28,7 @@ impl Settings {
             {
                 layer.opacity_unit = OpacityLength::Mm(round_to_digits(mm * longer));
             }
-            layer.convert_values(before.value_scale, self.volume.value_scale);
+            layer.convert_values(before_scale, after_scale);
         }
     }
 }

@@ -3,23 +3,22 @@
 mod apply_corrections;
 pub(super) mod camera_settings;
 pub(super) mod clipping;
-pub(super) mod density_range;
 pub(super) mod floor;
-pub(super) mod label_table;
-pub(super) mod length;
+pub(super) mod layer;
 pub(super) mod light;
 pub(super) mod quality;
+pub(super) mod render_mode;
 pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod saved_entries;
 pub(super) mod shadows;
-pub(super) mod volume_layer;
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     BakedTransfer, Camera, ClassificationOrder, Clipping, FloorSettings, GradientSource, LightSettings,
-    LightStorage, NearFieldRay, ReconstructionKernel, RenderEngine, SamplingSettings, SavedEntry,
+    LightStorage, NearFieldRay, ReconstructionKernel, RenderEngine, RenderModeSettings, SamplingSettings,
+    SavedEntry,
     ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder, SkySettings, SlabMode, SlabQuadrature,
     VolumeLayer, VolumeLayers,
 };
@@ -41,6 +40,8 @@ pub struct Settings {
     pub lights: Vec<LightSettings>,
     /// Layers, one for each field of the volume that is shown: range of values, labels and opacities.
     pub layers: VolumeLayers,
+    /// Rule by which values along a ray become a colour.
+    pub mode: RenderModeSettings,
     /// Illumination of material: Phong coefficients.
     pub shading: PhongShading,
     /// Shadow algorithm and its parameters.
@@ -72,6 +73,7 @@ impl Default for Settings {
             camera: Camera::default(),
             lights: vec![LightSettings::default()],
             layers: VolumeLayers::default(),
+            mode: RenderModeSettings::default(),
             shading: PhongShading::default(),
             shadows: ShadowSettings::default(),
             sky: SkySettings::default(),

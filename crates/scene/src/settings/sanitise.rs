@@ -6,7 +6,7 @@ use crate::{
     FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES,
     MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG,
     MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_PLANE_OFFSET,
-    MAX_POINTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel,
+    MAX_POINTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel, RenderModeSettings,
     SKY_DIRECTIONS, SamplingSettings, SavedEntry, ScatteringSettings, Settings, ShadowSettings, SkySettings,
     Spotlight, VolumeLayer,
 };
@@ -30,6 +30,7 @@ impl Settings {
         sanitise_floor(&mut self.floor, &default.floor);
         sanitise_sky(&mut self.sky, &default.sky);
         sanitise_scattering(&mut self.scattering, &default.scattering);
+        sanitise_mode(&mut self.mode);
         sanitise_shading(&mut self.shading, &default.shading);
         sanitise_shadows(&mut self.shadows, &default.shadows);
         sanitise_sampling(&mut self.sampling, &default.sampling);
@@ -113,6 +114,11 @@ fn sanitise_light(light: &mut LightSettings) {
     clamp_number(angle_deg, 0.0, MAX_LIGHT_ANGLE_DEG, fresh.angle_deg);
     clamp_number(aspect, 1.0 / MAX_LIGHT_ASPECT, MAX_LIGHT_ASPECT, 1.0);
     clamp_number(turn_deg, -1e6, 1e6, 0.0);
+}
+
+fn sanitise_mode(mode: &mut RenderModeSettings) {
+    let RenderModeSettings { kind: _, isovalue, lit: _ } = mode;
+    *isovalue = isovalue.filter(|value| value.is_finite());
 }
 
 fn sanitise_layer(layer: &mut VolumeLayer) {

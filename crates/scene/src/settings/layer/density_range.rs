@@ -38,7 +38,7 @@ impl DensityRange {
 
     /// Returns a usable range: with its ends in order and apart.
     #[must_use]
-    pub(super) fn sanitised(self) -> Self {
+    pub(in crate::settings) fn sanitised(self) -> Self {
         match self {
             Self::Typed(range) if !range.span().is_finite() || range.span() == 0.0 => Self::Robust,
             Self::Typed(ValueRange { low, high }) => {
@@ -58,7 +58,8 @@ impl Settings {
         if span <= 0.0 {
             return chosen;
         }
-        let layer = self.layer();
+        let drawn = self.resolved_mode();
+        let layer = drawn.layer();
         let light = (!layer.lighting.linked).then_some(&layer.lighting.curve);
         let curves = std::iter::once(&layer.transfer).chain(light);
         let values = curves.flat_map(|curve| &curve.points).map(|point| point.value);

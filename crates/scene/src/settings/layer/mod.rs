@@ -3,6 +3,10 @@
 //! A file can have several fields on one grid, for instance channels of a microscope. Settings that differ by field
 //! are in a layer; camera, light, clipping and sampling are of the scene.
 
+pub(crate) mod density_range;
+pub(crate) mod label_table;
+pub(crate) mod length;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{DensityRange, LabelTable, OpacityLength, Settings, TransferFunction};

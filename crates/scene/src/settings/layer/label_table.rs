@@ -174,7 +174,7 @@ impl LabelTable {
     }
 
     /// Truncates names and the table to their largest lengths, and clamps numbers to their ranges.
-    pub(super) fn sanitise(&mut self) {
+    pub(in crate::settings) fn sanitise(&mut self) {
         let is_sane = |look: &LabelLook| {
             (0.0..=1.0).contains(&look.opacity)
                 && look.color.iter().all(|c| (0.0..=1.0).contains(c))
@@ -216,12 +216,12 @@ impl Settings {
         }
     }
 
-    /// Returns the settings as used for rendering a volume: if it is shown by labels, the transfer function is made
-    /// of their looks over their classes, light uses the same, and voxels are classified before they are spread. Keys
-    /// do not change.
+    /// Returns the settings as used for rendering a volume: those of its [mode](Self::resolved_mode), and if it is
+    /// shown by labels, the transfer function is made of their looks over their classes, light uses the same, and
+    /// voxels are classified before they are spread. Keys do not change.
     pub fn resolved_for(&self, volume: &Volume) -> Cow<'_, Self> {
         if self.layer().labels.is_empty() {
-            return Cow::Borrowed(self);
+            return self.resolved_mode();
         }
         let Some(labels) = volume.labels() else { return Cow::Borrowed(self) };
         let mut drawn = self.clone();
