@@ -14,6 +14,7 @@
 #import "sheets/tiles.wgsl"
 #import "eye/adaptive_slabs.wgsl"
 #import "eye/preintegrated_slabs.wgsl"
+#import "eye/projection.wgsl"
 
 // r: distance to the nearest cell that is visible to the eye.
 @group(0) @binding(2) var distances: texture_3d<f32>;
@@ -40,6 +41,7 @@ struct PixelRayUniform {
 
 #option DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3)
 #option BY_NEED: slabs are integrated between their faces, and halved by need (adaptive_slabs.wgsl)
+#option PROJECTION: a value of the ray is shown: the largest (1), the smallest (2) or the mean (3)
 #option PREINTEGRATED: opacity is integrated through steps that are shaded together (preintegrated_slabs.wgsl)
 
 // Takes gradients from differences of neighbouring sheets.
@@ -231,6 +233,9 @@ fn even_slabs(ray: Ray, span: vec2f, inside: vec2i, pixel: vec2f) -> RayResult {
 // Linear, premultiplied light and opacity along the ray through a place on the picture, in pixels.
 fn light_along_ray(place: vec2f) -> vec4f {
     let ray = ray_of(eye.frame, place);
+#if PROJECTION
+    let result = projection(ray);
+#else
     let span = span_within(eye.visible_cut, ray);
     let inside = slabs_within(eye.frame, span, slabs_inside(eye.frame, ray));
 #if BY_NEED
@@ -240,6 +245,7 @@ fn light_along_ray(place: vec2f) -> vec4f {
     let result = preintegrated_slabs(ray, span, inside);
 #else
     let result = even_slabs(ray, span, inside, place);
+#endif
 #endif
 #endif
     return vec4f(result.color, 1.0 - result.transmittance);

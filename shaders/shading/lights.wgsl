@@ -217,8 +217,9 @@ struct ShadingUniform {
     // Share of a light's intensity that material without a surface scatters in each direction on average: ¼ if light
     // bounces, E/4π of the E/π that a white surface returns which faces the light; else 1.
     amid: f32,
+    // Length to which opacities refer, in scene units.
+    opacity_unit: f32,
     pad0: f32,
-    pad1: f32,
 }
 
 // Sample of the volume that is lit.

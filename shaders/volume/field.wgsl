@@ -136,6 +136,13 @@ fn field_at(p: vec3f, level: f32) -> Field {
     return Field(mix(density_by_kernel(p), blurred, level));
 }
 
+// Density interpolated linearly between voxels; that of the outermost ones continues beyond them.
+fn linear_density(p: vec3f) -> f32 {
+    let inside = clamp(p, vec3f(0.0), grid.dims - 1.0);
+    // The texture has a border of one voxel.
+    return textureSampleLevel(density_texture, clamped, (inside + 1.5) * grid.density_scale, 0.0).r;
+}
+
 // Gradient of the prefiltered density in index space, precomputed.
 fn stored_gradient(p: vec3f, level: f32) -> vec3f {
     return textureSampleLevel(gradients, clamped, pyramid_place(p), level).xyz;

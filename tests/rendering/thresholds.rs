@@ -60,13 +60,14 @@ pub(crate) const ORDER_MEAN: f64 = 3.4;
 
 /// A reused light volume against a fresh one: one step of a 16-bit float near 1.
 pub(crate) const F16_STEP: f32 = 1.0 / 2048.0;
-
 /// A point light at a distance of 100 volumes against a parallel one, RMSE.
 pub(crate) const FAR_LIGHT: f64 = 0.005;
+/// Projections against a plain walk in steps of a hundredth of a voxel: 16-bit densities, the table of the curve, and
+/// weights of texture filtering with 8 fractional bits.
+pub(crate) const PROJECTION: ErrorLimit = ErrorLimit { max: 1.0 / 255.0, rmse: 0.25 / 255.0 };
 
 /// Chord law under oblique rays, relative.
 pub(crate) const OBLIQUE_CHORD: f64 = 0.01;
-
 /// Beer–Lambert along rays from samples, relative: as [`RAY_BEER_LAMBERT`], plus the pixel's width.
 pub(crate) const DIRECT_BEER_LAMBERT: f64 = 1e-3;
 
@@ -102,7 +103,6 @@ pub(crate) const ENGINES_BY_DEFAULT: ErrorLimit = ErrorLimit { max: f64::INFINIT
 pub(crate) const PEAK: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 4.5 / 255.0 };
 /// Mean of the thin shell in slabs by need against even slabs, relative.
 pub(crate) const PEAK_MEAN: f64 = 0.03;
-
 /// Largest ratio of the error of near-field rays against full rays, with a prefiltered light pass to that with a
 /// B-spline one; in other cases it was smaller by as much.
 pub(crate) const PREFILTERED_LIGHT: f64 = 1.05;

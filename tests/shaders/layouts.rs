@@ -195,8 +195,8 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 max_optical_depth,
                 anisotropy,
                 amid,
-                pad0,
-                pad1
+                opacity_unit,
+                pad0
             }),
         ),
         (

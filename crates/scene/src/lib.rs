@@ -29,10 +29,11 @@ pub use self::settings::camera_settings::standard_view::StandardView;
 pub use self::settings::clipping::{
     ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };
-pub use self::settings::layer::density_range::DensityRange;
 pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
+pub use self::settings::layer::density_range::DensityRange;
 pub use self::settings::layer::label_table::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::layer::length::OpacityLength;
+pub use self::settings::layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings::light::area_light::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,
 };
@@ -65,7 +66,6 @@ pub use self::settings::shadows::{
     MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, MAX_MIN_BLOCKS, NearFieldRay, ReverseKernel, ShadowAlgorithm,
     ShadowSettings,
 };
-pub use self::settings::layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
 pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value};

@@ -6,6 +6,7 @@ mod floor;
 mod narrow_peaks;
 mod near_field;
 mod phantom;
+mod render_modes;
 mod shadow_algorithms;
 mod stretched_kernels;
 mod surface_sides;

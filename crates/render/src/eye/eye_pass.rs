@@ -18,7 +18,9 @@ use crate::resources::pass;
 use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
 use crate::volume::{GpuVolume, PyramidLevels, VolumeContext};
 use crate::{GpuContext, GpuError, RenderOptions};
-use chiaroscuro_scene::{DepositMode, MAX_LIGHTS, NearFieldRay, Projection, Settings, ShadowAlgorithm};
+use chiaroscuro_scene::{
+    DepositMode, MAX_LIGHTS, NearFieldRay, Projection, RayProjection, Settings, ShadowAlgorithm,
+};
 use chiaroscuro_volume::math::{Aabb, SceneSpace};
 
 /// Parameters of the eye pass of one picture, besides the volume.
@@ -179,9 +181,23 @@ impl EyePass {
         self.cast_rays(gpu, tables, looked_up, ray, rows, encoder)
     }
 
+    /// Returns the reach of a sample in cells.
+    ///
+    /// An extreme may lie in a cell that shows nothing. On the way from there to a cell that shows something, values
+    /// stay among those that the curve does not show, unless voxels are missing between them; so the ray is clear in
+    /// any case. A mean is also of what the curve does not show.
+    fn dilation(&self, volume: &GpuVolume) -> i32 {
+        let skips = match self.variant.projection {
+            None => true,
+            Some(RayProjection::Maximum | RayProjection::Minimum) => volume.presence.is_none(),
+            Some(RayProjection::Mean) => false,
+        };
+        if skips { self.dilation } else { UNLIMITED_REACH }
+    }
+
     /// Returns the pipeline variant for a volume and its tables.
     pub(crate) fn pipeline_variant(&self, volume: &GpuVolume, tables: &TransferTables) -> EyeVariant {
-        let ends = tables.boundaries(volume, self.dilation, self.frame.max_stretch_level());
+        let ends = tables.boundaries(volume, self.dilation(volume), self.frame.max_stretch_level());
         self.variant.with_gradients(self.gradients(volume).is_some()).with_boundaries(ends)
     }
 
@@ -223,7 +239,8 @@ impl EyePass {
                 bind_view("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
-        let of_volume = gpu.bind_volume(&pipeline, self.dilation, self.levels, tables.pyramids(gpu.volume));
+        let of_volume =
+            gpu.bind_volume(&pipeline, self.dilation(volume), self.levels, tables.pyramids(gpu.volume));
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         let groups = [&own, &of_volume, &of_lights];
         if ray_is_listed {
@@ -242,6 +259,10 @@ pub(crate) struct EyeVariant {
     /// `true` if pixels are wider than voxels somewhere.
     is_stretched: bool,
     sampling: SamplingVariant,
+    /// Value of the ray that is shown, if slabs are not composited.
+    projection: Option<RayProjection>,
+    /// `true` if a projection is shaded at the front of its material.
+    is_lit_projection: bool,
     /// `true` if slabs are subdivided by need.
     has_adaptive_slabs: bool,
     /// `true` if opacity is integrated between the densities at both ends of each step.
@@ -297,6 +318,8 @@ impl EyeVariant {
                 has_near_halves: near_field.halves_first_step(),
             },
             has_kernel_gradients: settings.has_kernel_gradients(),
+            projection: settings.ray_projection(),
+            is_lit_projection: settings.ray_projection().is_some() && !settings.is_unlit(),
             has_adaptive_slabs: settings.has_adaptive_slabs(),
             has_preintegrated_slabs: settings.has_preintegrated_slabs(),
             shading: ShadingVariant {
@@ -343,10 +366,18 @@ impl PipelineVariant for EyeVariant {
     fn constants(&self) -> ShaderConstants {
         let mut constants = self.reconstruction.constants();
         constants.extend(self.shading.constants());
+        let projection = match self.projection {
+            None => 0.0,
+            Some(RayProjection::Maximum) => 1.0,
+            Some(RayProjection::Minimum) => 2.0,
+            Some(RayProjection::Mean) => 3.0,
+        };
         constants.extend([
             flag("STRETCH", self.is_stretched),
             flag("BY_NEED", self.has_adaptive_slabs),
             flag("PREINTEGRATED", self.has_preintegrated_slabs),
+            ("PROJECTION", projection),
+            flag("LIT", self.is_lit_projection),
             flag("KERNEL_GRADIENTS", self.has_kernel_gradients),
             flag("DIRECT", self.ray_deposit.is_some()),
         ]);
@@ -382,7 +413,7 @@ pub(crate) fn shading_uniform(
         max_optical_depth: options.switches.max_optical_depth(),
         anisotropy: settings.scattering.anisotropy as f32,
         amid: settings.light_amid_material() as f32,
+        opacity_unit: unit as f32,
         pad0: 0.0,
-        pad1: 0.0,
     }
 }

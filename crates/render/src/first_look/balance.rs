@@ -98,6 +98,7 @@ impl BrightnessPictures {
         dataset: &Dataset,
         settings: &Settings,
     ) -> Result<Self, GpuError> {
+        let settings = &*settings.as_lit();
         let mut unlit_settings = settings.clone();
         (unlit_settings.shading.diffuse, unlit_settings.shading.specular) = (0.0, 0.0);
         // Lights without colour do not contribute scattered light, either.
@@ -113,7 +114,7 @@ impl BrightnessPictures {
         settings: &Settings,
         unlit: Vec<[f32; 4]>,
     ) -> Result<Self, GpuError> {
-        let mut shadowed = settings.clone();
+        let mut shadowed = settings.as_lit().into_owned();
         shadowed.shadows.balance = 1.0;
         let unshadowed = without_shadows(&shadowed);
         let with = draw_small_picture(renderer, dataset, &shadowed)?;

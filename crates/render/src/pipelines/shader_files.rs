@@ -42,6 +42,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "eye/eye_pass.wgsl",
     "eye/floor.wgsl",
     "eye/preintegrated_slabs.wgsl",
+    "eye/projection.wgsl",
     "eye/slab_faces.wgsl",
     "light/area_light.wgsl",
     "light/backproject.wgsl",

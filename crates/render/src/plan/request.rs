@@ -1,5 +1,7 @@
 //! Request to the renderer: volume, look, size and options of a picture.
 
+use std::borrow::Cow;
+
 use super::PixelWindow;
 use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, OutputSettings, PixelFormat, Settings};
 use chiaroscuro_volume::{DensityMapping, VolumeId};
@@ -31,6 +33,14 @@ impl RenderRequest {
     pub fn volume_key(&self) -> VolumeKey {
         let VolumeId { content_id, ranges, .. } = self.volume;
         VolumeKey { content_id, density_mapping: self.settings.shown_content(&ranges) }
+    }
+
+    /// Returns the request with the settings of its mode ([`Settings::resolved_mode`]).
+    pub(crate) fn resolved_mode(&self) -> Cow<'_, Self> {
+        match self.settings.resolved_mode() {
+            Cow::Borrowed(_) => Cow::Borrowed(self),
+            Cow::Owned(settings) => Cow::Owned(Self { settings, ..self.clone() }),
+        }
     }
 }
 

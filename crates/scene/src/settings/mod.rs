@@ -18,9 +18,8 @@ use serde::{Deserialize, Serialize};
 use super::{
     BakedTransfer, Camera, ClassificationOrder, Clipping, FloorSettings, GradientSource, LightSettings,
     LightStorage, NearFieldRay, ReconstructionKernel, RenderEngine, RenderModeSettings, SamplingSettings,
-    SavedEntry,
-    ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder, SkySettings, SlabMode, SlabQuadrature,
-    VolumeLayer, VolumeLayers,
+    SavedEntry, ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder, SkySettings, SlabMode,
+    SlabQuadrature, VolumeLayer, VolumeLayers,
 };
 use chiaroscuro_volume::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange, math::SceneSpace};
 
@@ -343,13 +342,15 @@ impl Settings {
 
     /// Returns true if the density reconstructed in a cell of 2³ voxels stays within the cell's known bounds
     /// ([`chiaroscuro_volume::CellBounds`]): not if voxels are classified before they are spread, nor with Gaussians
-    /// much narrower or wider than the B-spline.
+    /// much narrower or wider than the B-spline, nor in projections.
     pub fn cell_bounds_hold(&self) -> bool {
         let is_bounded = |kernel: ReconstructionKernel| match kernel {
             ReconstructionKernel::BSpline | ReconstructionKernel::Prefiltered => true,
             ReconstructionKernel::Gaussian { sigma } => (sigma - BOUNDED_SIGMA).abs() <= SIGMA_TOLERANCE,
         };
-        self.classification() == ClassificationOrder::Post
+        // Projections interpolate linearly, which reaches further than these kernels.
+        self.ray_projection().is_none()
+            && self.classification() == ClassificationOrder::Post
             && is_bounded(self.sampling.kernel)
             && is_bounded(self.shadows.kernel)
     }

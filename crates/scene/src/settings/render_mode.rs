@@ -214,7 +214,8 @@ mod tests {
     use chiaroscuro_volume::{ValueRange, ValueRanges};
 
     fn curve(points: &[(f64, f64)]) -> TransferFunction {
-        let point = |&(value, opacity): &(f64, f64)| ControlPoint::new(value, [value as f32, 0.5, 0.25], opacity);
+        let point =
+            |&(value, opacity): &(f64, f64)| ControlPoint::new(value, [value as f32, 0.5, 0.25], opacity);
         TransferFunction { points: points.iter().map(point).collect(), ..TransferFunction::default() }
     }
 
@@ -257,7 +258,8 @@ mod tests {
             for value in [-0.5, isovalue - 1e-6, isovalue, isovalue + 1e-6, 2.0] {
                 let expected = if value < isovalue { 0.0 } else { MAX_OPACITY };
                 assert!((step.opacity_at(value) - expected).abs() < 1e-9, "{value} at {isovalue}");
-                let [before, after] = [&settings, &drawn].map(|look| look.layer().transfer.sample(value).color);
+                let [before, after] =
+                    [&settings, &drawn].map(|look| look.layer().transfer.sample(value).color);
                 assert!(before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-4), "{value} at {isovalue}");
             }
             assert_eq!(drawn.resolved_mode().into_owned(), drawn);
@@ -271,7 +273,10 @@ mod tests {
         settings.mode.isovalue = Some(0.3);
         let drawn = settings.resolved_mode();
         let opacities = [0.0, 0.299, 0.301, 1.0].map(|value| drawn.layer().transfer.opacity_at(value));
-        assert!(opacities[1] > 0.999 && opacities[0] > 0.999 && opacities[2..] == [0.0, 0.0], "{opacities:?}");
+        assert!(
+            opacities[1] > 0.999 && opacities[0] > 0.999 && opacities[2..] == [0.0, 0.0],
+            "{opacities:?}"
+        );
     }
 
     #[test]
@@ -306,7 +311,10 @@ mod tests {
             assert!(settings.is_unlit());
             let drawn = settings.resolved_mode().into_owned();
             assert!(drawn.lights.is_empty() && !drawn.floor.on && !drawn.has_sky_volume());
-            assert_eq!((drawn.output.exposure, drawn.shading.emission, drawn.flat_ambient()), (1.0, 1.0, 0.0));
+            assert_eq!(
+                (drawn.output.exposure, drawn.shading.emission, drawn.flat_ambient()),
+                (1.0, 1.0, 0.0)
+            );
             assert_eq!(drawn.ray_projection(), settings.ray_projection());
             assert_eq!(drawn.resolved_mode().into_owned(), drawn);
             assert_eq!(settings.as_lit().mode.kind, RenderMode::Matter);

@@ -6,9 +6,9 @@ use crate::{
     FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES,
     MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG,
     MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_PLANE_OFFSET,
-    MAX_POINTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel, RenderModeSettings,
-    SKY_DIRECTIONS, SamplingSettings, SavedEntry, ScatteringSettings, Settings, ShadowSettings, SkySettings,
-    Spotlight, VolumeLayer,
+    MAX_POINTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel,
+    RenderModeSettings, SKY_DIRECTIONS, SamplingSettings, SavedEntry, ScatteringSettings, Settings,
+    ShadowSettings, SkySettings, Spotlight, VolumeLayer,
 };
 use chiaroscuro_files::sanitised_line;
 

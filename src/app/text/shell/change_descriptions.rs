@@ -2,8 +2,8 @@
 
 use crate::app::text;
 use chiaroscuro_scene::{
-    Camera, Clipping, LightSettings, OutputSettings, QualityPreset, SavedEntry, Settings, ShadowSettings,
-    TransferFunction, VolumeLayer,
+    Camera, Clipping, LightSettings, OutputSettings, QualityPreset, RenderModeSettings, SavedEntry, Settings,
+    ShadowSettings, TransferFunction, VolumeLayer,
 };
 
 /// Description of a step that only changes the kind of data for which the look was made.
@@ -16,6 +16,7 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         camera,
         lights,
         layers,
+        mode,
         shading,
         shadows,
         sky,
@@ -38,6 +39,7 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         with(*labels != layer_after.labels, "change labels"),
         with(*range != layer_after.range, "change range of values"),
         with(*opacity_unit != layer_after.opacity_unit, "change opacity unit"),
+        with(*mode != after.mode, describe_mode(mode, &after.mode)),
         with(*shading != after.shading, "change shading"),
         with(with_balance(&after.shadows, shadows.balance) != *shadows, "change shadows"),
         with(*sky != after.sky, "change sky"),
@@ -158,6 +160,16 @@ fn describe_transfer(before: &TransferFunction, after: &TransferFunction) -> &'s
         "remove point of transfer function"
     } else {
         "change transfer function"
+    }
+}
+
+fn describe_mode(before: &RenderModeSettings, after: &RenderModeSettings) -> &'static str {
+    if before.kind != after.kind {
+        "change render mode"
+    } else if before.isovalue != after.isovalue {
+        "change isovalue"
+    } else {
+        "change light of the maximum"
     }
 }
 

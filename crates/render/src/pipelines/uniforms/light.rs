@@ -46,8 +46,8 @@ pub struct ShadingUniform {
     pub max_optical_depth: f32,
     pub anisotropy: f32,
     pub amid: f32,
+    pub opacity_unit: f32,
     pub pad0: f32,
-    pub pad1: f32,
 }
 
 /// Parameters of casting rays from light voxels, as declared in `light/raycast.wgsl`.

@@ -11,8 +11,8 @@ use crate::plan::{
 };
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ClippedPart, FloorSettings, GradientSource, OpacityLength, PhongShading,
-    PixelFormat, ReconstructionKernel, RenderEngine, SamplingSettings, Settings, ShadowAlgorithm,
-    ShadowSettings, SheetOrder, SlabMode, SlabQuadrature, VolumeLayer,
+    PixelFormat, RayProjection, ReconstructionKernel, RenderEngine, SamplingSettings, Settings,
+    ShadowAlgorithm, ShadowSettings, SheetOrder, SlabMode, SlabQuadrature, VolumeLayer,
 };
 
 /// Inputs of the linear picture of the eye pass.
@@ -55,6 +55,7 @@ struct EyeLightKey {
 /// Inputs of the sampling of sheets.
 #[derive(Debug, Clone, PartialEq)]
 struct SamplingKey {
+    projection: Option<RayProjection>,
     kernel: ReconstructionKernel,
     slab: f64,
     slabs: SlabMode,
@@ -94,6 +95,7 @@ impl SamplingKey {
         let classification = settings.classification();
         let order = settings.uses_scattering_engine().then_some(order);
         Self {
+            projection: settings.ray_projection(),
             kernel,
             slab,
             slabs,
@@ -135,6 +137,8 @@ impl EyeKey {
             camera,
             lights: _,
             layers,
+            // Part of the key of the sampling; the rest is resolved.
+            mode: _,
             shading,
             shadows,
             sky: _,

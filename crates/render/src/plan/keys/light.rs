@@ -96,6 +96,8 @@ impl LightKey {
             camera,
             lights,
             layers,
+            // Resolved before.
+            mode: _,
             shading,
             shadows,
             sky: _,

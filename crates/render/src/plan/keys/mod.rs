@@ -57,6 +57,7 @@ pub struct FrameKeys {
 impl FrameKeys {
     /// Computes the keys of a picture: a pure function of request and options.
     pub fn new(request: &RenderRequest, options: &RenderOptions) -> Self {
+        let request = &*request.resolved_mode();
         let lights: Vec<_> =
             (0..request.settings.lights.len()).map(|index| LightKey::new(request, index)).collect();
         let combined = CombinedKey::new(request, options);

@@ -133,6 +133,13 @@ fn every_setting_causes_what_the_design_says() {
         ("lighting.linked", "false", ChangeEffect::AllLights),
         ("lighting.curve.interpolation", "extinction", ChangeEffect::Nothing),
         ("opacity_unit", r#"{"mm": 3}"#, ChangeEffect::AllLights),
+        // Volumes of light stay, but a projection without light needs none.
+        ("mode.kind", "maximum", ChangeEffect::Eye),
+        ("mode.kind", "mean", ChangeEffect::Eye),
+        ("mode.kind", "surface", ChangeEffect::AllLights),
+        // Only surfaces have an isovalue, and only maxima are lit.
+        ("mode.isovalue", "0.5", ChangeEffect::Nothing),
+        ("mode.lit", "true", ChangeEffect::Nothing),
         ("shading.emission", "0.1", ChangeEffect::Bounces),
         ("shading.ambient", "0.1", ChangeEffect::Eye),
         ("shading.diffuse", "0.1", ChangeEffect::Eye),
