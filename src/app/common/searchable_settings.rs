@@ -81,6 +81,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (row(sections::SOFT_LIGHT, text::scattering::STRENGTH), text::synonyms::BOUNCED),
     (row(sections::SOFT_LIGHT, text::scattering::ANISOTROPY), text::synonyms::ANISOTROPY),
     (advanced_row(sections::SOFT_LIGHT, text::scattering::DIRECTIONS), text::synonyms::DIRECTIONS),
+    (row(sections::SHADING, text::shading::MODE), text::synonyms::RENDER_MODE),
     (row(sections::SHADING, text::shading::EMISSION), text::synonyms::GLOW),
     (row(sections::SHADING, text::shading::AMBIENT), text::synonyms::AMBIENT),
     (row(sections::SHADING, text::shading::DIFFUSE), text::synonyms::DIFFUSE),

@@ -16,7 +16,7 @@ const fn control(key: Key, command: AppCommand) -> (KeyboardShortcut, AppCommand
 }
 
 /// Shortcuts with their commands, in the order in which help shows them.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 48] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 49] = [
     // Shortcuts with Shift come first: egui lets Shift pass where it is not required.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), AppCommand::OpenFolder),
     control(Key::O, AppCommand::OpenDialog),
@@ -40,6 +40,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 48] = [
     plain(Key::Num8, AppCommand::LookFrom(StandardView::MinusZ)),
     plain(Key::Num9, AppCommand::LookFrom(StandardView::Isometric)),
     plain(Key::Num5, AppCommand::ToggleProjection),
+    plain(Key::O, AppCommand::NextRenderMode),
     (KeyboardShortcut::new(Modifiers::SHIFT, Key::T), AppCommand::RotateObject),
     plain(Key::T, AppCommand::TurnObject(ObjectRotation::TipBack)),
     plain(Key::F11, AppCommand::ToggleFullScreen),

@@ -7,6 +7,7 @@ pub(super) mod controls;
 mod data;
 mod floor;
 mod lights;
+mod render_mode;
 mod sampling;
 mod scattering;
 mod sections;

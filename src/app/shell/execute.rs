@@ -66,6 +66,8 @@ impl App {
             AppCommand::RotateObject => self.editor.rotate_object(ctx),
             AppCommand::LookFrom(view) => self.editor.look_from(view, ctx),
             AppCommand::ToggleProjection => self.editor.document.settings.camera.toggle_projection(),
+            AppCommand::NextRenderMode => self.next_render_mode(ctx),
+            AppCommand::UseRenderMode(mode) => self.editor.use_render_mode(mode, None),
             AppCommand::SaveView => self.layout.kept |= self.editor.save_view(),
             AppCommand::SaveLookInStrip => self.layout.kept |= self.editor.save_look(),
             AppCommand::StoreView(slot) => self.layout.kept |= self.editor.save_view_under(slot),
@@ -109,6 +111,12 @@ impl App {
             AppCommand::ShowAbout => self.windows.help.about_open = true,
         }
         ctx.request_repaint();
+    }
+
+    /// Shows the volume in the next render mode; a surface lies at the value under the pointer.
+    fn next_render_mode(&mut self, ctx: &egui::Context) {
+        let value = self.picture.value_under_pointer(&self.editor, ctx);
+        self.editor.use_render_mode(self.editor.document.settings.mode.kind.next(), value);
     }
 
     /// Asks for a file in a dialog of the desktop.

@@ -11,7 +11,9 @@ use crate::app::common::{overlay_windows, theme};
 use crate::app::persistence::{EarlierRun, RecentFile, RecentThumbnails};
 use crate::app::text;
 use crate::app::windows::recovery;
-use chiaroscuro_scene::{LightingRig, MAX_LIGHTS, ObjectRotation, Projection, Settings, StandardView};
+use chiaroscuro_scene::{
+    LightingRig, MAX_LIGHTS, ObjectRotation, Projection, RenderMode, Settings, StandardView,
+};
 use chiaroscuro_volume::{ChoiceAspect, FileContents, FileDimension, synthetic};
 
 /// Maximum width of a file name in a menu, in points: menus stay narrower than the smallest window.
@@ -246,6 +248,17 @@ fn view(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     let projection = &mut menu.settings.camera.projection;
     ui.radio_value(projection, Projection::Perspective, text::menu::PERSPECTIVE);
     ui.radio_value(projection, Projection::Orthographic, text::menu::ORTHOGRAPHIC);
+    let is_by_value = menu.settings.layer().labels.is_empty();
+    let named =
+        text::menu::with_key(text::menu::RENDER_MODE, &AppCommand::NextRenderMode.shortcut_text(ui.ctx()));
+    ui.add_enabled_ui(is_by_value, |ui| {
+        overlay_windows::scrolling_menu(ui, &named, |ui| {
+            for mode in RenderMode::ALL {
+                let named = text::shading::mode_text(mode);
+                ui.radio_value(&mut menu.settings.mode.kind, mode, named.name).on_hover_text(named.tooltip);
+            }
+        });
+    });
     ui.separator();
     let cuts = &menu.settings.cuts;
     let switches = [

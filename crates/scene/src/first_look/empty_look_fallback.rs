@@ -126,12 +126,35 @@ pub fn densest_transfer(volume: &Volume) -> TransferFunction {
     TransferFunction { points, interpolation: OpacityInterpolation::Opacity, ..TransferFunction::default() }
 }
 
-/// Returns the settings with a transfer function that certainly shows something: see [`densest_transfer`].
+/// Returns the settings with a transfer function that certainly shows something: see [`densest_transfer`], or for
+/// projections an opacity that rises over the whole range, as means and smallest values are anywhere in it.
 pub fn with_visible_transfer(settings: &Settings, volume: &Volume) -> Settings {
+    let transfer = if settings.ray_projection().is_some() {
+        stretched_ramp(&settings.layer().transfer, volume.ranges().robust)
+    } else {
+        densest_transfer(volume)
+    };
     settings
         .clone()
         .with_range(DensityRange::Robust)
         .with_labels(LabelTable::default())
-        .with_transfer(densest_transfer(volume))
+        .with_transfer(transfer)
         .with_lighting(LightingTransfer::default())
+}
+
+/// Returns an opacity that rises linearly over a range of values, with the colours of a function stretched over it.
+fn stretched_ramp(colors: &TransferFunction, range: ValueRange) -> TransferFunction {
+    let mut ramp = colors.clone();
+    let ends = [ramp.points.first(), ramp.points.last()].map(|point| point.map_or(0.0, |point| point.value));
+    let [first, last] = ends;
+    if ramp.points.len() < 2 || last <= first {
+        let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
+        ramp.points = vec![point(range.low, 0.0), point(range.high, 1.0)];
+        return ramp;
+    }
+    for point in &mut ramp.points {
+        point.opacity = (point.value - first) / (last - first);
+        point.value = range.low + range.span() * point.opacity;
+    }
+    ramp
 }

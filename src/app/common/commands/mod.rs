@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use super::reveal::SettingPlace;
 use super::searchable_settings::SEARCHABLE_SETTINGS;
 use chiaroscuro_scene::{
-    COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, SceneAxis, Settings,
-    StandardView,
+    COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, RenderMode,
+    SceneAxis, Settings, StandardView,
 };
 use chiaroscuro_volume::{ChoiceAspect, Downsampling, KindName, VolumeChoice};
 
@@ -92,6 +92,10 @@ pub(crate) enum AppCommand {
     RotateObject,
     /// Switch between perspective and orthographic projection.
     ToggleProjection,
+    /// Show the volume in the next render mode.
+    NextRenderMode,
+    /// Show the volume in a render mode.
+    UseRenderMode(RenderMode),
     /// Save the view in the strip.
     SaveView,
     /// Save the look in the strip.
@@ -222,6 +226,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::TurnObject(ObjectRotation::TipBack),
         AppCommand::RotateObject,
         AppCommand::ToggleProjection,
+        AppCommand::NextRenderMode,
         AppCommand::ToggleFullScreen,
         AppCommand::ToggleOverlay,
         AppCommand::ToggleProbe,
@@ -273,6 +278,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
             .flat_map(|aspect| [true, false].map(|on| AppCommand::StepChoice(aspect, on))),
     );
     all.extend(KindName::choices().map(AppCommand::TreatAs));
+    all.extend(RenderMode::ALL.map(AppCommand::UseRenderMode));
     all.extend(StandardView::ALL.map(AppCommand::LookFrom));
     all.extend(SceneAxis::ALL.map(|axis| AppCommand::TurnObject(ObjectRotation::MakeUpright(axis))));
     all.extend(LightingRig::ALL.map(AppCommand::UseRig));

@@ -62,6 +62,10 @@ impl AppCommand {
             Self::StoreView(slot) => return text::commands::store_view(*slot).into(),
             Self::RecallView(slot) => return text::commands::recall_view(*slot).into(),
             Self::FrameAll => text::commands::FRAME_ALL,
+            Self::NextRenderMode => text::commands::NEXT_RENDER_MODE,
+            Self::UseRenderMode(mode) => {
+                return text::commands::use_render_mode(text::shading::mode_text(*mode).name).into();
+            }
             Self::ToggleProjection => text::commands::TOGGLE_PROJECTION,
             Self::ToggleFullScreen => text::commands::TOGGLE_FULL_SCREEN,
             Self::ToggleOverlay => text::commands::TOGGLE_OVERLAY,

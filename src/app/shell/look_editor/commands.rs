@@ -6,7 +6,7 @@ use super::LookEditor;
 use crate::app::common::commands::AppCommand;
 use crate::app::viewport::mouse_navigation::OrbitDrag;
 use crate::app::{panels, text};
-use chiaroscuro_scene::{ObjectRotation, Preset, StandardView};
+use chiaroscuro_scene::{ObjectRotation, Preset, RenderMode, StandardView};
 use chiaroscuro_volume::KindName;
 
 impl LookEditor {
@@ -29,6 +29,20 @@ impl LookEditor {
         let floor = &mut self.document.settings.floor;
         floor.on ^= true;
         floor.on
+    }
+
+    /// Shows the volume in a render mode, and names it; a surface lies at `value`, if there is one.
+    pub(crate) fn use_render_mode(&mut self, kind: RenderMode, value: Option<f64>) {
+        let settings = &mut self.document.settings;
+        if !settings.layer().labels.is_empty() {
+            self.messages.note(text::shading::LABELS_ARE_MATTER);
+            return;
+        }
+        settings.mode.kind = kind;
+        if kind == RenderMode::Surface && value.is_some() {
+            settings.mode.isovalue = value;
+        }
+        self.messages.note(text::shading::mode_note(kind));
     }
 
     /// Switches the comparison of two looks on or off, and returns true if it is on.

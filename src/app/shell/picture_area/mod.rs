@@ -18,7 +18,7 @@ use crate::app::viewport::{
 };
 use crate::app::windows::slices::SlicesWindow;
 use chiaroscuro_render::GpuError;
-use chiaroscuro_scene::{ImageSpec, Settings, first_look::ObjectOutline};
+use chiaroscuro_scene::{ImageSpec, RenderMode, Settings, first_look::ObjectOutline};
 
 /// Inputs of the picture: the state that it shows, and the values that the mouse changes.
 struct PictureInputs<'a> {
@@ -115,6 +115,15 @@ impl PictureInputs<'_> {
             && let Some(found) = light_probe::probe_at(dataset.volume(), settings, response.rect, at)
         {
             settings.camera.set_orbit_centre(found.point);
+        }
+        if settings.render_mode() == RenderMode::Surface
+            && !tools.light_probe.is_active
+            && is_one_view
+            && response.clicked()
+            && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())
+            && let Some(value) = light_probe::material_value(dataset.volume(), settings, response.rect, at)
+        {
+            settings.mode.isovalue = Some(value);
         }
         if self.slices.open
             && is_one_view
@@ -232,6 +241,13 @@ fn area_below_chips(body: Rect, chips: Option<Rect>) -> Rect {
 }
 
 impl PictureTools {
+    /// Returns the value of the material under the pointer, if it is over the picture.
+    pub(crate) fn value_under_pointer(&self, editor: &LookEditor, ctx: &egui::Context) -> Option<f64> {
+        let (picture, at) = (self.canvas.as_ref()?.rect, ctx.pointer_hover_pos()?);
+        let dataset = editor.viewport.dataset().filter(|_| picture.contains(at))?;
+        light_probe::material_value(dataset.volume(), &editor.document.settings, picture, at)
+    }
+
     /// Shows the picture in the middle of the window, with the messages over it. `slices` is the window that shares
     /// its cursor, and `export_preview` the picture to export, while its dialog is open.
     pub(crate) fn show_picture(

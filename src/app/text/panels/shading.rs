@@ -1,6 +1,48 @@
 //! Texts of the shading section.
 
 use crate::app::text::{ControlText, control_text};
+use chiaroscuro_scene::RenderMode;
+
+pub(crate) const MODE: ControlText =
+    control_text("Mode", "The rule by which the values along a ray become a colour");
+const MATTER: ControlText = control_text("Matter", "Material: its opacity hides what lies behind");
+const SURFACE: ControlText = control_text(
+    "Surface",
+    "An opaque surface at one value; a click in the picture takes the value from there",
+);
+const MAXIMUM: ControlText =
+    control_text("Maximum", "The largest value along each ray, in the colours of the curve");
+const MINIMUM: ControlText =
+    control_text("Minimum", "The smallest value along each ray, in the colours of the curve");
+const MEAN: ControlText = control_text("Mean", "The mean of the values along each ray, as in a radiograph");
+pub(crate) const ISOVALUE: ControlText = control_text(
+    "Isovalue",
+    "The value at which the surface lies; a click in the picture takes the value from there",
+);
+pub(crate) const ISOVALUE_OF_CURVE: &str = "Takes it from the curve: where its opacity reaches a half";
+pub(crate) const LIT: ControlText =
+    control_text("Lit", "Shades what the maximum belongs to, with shadows, at its side towards the eye");
+/// Note where a mode is asked for that labels cannot have.
+pub(crate) const LABELS_ARE_MATTER: &str = "Labels have no order, and are always shown as material";
+/// Hint where a mode shows no light.
+pub(crate) const UNLIT: &str = "Colours of the curve, without light";
+
+/// Name and tooltip of a render mode.
+pub(crate) fn mode_text(mode: RenderMode) -> ControlText {
+    match mode {
+        RenderMode::Matter => MATTER,
+        RenderMode::Surface => SURFACE,
+        RenderMode::Maximum => MAXIMUM,
+        RenderMode::Minimum => MINIMUM,
+        RenderMode::Mean => MEAN,
+    }
+}
+
+/// Note after the key that changes the mode.
+pub(crate) fn mode_note(mode: RenderMode) -> String {
+    let named = mode_text(mode);
+    format!("{}: {}", named.name, named.tooltip)
+}
 
 pub(crate) const EMISSION: ControlText =
     control_text("Emission", "Light that material gives off by itself; for glowing data");

@@ -40,6 +40,7 @@ pub(crate) const FRAME_ALL: &str = "Frame all";
 pub(crate) const TILT: &str = "Tilt by 90°";
 pub(crate) const ROTATE: &str = "Rotate by 90°";
 pub(crate) const TOGGLE_PROJECTION: &str = "Perspective or orthographic";
+pub(crate) const NEXT_RENDER_MODE: &str = "Next render mode";
 pub(crate) const TOGGLE_FULL_SCREEN: &str = "Full screen";
 pub(crate) const TOGGLE_SIDE: &str = "Side panel";
 pub(crate) const TOGGLE_STRIP: &str = "Saved views and looks";
@@ -127,6 +128,11 @@ pub(crate) fn upright(axis: &str) -> String {
 /// Command that applies a light rig.
 pub(crate) fn use_rig(rig: &str) -> String {
     format!("Lights: {rig}")
+}
+
+/// Command that shows the volume in a render mode.
+pub(crate) fn use_render_mode(mode: &str) -> String {
+    format!("Render mode: {mode}")
 }
 
 /// Command that applies a preset of the transfer function.

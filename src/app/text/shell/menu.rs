@@ -16,6 +16,9 @@ pub(crate) const SAVED_VIEWS: &str = "Saved views";
 pub(crate) const PERSPECTIVE: &str = "Perspective";
 pub(crate) const ORTHOGRAPHIC: &str = "Orthographic";
 
+/// Submenu of the render mode.
+pub(crate) const RENDER_MODE: &str = "Render mode";
+
 /// Submenu of the time budget of a preview.
 pub(crate) const PREVIEW_BUDGET: &str = "Quality while moving";
 pub(crate) const AUTOMATIC: &str = "Automatic";

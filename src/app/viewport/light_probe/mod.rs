@@ -14,7 +14,7 @@ use crate::app::common::theme;
 use crate::app::common::volume_facts::range_decimals;
 use crate::app::text::{self, common::LengthUnit};
 use chiaroscuro_render::plan::{LightArrival, Probe, probe};
-use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, Settings};
+use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, RenderMode, Settings};
 use chiaroscuro_volume::{DataKind, Volume};
 
 /// Point of the volume that was clicked.
@@ -102,7 +102,8 @@ impl LightProbe {
             }
             _ => None,
         };
-        let cause = found.map(|found| BrightnessCause::diagnose(settings, found));
+        let cause =
+            found.filter(|_| !settings.is_unlit()).map(|found| BrightnessCause::diagnose(settings, found));
         let lost = found.and_then(|found| {
             let blocked = settings.lights.iter().zip(&found.lights).find_map(|(light, arrival)| {
                 let [near, _] = arrival.blocked.filter(|_| light.on)?;
@@ -118,7 +119,7 @@ impl LightProbe {
                 .map(|cause| cause.remedies(settings))
                 .unwrap_or_default(),
             sentence: cause.map_or_else(
-                || text::probe::NOTHING.to_owned(),
+                || if found.is_some() { text::shading::UNLIT } else { text::probe::NOTHING }.to_owned(),
                 |cause| cause.description(settings, mm_per_unit, unit),
             ),
             facts: found.map_or_else(String::new, |found| result_text(settings, volume, found)),
@@ -168,6 +169,13 @@ pub(crate) fn probe_at(volume: &Volume, settings: &Settings, picture: Rect, at: 
         f64::from(picture.height()),
     );
     probe(volume, settings, origin, direction)
+}
+
+/// Returns the value of the first visible material under a point of the window, whatever the render mode.
+pub(crate) fn material_value(volume: &Volume, settings: &Settings, picture: Rect, at: Pos2) -> Option<f64> {
+    let mut material = settings.clone();
+    material.mode.kind = RenderMode::Matter;
+    Some(probe_at(volume, &material, picture, at)?.value)
 }
 
 /// Returns the visible label as number and name; `None` if the values are not labels.

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use self::rays::{LightSegment, VolumeRays};
 use crate::plan::sweep_directions;
-use chiaroscuro_scene::{BakedTransfer, LightGeometry, LitSides, SceneLight, Settings};
+use chiaroscuro_scene::{BakedTransfer, LightGeometry, LitSides, RayProjection, SceneLight, Settings};
 use chiaroscuro_volume::{Volume, math::luminance};
 
 /// Probe result at a position of the picture.
@@ -49,7 +49,8 @@ const SKY_DIRECTIONS: u32 = 48;
 /// Maximum number of rays to each area light: losses are displayed in whole per cent.
 const MAX_LIGHT_POINTS: u32 = 16;
 
-/// Traces a ray (in scene space) and returns the probe at the first visible position; `None` if nothing is visible.
+/// Traces a ray (in scene space) and returns the probe at the first visible position, in projections at the largest or
+/// smallest value; `None` if nothing is visible.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
     let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges()));
     let (settings, range) = (&*settings.resolved_for(volume), volume.table_range());
@@ -58,7 +59,11 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let scene = &rays.scene;
     let eye = settings.bake_eye(range, scene);
     let seen = settings.cuts.visible_part().region(scene);
-    let point = rays.first_visible(&eye, &seen, origin, direction)?;
+    let point = match settings.ray_projection() {
+        None | Some(RayProjection::Mean) => rays.first_visible(&eye, &seen, origin, direction),
+        Some(RayProjection::Maximum) => rays.extreme(1.0, &eye, &seen, origin, direction),
+        Some(RayProjection::Minimum) => rays.extreme(-1.0, &eye, &seen, origin, direction),
+    }?;
     let index = scene.index_from_scene.transform_point3(point);
     // Not clamped to the shown range.
     let value = rays.value(index, &eye);

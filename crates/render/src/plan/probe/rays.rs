@@ -105,6 +105,28 @@ impl VolumeRays<'_> {
         Some(origin + direction * at)
     }
 
+    /// Returns the position of the largest density along a ray, or of the smallest if `sign` is −1; `None` if the
+    /// curve does not show it.
+    pub(super) fn extreme(
+        &self,
+        sign: f64,
+        table: &BakedTransfer,
+        seen: &ClipRegion,
+        origin: DVec3,
+        direction: DVec3,
+    ) -> Option<DVec3> {
+        let RayInterval { enter, leave } = self.span(seen, origin, direction)?;
+        let step = self.step();
+        let count = ((leave - enter) / step).ceil() as usize;
+        let points = (0..count).map(|at| origin + direction * (enter + (at as f64 + 0.5) * step).min(leave));
+        let found = points.filter_map(|point| {
+            let found = self.field(self.scene.index_from_scene.transform_point3(point), table);
+            (found.presence >= VISIBLE_SHARE).then_some((point, sign * found.value))
+        });
+        let (point, value) = found.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (table.sample(sign * value)[3] > 0.0).then_some(point)
+    }
+
     /// Iterates over the steps of a ray towards a light, as distance and optical depth. It starts one step away from
     /// the point, so that a surface does not shade itself.
     fn steps(
