@@ -41,7 +41,6 @@ struct PixelRayUniform {
 
 #option DIRECT: rays to the lights are cast instead of looking up volumes (P §3.3)
 #option BY_NEED: slabs are integrated between their faces, and halved by need (adaptive_slabs.wgsl)
-#option PROJECTION: a value of the ray is shown: the largest (1), the smallest (2) or the mean (3)
 #option PREINTEGRATED: opacity is integrated through steps that are shaded together (preintegrated_slabs.wgsl)
 
 // Takes gradients from differences of neighbouring sheets.

@@ -7,6 +7,7 @@
 #import "density/cells.wgsl"
 #import "density/slab_material.wgsl"
 
+#option PROJECTION: a value of the ray is shown: the largest (1), the smallest (2) or the mean (3)
 #option LIT: a maximum is shaded
 
 // Distance between samples towards the front of a maximum, in voxels along the axis in which they are nearest.

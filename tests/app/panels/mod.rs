@@ -6,6 +6,7 @@ mod labels;
 mod layout;
 mod menus;
 mod presets;
+mod render_modes;
 mod reset_buttons;
 mod side_panel;
 mod slices;

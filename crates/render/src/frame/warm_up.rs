@@ -2,7 +2,7 @@
 //! which would stall the window.
 
 use crate::eye::antialiasing::EDGES;
-use crate::eye::eye_pass::EyeVariant;
+use crate::eye::eye_variant::EyeVariant;
 use crate::eye::floor::FloorVariant;
 use crate::light::backproject::BackprojectVariant;
 use crate::light::march::MarchVariant;

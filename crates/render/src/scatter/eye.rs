@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::footprints::{FootprintInputs, FootprintPhases};
 use super::splat::{ScatterVariant, SheetScatterer, SplatParameters, SplatQuantity, sums};
 use super::voxels::ScatterState;
-use crate::eye::eye_pass::{EyePass, SamplingVariant};
+use crate::eye::eye_pass::EyePass;
+use crate::eye::eye_variant::SamplingVariant;
 use crate::eye::light_lookup::{LightLookup, light_bind_group};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::{

@@ -8,8 +8,8 @@ use super::object::VisibleObject;
 use super::threshold::{self, ObjectThreshold};
 use super::{choose_view_and_lights, transfer};
 use crate::{
-    ControlPoint, DensityRange, FRAME_ASPECT, LabelTable, LightingTransfer, OpacityInterpolation, Settings,
-    TransferFunction,
+    ControlPoint, DensityRange, FRAME_ASPECT, LabelTable, LightingTransfer, OpacityInterpolation,
+    RayProjection, Settings, TransferFunction,
 };
 use chiaroscuro_volume::{Histogram, KindName, ValueRange, Volume};
 
@@ -126,13 +126,20 @@ pub fn densest_transfer(volume: &Volume) -> TransferFunction {
     TransferFunction { points, interpolation: OpacityInterpolation::Opacity, ..TransferFunction::default() }
 }
 
+/// Largest number of rows of voxels along an edge of a face that are projected, and of voxels in a row: three million
+/// voxels in all, which are read in some hundredths of a second.
+const MAX_ROWS: usize = 64;
+const MAX_ROW_VOXELS: usize = 256;
+
+/// Shares of the rows with smaller values at both ends of the range of a projection.
+const ROW_SHARES: [f64; 2] = [0.02, 0.99];
+
 /// Returns the settings with a transfer function that certainly shows something: see [`densest_transfer`], or for
-/// projections an opacity that rises over the whole range, as means and smallest values are anywhere in it.
+/// projections an opacity that rises over their values along the axes.
 pub fn with_visible_transfer(settings: &Settings, volume: &Volume) -> Settings {
-    let transfer = if settings.ray_projection().is_some() {
-        stretched_ramp(&settings.layer().transfer, volume.ranges().robust)
-    } else {
-        densest_transfer(volume)
+    let transfer = match settings.ray_projection() {
+        Some(projection) => stretched_ramp(&settings.layer().transfer, projected_range(volume, projection)),
+        None => densest_transfer(volume),
     };
     settings
         .clone()
@@ -140,6 +147,40 @@ pub fn with_visible_transfer(settings: &Settings, volume: &Volume) -> Settings {
         .with_labels(LabelTable::default())
         .with_transfer(transfer)
         .with_lighting(LightingTransfer::default())
+}
+
+/// Returns the range of a projection's values along the three axes, from some of the rows of voxels.
+fn projected_range(volume: &Volume, projection: RayProjection) -> ValueRange {
+    let dims = volume.dims();
+    let places = |axis: usize, count: usize| (0..dims[axis]).step_by(dims[axis].div_ceil(count));
+    let mut values: Vec<f64> = Vec::new();
+    for axis in 0..3 {
+        let (across, down) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (u, v) in places(across, MAX_ROWS).flat_map(|u| places(down, MAX_ROWS).map(move |v| (u, v))) {
+            let row = places(axis, MAX_ROW_VOXELS).filter_map(|along| {
+                let mut voxel = [0; 3];
+                (voxel[axis], voxel[across], voxel[down]) = (along, u, v);
+                let [x, y, z] = voxel;
+                let is_missing = |at| volume.missing().is_some_and(|missing| missing.contains(at));
+                (!is_missing(x + dims[0] * (y + dims[1] * z))).then(|| volume.value(x, y, z))
+            });
+            let row: Vec<f64> = row.collect();
+            if row.is_empty() {
+                continue;
+            }
+            values.push(match projection {
+                RayProjection::Maximum => row.into_iter().fold(f64::MIN, f64::max),
+                RayProjection::Minimum => row.into_iter().fold(f64::MAX, f64::min),
+                RayProjection::Mean => row.iter().sum::<f64>() / row.len() as f64,
+            });
+        }
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    let at = |share: f64| values.get((share * values.len() as f64) as usize).copied();
+    match ROW_SHARES.map(at) {
+        [Some(low), Some(high)] if low < high => ValueRange::new(low, high),
+        _ => volume.ranges().robust,
+    }
 }
 
 /// Returns an opacity that rises linearly over a range of values, with the colours of a function stretched over it.
@@ -157,4 +198,44 @@ fn stretched_ramp(colors: &TransferFunction, range: ValueRange) -> TransferFunct
         point.value = range.low + range.span() * point.opacity;
     }
     ramp
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::RenderMode;
+    use chiaroscuro_volume::Samples;
+
+    /// A bright bar along z in a dark box, whose curve shows only what is brighter than any mean.
+    #[test]
+    fn projections_that_show_nothing_get_a_curve_over_their_values() {
+        let value = |at: usize| if (at % 20, at / 20 % 20) == (9, 7) { 250.0 } else { 10.0 };
+        let samples = Samples::F32((0..20 * 20 * 20).map(|at| value(at) as f32).collect());
+        let volume = Volume::with_spacing("bar", [20; 3], DVec3::ONE, samples).unwrap();
+        let point = |value, red, opacity| ControlPoint::new(value, [red, 0.5, 0.5], opacity);
+        let transfer = TransferFunction {
+            points: vec![point(200.0, 0.0, 0.0), point(225.0, 0.25, 0.9), point(250.0, 1.0, 1.0)],
+            ..TransferFunction::default()
+        };
+        let mut settings = Settings::default().with_transfer(transfer);
+        for (kind, expected) in [
+            (RenderMode::Maximum, [10.0, 250.0]),
+            (RenderMode::Mean, [10.0, 22.0]),
+            (RenderMode::Minimum, [10.0, 10.0]),
+        ] {
+            settings.mode.kind = kind;
+            let visible = with_visible_transfer(&settings, &volume);
+            let points = &visible.layer().transfer.points;
+            assert_eq!(points.iter().map(|point| point.opacity).collect::<Vec<_>>(), [0.0, 0.5, 1.0]);
+            assert_eq!(points[1].color, [0.25, 0.5, 0.5], "colours are stretched");
+            // Smallest values are the same everywhere here, which makes no range.
+            let ends = [points[0].value, points[2].value];
+            let robust = volume.ranges().robust;
+            let expected = if kind == RenderMode::Minimum { [robust.low, robust.high] } else { expected };
+            assert!(
+                (ends[0] - expected[0]).abs() < 1e-6 && (ends[1] - expected[1]).abs() < 1e-6,
+                "{kind:?} {ends:?}"
+            );
+        }
+    }
 }

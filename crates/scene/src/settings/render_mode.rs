@@ -20,6 +20,9 @@ const SURFACE_UNIT: OpacityLength = OpacityLength::Voxels(0.25);
 /// surfaces, too.
 const SURFACE_GRADIENT: f64 = 0.001;
 
+/// Largest strength of shadows on a maximum: material in front of it, which is not shown, would make it black.
+const MAX_SHADOW_STRENGTH: f64 = 0.6;
+
 /// Number of parts of a curve among which its half opacity is searched; steps of 1/256 of the range are less than the
 /// noise of most data.
 const ISOVALUE_STEPS: u32 = 256;
@@ -44,9 +47,9 @@ pub enum RenderMode {
 /// Value of a ray that a projection shows with the colour and opacity of the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RayProjection {
-    /// Largest value.
+    /// Largest value along the ray.
     Maximum,
-    /// Smallest value.
+    /// Smallest value along the ray.
     Minimum,
     /// Mean of the values over the length of the ray.
     Mean,
@@ -202,6 +205,8 @@ impl Settings {
                 ..self.shading.clone()
             };
             (drawn.output.exposure, drawn.output.tone_map) = (1.0, ToneMap::Clip);
+        } else {
+            drawn.shadows.strength = self.shadows.strength.min(MAX_SHADOW_STRENGTH);
         }
         drawn
     }
@@ -328,6 +333,7 @@ mod tests {
         assert!(!settings.is_unlit());
         let drawn = settings.resolved_mode().into_owned();
         assert_eq!((&drawn.lights, &drawn.shading), (&settings.lights, &settings.shading));
+        assert!(drawn.shadows.strength <= MAX_SHADOW_STRENGTH);
         assert!(!drawn.has_adaptive_slabs() && !drawn.has_preintegrated_slabs());
         assert_eq!(drawn.resolved_mode().into_owned(), drawn);
         settings.mode.kind = RenderMode::Mean;

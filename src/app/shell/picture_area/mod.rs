@@ -148,7 +148,8 @@ impl PictureInputs<'_> {
             self.slices.paint_cursor(&ui.painter_at(area), &view_projection, &scene);
         }
         tools.cut_handles.show(ui, area, settings, &scene, tools.handles.is_hidden || !is_one_view);
-        if is_one_view {
+        // Lights have no effect on colours that are shown as they are.
+        if is_one_view && !settings.is_unlit() {
             let selected = &mut self.document.selected_light;
             tools.handles.show(ui, area, settings, scene.support_radius(), selected);
         } else {

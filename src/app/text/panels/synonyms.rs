@@ -63,7 +63,7 @@ pub(crate) const BOUNCED: &str = "global illumination gi indirect scattering str
 pub(crate) const ANISOTROPY: &str =
     "anisotropy phase function henyey greenstein forward backward scattering cloud smoke fog";
 
-pub(crate) const RENDER_MODE: &str = "mip minip aip maximum minimum mean average intensity projection isosurface composite blend xray radiograph";
+pub(crate) const RENDER_MODE: &str = "render mode blend material surface maximum minimum mean";
 pub(crate) const GLOW: &str = "glow emissive self luminous";
 pub(crate) const AMBIENT: &str = "ambient light fill";
 pub(crate) const DIFFUSE: &str = "lambert matte scatter evenly";

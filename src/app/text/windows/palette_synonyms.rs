@@ -48,6 +48,10 @@ pub(crate) const FEWER_VOXELS: PaletteSynonyms =
     synonyms("resample resampling downsample subsample reduce bin binning");
 pub(crate) const LABELS: PaletteSynonyms = synonyms("segmentation segments labels label classes regions");
 
+pub(crate) const RAY_PROJECTIONS: PaletteSynonyms =
+    synonyms("mip minip maximum minimum mean average intensity projection xray radiograph");
+pub(crate) const ISOSURFACE: PaletteSynonyms = synonyms("isosurface iso surface isovalue threshold");
+
 pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
     "play playing playback player time lapse timelapse slider",
     "Time steps are not played; these commands step through them",
@@ -55,10 +59,6 @@ pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
 pub(crate) const NO_COMPOSITE: PaletteSynonyms = synonyms_with_note(
     "composite compositing merge merged channels multichannel rgb",
     "Channels are shown one at a time: there is no composite of them",
-);
-pub(crate) const NO_PROJECTION: PaletteSynonyms = synonyms_with_note(
-    "mip minip maximum minimum mean intensity projection",
-    "There is no maximum intensity projection; the look Translucent comes closest",
 );
 pub(crate) const NO_ANNOTATION: PaletteSynonyms = synonyms_with_note(
     "annotation annotate arrow caption callout",

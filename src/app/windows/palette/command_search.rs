@@ -97,7 +97,7 @@ fn matches_any(word: &str, among: &[&str]) -> bool {
 mod tests {
     use super::*;
     use crate::app::common::reveal::SettingPlace;
-    use chiaroscuro_scene::{ObjectRotation, StandardView};
+    use chiaroscuro_scene::{ObjectRotation, RenderMode, StandardView};
     use chiaroscuro_volume::{ChoiceAspect, FileDimension};
 
     /// Commands that a text finds, for a volume without labels.
@@ -200,8 +200,9 @@ mod tests {
             ("annotation", AppCommand::Export, true),
             ("play", AppCommand::StepChoice(frame, true), true),
             ("composite", AppCommand::ShowChooser(channel), true),
-            ("mip", AppCommand::TryLooks, true),
-            ("maximum intensity projection", AppCommand::TryLooks, true),
+            ("mip", AppCommand::UseRenderMode(RenderMode::Maximum), false),
+            ("maximum intensity projection", AppCommand::UseRenderMode(RenderMode::Maximum), false),
+            ("isosurface", AppCommand::UseRenderMode(RenderMode::Surface), false),
             ("remove table", AppCommand::ToggleCrop, true),
             ("island", AppCommand::ToggleCrop, true),
             ("segmentation", AppCommand::OpenDialog, true),

@@ -4,7 +4,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::searchable_settings::SEARCHABLE_SETTINGS;
 use crate::app::text::palette_synonyms::{self, PaletteSynonyms};
 use crate::app::text::{self, sections};
-use chiaroscuro_scene::ObjectRotation;
+use chiaroscuro_scene::{ObjectRotation, RenderMode};
 use chiaroscuro_volume::{ChoiceAspect, Downsampling, FileDimension, KindName};
 
 /// Search words with the commands that they lead to.
@@ -70,6 +70,13 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
                 Some(AppCommand::Subsample(Downsampling::Every(2))),
             ],
         ),
+        supported(
+            palette_synonyms::RAY_PROJECTIONS,
+            [RenderMode::Maximum, RenderMode::Minimum, RenderMode::Mean]
+                .map(|mode| Some(AppCommand::UseRenderMode(mode)))
+                .to_vec(),
+        ),
+        supported(palette_synonyms::ISOSURFACE, vec![Some(AppCommand::UseRenderMode(RenderMode::Surface))]),
         missing(
             palette_synonyms::NO_PLAYING,
             vec![Some(AppCommand::StepChoice(frame, true)), Some(AppCommand::ShowChooser(frame))],
@@ -78,7 +85,6 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
             palette_synonyms::NO_COMPOSITE,
             vec![Some(AppCommand::ShowChooser(channel)), Some(AppCommand::StepChoice(channel, true))],
         ),
-        missing(palette_synonyms::NO_PROJECTION, vec![Some(AppCommand::TryLooks)]),
         missing(palette_synonyms::NO_ANNOTATION, vec![Some(AppCommand::Export)]),
         missing(
             palette_synonyms::NO_FILTER,

@@ -38,7 +38,7 @@ impl DensityRange {
 
     /// Returns a usable range: with its ends in order and apart.
     #[must_use]
-    pub(in crate::settings) fn sanitised(self) -> Self {
+    pub(crate) fn sanitised(self) -> Self {
         match self {
             Self::Typed(range) if !range.span().is_finite() || range.span() == 0.0 => Self::Robust,
             Self::Typed(ValueRange { low, high }) => {

@@ -174,7 +174,7 @@ impl LabelTable {
     }
 
     /// Truncates names and the table to their largest lengths, and clamps numbers to their ranges.
-    pub(in crate::settings) fn sanitise(&mut self) {
+    pub(crate) fn sanitise(&mut self) {
         let is_sane = |look: &LabelLook| {
             (0.0..=1.0).contains(&look.opacity)
                 && look.color.iter().all(|c| (0.0..=1.0).contains(c))
