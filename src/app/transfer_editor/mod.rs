@@ -83,7 +83,7 @@ const KEY_STEP: [f64; 2] = [1.0 / 256.0, 0.01];
 const WIDE_LAYOUT_WIDTH: f32 = 1100.0;
 
 impl TransferEditor {
-    /// Shows the editor in the whole of `ui`. `marked`: value that the probe marks, if any.
+    /// Shows the editor in the whole of `ui`. `marked`: value that the probe or a surface marks, if any.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,

@@ -189,7 +189,7 @@ fn paint_text_on_ground(
     painter.galley(area.min, galley, ink);
 }
 
-/// Marks the value that the light probe reads in another view.
+/// Marks the value that the light probe reads in another view, or at which a surface lies.
 pub(super) fn paint_value_mark(ui: &Ui, axes: &PlotAxes, marked_value: Option<f64>) {
     let Some(value) = marked_value.filter(|&value| axes.contains_value(value)) else { return };
     let x = axes.x_of(value);
