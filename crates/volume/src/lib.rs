@@ -46,5 +46,5 @@ pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
-    SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
+    PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

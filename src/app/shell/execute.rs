@@ -7,7 +7,7 @@ use eframe::egui::{self, gui_zoom};
 
 use crate::app::common::commands::AppCommand;
 use crate::app::common::{light_keys, reveal};
-use crate::app::text::sections::{COMPARE, CUTS, FLOOR};
+use crate::app::text::sections::{COMPARE, CUTS, DATA, FLOOR};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
@@ -60,6 +60,7 @@ impl App {
             AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),
             AppCommand::ToggleFloor => self.layout.show_section(ctx, FLOOR, self.editor.toggle_floor()),
+            AppCommand::ToggleTable => self.layout.show_section(ctx, DATA, self.editor.toggle_table()),
             AppCommand::Balance => self.editor.start_balance(ctx),
             AppCommand::FrameAll => self.editor.frame_all(ctx),
             AppCommand::TurnObject(turn) => self.editor.turn_object(turn, ctx),

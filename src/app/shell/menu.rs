@@ -265,6 +265,7 @@ fn view(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
         (AppCommand::ToggleCrop, cuts.crop.on),
         (AppCommand::TogglePlane, cuts.plane.on),
         (AppCommand::ToggleFloor, menu.settings.floor.on),
+        (AppCommand::ToggleTable, menu.settings.volume.hidden_table.is_some()),
         (AppCommand::ToggleSide, menu.parts.side),
         (AppCommand::ToggleTransfer, menu.parts.transfer),
         (AppCommand::ToggleStrip, menu.parts.strip),

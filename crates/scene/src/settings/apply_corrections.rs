@@ -2,7 +2,7 @@
 //! image keeps showing the same part of the object.
 
 use crate::{DensityRange, LabelTable, OpacityLength, Settings, VolumeLayer};
-use chiaroscuro_volume::{Corrections, ValueRange, ValueScale, Volume};
+use chiaroscuro_volume::{Corrections, DataKind, ValueRange, ValueScale, Volume};
 
 /// Significant digits of a converted length, so that converting there and back gives the original number.
 const SIGNIFICANT_DIGITS: usize = 12;
@@ -29,6 +29,32 @@ impl Settings {
                 layer.opacity_unit = OpacityLength::Mm(round_to_digits(mm * longer));
             }
             layer.convert_values(before_scale, after_scale);
+        }
+    }
+}
+
+/// Value of the material of tables, in Hounsfield units above water: between foam, which need not be seen, and the shells
+/// around it, of which voxels may hold a half.
+const TABLE_HOUNSFIELD: f64 = -500.0;
+
+/// Share of a curve's largest opacity from which on values are material, in volumes that are no CT scans.
+const MATERIAL_OPACITY_SHARE: f64 = 0.1;
+
+impl Settings {
+    /// Hides the table under a body, or shows it again; what is material follows from the volume and from the curve.
+    pub fn toggle_table(&mut self, volume: &Volume) {
+        let hidden_table = match self.volume.hidden_table {
+            Some(_) => None,
+            None => Some(self.material_threshold(volume)),
+        };
+        self.apply_corrections(Corrections { hidden_table, ..self.volume }, volume);
+    }
+
+    /// Returns the value from which on voxels of a volume are material.
+    pub fn material_threshold(&self, volume: &Volume) -> f64 {
+        match volume.kind().kind {
+            DataKind::HounsfieldCt { water } => water + TABLE_HOUNSFIELD,
+            _ => self.layer().transfer.value_at_opacity_share(MATERIAL_OPACITY_SHARE),
         }
     }
 }

@@ -87,15 +87,15 @@ impl TransferFunction {
         opacity(self.points.last()) >= opacity(self.points.first())
     }
 
-    /// Returns the first value, from the transparent end, at which opacity reaches half of its maximum; 0 without
+    /// Returns the first value, from the transparent end, at which opacity reaches a share of its maximum; 0 without
     /// points.
-    fn half_opacity_value(&self) -> f64 {
+    pub(super) fn value_at_opacity_share(&self, share_of_largest: f64) -> f64 {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return 0.0 };
         let largest = self.points.iter().map(|point| point.opacity).fold(0.0, f64::max);
         let ends = if self.is_rising() { [first.value, last.value] } else { [last.value, first.value] };
         let steps = (0..=ISOVALUE_STEPS).map(|step| f64::from(step) / f64::from(ISOVALUE_STEPS));
         let mut values = steps.map(|share| ends[0] + (ends[1] - ends[0]) * share);
-        values.find(|value| self.opacity_at(*value) >= 0.5 * largest).unwrap_or(ends[0])
+        values.find(|value| self.opacity_at(*value) >= share_of_largest * largest).unwrap_or(ends[0])
     }
 
     /// Returns the function with these colours that is opaque on one side of a value, that of high values for a rising
@@ -141,7 +141,7 @@ impl Settings {
 
     /// Returns the isovalue of surfaces: the chosen one, or that of the curve.
     pub fn isovalue(&self) -> f64 {
-        self.mode.isovalue.unwrap_or_else(|| self.layer().transfer.half_opacity_value())
+        self.mode.isovalue.unwrap_or_else(|| self.layer().transfer.value_at_opacity_share(0.5))
     }
 
     /// Returns the settings whose material is what the mode shows, so that passes and keys need only know of

@@ -39,6 +39,11 @@ impl Volume {
             Some(padding) => reduced.with_padding(padding)?,
             None => reduced,
         };
+        let reduced = match self.hidden_table() {
+            // If all blocks lie in it, their values are shown.
+            Some(table) => reduced.clone().without_known_table(table.in_blocks(block)).unwrap_or(reduced),
+            None => reduced,
+        };
         let reduced = reduced.with_metadata_of(self);
         Ok(Self { grid: reduced.grid.with_blocks_of(&self.grid, block, 0.5 * (edges - 1.0)), ..reduced })
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::corrections::PatientTable;
 use super::provenance::VolumeProvenance;
 use super::{Volume, VolumeError};
 use crate::ValueMetadata;
@@ -33,6 +34,30 @@ impl Volume {
         let voxels = self.voxels.with_padding(self.grid.dims(), padding_value)?;
         // The padding value affects what is shown, like the values themselves.
         Ok(Self { voxels, content_id: self.content_id.rotate_left(9) ^ padding_value.to_bits(), ..self })
+    }
+
+    /// Hides the table under a body, whose voxels then count as missing; `threshold` is the value from which on voxels
+    /// are material. Returns the volume as it is if there is no table.
+    ///
+    /// # Errors
+    /// Fails if no voxel is left.
+    pub fn without_table(self, threshold: f64) -> Result<Self, VolumeError> {
+        match PatientTable::find(&self, threshold) {
+            Some(table) => self.without_known_table(table),
+            None => Ok(self),
+        }
+    }
+
+    /// Hides a known table.
+    pub(super) fn without_known_table(self, table: PatientTable) -> Result<Self, VolumeError> {
+        let voxels = self.voxels.without_table(self.grid.dims(), Arc::new(table))?;
+        // What is hidden affects what is shown, like the values themselves.
+        Ok(Self { voxels, content_id: self.content_id.rotate_left(13) ^ 0x7461_626c_65, ..self })
+    }
+
+    /// Returns the table under a body that is hidden, if there is one.
+    pub fn hidden_table(&self) -> Option<&PatientTable> {
+        self.voxels.table()
     }
 
     /// Sets whether world space is right-anterior-superior, as the file states of a body.

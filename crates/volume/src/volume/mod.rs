@@ -22,7 +22,8 @@ mod voxel_statistics;
 pub use block_average::BlockPartition;
 pub use block_average::block_counts;
 pub use corrections::{
-    AnatomicalAxes, AxisOrder, Corrections, Flips, Orientation, PaddingValue, SpacingUnit, ValueScale,
+    AnatomicalAxes, AxisOrder, Corrections, Flips, Orientation, PaddingValue, PatientTable, SpacingUnit,
+    ValueScale,
 };
 pub use density_mapping::DensityMapping;
 pub use error::VolumeError;

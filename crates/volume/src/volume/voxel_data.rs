@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::corrections::PatientTable;
 use super::density_mapping::DensityMapping;
 use super::error::VolumeError;
 use super::missing::MissingVoxels;
@@ -16,6 +17,8 @@ pub(super) struct VoxelData {
     samples: Arc<Samples>,
     /// Value of missing voxels, besides those that are not finite.
     padding_value: Option<f64>,
+    /// Table under a body, whose voxels count as missing.
+    table: Option<Arc<PatientTable>>,
     /// Metadata of the values, as the file states it.
     metadata: ValueMetadata,
     /// Length in mm to which opacities refer, if the values have one.
@@ -32,10 +35,11 @@ impl VoxelData {
     /// # Errors
     /// Fails if no value is finite, or the span of the values exceeds the range of numbers.
     pub(super) fn new(samples: Arc<Samples>, dims: [usize; 3]) -> Result<Self, VolumeError> {
-        let statistics = VoxelStatistics::from_samples(&samples, dims, None)?;
+        let statistics = VoxelStatistics::from_samples(&samples, dims, None, None)?;
         Ok(Self {
             samples,
             padding_value: None,
+            table: None,
             metadata: ValueMetadata::default(),
             opacity_unit_mm: None,
             density_mapping: DensityMapping::Range(statistics.ranges.robust),
@@ -53,13 +57,30 @@ impl VoxelData {
 
     /// Sets the padding value, which is [as stored](Self::as_stored).
     pub(super) fn with_padding(self, dims: [usize; 3], padding_value: f64) -> Result<Self, VolumeError> {
-        let statistics = VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value))?;
+        let statistics =
+            VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value), self.table.as_deref())?;
         Ok(Self {
             padding_value: Some(padding_value),
             density_mapping: DensityMapping::Range(statistics.ranges.robust),
             statistics,
             ..self
         })
+    }
+
+    /// Hides a table: its voxels count as missing.
+    pub(super) fn without_table(
+        self,
+        dims: [usize; 3],
+        table: Arc<PatientTable>,
+    ) -> Result<Self, VolumeError> {
+        let statistics =
+            VoxelStatistics::from_samples(&self.samples, dims, self.padding_value, Some(&table))?;
+        Ok(Self { table: Some(table), statistics, ..self })
+    }
+
+    /// Returns the table that is hidden, if there is one.
+    pub(super) fn table(&self) -> Option<&PatientTable> {
+        self.table.as_deref()
     }
 
     /// Sets the metadata of the values.
@@ -94,7 +115,9 @@ impl VoxelData {
 
     /// Returns true if both have the same samples in memory and treat the same ones as missing.
     pub(super) fn shares_samples(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.samples, &other.samples) && self.padding_value == other.padding_value
+        Arc::ptr_eq(&self.samples, &other.samples)
+            && self.padding_value == other.padding_value
+            && self.table == other.table
     }
 
     /// Returns the value of missing voxels, besides those that are not finite.

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::corrections::PatientTable;
 use super::error::VolumeError;
 use super::kind::{DataKind, DetectedKind};
 use super::label_set::LabelSet;
@@ -28,7 +29,7 @@ pub(super) struct VoxelStatistics {
 }
 
 impl VoxelStatistics {
-    /// Scans the samples of a grid; voxels with the padding value are missing.
+    /// Scans the samples of a grid; voxels with the padding value, and those of a table, are missing.
     ///
     /// # Errors
     /// Fails if no value is finite and present, or the span of the values exceeds the range of numbers.
@@ -36,6 +37,7 @@ impl VoxelStatistics {
         samples: &Samples,
         dims: [usize; 3],
         padding: Option<f64>,
+        table: Option<&PatientTable>,
     ) -> Result<Self, VolumeError> {
         // No value equals NaN, so that none is left out.
         let excluded = padding.unwrap_or(f64::NAN);
@@ -47,8 +49,12 @@ impl VoxelStatistics {
         }
         let ranges = ValueRanges::from_samples_except(samples, value_range, excluded);
         let is_present = |value: &f64| value.is_finite() && Some(*value) != padding;
-        let value = |voxel: usize| Some(samples.value(voxel)).filter(is_present);
-        let missing = if non_finite_voxels > 0 || padding.is_some() {
+        let is_hidden = |at: usize| {
+            let voxel = || [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])];
+            table.is_some_and(|table| table.contains(voxel()))
+        };
+        let value = |at: usize| Some(samples.value(at)).filter(is_present).filter(|_| !is_hidden(at));
+        let missing = if non_finite_voxels > 0 || padding.is_some() || table.is_some() {
             MissingVoxels::find(dims, value).map(Arc::new)
         } else {
             None

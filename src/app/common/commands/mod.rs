@@ -174,6 +174,8 @@ pub(crate) enum AppCommand {
     FacePlane,
     /// Show or hide the floor under the volume.
     ToggleFloor,
+    /// Hide or show the table under a body.
+    ToggleTable,
     /// Measure the brightness and set the balance.
     Balance,
     /// Show or hide the side panel.
@@ -234,6 +236,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::TogglePlane,
         AppCommand::FacePlane,
         AppCommand::ToggleFloor,
+        AppCommand::ToggleTable,
         AppCommand::AddLight,
         AppCommand::TryLooks,
         AppCommand::TryLights,

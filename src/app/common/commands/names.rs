@@ -74,6 +74,7 @@ impl AppCommand {
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
             Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
+            Self::ToggleTable => text::commands::TOGGLE_TABLE,
             Self::ShowPalette => text::commands::SHOW_PALETTE,
             Self::UseLights(_) => text::commands::USE_LIGHTS,
             Self::UseLook(_) => text::commands::USE_LOOK,

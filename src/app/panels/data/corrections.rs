@@ -3,7 +3,7 @@
 use eframe::egui::{self, DragValue, Ui};
 
 use super::super::controls::{
-    format_number, format_spacing as spacing_in_words, reset_button_cell, row, unlabelled_row,
+    format_number, format_spacing as spacing_in_words, reset_button_cell, row, switch_row, unlabelled_row,
 };
 use crate::app::common::reveal;
 use crate::app::common::volume_facts::VolumeFacts;
@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
         let pending_id = ui.scope_id().with("held");
         let known = settings.volume;
         let mut edited = ui.data(|data| data.get_temp(pending_id)).unwrap_or(known);
-        rows(ui, &mut edited, &volume.volume);
+        rows(ui, &mut edited, &volume.volume, settings);
         edited.sanitise();
         let is_held = ui.ctx().dragged_id().is_some();
         if is_held && edited != known {
@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     });
 }
 
-fn rows(ui: &mut Ui, by: &mut Corrections, volume: &Volume) {
+fn rows(ui: &mut Ui, by: &mut Corrections, volume: &Volume, settings: &Settings) {
     let uncorrected = volume.as_opened();
     spacing(ui, by, uncorrected);
     unit(ui, by, uncorrected);
@@ -54,6 +54,7 @@ fn rows(ui: &mut Ui, by: &mut Corrections, volume: &Volume) {
     orientation(ui, by, uncorrected);
     padding(ui, by, uncorrected);
     value_scale(ui, &mut by.value_scale);
+    table(ui, by, volume, settings);
     unlabelled_row(ui, |ui| {
         let button = egui::Button::new(text::corrections::RESET.name);
         let response = ui.add_enabled(!by.is_none(), button);
@@ -214,6 +215,17 @@ fn padding(ui: &mut Ui, by: &mut Corrections, opened: &Volume) {
             let field = DragValue::new(value).speed(speed).max_decimals(6).update_while_editing(false);
             ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tooltip);
         });
+    }
+}
+
+/// Shows the switch that hides the table under a body, and whether one was found.
+fn table(ui: &mut Ui, by: &mut Corrections, volume: &Volume, settings: &Settings) {
+    let mut is_hidden = by.hidden_table.is_some();
+    if switch_row(ui, text::corrections::HIDE_TABLE, &mut is_hidden).changed() {
+        by.hidden_table = is_hidden.then(|| settings.material_threshold(volume));
+    }
+    if volume.corrections().hidden_table.is_some() && volume.hidden_table().is_none() {
+        ui.weak(text::corrections::NO_TABLE);
     }
 }
 

@@ -31,6 +31,14 @@ impl LookEditor {
         floor.on
     }
 
+    /// Hides the table under a body, or shows it again, and returns true if it is hidden.
+    pub(crate) fn toggle_table(&mut self) -> bool {
+        if let Some(dataset) = self.viewport.dataset() {
+            self.document.settings.toggle_table(dataset.volume());
+        }
+        self.document.settings.volume.hidden_table.is_some()
+    }
+
     /// Shows the volume in a render mode, and names it; a surface lies at `value`, if there is one.
     pub(crate) fn use_render_mode(&mut self, kind: RenderMode, value: Option<f64>) {
         let settings = &mut self.document.settings;

@@ -43,6 +43,12 @@ pub(crate) const UNKNOWN: &str = "Unknown";
 pub(crate) const NO_PADDING: &str = "None";
 /// Choice of a padding value that is typed.
 pub(crate) const PADDING_TYPED: &str = "Value";
+pub(crate) const HIDE_TABLE: ControlText = control_text(
+    "Hide table",
+    "Finds the table under a body in a scan, and hides it with its shadow; the voxels of the file stay as they are",
+);
+/// Hint where no table was found.
+pub(crate) const NO_TABLE: &str = "No table was found";
 pub(crate) const RESET: ControlText =
     control_text("All as in the file", "Removes all corrections, also those remembered for this file");
 

@@ -5,6 +5,7 @@ use chiaroscuro_scene::{
     Camera, Clipping, LightSettings, OutputSettings, QualityPreset, RenderModeSettings, SavedEntry, Settings,
     ShadowSettings, TransferFunction, VolumeLayer,
 };
+use chiaroscuro_volume::Corrections;
 
 /// Description of a step that only changes the kind of data for which the look was made.
 pub(crate) const KIND_OF_DATA: &str = "change kind of data";
@@ -49,7 +50,7 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         with(*sampling != after.sampling, "change sampling"),
         with(*output != after.output, describe_output(output, &after.output)),
         with(*kept != after.kept, describe_saved_views(kept, &after.kept)),
-        with(*volume != after.volume, "correct file metadata"),
+        with(*volume != after.volume, describe_corrections(volume, &after.volume)),
     ];
     let changed: Vec<String> = parts.into_iter().flatten().collect();
     match &changed[..] {
@@ -160,6 +161,15 @@ fn describe_transfer(before: &TransferFunction, after: &TransferFunction) -> &'s
         "remove point of transfer function"
     } else {
         "change transfer function"
+    }
+}
+
+fn describe_corrections(before: &Corrections, after: &Corrections) -> &'static str {
+    let is_table_alone = Corrections { hidden_table: after.hidden_table, ..*before } == *after;
+    match (is_table_alone, after.hidden_table) {
+        (true, Some(_)) => "hide table",
+        (true, None) => "show table",
+        (false, _) => "correct file metadata",
     }
 }
 

@@ -64,6 +64,7 @@ pub(crate) const TOGGLE_CROP: &str = "Crop box";
 pub(crate) const TOGGLE_PLANE: &str = "Clip plane";
 pub(crate) const FACE_PLANE: &str = "Clip plane towards the eye";
 pub(crate) const TOGGLE_FLOOR: &str = "Floor with shadows";
+pub(crate) const TOGGLE_TABLE: &str = "Hide the table under a body";
 
 pub(crate) const ADD_LIGHT: &str = "Add light";
 pub(crate) const USE_LIGHTS: &str = "Use lights";

@@ -50,6 +50,7 @@ pub(crate) const LABELS: PaletteSynonyms = synonyms("segmentation segments label
 
 pub(crate) const RAY_PROJECTIONS: PaletteSynonyms =
     synonyms("mip minip maximum minimum mean average intensity projection xray radiograph");
+pub(crate) const TABLE: PaletteSynonyms = synonyms("remove hide table bed couch patient scanner board");
 pub(crate) const ISOSURFACE: PaletteSynonyms = synonyms("isosurface iso surface isovalue threshold");
 
 pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
@@ -79,7 +80,7 @@ pub(crate) const NO_DEPTH_OF_FIELD: PaletteSynonyms = synonyms_with_note(
     "There is no depth of field: the whole picture is sharp",
 );
 pub(crate) const NO_OBJECTS: PaletteSynonyms = synonyms_with_note(
-    "remove table hide object holder bed couch island islands largest connected component",
+    "remove object holder island islands largest connected component",
     "Single objects are not removed; a crop box or clip plane hides all that lies beyond it",
 );
 pub(crate) const NO_SEGMENTATION: PaletteSynonyms = synonyms_with_note(

@@ -203,7 +203,7 @@ mod tests {
             ("mip", AppCommand::UseRenderMode(RenderMode::Maximum), false),
             ("maximum intensity projection", AppCommand::UseRenderMode(RenderMode::Maximum), false),
             ("isosurface", AppCommand::UseRenderMode(RenderMode::Surface), false),
-            ("remove table", AppCommand::ToggleCrop, true),
+            ("remove table", AppCommand::ToggleTable, false),
             ("island", AppCommand::ToggleCrop, true),
             ("segmentation", AppCommand::OpenDialog, true),
         ] {

@@ -76,6 +76,7 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
                 .map(|mode| Some(AppCommand::UseRenderMode(mode)))
                 .to_vec(),
         ),
+        supported(palette_synonyms::TABLE, vec![Some(AppCommand::ToggleTable)]),
         supported(palette_synonyms::ISOSURFACE, vec![Some(AppCommand::UseRenderMode(RenderMode::Surface))]),
         missing(
             palette_synonyms::NO_PLAYING,

@@ -55,6 +55,9 @@ impl Volume {
             opened.with_corrected_values(by)?
         };
         volume.grid = grid;
+        if let Some(threshold) = by.hidden_table {
+            volume = volume.without_table(threshold)?;
+        }
         // Scaled with the object, so that opacities stay the same for every share of it.
         let longer = volume.scene().mm_per_unit / opened.scene().mm_per_unit;
         volume.voxels.opacity_unit_mm = opened.opacity_unit_mm().map(|unit| unit * longer);

@@ -3,6 +3,7 @@
 
 mod apply;
 mod axes;
+mod patient_table;
 mod rescale;
 mod spacing;
 #[cfg(test)]
@@ -10,6 +11,7 @@ mod tests;
 
 pub(super) use apply::AppliedCorrections;
 pub use axes::{AnatomicalAxes, AxisOrder, Flips, Orientation};
+pub use patient_table::PatientTable;
 pub use spacing::SpacingUnit;
 
 use serde::{Deserialize, Serialize};
@@ -43,6 +45,9 @@ pub struct Corrections {
     pub padding_value: PaddingValue,
     /// Linear scale from numbers of the file to values.
     pub value_scale: ValueScale,
+    /// Value from which on voxels are material, among the values after [`Self::value_scale`], if the table under a
+    /// body is hidden; `None` leaves it.
+    pub hidden_table: Option<f64>,
 }
 
 /// Padding value of missing voxels; in JSON null, `"new"` or a number.
@@ -145,6 +150,7 @@ impl Corrections {
         orientation: None,
         padding_value: PaddingValue::InFile,
         value_scale: ValueScale::IDENTITY,
+        hidden_table: None,
     };
 
     /// Returns true if nothing is corrected.
@@ -154,17 +160,33 @@ impl Corrections {
 
     /// Returns true if voxels keep their values and only their positions may change.
     pub fn keeps_values(&self) -> bool {
-        self.padding_value == PaddingValue::InFile && self.value_scale.is_none()
+        self.padding_value == PaddingValue::InFile
+            && self.value_scale.is_none()
+            && self.hidden_table.is_none()
     }
 
     /// Returns true if other corrections change values in the same way.
     fn corrects_values_like(&self, other: &Self) -> bool {
-        self.padding_value == other.padding_value && self.value_scale == other.value_scale
+        // Where a table lies depends on lengths and axes.
+        self.padding_value == other.padding_value
+            && self.value_scale == other.value_scale
+            && self.hidden_table.is_none()
+            && other.hidden_table.is_none()
     }
 
     /// Resets numbers that are out of range to their defaults.
     pub fn sanitise(&mut self) {
-        let Self { spacing, unit, flip: _, axis_order: _, orientation: _, padding_value, value_scale } = self;
+        let Self {
+            spacing,
+            unit,
+            flip: _,
+            axis_order: _,
+            orientation: _,
+            padding_value,
+            value_scale,
+            hidden_table,
+        } = self;
+        *hidden_table = hidden_table.filter(|value| value.is_finite());
         let unit_mm = unit.map_or(1.0, SpacingUnit::mm);
         let is_usable = |spacing: &[f64; 3]| {
             let spacing_mm = spacing.map(|length| length * unit_mm);
@@ -188,7 +210,8 @@ impl Corrections {
 
     /// Describes each correction in a few words.
     pub fn in_words(&self) -> Vec<String> {
-        let Self { spacing, unit, flip, axis_order, orientation, padding_value, value_scale } = self;
+        let Self { spacing, unit, flip, axis_order, orientation, padding_value, value_scale, hidden_table } =
+            self;
         let mut words = Vec::new();
         let symbol = unit.unwrap_or(SpacingUnit::Mm).symbol();
         match spacing {
@@ -216,6 +239,7 @@ impl Corrections {
         if !value_scale.is_none() {
             words.push(format!("values × {} + {}", value_scale.slope, value_scale.intercept));
         }
+        words.extend(hidden_table.map(|value| format!("table hidden, material from {value}")));
         words
     }
 }

@@ -39,8 +39,16 @@ impl VoxelGrid {
 
     /// Computes the corrected transform from index space to world space.
     pub(crate) fn corrected_affine(&self, by: &Corrections) -> DAffine3 {
-        let Corrections { spacing, unit, flip, axis_order, orientation, padding_value: _, value_scale: _ } =
-            by;
+        let Corrections {
+            spacing,
+            unit,
+            flip,
+            axis_order,
+            orientation,
+            padding_value: _,
+            value_scale: _,
+            hidden_table: _,
+        } = by;
         let is_moved = spacing.is_some()
             || unit.is_some()
             || orientation.is_some_and(|orientation| orientation != Orientation::Unknown)

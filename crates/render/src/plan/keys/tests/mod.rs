@@ -233,6 +233,7 @@ fn every_setting_causes_what_the_design_says() {
         ("volume.axis_order", "zyx", ChangeEffect::Nothing),
         ("volume.orientation", "LPS", ChangeEffect::Nothing),
         ("volume.padding_value", "-2000", ChangeEffect::Nothing),
+        ("volume.hidden_table", "-500", ChangeEffect::Nothing),
         ("volume.value_scale.slope", "2", ChangeEffect::Nothing),
         ("volume.value_scale.intercept", "-1024", ChangeEffect::Nothing),
     ];
