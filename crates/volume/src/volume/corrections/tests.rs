@@ -311,6 +311,7 @@ fn unusable_numbers_are_reset() {
         |by| by.spacing = Some([-1.0, 1.0, 1.0]),
         |by| by.spacing = Some([1e-8, 1.0, 1.0]),
         |by| by.padding_value = PaddingValue::Value(f64::INFINITY),
+        |by| by.hidden_table = Some(f64::NAN),
         |by| by.value_scale.slope = 0.0,
         |by| by.value_scale.slope = f64::NAN,
         |by| by.value_scale.intercept = f64::NEG_INFINITY,

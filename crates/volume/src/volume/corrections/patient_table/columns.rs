@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::TableOrientation;
 use crate::volume::Volume;
 
-/// Edges of the blocks of voxels whose largest values are looked at, across and along a table, in millimetres: finer
-/// than a table's bends, and thin sheets that cross a block still count.
+/// Distances of columns across and along a table, in millimetres. Across, the largest values of all voxels between two
+/// columns count, since sheets may be as thin as a voxel; along, a table hardly changes.
 const BLOCK_MM: [f64; 2] = [2.0, 4.0];
 
 /// Largest thickness of a layer of a table, in millimetres: shells have one or two, boards up to 30.
@@ -60,11 +60,10 @@ impl ThinLayers {
             let is_material = |depth: usize| {
                 let mut voxel = [0; 3];
                 voxel[down] = orientation.index_at(depth, dims);
-                (0..block[1]).any(|dv| {
-                    (0..block[0]).any(|du| {
-                        (voxel[across], voxel[along]) = (u + du, v + dv);
-                        volume.value(voxel[0], voxel[1], voxel[2]) >= threshold
-                    })
+                voxel[along] = v;
+                (u..u + block[0]).any(|u| {
+                    voxel[across] = u;
+                    volume.value(voxel[0], voxel[1], voxel[2]) >= threshold
                 })
             };
             Column::new(dims[down], max_layer as usize, min_gap, is_material)

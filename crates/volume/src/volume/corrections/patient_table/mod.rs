@@ -2,8 +2,8 @@
 //!
 //! A table is a sheet, flat or curved, which is nearly the same in all slices along the scanner's axis, while a body is
 //! not. Seen from outside, columns of voxels across it meet thin layers, the last of which before the body is its top.
-//! Where the body touches the top, it cannot be told from the body; but the sheet goes on there as a parabola, which is
-//! fitted to its top beside the body. All that lies beyond the top is the table.
+//! Where the body touches the top, it cannot be told from the body; but the sheet goes on there as a parabola or a
+//! circle, which is fitted to its top beside the body. All that lies beyond the top is the table.
 
 mod columns;
 mod profile;
@@ -36,9 +36,13 @@ impl TableOrientation {
         if self.is_at_end { dims[self.down] - 1 - depth } else { depth }
     }
 
-    /// Returns all orientations, with the scanner's axis along any axis of the grid.
-    fn all() -> impl Iterator<Item = Self> {
-        (0..3).flat_map(|along| {
+    /// Returns the orientations that a table may have in a volume, with the scanner's axis along that from feet to head,
+    /// or along any axis of the grid if that is unknown.
+    fn possible_in(volume: &Volume) -> impl Iterator<Item = Self> {
+        let upwards = volume.world_from_index().matrix3.transpose().z_axis.abs();
+        let is_known = volume.is_anatomical();
+        let may_be_along = move |axis: &usize| !is_known || upwards[*axis] == upwards.max_element();
+        (0..3).filter(may_be_along).flat_map(|along| {
             [(along + 1) % 3, (along + 2) % 3].into_iter().flat_map(move |down| {
                 let across = 3 - along - down;
                 [false, true].map(|is_at_end| Self { down, is_at_end, across, along })
@@ -61,7 +65,7 @@ impl PatientTable {
     /// Finds the table in a volume whose material has at least the value `threshold`; `None` if there is none.
     pub fn find(volume: &Volume, threshold: f64) -> Option<Self> {
         let dims = volume.dims();
-        let found = TableOrientation::all().filter_map(|orientation| {
+        let found = TableOrientation::possible_in(volume).filter_map(|orientation| {
             let layers = ThinLayers::new(volume, threshold, orientation)?;
             let top = TableTop::fit(&layers)?;
             let is_clear = layers.cut_share(|u, v| top.depth(u, v)) <= MAX_CUT_SHARE;
@@ -84,6 +88,7 @@ impl PatientTable {
         let TableOrientation { down, across, along, .. } = self.orientation;
         // The mapping is its own inverse.
         let depth = self.orientation.index_at(voxel[down], self.dims) as f64;
-        self.top.depth(voxel[across] as f64, voxel[along] as f64).is_some_and(|top| depth < top)
+        depth < self.top.limit()
+            && self.top.depth(voxel[across] as f64, voxel[along] as f64).is_some_and(|top| depth < top)
     }
 }

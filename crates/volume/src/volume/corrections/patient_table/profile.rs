@@ -9,7 +9,7 @@ const TILT_STEP: f64 = 0.005;
 /// Smallest share of the columns along a table in which a layer must be at the same depth.
 const MIN_SHARE: f64 = 0.3;
 
-/// Largest distance of layers from the fitted top, in millimetres: bends that a parabola does not have.
+/// Largest distance of layers from the fitted top, in millimetres: bends that a shape does not have.
 const MAX_MISFIT_MM: f64 = 4.0;
 
 /// Smallest share of the grid's width on which the top must be seen.
@@ -18,7 +18,7 @@ const MIN_WIDTH_SHARE: f64 = 0.12;
 /// Weight of layers in front of a fitted top, compared with those at it: what lies there is part of the table, too.
 const FRONT_WEIGHT: f64 = 2.0;
 
-/// Number of places across between which parabolas are tried.
+/// Number of places across between which shapes are tried.
 const TRIED_PLACES: usize = 18;
 
 /// Distance by which a top extends beyond the outermost columns in which it is seen, in millimetres.
@@ -31,6 +31,8 @@ pub(super) struct TableTop {
     depths: Vec<f32>,
     /// Change of the depth from voxel to voxel along the table.
     tilt: f64,
+    /// Depth from which on no voxel is beyond the top.
+    limit: f64,
     score: f64,
 }
 
@@ -53,11 +55,11 @@ impl TableTop {
             .map(|tilt| (tilt, find_ridges(layers, tilt)))
             .max_by(|(s, a), (t, b)| strength(a).total_cmp(&strength(b)).then(t.abs().total_cmp(&s.abs())))?;
         let misfit = MAX_MISFIT_MM / layers.spacing_mm[1];
-        let parabola = best_parabola(&ridges, layers.size[0], misfit)?;
+        let shape = best_shape(&ridges, layers, misfit)?;
         let at_top: Vec<Ridge> = ridges
             .iter()
             .copied()
-            .filter(|ridge| (ridge.depth - parabola.at(ridge.u)).abs() <= misfit)
+            .filter(|ridge| (ridge.depth - shape.at(ridge.u)).abs() <= misfit)
             .collect();
         let seen: std::collections::BTreeSet<usize> = at_top.iter().map(|ridge| ridge.u).collect();
         if (seen.len() as f64) < MIN_WIDTH_SHARE * layers.size[0] as f64 {
@@ -70,16 +72,29 @@ impl TableTop {
             let own = at_top.iter().filter(|ridge| ridge.u == u).map(|ridge| ridge.depth);
             own.fold(None, |top: Option<f64>, depth| Some(top.map_or(depth, |top| top.max(depth))))
         };
-        // Measured where it is seen, and else the parabola, moved to meet the measured ends of the gap.
+        // Measured where it is seen, and else the shape, moved to meet the measured ends of the gap.
         let offsets: Vec<(usize, f64)> =
-            seen.iter().filter_map(|&u| Some((u, column_depth(u)? - parabola.at(u)))).collect();
-        let depth_at = |u: usize| parabola.at(u) + interpolated(&offsets, u);
+            seen.iter().filter_map(|&u| Some((u, column_depth(u)? - shape.at(u)))).collect();
+        let depth_at = |u: usize| shape.at(u) + interpolated(&offsets, u);
         let depths = (0..layers.size[0] * layers.block[0]).map(|voxel| {
             let u = voxel / layers.block[0];
-            if range.contains(&u) { depth_at(u) as f32 } else { f32::NAN }
+            if !range.contains(&u) {
+                return f32::NAN;
+            }
+            // Beside the columns in which a cradle is seen are its walls.
+            (if (first..=last).contains(&u) { depth_at(u) } else { shape.depth_of_wall(u) }) as f32
         });
+        let depths: Vec<f32> = depths.collect();
+        let tilt = tilt_per_voxel(layers, tilt);
+        let deepest = depths.iter().copied().filter(|depth| depth.is_finite()).fold(0.0, f32::max);
+        let limit = f64::from(deepest) + (tilt * (layers.size[1] * layers.block[1]) as f64).max(0.0);
         let score = at_top.iter().map(|ridge| ridge.share).sum::<f64>() / layers.size[0] as f64;
-        Some(Self { depths: depths.collect(), tilt: tilt_per_voxel(layers, tilt), score })
+        Some(Self { depths, tilt, limit, score })
+    }
+
+    /// Returns the depth from which on no voxel is beyond the top.
+    pub(super) fn limit(&self) -> f64 {
+        self.limit
     }
 
     /// Returns the depth of the top at a voxel across and along; `None` beside the table.
@@ -138,33 +153,72 @@ fn find_ridges(layers: &ThinLayers, tilt: f64) -> Vec<Ridge> {
     (0..width).flat_map(ridges).collect()
 }
 
-/// Parabola over columns across the table.
+/// Shape of a top across the table: depth in voxels over columns.
 #[derive(Debug, Clone, Copy)]
-struct Parabola {
-    coefficients: [f64; 3],
+enum Shape {
+    /// Flat or bent board: coefficients of a parabola.
+    Board([f64; 3]),
+    /// Cradle, as head holders are: middle and radius of a circle, in voxels of depth, with the number of them per
+    /// column.
+    Cradle { middle: [f64; 2], radius: f64, per_column: f64 },
 }
 
-impl Parabola {
-    /// Creates the parabola through three ridges; `None` if two are in the same column.
-    fn through([a, b, c]: [Ridge; 3]) -> Option<Self> {
+impl Shape {
+    /// Returns the shapes through three ridges in different columns.
+    fn through([a, b, c]: [Ridge; 3], per_column: f64) -> impl Iterator<Item = Self> {
         let [x, y, z] = [a, b, c].map(|ridge| ridge.u as f64);
-        if x == y || y == z || x == z {
-            return None;
-        }
+        let is_proper = x != y && y != z && x != z;
         // Newton's divided differences.
         let first = (b.depth - a.depth) / (y - x);
         let second = ((c.depth - b.depth) / (z - y) - first) / (z - x);
-        Some(Self { coefficients: [a.depth - first * x + second * x * y, first - second * (x + y), second] })
+        let board = Self::Board([a.depth - first * x + second * x * y, first - second * (x + y), second]);
+        // Equal distances from the middle, relative to the first ridge (Cramer's rule).
+        let [p, q] = [b, c].map(|ridge| [(ridge.u as f64 - x) * per_column, ridge.depth - a.depth]);
+        let [p2, q2] = [p, q].map(|way| way[0] * way[0] + way[1] * way[1]);
+        let area = 2.0 * (p[0] * q[1] - p[1] * q[0]);
+        let way = [(q[1] * p2 - p[1] * q2) / area, (p[0] * q2 - q[0] * p2) / area];
+        let middle = [x * per_column + way[0], a.depth + way[1]];
+        let cradle = Self::Cradle { middle, radius: way[0].hypot(way[1]), per_column };
+        // The middle of a cradle is on the side of the body.
+        let is_cradle = area.abs() > 1e-6 && way[1] > 0.0;
+        let shapes = [is_proper.then_some(board), (is_proper && is_cradle).then_some(cradle)];
+        shapes.into_iter().flatten()
     }
 
+    /// Returns the depth at a column; for columns beside a cradle that of its middle.
     fn at(&self, u: usize) -> f64 {
-        let [a, b, c] = self.coefficients;
-        a + u as f64 * (b + u as f64 * c)
+        let u = u as f64;
+        match self {
+            Self::Board([a, b, c]) => a + u * (b + u * c),
+            Self::Cradle { middle, radius, per_column } => {
+                let aside = u * per_column - middle[0];
+                middle[1] - (radius * radius - aside * aside).max(0.0).sqrt()
+            }
+        }
+    }
+
+    /// Returns the depth up to which the table reaches at its sides: that of the middle for cradles, which are halves of
+    /// tubes at most.
+    fn depth_of_wall(&self, u: usize) -> f64 {
+        match self {
+            Self::Board(_) => self.at(u),
+            Self::Cradle { middle, .. } => middle[1],
+        }
+    }
+
+    /// Returns true if the bend is one that tables of this width have.
+    fn is_likely(&self, width: usize) -> bool {
+        match self {
+            Self::Board([.., bend]) => bend.abs() * (width as f64).powi(2) <= width as f64,
+            Self::Cradle { radius, per_column, .. } => *radius <= 2.0 * width as f64 * per_column,
+        }
     }
 }
 
-/// Returns the parabola at which most layers lie, and in front of which few do.
-fn best_parabola(ridges: &[Ridge], width: usize, misfit: f64) -> Option<Parabola> {
+/// Returns the shape at which most layers lie, and in front of which few do.
+fn best_shape(ridges: &[Ridge], layers: &ThinLayers, misfit: f64) -> Option<Shape> {
+    let [width, _] = layers.size;
+    let per_column = layers.block[0] as f64 * layers.spacing_mm[0] / layers.spacing_mm[1];
     let step = (ridges.len() as f64 / TRIED_PLACES as f64).max(1.0);
     let tried: Vec<Ridge> =
         (0..TRIED_PLACES).filter_map(|at| ridges.get((at as f64 * step) as usize).copied()).collect();
@@ -181,9 +235,9 @@ fn best_parabola(ridges: &[Ridge], width: usize, misfit: f64) -> Option<Parabola
         .into_iter()
         .chain((0..TRIED_PLACES).filter_map(|at| front.get((at as f64 * step) as usize).copied()))
         .collect();
-    let score = |parabola: &Parabola| {
+    let score = |shape: &Shape| {
         let part = |ridge: &Ridge| {
-            let before = ridge.depth - parabola.at(ridge.u);
+            let before = ridge.depth - shape.at(ridge.u);
             if before.abs() <= misfit {
                 ridge.share
             } else if before > 0.0 {
@@ -194,22 +248,18 @@ fn best_parabola(ridges: &[Ridge], width: usize, misfit: f64) -> Option<Parabola
         };
         ridges.iter().map(part).sum::<f64>()
     };
-    let mut best: Option<(f64, Parabola)> = None;
+    let mut best: Option<(f64, Shape)> = None;
     for (i, a) in tried.iter().enumerate() {
         for (j, b) in tried.iter().enumerate().skip(i + 1) {
             for c in &tried[j + 1..] {
-                let Some(parabola) = Parabola::through([*a, *b, *c]) else { continue };
-                // Tables bend by less than their width.
-                let bend = parabola.coefficients[2].abs() * (width as f64).powi(2);
-                if bend > width as f64 {
-                    continue;
-                }
-                let reached = score(&parabola);
-                if best.is_none_or(|(most, _)| reached > most) {
-                    best = Some((reached, parabola));
+                for shape in Shape::through([*a, *b, *c], per_column).filter(|shape| shape.is_likely(width)) {
+                    let reached = score(&shape);
+                    if best.is_none_or(|(most, _)| reached > most) {
+                        best = Some((reached, shape));
+                    }
                 }
             }
         }
     }
-    best.filter(|(score, _)| *score > 0.0).map(|(_, parabola)| parabola)
+    best.filter(|(score, _)| *score > 0.0).map(|(_, shape)| shape)
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::Samples;
+use crate::volume::Corrections;
 
 const DIMS: [usize; 3] = [176, 150, 80];
 const SPACING_MM: f64 = 2.4;
@@ -28,6 +29,8 @@ struct Phantom {
     /// Rise across and along the table.
     slopes: [f64; 2],
     has_arms: bool,
+    /// Size of the body, relative to a torso.
+    size: f64,
     noise: f64,
     /// First and last voxel across that are kept.
     kept: [usize; 2],
@@ -42,6 +45,7 @@ const PLAIN: Phantom = Phantom {
     foam_mm: 30.0,
     slopes: [0.0; 2],
     has_arms: false,
+    size: 1.0,
     noise: 20.0,
     kept: [0, DIMS[0]],
 };
@@ -50,7 +54,12 @@ fn curved(x: f64) -> f64 {
     112.0 - x * x / 900.0
 }
 
-fn phantoms() -> [Phantom; 12] {
+/// Half of a tube, as under heads.
+fn cradle(x: f64) -> f64 {
+    (135.0_f64.powi(2) - x * x).max(0.0).sqrt() - 25.0
+}
+
+fn phantoms() -> [Phantom; 14] {
     [
         PLAIN,
         Phantom { name: "touching", gap_mm: -3.0, ..PLAIN },
@@ -63,6 +72,16 @@ fn phantoms() -> [Phantom; 12] {
         Phantom { name: "board", shell_mm: 14.0, foam_mm: 0.0, gap_mm: -2.0, ..PLAIN },
         Phantom { name: "arms", has_arms: true, gap_mm: -2.0, ..PLAIN },
         Phantom { name: "noisy", noise: 90.0, gap_mm: -2.0, ..PLAIN },
+        Phantom {
+            name: "cradle",
+            top: cradle,
+            size: 0.55,
+            half_width_mm: 128.0,
+            foam_mm: 0.0,
+            gap_mm: 14.0,
+            ..PLAIN
+        },
+        Phantom { name: "bent by gravity", top: |x| 104.0 + x.abs() / 12.0, gap_mm: -1.0, ..PLAIN },
         Phantom { name: "narrow", half_width_mm: 120.0, top: curved, gap_mm: 1.0, ..PLAIN },
     ]
 }
@@ -84,9 +103,9 @@ impl Phantom {
         // A back with two curves along the spine.
         let deep = 98.0 + 7.0 * (z / 45.0).sin();
         let lowest = (self.top)(0.0) + self.slopes[1] * z - self.gap_mm;
-        let middle = lowest - 105.0;
+        let middle = lowest - 105.0 * self.size;
         let ellipse = |cx: f64, cy: f64, rx: f64, ry: f64| {
-            let [dx, dy] = [(x - cx) / rx, (y - cy) / ry];
+            let [dx, dy] = [(x - cx) / (rx * self.size), (y - cy) / (ry * self.size)];
             dx * dx + dy * dy < 1.0
         };
         let torso = ellipse(0.0, middle, 155.0 + 12.0 * (z / 60.0).cos(), deep + 7.0);
@@ -139,6 +158,68 @@ impl Phantom {
         let volume = Volume::with_spacing("phantom", dims, DVec3::splat(SPACING_MM), Samples::F32(values));
         (volume.expect("a phantom"), parts, dims)
     }
+}
+
+/// Returns a volume corrected by hiding its table.
+fn without_table(volume: &Volume) -> Volume {
+    volume
+        .corrected(&Corrections { hidden_table: Some(THRESHOLD), ..Corrections::NONE })
+        .expect("a corrected volume")
+}
+
+#[test]
+fn a_hidden_table_is_missing_and_comes_back() {
+    let (volume, parts, dims) = Phantom { gap_mm: -2.0, ..PLAIN }.volume();
+    let hidden = without_table(&volume);
+    let missing = hidden.missing().expect("missing voxels");
+    assert!((0..parts.len()).filter(|&at| parts[at] == Part::Table).all(|at| missing.contains(at)));
+    assert_ne!(hidden.content_id(), volume.content_id());
+    assert_eq!(hidden.value(0, 0, 0), volume.value(0, 0, 0), "values stay");
+    // Corrections that only move voxels keep it, and the volume as opened has it still.
+    let turned = Corrections { hidden_table: Some(THRESHOLD), orientation: None, ..Corrections::NONE };
+    assert_eq!(
+        hidden.corrected(&turned).expect("a volume").missing().map(crate::MissingVoxels::count),
+        Some(missing.count())
+    );
+    assert!(hidden.as_opened().missing().is_none());
+    let back = hidden.corrected(&Corrections::NONE).expect("the volume as opened");
+    assert_eq!((back.content_id(), back.missing()), (volume.content_id(), None));
+    // Averaged blocks in the table are missing, too.
+    let half = hidden.to_block_averaged([2; 3]).expect("half of the voxels");
+    let [nx, ny, _] = half.dims();
+    let missing = half.missing().expect("missing blocks");
+    for at in 0..half.dims().iter().product::<usize>() {
+        let block = [at % nx, at / nx % ny, at / (nx * ny)];
+        let voxels = (0..8)
+            .map(|corner| [0, 1, 2].map(|axis| (2 * block[axis] + (corner >> axis & 1)).min(dims[axis] - 1)));
+        let is_table = voxels.clone().all(|[x, y, z]| parts[x + dims[0] * (y + dims[1] * z)] == Part::Table);
+        assert!(!is_table || missing.contains(at), "{block:?}");
+    }
+}
+
+/// Axes may lie in any order and direction.
+#[test]
+fn tables_are_found_along_every_axis() {
+    let phantom = Phantom { gap_mm: -2.0, ..PLAIN };
+    let (volume, _, [nx, ny, nz]) = phantom.volume();
+    let count = PatientTable::find(&volume, THRESHOLD).map(|table| count_of(&table, [nx, ny, nz]));
+    // z, x, y in place of x, y, z, with the table at the other end.
+    let turned = [nz, nx, ny];
+    let value = |at: usize| {
+        let [z, x, y] = [at % nz, at / nz % nx, at / (nz * nx)];
+        volume.value(x, ny - 1 - y, z) as f32
+    };
+    let samples = Samples::F32((0..nx * ny * nz).map(value).collect());
+    let turned_volume =
+        Volume::with_spacing("turned", turned, DVec3::splat(SPACING_MM), samples).expect("a volume");
+    let found = PatientTable::find(&turned_volume, THRESHOLD).map(|table| count_of(&table, turned));
+    assert!(count.is_some_and(|count| count > 10_000));
+    assert_eq!(found, count);
+}
+
+fn count_of(table: &PatientTable, [nx, ny, nz]: [usize; 3]) -> usize {
+    let voxel = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
+    (0..nx * ny * nz).filter(|&at| table.contains(voxel(at))).count()
 }
 
 /// Returns the share of the body that is hidden, and of the table that is left.
