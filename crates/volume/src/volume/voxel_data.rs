@@ -35,7 +35,7 @@ impl VoxelData {
     /// # Errors
     /// Fails if no value is finite, or the span of the values exceeds the range of numbers.
     pub(super) fn new(samples: Arc<Samples>, dims: [usize; 3]) -> Result<Self, VolumeError> {
-        let statistics = VoxelStatistics::from_samples(&samples, dims, None, None)?;
+        let statistics = VoxelStatistics::from_samples(&samples, dims, None)?;
         Ok(Self {
             samples,
             padding_value: None,
@@ -57,10 +57,10 @@ impl VoxelData {
 
     /// Sets the padding value, which is [as stored](Self::as_stored).
     pub(super) fn with_padding(self, dims: [usize; 3], padding_value: f64) -> Result<Self, VolumeError> {
-        let statistics =
-            VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value), self.table.as_deref())?;
+        let statistics = VoxelStatistics::from_samples(&self.samples, dims, Some(padding_value))?;
         Ok(Self {
             padding_value: Some(padding_value),
+            table: None,
             density_mapping: DensityMapping::Range(statistics.ranges.robust),
             statistics,
             ..self
@@ -68,13 +68,15 @@ impl VoxelData {
     }
 
     /// Hides a table: its voxels count as missing.
+    ///
+    /// # Errors
+    /// Fails if no voxel is left.
     pub(super) fn without_table(
         self,
         dims: [usize; 3],
         table: Arc<PatientTable>,
     ) -> Result<Self, VolumeError> {
-        let statistics =
-            VoxelStatistics::from_samples(&self.samples, dims, self.padding_value, Some(&table))?;
+        let statistics = self.statistics.without_table(&self.samples, dims, self.padding_value, &table)?;
         Ok(Self { table: Some(table), statistics, ..self })
     }
 

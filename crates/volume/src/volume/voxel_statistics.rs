@@ -29,7 +29,7 @@ pub(super) struct VoxelStatistics {
 }
 
 impl VoxelStatistics {
-    /// Scans the samples of a grid; voxels with the padding value, and those of a table, are missing.
+    /// Scans the samples of a grid; voxels with the padding value are missing.
     ///
     /// # Errors
     /// Fails if no value is finite and present, or the span of the values exceeds the range of numbers.
@@ -37,7 +37,6 @@ impl VoxelStatistics {
         samples: &Samples,
         dims: [usize; 3],
         padding: Option<f64>,
-        table: Option<&PatientTable>,
     ) -> Result<Self, VolumeError> {
         // No value equals NaN, so that none is left out.
         let excluded = padding.unwrap_or(f64::NAN);
@@ -48,18 +47,33 @@ impl VoxelStatistics {
             return Err(VolumeError::TooWide { range });
         }
         let ranges = ValueRanges::from_samples_except(samples, value_range, excluded);
-        let is_present = |value: &f64| value.is_finite() && Some(*value) != padding;
-        let is_hidden = |at: usize| {
-            let voxel = || [at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])];
-            table.is_some_and(|table| table.contains(voxel()))
-        };
-        let value = |at: usize| Some(samples.value(at)).filter(is_present).filter(|_| !is_hidden(at));
-        let missing = if non_finite_voxels > 0 || padding.is_some() || table.is_some() {
-            MissingVoxels::find(dims, value).map(Arc::new)
+        let missing = if non_finite_voxels > 0 || padding.is_some() {
+            find_missing(samples, dims, padding, |_| false)
         } else {
             None
         };
         Ok(Self { ranges, non_finite_voxels, missing, kind: OnceLock::new(), labels: OnceLock::new() })
+    }
+
+    /// Returns the statistics of the same voxels without a table, whose voxels count as missing. Ranges and kind stay
+    /// those of the whole volume, so that its look stays, too.
+    ///
+    /// # Errors
+    /// Fails if no voxel is left.
+    pub(super) fn without_table(
+        &self,
+        samples: &Samples,
+        dims: [usize; 3],
+        padding: Option<f64>,
+        table: &PatientTable,
+    ) -> Result<Self, VolumeError> {
+        let is_hidden =
+            |at: usize| table.contains([at % dims[0], at / dims[0] % dims[1], at / (dims[0] * dims[1])]);
+        let missing = find_missing(samples, dims, padding, is_hidden);
+        if missing.as_ref().is_some_and(|missing| missing.count() == samples.len()) {
+            return Err(VolumeError::NothingFinite);
+        }
+        Ok(Self { missing, labels: OnceLock::new(), ..self.clone() })
     }
 
     /// Forgets the kind, as metadata have changed.
@@ -76,4 +90,16 @@ impl VoxelStatistics {
         };
         Self { kind, ..self }
     }
+}
+
+/// Finds the voxels that are not finite, padding or hidden.
+fn find_missing(
+    samples: &Samples,
+    dims: [usize; 3],
+    padding: Option<f64>,
+    is_hidden: impl Fn(usize) -> bool + Sync,
+) -> Option<Arc<MissingVoxels>> {
+    let is_present = |value: &f64| value.is_finite() && Some(*value) != padding;
+    let value = |at: usize| Some(samples.value(at)).filter(is_present).filter(|_| !is_hidden(at));
+    MissingVoxels::find(dims, value).map(Arc::new)
 }

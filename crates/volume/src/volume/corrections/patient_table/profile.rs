@@ -197,12 +197,11 @@ impl Shape {
         }
     }
 
-    /// Returns the depth up to which the table reaches at its sides: that of the middle for cradles, which are halves of
-    /// tubes at most.
+    /// Returns the depth up to which the table reaches at its sides: cradles are little more than halves of tubes.
     fn depth_of_wall(&self, u: usize) -> f64 {
         match self {
             Self::Board(_) => self.at(u),
-            Self::Cradle { middle, .. } => middle[1],
+            Self::Cradle { middle, radius, .. } => middle[1] + 0.25 * radius,
         }
     }
 
