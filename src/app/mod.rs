@@ -61,8 +61,9 @@ pub struct App {
     editor: LookEditor,
     /// Requests for the next volume, and files that are being read.
     opening: OpeningState,
-    /// Handles, overlays and other tools over the picture.
-    picture: PictureTools,
+    /// Handles, overlays and other tools over the picture; boxed, as they would make the frame of the constructor too
+    /// large.
+    picture: Box<PictureTools>,
     windows: ToolWindows,
     dialogs: AppDialogs,
     /// Panels around the picture.

@@ -16,7 +16,6 @@ use crate::app::layout::outer_panels::OuterPanels;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
-use crate::app::shell::picture_area::PictureTools;
 use crate::app::shell::status_file::StatusFile;
 use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
 use crate::app::viewport::Viewport;
@@ -144,7 +143,7 @@ impl App {
         let viewport = Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?;
         Ok(Self {
             opening: OpeningState::new(Loader::new(context, load, storage.as_deref(), &cc.egui_ctx)?),
-            picture: PictureTools::default(),
+            picture: Box::default(),
             windows: ToolWindows::default(),
             dialogs: AppDialogs::default(),
             jobs: Jobs::from_context(&cc.egui_ctx),

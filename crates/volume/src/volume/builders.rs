@@ -8,6 +8,9 @@ use super::{Volume, VolumeError};
 use crate::ValueMetadata;
 use crate::load_context::{FileContents, ResolvedPortion};
 
+/// Difference of the content id of a volume whose table is hidden: the letters of "table".
+const WITHOUT_TABLE: u64 = 0x0074_6162_6c65;
+
 impl Volume {
     /// Sets the opacity unit in mm, so that the material looks the same at every resolution; built-in volumes have
     /// one.
@@ -52,7 +55,7 @@ impl Volume {
     pub(super) fn without_known_table(self, table: PatientTable) -> Result<Self, VolumeError> {
         let voxels = self.voxels.without_table(self.grid.dims(), Arc::new(table))?;
         // What is hidden affects what is shown, like the values themselves.
-        Ok(Self { voxels, content_id: self.content_id.rotate_left(13) ^ 0x7461_626c_65, ..self })
+        Ok(Self { voxels, content_id: self.content_id.rotate_left(13) ^ WITHOUT_TABLE, ..self })
     }
 
     /// Returns the table under a body that is hidden, if there is one.

@@ -178,7 +178,7 @@ impl Shape {
         let area = 2.0 * (p[0] * q[1] - p[1] * q[0]);
         let way = [(q[1] * p2 - p[1] * q2) / area, (p[0] * q2 - q[0] * p2) / area];
         let middle = [x * per_column + way[0], a.depth + way[1]];
-        let cradle = Self::Cradle { middle, radius: way[0].hypot(way[1]), per_column };
+        let cradle = Self::Cradle { middle, radius: (way[0] * way[0] + way[1] * way[1]).sqrt(), per_column };
         // The middle of a cradle is on the side of the body.
         let is_cradle = area.abs() > 1e-6 && way[1] > 0.0;
         let shapes = [is_proper.then_some(board), (is_proper && is_cradle).then_some(cradle)];
