@@ -140,6 +140,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (advanced_row(sections::DATA, text::corrections::ORIENTATION), text::synonyms::ORIENTATION),
     (advanced_row(sections::DATA, text::corrections::PADDING), text::synonyms::PADDING),
     (advanced_row(sections::DATA, text::corrections::VALUE_SCALE), text::synonyms::RESCALE),
+    (advanced_row(sections::DATA, text::corrections::HIDE_TABLE), text::synonyms::PATIENT_TABLE),
     (row_named(sections::DATA, text::data::NAME), text::synonyms::NAME_OF_DATA),
     (row_named(sections::DATA, text::data::SOURCE), text::synonyms::SOURCE),
     (row_named(sections::DATA, text::data::DIMENSIONS), text::synonyms::DIMENSIONS),

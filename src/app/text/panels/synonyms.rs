@@ -63,6 +63,7 @@ pub(crate) const BOUNCED: &str = "global illumination gi indirect scattering str
 pub(crate) const ANISOTROPY: &str =
     "anisotropy phase function henyey greenstein forward backward scattering cloud smoke fog";
 
+pub(crate) const PATIENT_TABLE: &str = "patient table bed couch board scanner head holder";
 pub(crate) const RENDER_MODE: &str = "render mode blend material surface maximum minimum mean";
 pub(crate) const GLOW: &str = "glow emissive self luminous";
 pub(crate) const AMBIENT: &str = "ambient light fill";
