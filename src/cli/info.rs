@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::CliError;
 use super::output::print_line;
-use super::scene::{LoadArgs, apply_command_line_corrections, open_for_overview};
+use super::scene::{LoadArgs, NO_TABLE, apply_command_line_corrections, open_for_overview};
 use chiaroscuro_render::{bytes_with_one_light, downsampled_volume};
 use chiaroscuro_scene::first_look;
 use chiaroscuro_volume::{CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume};
@@ -96,6 +96,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     }
     for correction in volume.corrections().in_words() {
         print_line(&format!("  corrected    {correction}"))?;
+    }
+    if volume.lacks_table() {
+        print_line(&format!("  note         {NO_TABLE}"))?;
     }
     for remark in volume.remarks() {
         print_line(&format!("  note         {remark}"))?;

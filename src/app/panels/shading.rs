@@ -8,7 +8,7 @@ use super::super::text::{self, ControlText};
 use super::PanelContext;
 use super::controls::{NumberRow, choice_row, color_button, reset_button_cell, row};
 use super::render_mode;
-use chiaroscuro_scene::{LitSides, MAX_EXPOSURE, MIN_EXPOSURE, ToneMap};
+use chiaroscuro_scene::{LitSides, MAX_EXPOSURE, MIN_EXPOSURE, RenderMode, ToneMap};
 
 const TONE_MAPS: [(ToneMap, ControlText); 2] =
     [(ToneMap::Neutral, text::shading::NEUTRAL), (ToneMap::Clip, text::shading::CLIP)];
@@ -52,6 +52,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
 fn reflection_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     // A sky replaces the ambient light.
     let is_flat = !panels.settings.sky.is_on();
+    let is_surface = panels.settings.render_mode() == RenderMode::Surface;
     let (shading, defaults) = (&mut panels.settings.shading, &panels.first_look.shading);
     let emission = NumberRow::new(text::shading::EMISSION, 0.0..=2.0);
     emission.show(ui, &mut shading.emission, defaults.emission);
@@ -64,6 +65,9 @@ fn reflection_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     let shininess = NumberRow::new(text::shading::SHININESS, 1.0..=200.0).logarithmic().decimals(0);
     shininess.show(ui, &mut shading.shininess, defaults.shininess);
     let gradient = NumberRow::new(text::shading::SURFACE_GRADIENT, 1e-3..=1.0).logarithmic().decimals(4);
-    gradient.show(ui, &mut shading.surface_gradient, defaults.surface_gradient);
+    // All of an opaque surface is shaded as one.
+    ui.add_enabled_ui(!is_surface, |ui| {
+        gradient.show(ui, &mut shading.surface_gradient, defaults.surface_gradient);
+    });
     choice_row(ui, text::shading::SIDES, &mut shading.sides, &SIDES);
 }

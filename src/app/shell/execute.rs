@@ -11,6 +11,7 @@ use crate::app::text::sections::{COMPARE, CUTS, DATA, FLOOR};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
+use chiaroscuro_scene::RenderMode;
 use chiaroscuro_volume::ChoiceAspect;
 
 impl App {
@@ -116,8 +117,10 @@ impl App {
 
     /// Shows the volume in the next render mode; a surface lies at the value under the pointer.
     fn next_render_mode(&mut self, ctx: &egui::Context) {
-        let value = self.picture.value_under_pointer(&self.editor, ctx);
-        self.editor.use_render_mode(self.editor.document.settings.mode.kind.next(), value);
+        let next = self.editor.document.settings.mode.kind.next();
+        let is_surface = next == RenderMode::Surface;
+        let value = is_surface.then(|| self.picture.value_under_pointer(&self.editor, ctx)).flatten();
+        self.editor.use_render_mode(next, value);
     }
 
     /// Asks for a file in a dialog of the desktop.

@@ -116,11 +116,17 @@ pub(super) struct SceneArgs {
     force: bool,
 }
 
-/// Computes a volume's dataset, and warns of values that are not finite.
+/// Remark where a table was to be hidden that is not there.
+pub(super) const NO_TABLE: &str = "no table was found under a body, so nothing is hidden";
+
+/// Computes a volume's dataset, and warns of values that are not finite, and of a table that was not found.
 fn dataset_with_warning(volume: Volume) -> Dataset {
     let missing = volume.non_finite_voxels();
     if missing > 0 {
         warn_line(&format!("warning: {missing} voxels are not finite and are treated as missing"));
+    }
+    if volume.lacks_table() {
+        warn_line(&format!("warning: {NO_TABLE}"));
     }
     Dataset::new(volume)
 }

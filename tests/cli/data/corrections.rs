@@ -86,6 +86,8 @@ fn info_says_what_is_corrected() {
     let words = folder
         .run_successfully("info a_8x8x8_uint8.raw --set volume.flip.y=true --set volume.axis_order=zyx");
     assert!(words.contains("corrected    flipped along y") && words.contains("order z y x"), "{words}");
+    let bare = folder.run_successfully("info a_8x8x8_uint8.raw --set volume.hidden_table=100");
+    assert!(bare.contains("no table was found"), "{bare}");
 
     for (set, code, said) in [
         ("camera.distance=2", 2, "volume.spacing="),

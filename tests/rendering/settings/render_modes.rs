@@ -111,6 +111,19 @@ fn drawn(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Vec<
     channels_f32(&render(renderer, loaded, settings, SIZE).linear)
 }
 
+/// Compares a picture with a plain walk; `shows` tells the points that are neither cut away nor missing.
+fn assert_plain(
+    what: &str,
+    renderer: &mut Renderer,
+    loaded: &Dataset,
+    settings: &Settings,
+    shows: impl Fn(DVec3) -> bool,
+) {
+    let expected = plain_picture(loaded.volume(), settings, shows);
+    compare(what, &drawn(renderer, loaded, settings), &expected, PROJECTION)
+        .unwrap_or_else(|err| panic!("{err}"));
+}
+
 #[test]
 fn projections_are_those_of_a_plain_walk() {
     let loaded = Dataset::new(random_voxels());
@@ -119,10 +132,7 @@ fn projections_are_those_of_a_plain_walk() {
         let mut settings = look(kind, &transfer);
         for projection in [Projection::Perspective, Projection::Orthographic] {
             settings.camera.projection = projection;
-            let actual = drawn(&mut renderer, &loaded, &settings);
-            let expected = plain_picture(loaded.volume(), &settings, |_| true);
-            compare(&format!("{kind:?} {projection:?}"), &actual, &expected, PROJECTION)
-                .unwrap_or_else(|err| panic!("{err}"));
+            assert_plain(&format!("{kind:?} {projection:?}"), &mut renderer, &loaded, &settings, |_| true);
         }
     }
 }
@@ -130,37 +140,26 @@ fn projections_are_those_of_a_plain_walk() {
 /// Along an axis, a projection of the rows of voxels themselves.
 #[test]
 fn along_an_axis_rows_of_voxels_are_projected() {
-    let volume = random_voxels();
-    let loaded = Dataset::new(volume);
+    let loaded = Dataset::new(random_voxels());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     for kind in PROJECTIONS {
         let mut settings = look(kind, &curves()[0]);
         settings.camera = Camera { distance: 3.0, ..scenes::axis_camera(0.0, 0.0) };
-        let actual = drawn(&mut renderer, &loaded, &settings);
-        let expected = plain_picture(loaded.volume(), &settings, |_| true);
-        compare(&format!("{kind:?} along an axis"), &actual, &expected, PROJECTION)
-            .unwrap_or_else(|err| panic!("{err}"));
+        assert_plain(&format!("{kind:?} along an axis"), &mut renderer, &loaded, &settings, |_| true);
     }
 }
 
 #[test]
 fn what_is_cut_away_or_missing_is_not_projected() {
-    let volume = random_voxels();
+    let cut = Dataset::new(random_voxels());
     let mut renderer = Renderer::new(&context()).expect("a renderer");
-    let cut = Dataset::new(volume.clone());
     for kind in PROJECTIONS {
         let mut settings = look(kind, &curves()[0]);
         settings.cuts.crop.on = true;
         (settings.cuts.crop.low, settings.cuts.crop.high) = ([0.2, 0.1, 0.3], [0.7, 1.0, 0.9]);
-        let region = settings.cuts.visible_part().region(&volume.scene());
-        let expected = plain_picture(&volume, &settings, |p| region.contains(p));
-        compare(
-            &format!("{kind:?} of a crop"),
-            &drawn(&mut renderer, &cut, &settings),
-            &expected,
-            PROJECTION,
-        )
-        .unwrap_or_else(|err| panic!("{err}"));
+        let region = settings.cuts.visible_part().region(&cut.volume().scene());
+        let shows = |p| region.contains(p);
+        assert_plain(&format!("{kind:?} of a crop"), &mut renderer, &cut, &settings, shows);
     }
     // A value of its own in a third of the volume, which means that nothing was measured there.
     let samples = (0..20 * 14 * 17).map(|at| if at % 20 < 7 { 255 } else { 100 }).collect();

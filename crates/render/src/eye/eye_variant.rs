@@ -1,4 +1,4 @@
-//! Pipeline variant of the eye pass: what of a look decides which code its shader has.
+//! Pipeline variant of the eye pass: the parts of a look that select the code of its shader.
 
 use crate::pipelines::pipeline_variant::{
     GridBoundaries, LightCount, PipelineVariant, ReconstructionVariant, ShaderConstants, ShadingVariant,

@@ -54,13 +54,18 @@ impl Volume {
     /// Hides a known table.
     pub(super) fn without_known_table(self, table: PatientTable) -> Result<Self, VolumeError> {
         let voxels = self.voxels.without_table(self.grid.dims(), Arc::new(table))?;
-        // What is hidden affects what is shown, like the values themselves.
+        // Hiding voxels changes the picture, as other values would.
         Ok(Self { voxels, content_id: self.content_id.rotate_left(13) ^ WITHOUT_TABLE, ..self })
     }
 
     /// Returns the table under a body that is hidden, if there is one.
     pub fn hidden_table(&self) -> Option<&PatientTable> {
         self.voxels.table()
+    }
+
+    /// Returns true if a table was to be hidden, and none was found.
+    pub fn lacks_table(&self) -> bool {
+        self.corrections().hidden_table.is_some() && self.hidden_table().is_none()
     }
 
     /// Sets whether world space is right-anterior-superior, as the file states of a body.

@@ -224,7 +224,7 @@ fn table(ui: &mut Ui, by: &mut Corrections, volume: &Volume, settings: &Settings
     if switch_row(ui, text::corrections::HIDE_TABLE, &mut is_hidden).changed() {
         by.hidden_table = is_hidden.then(|| settings.material_threshold(volume));
     }
-    if volume.corrections().hidden_table.is_some() && volume.hidden_table().is_none() {
+    if volume.lacks_table() {
         ui.weak(text::corrections::NO_TABLE);
     }
 }

@@ -32,7 +32,10 @@ pub(super) fn reset_section(title: &str, settings: &mut Settings, first: &Settin
             (layer.lighting, layer.opacity_unit) = (lighting, opacity_unit);
         }
         SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky.clone(), first.scattering.clone()),
-        SHADING => (settings.shading, settings.output) = (first.shading.clone(), first.output.clone()),
+        SHADING => {
+            (settings.shading, settings.output) = (first.shading.clone(), first.output.clone());
+            settings.mode = first.mode.clone();
+        }
         CUTS => settings.cuts = first.cuts.clone(),
         FLOOR => {
             let height = settings.floor.height;
@@ -71,7 +74,7 @@ pub(super) fn can_reset(title: &str, settings: &Settings, first: &Settings) -> b
 mod tests {
     use super::*;
     use crate::app::text;
-    use chiaroscuro_scene::LightSettings;
+    use chiaroscuro_scene::{LightSettings, RenderMode};
 
     #[test]
     fn resetting_a_section_changes_no_other() {
@@ -84,6 +87,7 @@ mod tests {
         settings.cuts.plane.on = true;
         settings.camera.azimuth_deg = 12.0;
         settings.shading.diffuse = 0.1;
+        settings.mode.kind = RenderMode::Maximum;
         settings.sky.mode = chiaroscuro_scene::SkyMode::White;
         let changed = [LIGHTS, SHADOWS, SOFT_LIGHT, SHADING, CUTS, FLOOR, CAMERA];
         for title in text::sections::ALL {

@@ -117,7 +117,7 @@ impl PictureInputs<'_> {
             settings.camera.set_orbit_centre(found.point);
         }
         if settings.render_mode() == RenderMode::Surface
-            && !tools.light_probe.is_active
+            && !(tools.light_probe.is_active || self.slices.open)
             && is_one_view
             && response.clicked()
             && let (Some(at), Some(dataset)) = (response.interact_pointer_pos(), viewport.dataset())

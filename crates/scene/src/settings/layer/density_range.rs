@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Settings;
+use crate::{RenderMode, Settings};
 use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Number of steps per span in which the range is widened: dragging a control point changes it only occasionally,
@@ -58,11 +58,13 @@ impl Settings {
         if span <= 0.0 {
             return chosen;
         }
-        let drawn = self.resolved_mode();
-        let layer = drawn.layer();
-        let light = (!layer.lighting.linked).then_some(&layer.lighting.curve);
+        let layer = self.layer();
+        // Light meets a surface as the eye does, wherever it lies.
+        let isovalue = (self.render_mode() == RenderMode::Surface).then(|| self.isovalue());
+        let is_linked = layer.lighting.linked || isovalue.is_some();
+        let light = (!is_linked).then_some(&layer.lighting.curve);
         let curves = std::iter::once(&layer.transfer).chain(light);
-        let values = curves.flat_map(|curve| &curve.points).map(|point| point.value);
+        let values = curves.flat_map(|curve| &curve.points).map(|point| point.value).chain(isovalue);
         let (lowest, highest) =
             values.fold((chosen.low, chosen.high), |(low, high), value| (low.min(value), high.max(value)));
         let by = |beyond: f64| {

@@ -167,7 +167,7 @@ impl Corrections {
 
     /// Returns true if other corrections change values in the same way.
     fn corrects_values_like(&self, other: &Self) -> bool {
-        // Where a table lies depends on lengths and axes.
+        // The position of a table depends on the spacing and on the axes.
         self.padding_value == other.padding_value
             && self.value_scale == other.value_scale
             && self.hidden_table.is_none()
@@ -239,7 +239,7 @@ impl Corrections {
         if !value_scale.is_none() {
             words.push(format!("values × {} + {}", value_scale.slope, value_scale.intercept));
         }
-        words.extend(hidden_table.map(|value| format!("table hidden, material from {value}")));
+        words.extend(hidden_table.map(|value| format!("hidden table, material from {value}")));
         words
     }
 }

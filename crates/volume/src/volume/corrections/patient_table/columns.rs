@@ -15,6 +15,12 @@ const MAX_LAYER_MM: f64 = 30.0;
 /// Smallest gap between a layer and what lies in front of it, in millimetres; noise may bridge less.
 const MIN_GAP_MM: f64 = 1.5;
 
+/// Smallest extent of a grid across the table, in millimetres: that of a table and the head of a child.
+const MIN_DEPTH_MM: f64 = 90.0;
+
+/// Smallest number of columns across and along a table, without which no shape can be told from noise.
+const MIN_COLUMNS: usize = 16;
+
 /// Largest number of layers of a column.
 const MAX_LAYERS: usize = 6;
 
@@ -24,8 +30,8 @@ pub(super) struct ThinLayers {
     pub(super) size: [usize; 2],
     /// Number of voxels from a column to the next.
     pub(super) block: [usize; 2],
-    /// Length of a voxel across and down, in millimetres.
-    pub(super) spacing_mm: [f64; 2],
+    /// Length of a voxel across, along and down, in millimetres.
+    pub(super) spacing_mm: [f64; 3],
     /// Number of voxels of a column.
     pub(super) depth: usize,
     columns: Vec<Column>,
@@ -51,8 +57,9 @@ impl ThinLayers {
             .map(|(axis, mm)| ((mm / spacing[axis]).round() as usize).clamp(1, dims[axis]));
         let size = [dims[across] / block[0], dims[along] / block[1]];
         let max_layer = MAX_LAYER_MM / spacing[down];
+        let is_thin = dims[down] as f64 <= MIN_DEPTH_MM / spacing[down];
         let min_gap = (MIN_GAP_MM / spacing[down]).ceil() as usize;
-        if size.iter().any(|&n| n < 16) || (dims[down] as f64) < 3.0 * max_layer {
+        if is_thin || size.iter().any(|&count| count < MIN_COLUMNS) {
             return None;
         }
         let column = |at: usize| {
@@ -69,7 +76,7 @@ impl ThinLayers {
             Column::new(dims[down], max_layer as usize, min_gap, is_material)
         };
         let columns = (0..size[0] * size[1]).into_par_iter().map(column).collect();
-        let spacing_mm = [spacing[across], spacing[down]];
+        let spacing_mm = [across, along, down].map(|axis| spacing[axis]);
         Some(Self { size, block, spacing_mm, depth: dims[down], columns })
     }
 
@@ -81,7 +88,7 @@ impl ThinLayers {
     /// Returns the share of the columns with thicker material beyond a top, given by its depth at voxels across and
     /// along.
     pub(super) fn cut_share(&self, top: impl Fn(f64, f64) -> Option<f64>) -> f64 {
-        let slack = MAX_LAYER_MM / self.spacing_mm[1];
+        let slack = MAX_LAYER_MM / self.spacing_mm[2];
         let is_cut = |at: usize| {
             let [u, v] = [at % self.size[0] * self.block[0], at / self.size[0] * self.block[1]];
             let Some(body) = self.columns[at].body else { return false };

@@ -2,8 +2,8 @@
 //!
 //! A table is a sheet, flat or curved, which is nearly the same in all slices along the scanner's axis, while a body is
 //! not. Seen from outside, columns of voxels across it meet thin layers, the last of which before the body is its top.
-//! Where the body touches the top, it cannot be told from the body; but the sheet goes on there as a parabola or a
-//! circle, which is fitted to its top beside the body. All that lies beyond the top is the table.
+//! In places where the body touches the top, the two look alike; there the top is that of a parabola or a circle, fitted
+//! to the top beside the body. All that lies beyond the top is the table.
 
 mod columns;
 mod profile;

@@ -2,9 +2,10 @@
 
 use super::columns::ThinLayers;
 
-/// Tilts of a table along its length that are tried: steps to either side, and the size of a step.
-const TILT_STEPS: i32 = 16;
-const TILT_STEP: f64 = 0.005;
+/// Tilts of a table along its length that are tried: number of steps to either side, and the change of its depth per
+/// length of a step. The error of half a step is a millimetre over 0.8 m.
+const TILT_STEPS: i32 = 24;
+const TILT_STEP: f64 = 0.0025;
 
 /// Smallest share of the columns along a table in which a layer must be at the same depth.
 const MIN_SHARE: f64 = 0.3;
@@ -48,13 +49,15 @@ struct Ridge {
 impl TableTop {
     /// Fits the top to thin layers; `None` if too few agree.
     pub(super) fn fit(layers: &ThinLayers) -> Option<Self> {
-        let tilts = (-TILT_STEPS..=TILT_STEPS).map(|step| f64::from(step) * TILT_STEP);
+        let [mm_across, mm_along, mm_down] = layers.spacing_mm;
+        let steps = (-TILT_STEPS..=TILT_STEPS).map(f64::from);
+        let tilts = steps.map(|step| step * TILT_STEP * mm_along / mm_down);
         let strength = |ridges: &[Ridge]| ridges.iter().map(|ridge| ridge.share.powi(2)).sum::<f64>();
         // Among equally strong ones the smallest tilt.
         let (tilt, ridges) = tilts
             .map(|tilt| (tilt, find_ridges(layers, tilt)))
             .max_by(|(s, a), (t, b)| strength(a).total_cmp(&strength(b)).then(t.abs().total_cmp(&s.abs())))?;
-        let misfit = MAX_MISFIT_MM / layers.spacing_mm[1];
+        let misfit = MAX_MISFIT_MM / mm_down;
         let shape = best_shape(&ridges, layers, misfit)?;
         let at_top: Vec<Ridge> = ridges
             .iter()
@@ -65,7 +68,7 @@ impl TableTop {
         if (seen.len() as f64) < MIN_WIDTH_SHARE * layers.size[0] as f64 {
             return None;
         }
-        let margin = (MARGIN_MM / (layers.spacing_mm[0] * layers.block[0] as f64)).ceil() as usize;
+        let margin = (MARGIN_MM / (mm_across * layers.block[0] as f64)).ceil() as usize;
         let (first, last) = (*seen.first()?, *seen.last()?);
         let range = first.saturating_sub(margin)..=(last + margin).min(layers.size[0] - 1);
         let column_depth = |u: usize| {
@@ -75,17 +78,16 @@ impl TableTop {
         // Measured where it is seen, and else the shape, moved to meet the measured ends of the gap.
         let offsets: Vec<(usize, f64)> =
             seen.iter().filter_map(|&u| Some((u, column_depth(u)? - shape.at(u)))).collect();
-        let depth_at = |u: usize| shape.at(u) + interpolated(&offsets, u);
+        let depth_at = |u: usize| shape.at(u) + interpolate(&offsets, u);
         let depths = (0..layers.size[0] * layers.block[0]).map(|voxel| {
             let u = voxel / layers.block[0];
             if !range.contains(&u) {
                 return f32::NAN;
             }
-            // Beside the columns in which a cradle is seen are its walls.
+            // The walls of a cradle lie beside the columns in which its top is seen.
             (if (first..=last).contains(&u) { depth_at(u) } else { shape.depth_of_wall(u) }) as f32
         });
         let depths: Vec<f32> = depths.collect();
-        let tilt = tilt_per_voxel(layers, tilt);
         let deepest = depths.iter().copied().filter(|depth| depth.is_finite()).fold(0.0, f32::max);
         let limit = f64::from(deepest) + (tilt * (layers.size[1] * layers.block[1]) as f64).max(0.0);
         let score = at_top.iter().map(|ridge| ridge.share).sum::<f64>() / layers.size[0] as f64;
@@ -109,13 +111,8 @@ impl TableTop {
     }
 }
 
-/// Returns a tilt per column as one per voxel along the table.
-fn tilt_per_voxel(layers: &ThinLayers, tilt: f64) -> f64 {
-    tilt / layers.block[1] as f64
-}
-
-/// Returns an interpolation between known numbers at sorted places; constant beyond them.
-fn interpolated(known: &[(usize, f64)], u: usize) -> f64 {
+/// Interpolates between known numbers at sorted places; constant beyond them.
+fn interpolate(known: &[(usize, f64)], u: usize) -> f64 {
     let above = known.partition_point(|(place, _)| *place < u);
     match (above.checked_sub(1).map(|at| known[at]), known.get(above)) {
         (Some((a, low)), Some(&(b, high))) => low + (high - low) * (u - a) as f64 / (b - a).max(1) as f64,
@@ -124,14 +121,15 @@ fn interpolated(known: &[(usize, f64)], u: usize) -> f64 {
     }
 }
 
-/// Finds the depths at which most columns along the table have a layer, if it is tilted by so many voxels a column.
+/// Finds the depths at which most columns along the table have a layer, if its depth changes by `tilt` from voxel to
+/// voxel along it.
 fn find_ridges(layers: &ThinLayers, tilt: f64) -> Vec<Ridge> {
     let [width, length] = layers.size;
     let ridges = |u: usize| {
         let mut counts = vec![0_u32; layers.depth + 2];
         for v in 0..length {
             for &top in layers.tops(u, v) {
-                let depth = (f64::from(top) - tilt * v as f64).round();
+                let depth = (f64::from(top) - tilt * (v * layers.block[1]) as f64).round();
                 if depth >= 0.0 && depth < layers.depth as f64 {
                     counts[depth as usize + 1] += 1;
                 }
@@ -153,9 +151,9 @@ fn find_ridges(layers: &ThinLayers, tilt: f64) -> Vec<Ridge> {
     (0..width).flat_map(ridges).collect()
 }
 
-/// Shape of a top across the table: depth in voxels over columns.
+/// Shape of a table across its length: depth in voxels over columns.
 #[derive(Debug, Clone, Copy)]
-enum Shape {
+enum TableShape {
     /// Flat or bent board: coefficients of a parabola.
     Board([f64; 3]),
     /// Cradle, as head holders are: middle and radius of a circle, in voxels of depth, with the number of them per
@@ -163,7 +161,7 @@ enum Shape {
     Cradle { middle: [f64; 2], radius: f64, per_column: f64 },
 }
 
-impl Shape {
+impl TableShape {
     /// Returns the shapes through three ridges in different columns.
     fn through([a, b, c]: [Ridge; 3], per_column: f64) -> impl Iterator<Item = Self> {
         let [x, y, z] = [a, b, c].map(|ridge| ridge.u as f64);
@@ -205,19 +203,23 @@ impl Shape {
         }
     }
 
-    /// Returns true if the bend is one that tables of this width have.
-    fn is_likely(&self, width: usize) -> bool {
+    /// Returns true if tables may be bent like this, in a grid of so many columns of `per_column` voxels of depth.
+    fn is_likely(&self, columns: usize, per_column: f64) -> bool {
+        let columns = columns as f64;
+        let width = columns * per_column;
         match self {
-            Self::Board([.., bend]) => bend.abs() * (width as f64).powi(2) <= width as f64,
-            Self::Cradle { radius, per_column, .. } => *radius <= 2.0 * width as f64 * per_column,
+            // At the ends of the grid a board is bent by a quarter of its width at most.
+            Self::Board([.., bend]) => bend.abs() * columns * columns <= width,
+            Self::Cradle { radius, .. } => *radius <= 2.0 * width,
         }
     }
 }
 
 /// Returns the shape at which most layers lie, and in front of which few do.
-fn best_shape(ridges: &[Ridge], layers: &ThinLayers, misfit: f64) -> Option<Shape> {
+fn best_shape(ridges: &[Ridge], layers: &ThinLayers, misfit: f64) -> Option<TableShape> {
     let [width, _] = layers.size;
-    let per_column = layers.block[0] as f64 * layers.spacing_mm[0] / layers.spacing_mm[1];
+    let [mm_across, _, mm_down] = layers.spacing_mm;
+    let per_column = layers.block[0] as f64 * mm_across / mm_down;
     let step = (ridges.len() as f64 / TRIED_PLACES as f64).max(1.0);
     let tried: Vec<Ridge> =
         (0..TRIED_PLACES).filter_map(|at| ridges.get((at as f64 * step) as usize).copied()).collect();
@@ -234,7 +236,7 @@ fn best_shape(ridges: &[Ridge], layers: &ThinLayers, misfit: f64) -> Option<Shap
         .into_iter()
         .chain((0..TRIED_PLACES).filter_map(|at| front.get((at as f64 * step) as usize).copied()))
         .collect();
-    let score = |shape: &Shape| {
+    let score = |shape: &TableShape| {
         let part = |ridge: &Ridge| {
             let before = ridge.depth - shape.at(ridge.u);
             if before.abs() <= misfit {
@@ -247,11 +249,13 @@ fn best_shape(ridges: &[Ridge], layers: &ThinLayers, misfit: f64) -> Option<Shap
         };
         ridges.iter().map(part).sum::<f64>()
     };
-    let mut best: Option<(f64, Shape)> = None;
+    let mut best: Option<(f64, TableShape)> = None;
     for (i, a) in tried.iter().enumerate() {
         for (j, b) in tried.iter().enumerate().skip(i + 1) {
             for c in &tried[j + 1..] {
-                for shape in Shape::through([*a, *b, *c], per_column).filter(|shape| shape.is_likely(width)) {
+                for shape in TableShape::through([*a, *b, *c], per_column)
+                    .filter(|shape| shape.is_likely(width, per_column))
+                {
                     let reached = score(&shape);
                     if best.is_none_or(|(most, _)| reached > most) {
                         best = Some((reached, shape));

@@ -151,7 +151,7 @@ impl Phantom {
                 Part::Table => -60.0,
                 Part::Foam => -930.0,
             };
-            // Of uniform noise, the standard deviation is 0.29 of the range.
+            // The standard deviation of uniform noise is 0.29 of its range.
             values.push((value + self.noise / 0.29 * noise()) as f32);
             parts.push(part);
         }
