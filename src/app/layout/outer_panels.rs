@@ -18,7 +18,6 @@ use crate::app::transfer_editor::TransferEditor;
 use crate::app::viewport::RendererStatus;
 use crate::app::{panels, text};
 use chiaroscuro_render::WindowPainter;
-use chiaroscuro_scene::RenderMode;
 
 /// State of the panels around the picture.
 pub(crate) struct OuterPanels {
@@ -127,10 +126,7 @@ impl OuterPanels {
         let panel = panel.frame(theme::panel(ui));
         let panel = panel.size_range(90.0..=420.0);
         panel.show_collapsible(ui, &mut layout.transfer, |ui| {
-            let settings = &editor.document.settings;
-            let is_surface = settings.render_mode() == RenderMode::Surface;
-            let surface = is_surface.then(|| settings.isovalue());
-            let value = picture.light_probe.value().or(surface);
+            let value = picture.light_probe.value().or_else(|| editor.document.settings.shown_isovalue());
             self.editor.ui(ui, &mut editor.document.settings, volume, value, commands);
         });
     }

@@ -144,6 +144,11 @@ impl Settings {
         self.mode.isovalue.unwrap_or_else(|| self.layer().transfer.value_at_opacity_share(0.5))
     }
 
+    /// Returns the isovalue if a surface is shown.
+    pub fn shown_isovalue(&self) -> Option<f64> {
+        (self.render_mode() == RenderMode::Surface).then(|| self.isovalue())
+    }
+
     /// Returns the settings whose material is what the mode shows, so that passes and keys need only know of
     /// projections. The result is resolved to itself.
     #[must_use]

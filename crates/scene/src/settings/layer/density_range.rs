@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RenderMode, Settings};
+use crate::Settings;
 use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Number of steps per span in which the range is widened: dragging a control point changes it only occasionally,
@@ -60,7 +60,7 @@ impl Settings {
         }
         let layer = self.layer();
         // Light meets a surface as the eye does, wherever it lies.
-        let isovalue = (self.render_mode() == RenderMode::Surface).then(|| self.isovalue());
+        let isovalue = self.shown_isovalue();
         let is_linked = layer.lighting.linked || isovalue.is_some();
         let light = (!is_linked).then_some(&layer.lighting.curve);
         let curves = std::iter::once(&layer.transfer).chain(light);

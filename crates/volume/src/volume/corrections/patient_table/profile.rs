@@ -42,8 +42,10 @@ pub(super) struct TableTop {
 struct Ridge {
     u: usize,
     depth: f64,
-    /// Share of the columns along the table.
+    /// Share of the columns along the table, within a voxel of the depth.
     share: f64,
+    /// Share of the columns in the voxel of the depth: it is largest at the right tilt.
+    peak: f64,
 }
 
 impl TableTop {
@@ -52,7 +54,7 @@ impl TableTop {
         let [mm_across, mm_along, mm_down] = layers.spacing_mm;
         let steps = (-TILT_STEPS..=TILT_STEPS).map(f64::from);
         let tilts = steps.map(|step| step * TILT_STEP * mm_along / mm_down);
-        let strength = |ridges: &[Ridge]| ridges.iter().map(|ridge| ridge.share.powi(2)).sum::<f64>();
+        let strength = |ridges: &[Ridge]| ridges.iter().map(|ridge| ridge.peak.powi(2)).sum::<f64>();
         // Among equally strong ones the smallest tilt.
         let (tilt, ridges) = tilts
             .map(|tilt| (tilt, find_ridges(layers, tilt)))
@@ -144,7 +146,9 @@ fn find_ridges(layers: &ThinLayers, tilt: f64) -> Vec<Ridge> {
             .map(|at| {
                 let sum = f64::from(wide(at));
                 let mean = (f64::from(counts[at + 1]) - f64::from(counts[at - 1])) / sum;
-                Ridge { u, depth: at as f64 - 1.0 + mean, share: (sum / length as f64).min(1.0) }
+                let share = |count: f64| (count / length as f64).min(1.0);
+                let (share, peak) = (share(sum), share(f64::from(counts[at])));
+                Ridge { u, depth: at as f64 - 1.0 + mean, share, peak }
             })
             .collect::<Vec<_>>()
     };
