@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeError};
+use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeError, VolumeId};
+
+/// Largest number of fields that one picture can show: the channels of a texel on the GPU.
+pub const MAX_FIELDS: usize = 4;
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
 /// combined with those of another volume. Clones share the voxels.
@@ -13,12 +16,22 @@ pub struct DatasetField {
     histogram: Arc<Histogram>,
 }
 
-/// Fields on one grid, of one file. Today there is one, which is shown; a second one would be a second element, and
-/// share grid and provenance with the first. Clones share the voxels.
+/// Fields on one grid, of one or of several files. Clones share the voxels.
 #[derive(Debug, Clone)]
 pub struct Dataset {
-    /// Fields of the file, never empty; the first one is shown.
+    /// Fields, 1 … [`MAX_FIELDS`]; the first one has the grid, the corrections and the metadata of the scene.
     fields: Arc<[DatasetField]>,
+}
+
+/// Reason why a volume cannot be shown together with another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum AddFieldError {
+    /// All channels of a texel are in use.
+    #[error("{MAX_FIELDS} volumes are shown already, which is the largest number; remove one first")]
+    TooMany,
+    /// Boxes of the two grids have no point in common.
+    #[error("the two volumes do not meet: no voxel of one lies inside the other; check the positions in their files")]
+    Apart,
 }
 
 impl DatasetField {
@@ -71,13 +84,22 @@ impl Dataset {
         Self { fields: Arc::new([DatasetField::new(volume)]) }
     }
 
-    /// Returns the dataset with the shown voxels mapped to densities in another way, and with bounds and histogram of
-    /// these.
+    /// Returns the dataset with the voxels of the first field mapped to densities in another way, and with bounds and
+    /// histogram of these.
     #[must_use]
     pub fn with_density_mapping(&self, shown: impl Into<DensityMapping>) -> Self {
+        self.with_density_mappings([shown.into()])
+    }
+
+    /// Returns the dataset with the voxels of its first fields mapped to densities in other ways, one for each field.
+    #[must_use]
+    pub fn with_density_mappings(&self, shown: impl IntoIterator<Item = DensityMapping>) -> Self {
         // The quantity belongs to a field: a range of one means nothing for another.
-        let field = self.field().with_density_mapping(shown.into());
-        Self { fields: std::iter::once(field).chain(self.fields[1..].iter().cloned()).collect() }
+        let mut shown = shown.into_iter();
+        let mapped = |field: &DatasetField| {
+            shown.next().map_or_else(|| field.clone(), |shown| field.with_density_mapping(shown))
+        };
+        Self { fields: self.fields.iter().map(mapped).collect() }
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.
@@ -85,17 +107,55 @@ impl Dataset {
     /// # Errors
     /// Fails like [`Volume::corrected`].
     pub fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
-        // Corrections move the grid, and so apply to every field on it.
-        let fields = self.fields.iter().map(|field| field.corrected(by)).collect::<Result<_, _>>()?;
-        Ok(Self { fields })
+        // Corrections of the grid apply to every field on it, those of values to the file that they are of.
+        let of_grid = by.of_grid();
+        let corrected =
+            |(index, field): (usize, &DatasetField)| field.corrected(if index == 0 { by } else { &of_grid });
+        Ok(Self { fields: self.fields.iter().enumerate().map(corrected).collect::<Result<_, _>>()? })
     }
 
-    /// Returns the field that is shown, the only one today.
+    /// Adds a volume as the last field, resampled to the grid of the first one where its own differs.
+    ///
+    /// # Errors
+    /// Fails if there are [`MAX_FIELDS`] fields, or the two grids do not meet.
+    pub fn with_field(&self, volume: &Arc<Volume>) -> Result<Self, AddFieldError> {
+        if self.fields.len() == MAX_FIELDS {
+            return Err(AddFieldError::TooMany);
+        }
+        let volume = volume.on_grid_of(self.volume()).ok_or(AddFieldError::Apart)?;
+        let field = DatasetField::new(volume);
+        Ok(Self { fields: self.fields.iter().cloned().chain([field]).collect() })
+    }
+
+    /// Removes all fields but those with an index for which `keeps` is true; never the first.
+    #[must_use]
+    pub fn with_fields_where(&self, keeps: impl Fn(usize) -> bool) -> Self {
+        let fields = self.fields.iter().enumerate().filter(|(index, _)| *index == 0 || keeps(*index));
+        Self { fields: fields.map(|(_, field)| field.clone()).collect() }
+    }
+
+    /// Returns all fields, the first of which has the grid of the scene.
+    pub fn fields(&self) -> &Arc<[DatasetField]> {
+        &self.fields
+    }
+
+    /// Returns the identity by which pictures of the dataset are cached: that of its volume if there is one field.
+    pub fn id(&self) -> VolumeId {
+        let mut id = self.volume().id();
+        for (further, field) in id.further_ranges.iter_mut().zip(&self.fields[1..]) {
+            let volume = field.volume();
+            id.content_id = id.content_id.rotate_left(17) ^ volume.content_id();
+            *further = Some(volume.ranges());
+        }
+        id
+    }
+
+    /// Returns the first field, which has the grid of the scene.
     pub fn field(&self) -> &DatasetField {
         &self.fields[0]
     }
 
-    /// Returns the volume whose voxels are shown.
+    /// Returns the volume of the first field.
     pub fn volume(&self) -> &Arc<Volume> {
         self.field().volume()
     }

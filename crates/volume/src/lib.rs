@@ -18,6 +18,7 @@ mod histogram;
 mod label_cells;
 mod load_context;
 pub mod math;
+mod resample;
 pub mod synthetic;
 mod value_metadata;
 mod values;
@@ -26,7 +27,7 @@ mod volume;
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
-pub use dataset::{Dataset, DatasetField};
+pub use dataset::{AddFieldError, Dataset, DatasetField, MAX_FIELDS};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use label_cells::CellOccupancy;
 pub use load_context::{

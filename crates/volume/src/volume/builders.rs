@@ -98,6 +98,13 @@ impl Volume {
         self.with_changed_provenance(|provenance| provenance.remarks = remarks)
     }
 
+    /// Takes the grid of another volume of the same dimensions, as it was opened; values stay as they are.
+    #[must_use]
+    pub(crate) fn with_opened_grid_of(self, other: &Self) -> Self {
+        debug_assert_eq!(self.dims(), other.dims(), "one value for each voxel of the grid");
+        Self { grid: other.as_opened().grid.clone(), correction: None, ..self }
+    }
+
     /// Sets the inventory of the file.
     #[must_use]
     pub fn with_contents(self, held: FileContents) -> Self {

@@ -42,6 +42,7 @@ use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
 use super::load_context::FileContents;
 use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
+use crate::dataset::MAX_FIELDS;
 use crate::math::SceneSpace;
 
 /// Identity of a volume together with its value ranges.
@@ -53,6 +54,8 @@ pub struct VolumeId {
     pub ranges: ValueRanges,
     /// Dimensions in voxels, see [`Volume::dims`].
     pub dims: [usize; 3],
+    /// Value ranges of the further fields of a dataset.
+    pub further_ranges: [Option<ValueRanges>; MAX_FIELDS - 1],
 }
 
 /// Scalar volume. Invariants: at least one voxel, an invertible affine transform, a finite value range. Clones share
@@ -257,7 +260,12 @@ impl Volume {
 
     /// Returns the identity by which pictures of the volume are cached.
     pub fn id(&self) -> VolumeId {
-        VolumeId { content_id: self.content_id, ranges: self.ranges(), dims: self.dims() }
+        VolumeId {
+            content_id: self.content_id,
+            ranges: self.ranges(),
+            dims: self.dims(),
+            further_ranges: [None; MAX_FIELDS - 1],
+        }
     }
 
     /// Returns the value of one voxel in data units, as stored in the file.

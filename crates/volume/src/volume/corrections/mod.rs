@@ -158,6 +158,13 @@ impl Corrections {
         *self == Self::NONE
     }
 
+    /// Returns the corrections of positions alone, which hold for every field on the grid.
+    #[must_use]
+    pub fn of_grid(&self) -> Self {
+        let Self { spacing, unit, flip, axis_order, orientation, .. } = *self;
+        Self { spacing, unit, flip, axis_order, orientation, ..Self::default() }
+    }
+
     /// Returns true if voxels keep their values and only their positions may change.
     pub fn keeps_values(&self) -> bool {
         self.padding_value == PaddingValue::InFile
