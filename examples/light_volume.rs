@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (size, options) =
         ([8, 8], RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() }));
     renderer.draw(&dataset, &settings, size, &options)?;
-    let request = RenderRequest { volume: dataset.volume().id(), settings, size, preview_resolution: None };
+    let request = RenderRequest { volume: dataset.id(), settings, size, preview_resolution: None };
     let light = renderer.attenuation(&request, 0)?.ok_or("the light casts no shadows")?;
 
     // 0 is dark, 1 fully lit, x fastest. Each value covers `divisor` voxels of the array along an axis.

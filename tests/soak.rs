@@ -79,7 +79,7 @@ impl Soak {
             settings.shadows.kernel = ReconstructionKernel::Prefiltered;
         }
         let request = RenderRequest {
-            volume: self.dataset.volume().id(),
+            volume: self.dataset.id(),
             settings,
             size: if is_rest { [96, 72] } else { [48, 36] },
             preview_resolution: (!is_rest).then_some(LightVolumeResolution::Quarter),

@@ -55,6 +55,12 @@ var<private> grid: GridUniform;
 // word, as 16-bit normalised numbers.
 @group(0) @binding(25) var<storage, read> voxels: array<u32>;
 
+// Densities of up to four fields at the voxels of the grid, as 16-bit integers up to LARGEST_STORED_DENSITY; larger ones
+// mark missing voxels (crates/render/src/volume/field_texture.rs).
+@group(0) @binding(28) var field_texture: texture_3d<u32>;
+
+const LARGEST_STORED_DENSITY = 65534u;
+
 // Channel of the pyramid that is gathered; with pre-classification each colour of light has its own extinction.
 override EXTINCTION_CHANNEL: u32 = 0u;
 
@@ -267,4 +273,46 @@ fn source_at(place: vec3f) -> vec4f {
 // Presence at a texel of the level that is made.
 fn presence_at_texel(texel: vec3u) -> f32 {
     return decode_presence(textureLoad(presence_level, texel, 0));
+}
+
+// Densities of the fields around a voxel.
+struct FieldNeighbourhood {
+    // Densities at the voxel itself.
+    own: vec4f,
+    // Whether a field has this voxel.
+    is_present: vec4<bool>,
+    // Lengths of the gradients, per voxel, by central differences.
+    slope: vec4f,
+    // Ranges over the voxel and the six beside it.
+    lowest: vec4f,
+    highest: vec4f,
+}
+
+fn stored_density(stored: vec4u) -> vec4f {
+    return vec4f(stored) / f32(LARGEST_STORED_DENSITY);
+}
+
+// Number of voxels of the fields along x, y and z.
+fn field_grid() -> vec3i {
+    return vec3i(textureDimensions(field_texture));
+}
+
+// Densities of the fields around a voxel. Beside missing voxels, and outside the grid, its own continue.
+fn field_neighbourhood(voxel: vec3i) -> FieldNeighbourhood {
+    let last = field_grid() - 1;
+    let stored = textureLoad(field_texture, voxel, 0);
+    let own = stored_density(stored);
+    var found = FieldNeighbourhood(own, stored <= vec4u(LARGEST_STORED_DENSITY), vec4f(0.0), own, own);
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        let step = vec3i(vec3u(axis) == vec3u(0u, 1u, 2u));
+        let before = textureLoad(field_texture, max(voxel - step, vec3i(0)), 0);
+        let behind = textureLoad(field_texture, min(voxel + step, last), 0);
+        let low = select(own, stored_density(before), before <= vec4u(LARGEST_STORED_DENSITY));
+        let high = select(own, stored_density(behind), behind <= vec4u(LARGEST_STORED_DENSITY));
+        found.slope += 0.25 * (high - low) * (high - low);
+        found.lowest = min(found.lowest, min(low, high));
+        found.highest = max(found.highest, max(low, high));
+    }
+    found.slope = sqrt(found.slope);
+    return found;
 }

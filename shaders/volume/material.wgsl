@@ -24,6 +24,9 @@ struct TransferTable {
 // Transfer function of the eye, where `table` is that of light.
 @group(0) @binding(27) var<storage, read> look_table: TransferTable;
 
+// Transfer functions of the layers, where voxels are composed of several fields.
+@group(0) @binding(29) var<storage, read> layer_tables: array<TransferTable>;
+
 // Optical depth of what is taken for empty: a thousandth of the smallest that 8 bits can show.
 const EMPTY_OPTICAL_DEPTH = 4e-6;
 
@@ -253,4 +256,22 @@ fn mean_light_extinction(a: LightIntegralPlace, b: LightIntegralPlace) -> Transm
         return 0.5 * (a.mean + b.mean);
     }
     return (b.integral - a.integral) / distance;
+}
+
+// Means over a range of densities in a layer's field: of colour × extinction in rgb, of extinction in a. Where the range
+// is narrow, those at its middle.
+fn layer_mean(layer: u32, low: f32, high: f32) -> vec4f {
+    let a = table_position(low);
+    let b = table_position(high);
+    if (b - a < MIN_INTEGRATED_DISTANCE) {
+        let at = table_entry(0.5 * (low + high));
+        let entry = mix(layer_tables[layer].entries[at.low], layer_tables[layer].entries[at.low + 1u], at.fraction);
+        return vec4f(entry.rgb * entry.a, entry.a);
+    }
+    return (layer_integral(layer, b) - layer_integral(layer, a)) / (b - a);
+}
+
+fn layer_integral(layer: u32, at: f32) -> vec4f {
+    let low = min(u32(at), TABLE_SIZE - 2u);
+    return mix(layer_tables[layer].integrals[low], layer_tables[layer].integrals[low + 1u], at - f32(low));
 }

@@ -65,7 +65,7 @@ pub(super) fn run(args: &LightVolumeArgs) -> Result<(), CliError> {
     let size = [16, 16];
     renderer.draw(&loaded, &settings, size, &options)?;
     let lights = settings.lights.len();
-    let request = RenderRequest { volume: loaded.volume().id(), settings, size, preview_resolution: None };
+    let request = RenderRequest { volume: loaded.id(), settings, size, preview_resolution: None };
     let attenuation = renderer.attenuation(&request, args.light)?.ok_or_else(|| {
         CliError::Usage(format!(
             "--light: light {} has no attenuation volume; expected one of the {lights} lights, counted from 0, that \

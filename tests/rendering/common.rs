@@ -29,7 +29,7 @@ pub(crate) fn full_attenuation(
     let options = RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
     renderer.draw(loaded, settings, [8, 8], &options).expect("the light volume is filled");
     let request = chiaroscuro_render::plan::RenderRequest {
-        volume: loaded.volume().id(),
+        volume: loaded.id(),
         settings: settings.clone(),
         size: [8, 8],
         preview_resolution: None,

@@ -12,6 +12,7 @@
 //! | stage | file | to compare |
 //! |---|---|---|
 //! | prefiltered volume and its pyramid | `field/pyramid` | [`Reference::density`] |
+//! | voxels composed of layers | `field/layers` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | pre-classified voxels | `field/classified` | [`Reference::light_sheets`], [`Reference::picture`] |
 //! | densities of sheets | `gather`, `footprint`, `sheet_stack` | [`Reference::eye_sheet`] |
 //! | presence: grid and missing voxels | `extent/presence` | [`Reference::light_sheets`], [`Reference::picture`] |
@@ -51,9 +52,12 @@ pub use light_march::ViewSheets;
 
 use glam::DVec3;
 
-use chiaroscuro_scene::{BakedTransfer, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings};
-use chiaroscuro_volume::{ValueRange, Volume, math::SceneSpace};
+use chiaroscuro_scene::{
+    BakedTransfer, LayerBlend, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings, VolumeLayer,
+};
+use chiaroscuro_volume::{Dataset, ValueRange, Volume, math::SceneSpace};
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
+use field::layers::composed_voxels;
 use kernel::KernelProfile;
 
 /// Weights with which densities and light are summed.
@@ -179,6 +183,39 @@ impl<'a> Reference<'a> {
             }))
         });
         Self { settings, options, scene, range, field, pyramid, presence, presence_changes, classified }
+    }
+
+    /// Creates a reference for a dataset whose fields are shown as layers; settings must be [as
+    /// drawn](Settings::resolved_for_dataset).
+    pub fn with_layers(dataset: &Dataset, settings: &'a Settings, options: ReferenceOptions) -> Self {
+        let id = dataset.id();
+        let further = settings.further_mappings(&id).into_iter().map_while(|mapping| mapping);
+        let dataset =
+            &dataset.with_density_mappings([settings.shown_content(&id.ranges)].into_iter().chain(further));
+        let plain = Self::new(dataset.volume(), settings, options);
+        let scene = plain.scene;
+        let adds = |layer: &&VolumeLayer| layer.blend == LayerBlend::Add;
+        let classified = ALL_TRANSFER_SIDES.map(|side| {
+            let bake = |layer: &VolumeLayer, volume: &Volume| {
+                let range = volume.table_range();
+                match (side, options.color) {
+                    (TransferSide::Eye, _) => layer.bake_eye(range, &scene),
+                    (TransferSide::Lighting, Some(color)) if settings.has_colored_shadows() => {
+                        settings.bake_lighting_of(layer, range, &scene).for_light_color(color)
+                    }
+                    _ => settings.bake_lighting_of(layer, range, &scene),
+                }
+            };
+            let fields = settings.layers.iter().zip(dataset.fields().iter());
+            let largest: f64 = fields
+                .filter(|(layer, _)| adds(layer))
+                .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
+                .sum();
+            let matter = composed_voxels(dataset, settings, bake);
+            let width = kernel_width(options.fault);
+            ClassifiedVoxels::from_matter(dataset.volume().dims(), &matter, largest, width, options.rounding)
+        });
+        Self { classified: Some(Box::new(classified)), ..plain }
     }
 
     /// Returns the pre-classified voxels of a side, if voxels are classified before kernels spread them.

@@ -169,7 +169,7 @@ impl LightSliceWindow {
             self.light = (0..scene.settings.lights.len()).find(|&index| is_there(index)).unwrap_or(0);
         }
         let mut request = RenderRequest {
-            volume: dataset.volume().id(),
+            volume: dataset.id(),
             settings: scene.settings.clone(),
             size: [16, 16],
             preview_resolution: None,

@@ -386,7 +386,7 @@ fn renderer_request(
 ) -> RenderRequest {
     let volume = scene.dataset.volume();
     RenderRequest {
-        volume: volume.id(),
+        volume: scene.dataset.id(),
         settings: quality.settings(settings, &volume.scene(), size),
         size: quality.size(size),
         preview_resolution: quality.light_resolution,

@@ -62,7 +62,7 @@ impl PartialEq for FrameRequest {
 impl FrameRequest {
     /// Creates a request for looks at a volume.
     pub(crate) fn new(generation: u64, dataset: &Dataset, looks: ComparedLooks, size: [u32; 2]) -> Self {
-        let volume = dataset.volume().id();
+        let volume = dataset.id();
         let looks = looks.with_common_range(&volume.ranges);
         let keys_of = |settings: &Settings| {
             let request =

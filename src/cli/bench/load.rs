@@ -140,7 +140,7 @@ pub(super) fn read(args: &BenchArgs, source: &Path, cases: &mut Vec<Value>) -> R
 /// Uploads a volume to the adapter without rendering a picture.
 fn upload(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) -> Result<(), CliError> {
     let options = RenderOptions::from(WorkOptions { timed: true, ..WorkOptions::default() });
-    let (volume, settings) = (loaded.volume().id(), settings.clone());
+    let (volume, settings) = (loaded.id(), settings.clone());
     // The smallest size, since the picture is not drawn.
     let request = RenderRequest { volume, settings, size: [1; 2], preview_resolution: None };
     let mut job = renderer.begin(loaded, request, &options)?;

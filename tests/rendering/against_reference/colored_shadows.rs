@@ -83,7 +83,7 @@ fn light_volume(
         RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
     renderer.draw(loaded, settings, [8, 8], &everything).expect("light volumes are filled");
     let request = RenderRequest {
-        volume: loaded.volume().id(),
+        volume: loaded.id(),
         settings: settings.clone(),
         size: [8, 8],
         preview_resolution: None,

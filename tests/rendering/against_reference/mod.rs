@@ -15,6 +15,7 @@ mod area_lights;
 mod colored_shadows;
 mod gather;
 mod labels;
+mod layers;
 mod limit;
 mod multiple_scattering;
 pub(crate) mod mutations;
@@ -45,11 +46,14 @@ pub(crate) fn check_against(
 /// Compares sheets, light volumes and picture of any volume with the reference.
 pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, rounding: Option<Rounding>) {
     let loaded = Dataset::new(volume);
-    let context = context();
     let options = ReferenceOptions { rounding, ..ReferenceOptions::default() };
     let drawn = settings.resolved_for(loaded.volume());
-    let reference = Reference::new(loaded.volume(), &drawn, options);
-    let mut renderer = Renderer::new(&context).expect("a renderer");
+    check_with(name, &loaded, settings, &Reference::new(loaded.volume(), &drawn, options));
+}
+
+/// Compares sheets, light volumes and picture of a dataset with a reference of it.
+fn check_with(name: &str, loaded: &Dataset, settings: &Settings, reference: &Reference<'_>) {
+    let mut renderer = Renderer::new(&context()).expect("a renderer");
     let mut failures = Vec::new();
     for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
         if !settings.shadows.algorithm.has_volume() {
@@ -60,16 +64,16 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
         let splats = settings.shadows.algorithm == ShadowAlgorithm::Splat && is_point;
         let sheets = if splats { reference.light_sheets(light) } else { Vec::new() };
         for (view, expected) in sheets.iter().enumerate() {
-            let found = renderer.light_sheets(&loaded, settings, light, view).expect("sheets are read back");
+            let found = renderer.light_sheets(loaded, settings, light, view).expect("sheets are read back");
             let what = format!("{name}: sheets of light {light}, view {view}");
             failures.extend(compare(&what, &to_f64(&found), &expected.deposits.concat(), SAME_WEIGHTS).err());
         }
-        let found = full_attenuation(&mut renderer, &loaded, settings, light);
+        let found = full_attenuation(&mut renderer, loaded, settings, light);
         let expected = reference.attenuation(light);
         let what = format!("{name}: light volume {light}");
         failures.extend(compare(&what, &to_f64(&found), &expected.values, SAME_WEIGHTS).err());
     }
-    let found = render(&mut renderer, &loaded, settings, SIZE);
+    let found = render(&mut renderer, loaded, settings, SIZE);
     let expected = reference.picture(SIZE, &reference.attenuations());
     failures.extend(
         compare(

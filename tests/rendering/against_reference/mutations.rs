@@ -62,16 +62,25 @@ pub(super) fn differs_in_volume(
     fault: ReferenceFault,
 ) -> bool {
     let loaded = Dataset::new(volume);
-    let mut renderer = damaged_renderer(from, to);
     let rounding: fn(f32) -> f32 = |value| half::f16::from_f32(value).to_f32();
     let options = ReferenceOptions { fault, rounding: Some(rounding), ..ReferenceOptions::default() };
     let drawn = settings.resolved_for(loaded.volume());
-    let reference = Reference::new(loaded.volume(), &drawn, options);
+    differs_with(&loaded, settings, &Reference::new(loaded.volume(), &drawn, options), (from, to))
+}
+
+/// Compares a damaged GPU path with a reference of a dataset.
+pub(super) fn differs_with(
+    loaded: &Dataset,
+    settings: &Settings,
+    reference: &Reference<'_>,
+    (from, to): (&str, &str),
+) -> bool {
+    let mut renderer = damaged_renderer(from, to);
     let expected = reference.attenuations();
-    let found = full_attenuation(&mut renderer, &loaded, settings, 0);
+    let found = full_attenuation(&mut renderer, loaded, settings, 0);
     let values = &expected[0].as_ref().expect("the light casts shadows").values;
     let light = compare("light volume", &to_f64(&found), values, SAME_WEIGHTS);
-    let found = render(&mut renderer, &loaded, settings, SIZE);
+    let found = render(&mut renderer, loaded, settings, SIZE);
     let picture = compare(
         "picture",
         &channels_f32(&found.linear),

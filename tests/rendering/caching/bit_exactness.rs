@@ -147,7 +147,7 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
     let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
     let mut renderer = Renderer::new(&context()).expect("a renderer");
     let request = RenderRequest {
-        volume: loaded.volume().id(),
+        volume: loaded.id(),
         settings: settings.clone(),
         size: SIZE.map(|n| n / 4),
         preview_resolution: Some(LightVolumeResolution::Quarter),
@@ -181,7 +181,7 @@ fn the_clear_margin_is_cleared_once() {
         // Filled for a fine picture, and looked up by a coarse one.
         for size in [[256, 192], [16, 12]] {
             let settings = settings.clone();
-            let volume = loaded.volume().id();
+            let volume = loaded.id();
             let request = RenderRequest {
                 volume,
                 settings,

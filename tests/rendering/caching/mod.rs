@@ -178,7 +178,7 @@ fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     assert!(worst.fold(0.0, f32::max) <= F16_STEP);
 
     let request = |settings: &Settings| RenderRequest {
-        volume: loaded.volume().id(),
+        volume: loaded.id(),
         settings: settings.clone(),
         size: SIZE,
         preview_resolution: None,

@@ -37,7 +37,7 @@ fn each_colour_is_absorbed_by_itself(engine: RenderEngine) {
         let options =
             RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
         renderer.draw(&loaded, &settings, [8, 8], &options).expect("the light volume is filled");
-        let volume = loaded.volume().id();
+        let volume = loaded.id();
         let request =
             RenderRequest { volume, settings: settings.clone(), size: [8, 8], preview_resolution: None };
         let found = renderer.attenuation(&request, 0).expect("it is read back").expect("there is one");

@@ -40,7 +40,7 @@ fn brightness(
         settings.sampling.slab = preview_slab(&settings.camera, &loaded.volume().scene(), size, slab);
         settings.shadows.kernel = ReconstructionKernel::Prefiltered;
     }
-    let request = RenderRequest { volume: loaded.volume().id(), settings, size, preview_resolution: coarse };
+    let request = RenderRequest { volume: loaded.id(), settings, size, preview_resolution: coarse };
     let mut job = renderer.begin(loaded, request, &options).expect("a job");
     while job.step().expect("a step") {}
     mean_luminance(&renderer.read_light().expect("light"))

@@ -66,6 +66,30 @@ impl ClassifiedVoxels {
     }
 }
 
+impl ClassifiedVoxels {
+    /// Spreads voxels of which colour times extinction, and extinction, are known; `largest` is the extinction that
+    /// counts as a share of 1.
+    pub(crate) fn from_matter(
+        dims: [usize; 3],
+        matter: &[[f64; 4]],
+        largest: f64,
+        width: f64,
+        rounding: Option<Rounding>,
+    ) -> Self {
+        let field_of = |channel: usize| {
+            let shares = matter.iter().map(|matter| matter[channel] / largest.max(1e-20)).collect();
+            DensityField { dims, densities: shares, border: BorderMode::Zero }
+        };
+        let spread = |channel: usize| Pyramid::new(&field_of(channel), width, rounding);
+        Self {
+            field: field_of(3),
+            shares: spread(3),
+            colors: [0, 1, 2].map(spread),
+            table: BakedTransfer::linear_ramp(largest as f32),
+        }
+    }
+}
+
 /// Multiplies the colours of a material by its extinction.
 pub(crate) fn associated([r, g, b, extinction]: [f64; 4]) -> [f64; 4] {
     [r * extinction, g * extinction, b * extinction, extinction]

@@ -2,6 +2,7 @@
 
 pub(crate) mod classified;
 pub(crate) mod integrated_table;
+pub(crate) mod layers;
 pub(crate) mod pyramid;
 
 use glam::DVec3;

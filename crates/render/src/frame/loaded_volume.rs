@@ -65,6 +65,11 @@ impl LoadedVolume {
         presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
+        let volume = if tables_key.volume.is_layered {
+            volume.with_fields(context, dataset.fields())?
+        } else {
+            volume
+        };
         let TableBakeResult { tables, .. } =
             TransferTables::bake(context, &volume, settings, tables_key, None)?;
         let tables = CacheEntry::complete(tables_key.clone(), tables);

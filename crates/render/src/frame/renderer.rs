@@ -138,7 +138,7 @@ impl Renderer {
         options: &RenderOptions,
     ) -> Result<(), GpuError> {
         let context = self.tools.context.clone();
-        let volume = dataset.volume().id();
+        let volume = dataset.id();
         let request = RenderRequest { volume, settings: settings.clone(), size, preview_resolution: None };
         let mut job = self.begin(dataset, request, options)?;
         // A quarter of a megapixel per submission stays below driver watchdogs on slow GPUs.

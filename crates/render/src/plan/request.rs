@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::PixelWindow;
 use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, OutputSettings, PixelFormat, Settings};
-use chiaroscuro_volume::{DensityMapping, VolumeId};
+use chiaroscuro_volume::{DensityMapping, MAX_FIELDS, VolumeId};
 
 /// Request for a picture: the volume, its look and the size.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +26,29 @@ pub struct VolumeKey {
     pub content_id: u64,
     /// Quantity that densities from 0 to 1 represent.
     pub density_mapping: DensityMapping,
+    /// Quantities that densities of the further fields represent, which are shown as layers.
+    pub further: [Option<DensityMapping>; MAX_FIELDS - 1],
+    /// True if voxels are composed of layers, for which their fields are stored together.
+    pub is_layered: bool,
+}
+
+impl VolumeKey {
+    /// Returns the quantities that densities represent, one for each field that is shown.
+    pub fn density_mappings(&self) -> impl Iterator<Item = DensityMapping> {
+        [Some(self.density_mapping)].into_iter().chain(self.further).map_while(|mapping| mapping)
+    }
 }
 
 impl RenderRequest {
     /// Returns the identity of the volume as this picture shows it.
     pub fn volume_key(&self) -> VolumeKey {
         let VolumeId { content_id, ranges, .. } = self.volume;
-        VolumeKey { content_id, density_mapping: self.settings.shown_content(&ranges) }
+        VolumeKey {
+            content_id,
+            density_mapping: self.settings.shown_content(&ranges),
+            further: self.settings.further_mappings(&self.volume),
+            is_layered: self.settings.is_layered(),
+        }
     }
 
     /// Returns the request with the settings of its mode ([`Settings::resolved_mode`]).

@@ -80,10 +80,10 @@ impl Renderer {
         size: [u32; 2],
     ) -> Result<Vec<Option<[f32; 4]>>, GpuError> {
         let none = || GpuError::NothingDrawn("sky");
-        let settings = settings.resolved_for(dataset.volume()).into_owned();
+        let settings = settings.resolved_for_dataset(dataset).into_owned();
         self.draw(dataset, &settings, size, &RenderOptions::default())?;
         let request =
-            RenderRequest { volume: dataset.volume().id(), settings, size, preview_resolution: None };
+            RenderRequest { volume: dataset.id(), settings, size, preview_resolution: None };
         let key = SkyKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
@@ -116,11 +116,11 @@ impl Renderer {
     fn drawn_request(&mut self, dataset: &Dataset, settings: &Settings) -> Result<RenderRequest, GpuError> {
         let options =
             RenderOptions::from(WorkOptions { fill_all_light_voxels: true, ..WorkOptions::default() });
-        let settings = &*settings.resolved_for(dataset.volume());
+        let settings = &*settings.resolved_for_dataset(dataset);
         let size = [8, 8];
         self.draw(dataset, settings, size, &options)?;
         Ok(RenderRequest {
-            volume: dataset.volume().id(),
+            volume: dataset.id(),
             settings: settings.clone(),
             size,
             preview_resolution: None,
@@ -146,10 +146,10 @@ impl Renderer {
         view: usize,
     ) -> Result<Vec<f32>, GpuError> {
         let size = [8, 8];
-        let settings = &*settings.resolved_for(dataset.volume());
+        let settings = &*settings.resolved_for_dataset(dataset);
         self.draw(dataset, settings, size, &RenderOptions::default())?;
         let request = RenderRequest {
-            volume: dataset.volume().id(),
+            volume: dataset.id(),
             settings: settings.clone(),
             size,
             preview_resolution: None,

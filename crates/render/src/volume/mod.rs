@@ -4,7 +4,9 @@ pub(super) mod brick_list;
 pub(super) mod cell_list;
 pub(super) mod cell_set_cache;
 pub(crate) mod density_pyramid;
+mod field_texture;
 pub(super) mod gradients;
+pub(super) mod layers;
 pub(super) mod preclassified;
 pub(super) mod presence;
 pub(super) mod pyramid;
@@ -12,6 +14,8 @@ mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
+#[cfg(feature = "testing")]
+pub use field_texture::stored_field_density;
 pub(crate) use texture_shapes::texture_3d;
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
@@ -22,6 +26,7 @@ use std::sync::Arc;
 use half::f16;
 
 use self::density_pyramid::DensityPyramid;
+use self::field_texture::FieldTexture;
 use self::presence::PresenceTexture;
 use self::texture_shapes::pyramid_dims;
 use self::textures::{density_is_unorm, unorm16};
@@ -31,7 +36,7 @@ use super::{GpuContext, GpuError};
 use crate::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::GridBoundaries;
 use crate::pipelines::uniforms::GridUniform;
-use chiaroscuro_volume::{BRICK_EDGE, BrickBounds, CELL_EDGE, Volume, math::SceneSpace};
+use chiaroscuro_volume::{BRICK_EDGE, BrickBounds, CELL_EDGE, DatasetField, Volume, math::SceneSpace};
 
 /// Size of an upload step in bytes, small enough for a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
@@ -214,6 +219,8 @@ pub(crate) struct GpuVolume {
     pub pyramid: Option<DensityPyramid>,
     /// Views of a single texel, bound in place of a pyramid that no picture has read.
     no_pyramid: PyramidViews,
+    /// Densities of all fields, if voxels are composed of layers.
+    pub fields: Option<Box<FieldTexture>>,
     /// Presence texture, if voxels are missing.
     pub presence: Option<PresenceTexture>,
     /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid of densities.
@@ -268,6 +275,7 @@ impl GpuVolume {
             filled_levels: pyramid::nonempty_bricks(bricks, dims, presence.is_some()),
             pyramid: None,
             no_pyramid: PyramidViews::new(&texel),
+            fields: None,
             presence,
             clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -277,6 +285,18 @@ impl GpuVolume {
             is_unorm: density_is_unorm(context, volume),
             grid,
         })
+    }
+
+    /// Adds the texture of all fields, of which voxels are composed.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold it.
+    pub(crate) fn with_fields(
+        self,
+        context: &GpuContext,
+        fields: &Arc<[DatasetField]>,
+    ) -> Result<Self, GpuError> {
+        Ok(Self { fields: Some(Box::new(FieldTexture::new(context, fields)?)), ..self })
     }
 
     /// Creates the pyramid of densities if there is none. Returns true if it has yet to be filled.
@@ -305,6 +325,9 @@ impl GpuVolume {
     /// replicated in front and behind.
     pub(crate) fn upload(&self, context: &GpuContext, slices: std::ops::Range<usize>) {
         use rayon::prelude::*;
+        if let Some(fields) = &self.fields {
+            fields.upload(context, slices.clone());
+        }
         let [nx, ny, nz] = self.volume.dims();
         let encode =
             |density: f32| if self.is_unorm { unorm16(density) } else { f16::from_f32(density).to_bits() };
@@ -363,7 +386,8 @@ impl GpuVolume {
             channels * texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes()
         });
         let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
-        2 * texel_count(&self.density) + pyramid + presence
+        let fields = self.fields.as_ref().map_or(0, |fields| fields.bytes());
+        2 * texel_count(&self.density) + pyramid + presence + fields
     }
 }
 

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::brick_list::two_workgroups_per_brick;
+use super::layers::BakedLayers;
 use super::pyramid::{self, LevelBuffers, level_buffers, level_view};
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
@@ -17,14 +18,13 @@ use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, Singl
 use crate::plan::{BrickSet, MAX_STRETCH_LEVEL};
 use crate::resources::pass;
 use crate::{GpuContext, GpuError};
-use chiaroscuro_scene::BakedTransfer;
 use chiaroscuro_volume::memory_budget_bytes;
 
 /// Pre-classified voxels of one transfer function.
 #[derive(Debug)]
 pub(crate) struct PreclassifiedVoxels {
-    /// Transfer function that the voxels are classified with.
-    baked: Arc<BakedTransfer>,
+    /// Transfer functions that the voxels are classified with.
+    baked: Arc<BakedLayers>,
     /// `true` if edges are made steep.
     is_crisp: bool,
     texture: wgpu::Texture,
@@ -46,13 +46,12 @@ impl PreclassifiedVoxels {
     pub(crate) fn new(
         context: &GpuContext,
         volume: &GpuVolume,
-        baked: &Arc<BakedTransfer>,
+        baked: &Arc<BakedLayers>,
         is_crisp: bool,
         occupied: &BrickSet,
         reusable: Option<Self>,
     ) -> Result<Self, GpuError> {
-        let shares =
-            if is_crisp { baked.crisp_ramp() } else { BakedTransfer::linear_ramp(baked.max_extinction()) };
+        let shares = baked.conversion_table(is_crisp);
         let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
         let dims = volume.volume.dims();
         let mut bricks = pyramid::level_bricks(dims, occupied.dims, |at| occupied.members[at]);
@@ -98,9 +97,9 @@ impl PreclassifiedVoxels {
         })
     }
 
-    /// Returns true if the voxels are classified with the entries of this transfer function, and with such edges.
-    pub(crate) fn matches(&self, baked: &BakedTransfer, is_crisp: bool) -> bool {
-        self.is_crisp == is_crisp && self.baked.entries == baked.entries
+    /// Returns true if the voxels are classified with the entries of these transfer functions, and with such edges.
+    pub(crate) fn matches(&self, baked: &BakedLayers, is_crisp: bool) -> bool {
+        self.is_crisp == is_crisp && self.baked.has_same_matter(baked)
     }
 
     /// Marks the pyramid as complete.
@@ -129,7 +128,9 @@ impl PreclassifiedVoxels {
     ) -> Result<(), GpuError> {
         let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
         let bricks = &self.bricks[level as usize][range.clone()];
+        let layers = self.baked.parameters().zip(volume.fields.as_ref());
         let pipeline = match level {
+            0 if layers.is_some() => shaders.pipeline(&SingleVariant("volume/composed_voxels.wgsl"))?,
             0 => shaders.pipeline(&MaterialsVariant {
                 has_missing: volume.presence.is_some(),
                 is_crisp: self.is_crisp,
@@ -144,17 +145,26 @@ impl PreclassifiedVoxels {
         let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
         let target = level_view(&self.texture, level);
         let mut entries = vec![
-            bind_view("source_texture", &source),
             bind_view("level", &target),
             bind_buffer("bound_resample", &uniform),
             bind_buffer("bricks", &list),
         ];
-        match level {
-            0 => entries.extend([
+        let parameters = layers.map(|(parameters, _)| gpu.uniform("Materials::layers", *parameters));
+        match (level, layers.zip(parameters.as_ref())) {
+            (0, Some(((_, fields), parameters))) => entries.extend([
+                bind_buffer("layer_tables", table),
+                bind_buffer("bound_layers", parameters),
+                bind_view("field_texture", &fields.view),
+            ]),
+            (0, None) => entries.extend([
+                bind_view("source_texture", &source),
                 bind_buffer("table", table),
                 bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)),
             ]),
-            _ => entries.push(sampler("source_sampler", &volume.clamped)),
+            _ => entries.extend([
+                bind_view("source_texture", &source),
+                sampler("source_sampler", &volume.clamped),
+            ]),
         }
         let bind_group = pass::bind(context, "Materials::bind_group", &pipeline, 0, &entries);
         let groups = two_workgroups_per_brick(bricks.len().max(1) as u32);
@@ -189,6 +199,9 @@ impl PipelineVariant for MaterialsVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![flag("MISSING", self.has_missing), flag("CRISP", self.is_crisp)]
+        vec![
+            flag("MISSING", self.has_missing),
+            flag("CRISP", self.is_crisp),
+        ]
     }
 }

@@ -6,25 +6,26 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::cell_set_cache::{CellRequirement, CellSetCache, OccupiedCells};
+use super::layers::BakedLayers;
 use super::preclassified::PreclassifiedVoxels;
 use super::{GpuVolume, PassPyramids, PyramidViews, brick_dims};
 use crate::pipelines::pipeline_variant::GridBoundaries;
 use crate::plan::{BrickSet, CellDistances, CellSet, FloorPlane, NearFieldOffset, TablesKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::{GpuContext, GpuError};
-use chiaroscuro_scene::{BakedTransfer, LIGHT_COLORS, Settings};
+use chiaroscuro_scene::{LIGHT_COLORS, Settings, VolumeLayer};
 use chiaroscuro_volume::{CELL_EDGE, CellOccupancy, math::SceneSpace};
 
 /// Distance in voxels between opposite faces from which on no unstretched kernel reaches both: twice `EDGE_REACH` in
 /// `shaders/density/presence.wgsl`.
 const MAX_FACE_DISTANCE: f64 = 3.0;
 
-/// Baked transfer function: its lookup table and the cells where it has extinction (occupied cells).
+/// Baked transfer functions of all layers: their lookup tables and the cells where they have extinction (occupied cells).
 #[derive(Debug, Clone)]
 pub(crate) struct TransferTable {
-    /// Lookup table on the CPU.
-    baked: Arc<BakedTransfer>,
-    /// Lookup table in a storage buffer.
+    /// Lookup tables on the CPU.
+    baked: Arc<BakedLayers>,
+    /// Lookup tables in a storage buffer, that of the first layer first.
     pub buffer: wgpu::Buffer,
     /// Bricks with any extinction.
     pub occupied_bricks: Arc<BrickSet>,
@@ -43,12 +44,12 @@ pub(crate) struct TransferTable {
 }
 
 impl TransferTable {
-    /// Uploads a transfer function and finds its occupied cells, reusing those of a `known` table with the same
+    /// Uploads transfer functions and finds their occupied cells, reusing those of a `known` table with the same
     /// visible densities.
     fn new<'a>(
         context: &GpuContext,
         volume: &GpuVolume,
-        baked: BakedTransfer,
+        baked: BakedLayers,
         bounded: bool,
         known: impl IntoIterator<Item = &'a Self>,
     ) -> Self {
@@ -63,7 +64,7 @@ impl TransferTable {
             };
         }
         let dims = volume.bricks.dims;
-        let CellOccupancy { bricks, cells: masks } = occupancy(volume, &baked, bounded);
+        let CellOccupancy { bricks, cells: masks } = baked.occupancy(volume, bounded);
         let occupied = BrickSet::new(dims, bricks);
         let is_empty = masks.iter().all(|mask: &u64| *mask == 0);
         let distances = Arc::new(CellDistances::from_set(&CellSet { dims, masks }));
@@ -128,8 +129,8 @@ impl TransferTable {
         self.distances.values[x + width * (y + height * z)] == 0
     }
 
-    /// Returns the lookup table on the CPU.
-    pub(crate) fn baked(&self) -> &Arc<BakedTransfer> {
+    /// Returns the lookup tables on the CPU.
+    pub(crate) fn baked(&self) -> &Arc<BakedLayers> {
         &self.baked
     }
 
@@ -153,23 +154,6 @@ impl TransferTable {
     pub(crate) fn largest_extinction(&self) -> f32 {
         self.baked.max_extinction()
     }
-}
-
-/// Returns the bricks and cells in which a transfer function has extinction: all cells of such bricks unless the cells'
-/// bounds hold (`bounded`). Labels are looked up voxel by voxel: ranges of their numbers would include others that are
-/// visible.
-fn occupancy(volume: &GpuVolume, baked: &BakedTransfer, bounded: bool) -> CellOccupancy {
-    let known = &volume.bricks;
-    let mut found = if volume.volume.shown_labels().is_some() {
-        CellOccupancy::from_labels(&volume.volume, known, baked.exact_visibility_test())
-    } else {
-        let cells = if bounded { known.cell_masks(baked.visibility_test()) } else { Vec::new() };
-        CellOccupancy { bricks: known.occupancy(baked.visibility_test()), cells }
-    };
-    if !bounded {
-        found.cells = found.bricks.iter().map(|&member| if member { u64::MAX } else { 0 }).collect();
-    }
-    found
 }
 
 /// Tables of both transfer functions of the settings.
@@ -213,7 +197,6 @@ impl TransferTables {
         key: &TablesKey,
         previous: Option<&CacheEntry<TablesKey, Self>>,
     ) -> Result<TableBakeResult, GpuError> {
-        let range = volume.volume.table_range();
         let bounded = key.cells_are_bounds;
         let previous = previous.filter(|known| known.key().cells_are_bounds == bounded);
         let known = || previous.into_iter().flat_map(|known| [&known.product.eye, &known.product.lighting]);
@@ -222,7 +205,8 @@ impl TransferTables {
             known.product.eye.clone()
         } else {
             baked += 1;
-            TransferTable::new(context, volume, settings.bake_eye(range, &volume.scene), bounded, known())
+            let eye = BakedLayers::new(volume, settings, VolumeLayer::bake_eye);
+            TransferTable::new(context, volume, eye, bounded, known())
         };
         let is_lit_alike =
             |known: &TablesKey| (&known.lighting, &known.transmission) == (&key.lighting, &key.transmission);
@@ -230,7 +214,8 @@ impl TransferTables {
             (known.product.lighting.clone(), known.product.colors.clone())
         } else {
             baked += 1;
-            let lighting = settings.bake_lighting(range, &volume.scene);
+            let bake = |layer: &VolumeLayer, range, scene: &SceneSpace| settings.bake_lighting_of(layer, range, scene);
+            let lighting = BakedLayers::new(volume, settings, bake);
             let lighting = TransferTable::new(context, volume, lighting, bounded, known().chain([&eye]));
             let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));
             (lighting, colors.unwrap_or_default())

@@ -19,7 +19,7 @@ use super::{
     BakedTransfer, Camera, ClassificationOrder, Clipping, FloorSettings, GradientSource, LightSettings,
     LightStorage, NearFieldRay, ReconstructionKernel, RenderEngine, RenderModeSettings, SamplingSettings,
     SavedEntry, ScatteringSettings, ShadowAlgorithm, ShadowSettings, SheetOrder, SkySettings, SlabMode,
-    SlabQuadrature, VolumeLayer, VolumeLayers,
+    SlabQuadrature, VolumeLayers,
 };
 use chiaroscuro_volume::{BOUNDED_SIGMA, Corrections, SIGMA_TOLERANCE, ValueRange, math::SceneSpace};
 
@@ -251,9 +251,11 @@ impl Settings {
     }
 
     /// Returns true if voxels are splatted by the scattering engine. Rays from every sample need the volume, so with
-    /// direct shadows the image is gathered with either engine.
+    /// direct shadows the image is gathered with either engine, and so it is with several layers.
     pub fn uses_scattering_engine(&self) -> bool {
-        self.sampling.engine == RenderEngine::Scatter && self.shadows.algorithm != ShadowAlgorithm::Direct
+        self.sampling.engine == RenderEngine::Scatter
+            && self.shadows.algorithm != ShadowAlgorithm::Direct
+            && !self.is_layered()
     }
 
     /// Returns true if the diffuse light of all shadowed lights is stored in one combined volume of colours. With
@@ -372,28 +374,16 @@ impl Settings {
         self.uses_scattering_engine() && self.sampling.order == SheetOrder::EveryFootprint
     }
 
-    /// Returns the opacity unit in scene units, safe to divide by.
-    fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
-        self.layer().opacity_unit.scene_units(scene).max(1e-9)
-    }
-
     /// Returns the eye's transfer function as a table over a value range, that of the shown volume
     /// ([`chiaroscuro_volume::Volume::table_range`]). For labels, call it on the settings [as
     /// drawn](Self::resolved_for).
     pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        self.layer().transfer.bake(range, self.opacity_unit_in_scene(scene), 1.0)
+        self.layer().bake_eye(range, scene)
     }
 
     /// Returns the lighting transfer function as a table over a value range, as [`Self::bake_eye`]. With coloured
     /// shadows, the table's colours are the shares of extinction that each colour of light meets.
     pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        let VolumeLayer { transfer, lighting, .. } = self.layer();
-        let function = if lighting.linked { transfer } else { &lighting.curve };
-        let baked = function.bake(range, self.opacity_unit_in_scene(scene), lighting.scale);
-        if self.has_colored_shadows() {
-            baked.with_extinction_shares(self.shadows.transmission)
-        } else {
-            baked
-        }
+        self.bake_lighting_of(self.layer(), range, scene)
     }
 }

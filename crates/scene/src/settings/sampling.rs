@@ -97,10 +97,13 @@ impl ClassificationOrder {
 }
 
 impl Settings {
-    /// Returns the order of classification and interpolation. Labels are always classified first, because numbers
-    /// between two labels mean nothing. Edges are made steep only by gathering and for light of one colour: colours
+    /// Returns the order of classification and interpolation. Labels and layers are always classified first: numbers
+    /// between two labels mean nothing, and layers are composed voxel by voxel. Edges are made steep only by gathering and for light of one colour: colours
     /// attenuate by shares of extinction that a curve would change.
     pub fn classification(&self) -> ClassificationOrder {
+        if let Some(order) = self.layered_classification() {
+            return order;
+        }
         let can_be_crisp = !self.uses_scattering_engine() && !self.has_colored_shadows();
         match self.sampling.classification {
             ClassificationOrder::PreCrisp if can_be_crisp => ClassificationOrder::PreCrisp,

@@ -122,7 +122,7 @@ fn sanitise_mode(mode: &mut RenderModeSettings) {
 }
 
 fn sanitise_layer(layer: &mut VolumeLayer) {
-    let VolumeLayer { range, labels, transfer, lighting, opacity_unit } = layer;
+    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility: _, blend: _, edges } = layer;
     let LightingTransfer { linked: _, scale, curve } = lighting;
     for function in [transfer, curve] {
         function.points.retain(|point| point.value.is_finite());
@@ -136,6 +136,7 @@ fn sanitise_layer(layer: &mut VolumeLayer) {
     *range = range.sanitised();
     labels.sanitise();
     clamp_number(scale, 0.0, 1e3, 1.0);
+    clamp_number(edges, 0.0, 1.0, 0.0);
     let length = opacity_unit.number();
     if !(length.is_finite() && length > 0.0) {
         *opacity_unit = VolumeLayer::default().opacity_unit;

@@ -4,7 +4,8 @@
 use serde_json::{Map, Value};
 
 /// Settings of a layer that are found at the top level, too.
-const LAYER_FIELDS: [&str; 5] = ["range", "labels", "transfer", "lighting", "opacity_unit"];
+const LAYER_FIELDS: [&str; 8] =
+    ["range", "labels", "transfer", "lighting", "opacity_unit", "visibility", "blend", "edges"];
 
 /// Path of the first layer, before the path of a setting in it.
 const FIRST_LAYER: &str = "layers.0.";
@@ -193,8 +194,8 @@ mod tests {
     fn other_numbers_of_layers_are_refused() {
         let refused = |text: &str| load_json(&Settings::default(), text).unwrap_err().to_string();
         assert!(refused(r#"{"layers": []}"#).contains("`layers` is empty"));
-        let two = refused(r#"{"schema": 4, "layers": [{}, {}]}"#);
-        assert!(two.contains("`layers` has 2 layers, and this version shows one"), "{two}");
+        let five = refused(r#"{"schema": 4, "layers": [{}, {}, {}, {}, {}]}"#);
+        assert!(five.contains("`layers` has 5 layers, and a picture shows 4 at most"), "{five}");
         assert!(!refused(r#"{"layers": 3}"#).is_empty() && !refused(r#"{"layers": null}"#).is_empty());
         let newer =
             load_json(&Settings::default(), r#"{"schema": 4, "layers": [{"range": "full"}]}"#).unwrap();

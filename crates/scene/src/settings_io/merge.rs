@@ -2,23 +2,32 @@
 
 use serde_json::{Map, Value};
 
-/// Merges a record into settings. Its layer is merged with that of the settings; other lists are replaced.
+use crate::VolumeLayer;
+
+/// Merges a record into settings. Its layers are merged with those of the settings, and further ones with the default;
+/// a record of one layer, as presets are, leaves the others. Other lists are replaced.
 pub(super) fn merge_record(settings: &mut Value, record: &Value) {
-    let merged = match (settings.pointer("/layers/0"), record.get("layers")) {
-        (Some(layer), Some(Value::Array(layers))) => match &layers[..] {
-            [over] => {
-                let mut layer = layer.clone();
-                merge(&mut layer, over);
-                Some(Value::Array(vec![layer]))
-            }
-            _ => None,
-        },
+    let merged = match (settings.get("layers"), record.get("layers")) {
+        (Some(Value::Array(layers)), Some(Value::Array(over))) if !over.is_empty() => {
+            Some(Value::Array(merge_layers(layers, over)))
+        }
         _ => None,
     };
     merge(settings, record);
     if let Some(layers) = merged {
         settings["layers"] = layers;
     }
+}
+
+fn merge_layers(layers: &[Value], over: &[Value]) -> Vec<Value> {
+    let default = || serde_json::to_value(VolumeLayer::default()).unwrap_or(Value::Null);
+    let merge_one = |(at, over): (usize, &Value)| {
+        let mut layer = layers.get(at).cloned().unwrap_or_else(default);
+        merge(&mut layer, over);
+        layer
+    };
+    let rest = if over.len() == 1 { layers.get(1..).unwrap_or_default() } else { &[] };
+    over.iter().enumerate().map(merge_one).chain(rest.iter().cloned()).collect()
 }
 
 /// Merges objects field by field, and replaces everything else.

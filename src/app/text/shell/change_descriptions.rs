@@ -1,5 +1,7 @@
 //! Descriptions of undo steps, in a few words that follow "Undo" and "Undone:".
 
+use std::cmp::Ordering;
+
 use crate::app::text;
 use chiaroscuro_scene::{
     Camera, Clipping, LightSettings, OutputSettings, QualityPreset, RenderModeSettings, SavedEntry, Settings,
@@ -29,7 +31,8 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         kept,
         volume,
     } = before;
-    let VolumeLayer { range, labels, transfer, lighting, opacity_unit } = layers.first();
+    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility, blend, edges } =
+        layers.first();
     let layer_after = after.layer();
     let with = |differs: bool, words: &str| differs.then(|| words.to_owned());
     let parts = [
@@ -40,6 +43,9 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         with(*labels != layer_after.labels, "change labels"),
         with(*range != layer_after.range, "change range of values"),
         with(*opacity_unit != layer_after.opacity_unit, "change opacity unit"),
+        with(*edges != layer_after.edges, "change edges"),
+        with((visibility, blend) != (&layer_after.visibility, &layer_after.blend), "change layer"),
+        with(!layers.iter().skip(1).eq(after.layers.iter().skip(1)), describe_layers(before, after)),
         with(*mode != after.mode, describe_mode(mode, &after.mode)),
         with(*shading != after.shading, "change shading"),
         with(with_balance(&after.shadows, shadows.balance) != *shadows, "change shadows"),
@@ -111,6 +117,14 @@ fn describe_camera(before: &Camera, after: &Camera) -> &'static str {
         "zoom"
     } else {
         "change field of view"
+    }
+}
+
+fn describe_layers(before: &Settings, after: &Settings) -> &'static str {
+    match before.layers.count().cmp(&after.layers.count()) {
+        Ordering::Less => "add layer",
+        Ordering::Greater => "remove layer",
+        Ordering::Equal => "change layer",
     }
 }
 

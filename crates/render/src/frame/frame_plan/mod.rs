@@ -136,7 +136,8 @@ impl Renderer {
             (Some(known.product.dataset), presence)
         });
         let known = known.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
-        let dataset = known.unwrap_or_else(|| dataset.with_density_mapping(keys.volume.density_mapping));
+        let dataset =
+            known.as_ref().unwrap_or(dataset).with_density_mappings(keys.volume.density_mappings());
         let has_presence = presence.is_some();
         let (context, settings) = (&self.tools.context, &request.settings);
         let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, presence)?;
@@ -151,10 +152,10 @@ impl Renderer {
     }
 }
 
-/// Returns the request with label settings converted to transfer functions, so that passes and keys need not know of
-/// labels.
+/// Returns the request with label settings converted to transfer functions, and with layers that have a field, so that
+/// passes and keys need not know of labels.
 fn with_resolved_labels(mut request: RenderRequest, dataset: &Dataset) -> RenderRequest {
-    let resolved = match request.settings.resolved_for(dataset.volume()) {
+    let resolved = match request.settings.resolved_for_dataset(dataset) {
         Cow::Owned(drawn) => Some(drawn),
         Cow::Borrowed(_) => None,
     };

@@ -25,6 +25,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
 use crate::plan::SheetFrame as Frame;
+use chiaroscuro_volume::MAX_FIELDS;
 use chiaroscuro_volume::math::{ClipRegion, SceneSpace};
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -146,6 +147,27 @@ pub struct PyramidLevelUniform {
     pub spacing: f32,
     pub pad0: u32,
     pub pad1: u32,
+}
+
+/// Parameters of a layer, as declared in `volume/layers.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LayerUniform {
+    pub blend: u32,
+    pub is_label: u32,
+    pub opacity_unit: f32,
+    pub edges: f32,
+}
+
+/// Parameters of all layers, as declared in `volume/layers.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LayersUniform {
+    pub count: u32,
+    pub largest_extinction: f32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub layers: [LayerUniform; MAX_FIELDS],
 }
 
 /// Parameters of a slab of the scattering engine, as declared in `scatter/slab.wgsl`.

@@ -159,6 +159,9 @@ impl EyeKey {
             transfer: _,
             lighting: _,
             opacity_unit,
+            visibility: _,
+            blend: _,
+            edges: _,
         } = layers.first();
         let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };

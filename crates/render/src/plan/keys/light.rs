@@ -130,6 +130,9 @@ impl LightKey {
             transfer: _,
             lighting: _,
             opacity_unit: _,
+            visibility: _,
+            blend: _,
+            edges: _,
         } = layers.first();
         let light = lights.get(index)?.resolve(camera);
         let wanted = shadows.algorithm.has_volume() && light.needs_volume();

@@ -2,8 +2,8 @@
 
 use crate::plan::{RenderRequest, VolumeKey};
 use chiaroscuro_scene::{
-    ColorMixing, Easing, LabelMaterial, LightingTransfer, OpacityInterpolation, OpacityLength, Settings,
-    TransferFunction,
+    ColorMixing, Easing, LabelMaterial, LayerBlend, LayerVisibility, LightingTransfer, OpacityInterpolation,
+    OpacityLength, Settings, TransferFunction, VolumeLayer,
 };
 
 /// Inputs of both lookup tables.
@@ -21,11 +21,23 @@ pub struct TablesKey {
     pub cells_are_bounds: bool,
 }
 
-/// Inputs of the eye's table: the curve with its colours, or looks of labels, and the opacity unit.
+/// Inputs of the eye's table: for each layer the curve with its colours, or looks of labels, and the opacity unit.
 #[derive(Debug, Clone, PartialEq)]
-pub struct EyeTableKey {
+pub struct EyeTableKey(Vec<EyeLayerKey>);
+
+#[derive(Debug, Clone, PartialEq)]
+struct EyeLayerKey {
     looks: EyeTableLooks,
     unit: OpacityLength,
+    composition: CompositionKey,
+}
+
+/// Inputs by which a layer is composed with others.
+#[derive(Debug, Clone, PartialEq)]
+struct CompositionKey {
+    has_matter: bool,
+    blend: LayerBlend,
+    edges: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -34,18 +46,23 @@ enum EyeTableLooks {
     Labels(Vec<LabelMaterial>),
 }
 
-/// Inputs of the opacities that attenuate light: no colours.
+/// Inputs of the opacities that attenuate light: for each layer, without colours.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OpacityKey {
+pub struct OpacityKey(Vec<OpacityLayerKey>);
+
+#[derive(Debug, Clone, PartialEq)]
+struct OpacityLayerKey {
     opacities: LightingOpacities,
     scale: f64,
     unit: OpacityLength,
+    composition: CompositionKey,
 }
 
 /// Inputs of the extinction of each colour channel, apart from opacities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmissionKey {
-    colors: TransmissionColors,
+    /// Colours of each layer.
+    colors: Vec<TransmissionColors>,
     share: f64,
 }
 
@@ -78,48 +95,78 @@ impl TablesKey {
 impl EyeTableKey {
     /// Creates the key of the eye's table in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        let looks = if settings.layer().labels.is_empty() {
-            EyeTableLooks::Values(settings.layer().transfer.clone())
+        Self(settings.layers.iter().map(EyeLayerKey::new).collect())
+    }
+}
+
+impl EyeLayerKey {
+    fn new(layer: &VolumeLayer) -> Self {
+        let looks = if layer.labels.is_empty() {
+            EyeTableLooks::Values(layer.transfer.clone())
         } else {
-            EyeTableLooks::Labels(settings.layer().labels.materials())
+            EyeTableLooks::Labels(layer.labels.materials())
         };
-        Self { looks, unit: settings.layer().opacity_unit }
+        let is_seen = layer.visibility == LayerVisibility::Shown;
+        Self { looks, unit: layer.opacity_unit, composition: CompositionKey::new(layer, is_seen) }
+    }
+}
+
+impl CompositionKey {
+    fn new(layer: &VolumeLayer, has_matter: bool) -> Self {
+        Self { has_matter, blend: layer.blend, edges: layer.edges }
     }
 }
 
 impl OpacityKey {
     /// Creates the key of the opacities that attenuate light in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        let LightingTransfer { linked, scale, curve } = &settings.layer().lighting;
-        let opacities = if settings.layer().labels.is_empty() {
-            let curve = if *linked { &settings.layer().transfer } else { curve };
+        Self(settings.layers.iter().map(OpacityLayerKey::new).collect())
+    }
+}
+
+impl OpacityLayerKey {
+    fn new(layer: &VolumeLayer) -> Self {
+        let LightingTransfer { linked, scale, curve } = &layer.lighting;
+        let opacities = if layer.labels.is_empty() {
+            let curve = if *linked { &layer.transfer } else { curve };
             let TransferFunction { points, interpolation, mixing: _ } = curve;
             LightingOpacities::Values {
                 points: points.iter().map(|point| ([point.value, point.opacity], point.easing)).collect(),
                 interpolation: *interpolation,
             }
         } else {
-            let materials = settings.layer().labels.materials().into_iter();
+            let materials = layer.labels.materials().into_iter();
             LightingOpacities::Labels(materials.map(|material| (material.number, material.opacity)).collect())
         };
-        Self { opacities, scale: *scale, unit: settings.layer().opacity_unit }
+        let casts = layer.visibility != LayerVisibility::Hidden;
+        Self {
+            opacities,
+            scale: *scale,
+            unit: layer.opacity_unit,
+            composition: CompositionKey::new(layer, casts),
+        }
     }
 }
 
 impl TransmissionKey {
     /// Creates the key of the colour channels' extinction in a look; `None` if shadows are grey.
     pub(super) fn new(settings: &Settings) -> Option<Self> {
-        let colors = || {
-            if !settings.layer().labels.is_empty() {
-                let materials = settings.layer().labels.materials().into_iter();
-                return TransmissionColors::Labels(materials.map(|material| material.color).collect());
-            }
-            let LightingTransfer { linked, scale: _, curve } = &settings.layer().lighting;
-            let curve = if *linked { &settings.layer().transfer } else { curve };
-            TransmissionColors::Values(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
-        };
-        settings
-            .has_colored_shadows()
-            .then(|| Self { colors: colors(), share: settings.shadows.transmission })
+        let share = settings.shadows.transmission;
+        settings.has_colored_shadows().then(|| Self {
+            colors: settings.layers.iter().map(TransmissionColors::new).collect(),
+            share,
+        })
+    }
+}
+
+impl TransmissionColors {
+    fn new(layer: &VolumeLayer) -> Self {
+        if !layer.labels.is_empty() {
+            let materials = layer.labels.materials().into_iter();
+            return Self::Labels(materials.map(|material| material.color).collect());
+        }
+        let LightingTransfer { linked, scale: _, curve } = &layer.lighting;
+        let curve = if *linked { &layer.transfer } else { curve };
+        Self::Values(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lit_lights::ActiveLights;
-use chiaroscuro_scene::{Settings, linear_from_srgb};
+use chiaroscuro_scene::{Settings, VolumeLayer, linear_from_srgb};
 
 /// Colour of all light of a scene, if it is the same everywhere and the material is grey: bounces are then simulated
 /// with one number each, and multiplied by the colour at the end.
@@ -22,12 +22,14 @@ impl UniformLightColor {
     /// Finds the single colour of all light in a look; `None` if there are several, or the material has colours.
     pub fn detect(settings: &Settings) -> Option<Self> {
         let is_grey = |color: [f32; 3]| color[0] == color[1] && color[1] == color[2];
-        let matter_is_grey = if settings.layer().labels.is_empty() {
-            settings.layer().transfer.points.iter().all(|point| is_grey(point.color))
-        } else {
-            settings.layer().labels.materials().iter().all(|material| is_grey(material.color))
+        let layer_is_grey = |layer: &VolumeLayer| {
+            if layer.labels.is_empty() {
+                layer.transfer.points.iter().all(|point| is_grey(point.color))
+            } else {
+                layer.labels.materials().iter().all(|material| is_grey(material.color))
+            }
         };
-        if !matter_is_grey {
+        if !settings.layers.iter().all(layer_is_grey) {
             return None;
         }
         let lights = ActiveLights::from_settings(settings);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Settings;
+use crate::{Settings, VolumeLayer};
 use chiaroscuro_volume::{ValueRange, ValueRanges};
 
 /// Number of steps per span in which the range is widened: dragging a control point changes it only occasionally,
@@ -53,17 +53,23 @@ impl Settings {
     /// Returns the values with densities 0 and 1 in images of a volume with these value ranges: the chosen range,
     /// widened by control points outside it, but not beyond the values of the volume.
     pub fn shown_range(&self, ranges: &ValueRanges) -> ValueRange {
-        let chosen = self.layer().range.resolve(ranges);
+        self.layer().shown_range(ranges, self.shown_isovalue())
+    }
+}
+
+impl VolumeLayer {
+    /// Returns the values with densities 0 and 1 of a field with these value ranges, in which a surface may be shown
+    /// at an isovalue.
+    pub(crate) fn shown_range(&self, ranges: &ValueRanges, isovalue: Option<f64>) -> ValueRange {
+        let chosen = self.range.resolve(ranges);
         let span = chosen.span();
         if span <= 0.0 {
             return chosen;
         }
-        let layer = self.layer();
         // Light meets a surface as the eye does, wherever it lies.
-        let isovalue = self.shown_isovalue();
-        let is_linked = layer.lighting.linked || isovalue.is_some();
-        let light = (!is_linked).then_some(&layer.lighting.curve);
-        let curves = std::iter::once(&layer.transfer).chain(light);
+        let is_linked = self.lighting.linked || isovalue.is_some();
+        let light = (!is_linked).then_some(&self.lighting.curve);
+        let curves = std::iter::once(&self.transfer).chain(light);
         let values = curves.flat_map(|curve| &curve.points).map(|point| point.value).chain(isovalue);
         let (lowest, highest) =
             values.fold((chosen.low, chosen.high), |(low, high), value| (low.min(value), high.max(value)));

@@ -3,13 +3,16 @@
 //! A file can have several fields on one grid, for instance channels of a microscope. Settings that differ by field
 //! are in a layer; camera, light, clipping and sampling are of the scene.
 
+pub(crate) mod composition;
 pub(crate) mod density_range;
 pub(crate) mod label_table;
 pub(crate) mod length;
 
 use serde::{Deserialize, Serialize};
 
+use self::composition::{LayerBlend, LayerVisibility};
 use crate::{DensityRange, LabelTable, OpacityLength, Settings, TransferFunction};
+use chiaroscuro_volume::MAX_FIELDS;
 
 /// Settings that belong to one field of the volume.
 ///
@@ -29,6 +32,13 @@ pub struct VolumeLayer {
     pub lighting: LightingTransfer,
     /// Length to which opacities refer.
     pub opacity_unit: OpacityLength,
+    /// Presence in the picture and in its light.
+    pub visibility: LayerVisibility,
+    /// Effect on the layers before it; the first layer always adds its matter.
+    pub blend: LayerBlend,
+    /// Change of density per voxel from which on opacity is that of the curve, 0 … 1: it fades to nothing at half of
+    /// it, so that edges are left. 0 leaves all opacities.
+    pub edges: f64,
 }
 
 impl Default for VolumeLayer {
@@ -39,6 +49,9 @@ impl Default for VolumeLayer {
             transfer: TransferFunction::default(),
             lighting: LightingTransfer::default(),
             opacity_unit: OpacityLength::Voxels(1.0),
+            visibility: LayerVisibility::Shown,
+            blend: LayerBlend::Add,
+            edges: 0.0,
         }
     }
 }
@@ -62,7 +75,7 @@ impl Default for LightingTransfer {
     }
 }
 
-/// Layers of a scene, a list in JSON. It is never empty, and in this version has one layer.
+/// Layers of a scene, a list in JSON of 1 … [`MAX_FIELDS`] layers, one for each field of the dataset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<VolumeLayer>")]
 pub struct VolumeLayers(Vec<VolumeLayer>);
@@ -73,9 +86,9 @@ pub enum LayerCountError {
     /// Empty list, which would show nothing.
     #[error("`layers` is empty, and a look has one layer")]
     None,
-    /// List of a version that shows several fields in one scene.
-    #[error("`layers` has {count} layers, and this version shows one")]
-    Several {
+    /// List longer than a picture can show.
+    #[error("`layers` has {count} layers, and a picture shows {MAX_FIELDS} at most")]
+    TooMany {
         /// Length of the list.
         count: usize,
     },
@@ -98,7 +111,7 @@ impl VolumeLayers {
     }
 
     /// Returns all layers, to be changed.
-    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut VolumeLayer> {
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut VolumeLayer> {
         self.0.iter_mut()
     }
 }
@@ -115,8 +128,8 @@ impl TryFrom<Vec<VolumeLayer>> for VolumeLayers {
     fn try_from(layers: Vec<VolumeLayer>) -> Result<Self, LayerCountError> {
         match layers.len() {
             0 => Err(LayerCountError::None),
-            1 => Ok(Self(layers)),
-            count => Err(LayerCountError::Several { count }),
+            1..=MAX_FIELDS => Ok(Self(layers)),
+            count => Err(LayerCountError::TooMany { count }),
         }
     }
 }
@@ -174,11 +187,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_list_has_exactly_one_layer() {
+    fn a_list_has_one_to_four_layers() {
         let layer = VolumeLayer { range: DensityRange::Full, ..VolumeLayer::default() };
         let layers = |count: usize| VolumeLayers::try_from(vec![layer.clone(); count]);
         assert_eq!(layers(1), Ok(VolumeLayers::new(layer.clone())));
         assert_eq!(layers(0).unwrap_err().to_string(), "`layers` is empty, and a look has one layer");
-        assert_eq!(layers(2).unwrap_err().to_string(), "`layers` has 2 layers, and this version shows one");
+        assert_eq!(layers(4).unwrap().count(), 4);
+        let five = layers(5).unwrap_err().to_string();
+        assert_eq!(five, "`layers` has 5 layers, and a picture shows 4 at most");
     }
 }

@@ -1,0 +1,159 @@
+//! Baked layers: the transfer functions of all layers, for the eye or for light, and the cells where they have matter.
+
+use super::GpuVolume;
+use crate::pipelines::uniforms::{LayerUniform, LayersUniform};
+use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer};
+use chiaroscuro_volume::math::SceneSpace;
+use chiaroscuro_volume::{BrickBounds, CellOccupancy, MAX_FIELDS, ValueRange, Volume};
+
+/// Transfer functions of one side, the eye or light: one for each layer.
+#[derive(Debug, Clone)]
+pub(crate) struct BakedLayers {
+    /// Tables, never empty.
+    tables: Vec<BakedTransfer>,
+    /// Parameters of layers, if voxels are composed of them.
+    parameters: Option<Box<LayersUniform>>,
+}
+
+impl BakedLayers {
+    /// Bakes the layers of a volume; `bake` makes the table of a layer over a range of values.
+    pub(crate) fn new(
+        volume: &GpuVolume,
+        settings: &Settings,
+        bake: impl Fn(&VolumeLayer, ValueRange, &SceneSpace) -> BakedTransfer,
+    ) -> Self {
+        let scene = &volume.scene;
+        let Some(texture) = &volume.fields else {
+            let table = bake(settings.layer(), volume.volume.table_range(), scene);
+            return Self { tables: vec![table], parameters: None };
+        };
+        let fields = || settings.layers.iter().zip(texture.fields.iter());
+        let tables = fields().map(|(layer, field)| bake(layer, field.volume().table_range(), scene)).collect();
+        let empty = LayerUniform { blend: 0, is_label: 0, opacity_unit: 1.0, edges: 0.0 };
+        let mut layers = [empty; MAX_FIELDS];
+        for (uniform, (layer, field)) in layers.iter_mut().zip(fields()) {
+            *uniform = LayerUniform {
+                blend: blend_number(layer.blend),
+                is_label: u32::from(field.volume().shown_labels().is_some()),
+                opacity_unit: layer.opacity_unit_in_scene(scene) as f32,
+                edges: layer.edges as f32,
+            };
+        }
+        let count = fields().count() as u32;
+        let parameters = LayersUniform { count, largest_extinction: 0.0, pad0: 0, pad1: 0, layers };
+        let mut baked = Self { tables, parameters: Some(Box::new(parameters)) };
+        let largest = baked.max_extinction();
+        if let Some(parameters) = &mut baked.parameters {
+            parameters.largest_extinction = largest;
+        }
+        baked
+    }
+
+    /// Returns the tables for one colour of light.
+    pub(crate) fn for_light_color(&self, color: usize) -> Self {
+        let tables = self.tables.iter().map(|table| table.for_light_color(color)).collect();
+        Self { tables, parameters: self.parameters.clone() }
+    }
+
+    /// Returns the parameters of layers, if voxels are composed of them.
+    pub(crate) fn parameters(&self) -> Option<&LayersUniform> {
+        self.parameters.as_deref()
+    }
+
+    /// Returns the tables as the shaders read them, one after the other.
+    pub(crate) fn to_f32s(&self) -> Vec<f32> {
+        self.tables.iter().flat_map(BakedTransfer::to_f32s).collect()
+    }
+
+    /// Returns the table that converts relative extinction of pre-classified voxels to extinction.
+    pub(crate) fn conversion_table(&self, is_crisp: bool) -> BakedTransfer {
+        match &self.tables[..] {
+            [table] if is_crisp => table.crisp_ramp(),
+            _ => BakedTransfer::linear_ramp(self.max_extinction()),
+        }
+    }
+
+    /// Returns the maximum extinction of any densities, per scene unit.
+    pub(crate) fn max_extinction(&self) -> f32 {
+        self.with_matter().map(|(_, table)| table.max_extinction()).sum()
+    }
+
+    /// Returns true if the lowest densities have extinction.
+    pub(crate) fn is_lowest_visible(&self) -> bool {
+        self.with_matter().any(|(_, table)| table.is_lowest_visible())
+    }
+
+    /// Returns true if other layers have matter at the same densities.
+    pub(crate) fn has_same_visibility(&self, other: &Self) -> bool {
+        let (mut own, mut others) = (self.with_matter(), other.with_matter());
+        loop {
+            match (own.next(), others.next()) {
+                (None, None) => return true,
+                (Some((at, a)), Some((b_at, b))) if at == b_at && a.has_same_visibility(b) => {}
+                _ => return false,
+            }
+        }
+    }
+
+    /// Returns true if voxels classified with other layers are the same.
+    pub(crate) fn has_same_matter(&self, other: &Self) -> bool {
+        let entries = |layers: &Self| layers.tables.len();
+        entries(self) == entries(other)
+            && self.parameters == other.parameters
+            && self.tables.iter().zip(&other.tables).all(|(a, b)| a.entries == b.entries)
+    }
+
+    /// Returns the bricks and cells in which any layer has extinction.
+    pub(crate) fn occupancy(&self, volume: &GpuVolume, bounded: bool) -> CellOccupancy {
+        let Some(texture) = &volume.fields else {
+            return occupancy_of(&volume.volume, &volume.bricks, &self.tables[0], bounded);
+        };
+        let mut found: Option<CellOccupancy> = None;
+        for (at, table) in self.with_matter() {
+            let field = &texture.fields[at];
+            let of_layer = occupancy_of(field.volume(), field.bricks(), table, bounded);
+            match &mut found {
+                None => found = Some(of_layer),
+                Some(found) => {
+                    found.bricks.iter_mut().zip(of_layer.bricks).for_each(|(any, member)| *any |= member);
+                    found.cells.iter_mut().zip(of_layer.cells).for_each(|(any, mask)| *any |= mask);
+                }
+            }
+        }
+        let bricks = volume.bricks.dims.iter().product();
+        found.unwrap_or_else(|| CellOccupancy { bricks: vec![false; bricks], cells: vec![0; bricks] })
+    }
+
+    /// Returns the layers with matter of their own, with their indices.
+    fn with_matter(&self) -> impl Iterator<Item = (usize, &BakedTransfer)> {
+        let adds = |at: usize| {
+            self.parameters.as_ref().is_none_or(|layers| layers.layers[at].blend == blend_number(LayerBlend::Add))
+        };
+        self.tables.iter().enumerate().filter(move |(at, _)| adds(*at))
+    }
+}
+
+/// Returns the number of a blend in `shaders/volume/layers.wgsl`.
+fn blend_number(blend: LayerBlend) -> u32 {
+    match blend {
+        LayerBlend::Add => 0,
+        LayerBlend::Tint => 1,
+        LayerBlend::Gate => 2,
+    }
+}
+
+/// Returns the bricks and cells in which a transfer function has extinction: all cells of such bricks unless the cells'
+/// bounds hold (`bounded`). Labels are looked up voxel by voxel: ranges of their numbers would include others that are
+/// visible.
+fn occupancy_of(volume: &Volume, known: &BrickBounds, baked: &BakedTransfer, bounded: bool) -> CellOccupancy {
+    let mut found = if volume.shown_labels().is_some() {
+        CellOccupancy::from_labels(volume, known, baked.exact_visibility_test())
+    } else {
+        let cells = if bounded { known.cell_masks(baked.visibility_test()) } else { Vec::new() };
+        CellOccupancy { bricks: known.occupancy(baked.visibility_test()), cells }
+    };
+    if !bounded {
+        found.cells = found.bricks.iter().map(|&member| if member { u64::MAX } else { 0 }).collect();
+    }
+    found
+}

@@ -1,0 +1,184 @@
+//! Composition of layers: how the matter of several fields becomes that of one picture.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use super::{VolumeLayer, VolumeLayers};
+use crate::{BakedTransfer, ClassificationOrder, RenderMode, Settings};
+use chiaroscuro_volume::math::SceneSpace;
+use chiaroscuro_volume::{Dataset, DensityMapping, MAX_FIELDS, ValueRange, Volume, VolumeId};
+
+/// Presence of a layer in the picture and in its light.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LayerVisibility {
+    /// Seen, and attenuates light.
+    #[default]
+    Shown,
+    /// Not seen, but goes on attenuating light.
+    CastsShadows,
+    /// Neither seen nor attenuating light.
+    Hidden,
+}
+
+/// Effect of a layer on the matter of the layers before it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LayerBlend {
+    /// Adds its own matter: extinctions add up, and the colour is their weighted mean.
+    #[default]
+    Add,
+    /// Colours the matter of the layers before it, as far as its opacity goes. Adds no matter.
+    Tint,
+    /// Keeps the matter of the layers before it as far as its opacity goes, and removes the rest. Adds no matter.
+    Gate,
+}
+
+impl LayerBlend {
+    /// Blends in the order of lists.
+    pub const ALL: [Self; 3] = [Self::Add, Self::Tint, Self::Gate];
+
+    /// Returns true if the layer has matter of its own.
+    pub fn adds_matter(self) -> bool {
+        self == Self::Add
+    }
+}
+
+impl VolumeLayer {
+    /// Returns the quantity that densities of the layer's field represent, for a field with these value ranges.
+    pub fn density_mapping(&self, ranges: &chiaroscuro_volume::ValueRanges) -> DensityMapping {
+        if self.labels.is_empty() {
+            DensityMapping::Range(self.shown_range(ranges, None))
+        } else {
+            DensityMapping::Labels
+        }
+    }
+
+    /// Returns the opacity unit in scene units, safe to divide by.
+    pub fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
+        self.opacity_unit.scene_units(scene).max(1e-9)
+    }
+
+    /// Returns the transfer function of the eye as a table over a value range; empty if the layer is not seen.
+    pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        let scale = if self.visibility == LayerVisibility::Shown { 1.0 } else { 0.0 };
+        self.transfer.bake(range, self.opacity_unit_in_scene(scene), scale)
+    }
+
+    /// Returns the lighting transfer function as a table over a value range; empty if the layer casts no shadows.
+    pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
+        let casts = self.visibility != LayerVisibility::Hidden;
+        let scale = if casts { self.lighting.scale } else { 0.0 };
+        function.bake(range, self.opacity_unit_in_scene(scene), scale)
+    }
+
+    /// Returns true if opacity depends on more than the value, so that voxels are classified first.
+    fn depends_on_gradients(&self) -> bool {
+        self.edges > 0.0
+    }
+
+    /// Returns the layer as it is drawn for a field: labels are replaced by a transfer function over their classes.
+    fn resolve_labels(&mut self, field: &Volume) {
+        if let Some(labels) = field.labels().filter(|_| !self.labels.is_empty()) {
+            self.transfer = self.labels.step_function(labels);
+            self.lighting.linked = true;
+        }
+    }
+}
+
+impl VolumeLayers {
+    /// Returns all layers.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &VolumeLayer> {
+        self.0.iter()
+    }
+
+    /// Returns the number of layers, at least 1.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Returns a layer.
+    pub fn get(&self, index: usize) -> Option<&VolumeLayer> {
+        self.0.get(index)
+    }
+
+    /// Returns a layer, to be changed.
+    pub fn get_mut(&mut self, index: usize) -> Option<&mut VolumeLayer> {
+        self.0.get_mut(index)
+    }
+
+    /// Adds a layer at the end, unless there are [`MAX_FIELDS`].
+    pub fn push(&mut self, layer: VolumeLayer) {
+        if self.0.len() < MAX_FIELDS {
+            self.0.push(layer);
+        }
+    }
+
+    /// Removes a layer; never the last one that is left.
+    pub fn remove(&mut self, index: usize) {
+        if self.0.len() > 1 && index < self.0.len() {
+            self.0.remove(index);
+        }
+    }
+
+    /// Keeps the first layers, at least one.
+    pub fn truncate(&mut self, count: usize) {
+        self.0.truncate(count.max(1));
+    }
+}
+
+impl Settings {
+    /// Returns true if matter is composed of several layers, or depends on more than a value: voxels are then
+    /// classified before reconstruction.
+    pub fn is_layered(&self) -> bool {
+        self.layers.count() > 1 || self.layers.iter().any(VolumeLayer::depends_on_gradients)
+    }
+
+    /// Returns the quantities that densities of the further fields represent.
+    pub fn further_mappings(&self, id: &VolumeId) -> [Option<DensityMapping>; MAX_FIELDS - 1] {
+        let mapping = |at: usize| {
+            let (layer, ranges) = (self.layers.get(at + 1)?, id.further_ranges[at].as_ref()?);
+            Some(layer.density_mapping(ranges))
+        };
+        std::array::from_fn(mapping)
+    }
+
+    /// Returns the settings as used for rendering a dataset: those for its [only field](Self::resolved_for), or with
+    /// a layer for each of its fields. Layers without a field are left out. Modes other than matter show the first
+    /// field alone.
+    pub fn resolved_for_dataset(&self, dataset: &Dataset) -> Cow<'_, Self> {
+        if !self.is_layered() {
+            return self.resolved_for(dataset.volume());
+        }
+        let fields = dataset.fields();
+        let mut drawn = self.clone();
+        drawn.layer_mut().blend = LayerBlend::Add;
+        if self.render_mode() == RenderMode::Matter {
+            drawn.layers.truncate(fields.len());
+        } else {
+            drawn.layers.truncate(1);
+            drawn.layer_mut().edges = 0.0;
+        }
+        if !drawn.is_layered() {
+            return Cow::Owned(drawn.resolved_for(dataset.volume()).into_owned());
+        }
+        drawn.sampling.classification = self.classification();
+        for (layer, field) in drawn.layers.iter_mut().zip(fields.iter()) {
+            layer.resolve_labels(field.volume());
+        }
+        Cow::Owned(drawn)
+    }
+
+    /// Returns the table that attenuates light in a layer's field, with extinction shares if shadows are coloured.
+    pub fn bake_lighting_of(&self, layer: &VolumeLayer, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+        let baked = layer.bake_lighting(range, scene);
+        if self.has_colored_shadows() { baked.with_extinction_shares(self.shadows.transmission) } else { baked }
+    }
+
+    /// Returns the order of classification if layers are composed.
+    pub(crate) fn layered_classification(&self) -> Option<ClassificationOrder> {
+        self.is_layered().then_some(ClassificationOrder::Pre)
+    }
+}

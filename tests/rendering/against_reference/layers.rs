@@ -1,0 +1,142 @@
+//! Several fields as layers, against the reference.
+
+use std::sync::Arc;
+
+use chiaroscuro_reference::{Reference, ReferenceOptions};
+use chiaroscuro_scene::{LabelLook, LabelTable, LayerBlend, LayerVisibility, Settings, VolumeLayer};
+use chiaroscuro_volume::{Samples, Volume};
+use glam::DVec3;
+
+use super::mutations::differs_with;
+use super::{check_with, round_to_f16};
+use crate::common::Dataset;
+use crate::scenes;
+
+const EDGE: usize = 32;
+
+fn options() -> ReferenceOptions {
+    ReferenceOptions { rounding: Some(round_to_f16), ..ReferenceOptions::default() }
+}
+
+fn volume_of(value: impl Fn(DVec3) -> f32) -> Arc<Volume> {
+    let place = |at: usize| DVec3::new((at % EDGE) as f64, (at / EDGE % EDGE) as f64, (at / EDGE / EDGE) as f64);
+    let values = (0..EDGE.pow(3)).map(|at| value(place(at))).collect();
+    Arc::new(Volume::with_spacing("field", [EDGE; 3], DVec3::ONE, Samples::F32(values)).expect("a volume"))
+}
+
+/// Soft ball beside the middle; NaN in one corner, where voxels are missing.
+fn ball() -> Arc<Volume> {
+    volume_of(|place| {
+        let distance = place.distance(DVec3::new(11.0, 18.0, 15.0));
+        let is_missing = place.max_element() < 13.0;
+        if is_missing { f32::NAN } else { (1.0 - distance as f32 / 12.0).max(0.0) }
+    })
+}
+
+/// Waves that fill the grid.
+fn waves() -> Arc<Volume> {
+    volume_of(|place| (0.5 + 0.5 * (0.4 * place.x).sin() * (0.3 * place.y + 0.2 * place.z).cos()) as f32)
+}
+
+/// Label map of four labels, one of which is hidden.
+fn labels() -> (Arc<Volume>, LabelTable) {
+    let number = |at: usize| [0, 3, 9, 40][(at % EDGE / 11 + at / EDGE % EDGE / 9 + at / EDGE / EDGE / 13) % 4];
+    let values = (0..EDGE.pow(3)).map(number).collect();
+    let volume = Volume::with_spacing("labels", [EDGE; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
+    let look = |number: i64, at: usize| LabelLook {
+        color: [[0.9, 0.2, 0.1], [0.1, 0.8, 0.3], [0.2, 0.3, 0.9]][at],
+        opacity: [0.5, 0.9, 1.0][at],
+        ..LabelLook::default_for(number)
+    };
+    let mut table: LabelTable = [3, 9, 40].into_iter().zip(0..).map(|(at, i)| (at, look(at, i))).collect();
+    table.entry_mut(0).visible = false;
+    (volume.into(), table)
+}
+
+fn dataset(further: &[Arc<Volume>]) -> Dataset {
+    let first = Dataset::new(scenes::creature(EDGE, DVec3::ONE));
+    further.iter().fold(first, |dataset, volume| dataset.with_field(volume).expect("another field"))
+}
+
+/// Layer with another colour and steeper opacities than those of the first.
+fn second() -> VolumeLayer {
+    let mut transfer = scenes::linear_extinction(0.9);
+    for point in &mut transfer.points {
+        (point.value, point.color) = (0.004 * point.value, [0.1, 0.7, 0.9]);
+    }
+    VolumeLayer { transfer, ..VolumeLayer::default() }
+}
+
+fn labelled(blend: LayerBlend) -> (Arc<Volume>, VolumeLayer) {
+    let (volume, table) = labels();
+    (volume, VolumeLayer { labels: table, blend, ..VolumeLayer::default() })
+}
+
+fn look(further: &[VolumeLayer]) -> Settings {
+    let mut settings = scenes::look();
+    further.iter().for_each(|layer| settings.layers.push(layer.clone()));
+    settings
+}
+
+fn check(name: &str, dataset: &Dataset, settings: &Settings) {
+    let drawn = settings.resolved_for_dataset(dataset);
+    check_with(name, dataset, settings, &Reference::with_layers(dataset, &drawn, options()));
+}
+
+#[test]
+fn layers_add_their_matter() {
+    check("two fields", &dataset(&[ball()]), &look(&[second()]));
+    let mut third = second();
+    third.lighting.linked = false;
+    third.lighting.curve = scenes::linear_extinction(0.2);
+    third.transfer.points[1].color = [1.0, 0.2, 0.1];
+    check("three fields", &dataset(&[ball(), waves()]), &look(&[second(), third]));
+}
+
+#[test]
+fn layers_may_cast_without_being_seen_and_may_be_hidden() {
+    let with = |visibility| look(&[VolumeLayer { visibility, ..second() }]);
+    for visibility in [LayerVisibility::CastsShadows, LayerVisibility::Hidden] {
+        check(&format!("{visibility:?}"), &dataset(&[ball()]), &with(visibility));
+    }
+}
+
+#[test]
+fn labels_tint_gate_and_add() {
+    for blend in LayerBlend::ALL {
+        let (volume, layer) = labelled(blend);
+        check(&format!("{blend:?}"), &dataset(&[volume]), &look(&[layer]));
+    }
+}
+
+#[test]
+fn edges_are_left_of_one_field_and_of_several() {
+    let mut settings = look(&[]);
+    settings.layer_mut().edges = 0.08;
+    check("edges of one field", &dataset(&[]), &settings);
+    let layer = VolumeLayer { edges: 0.05, ..second() };
+    check("edges of the second field", &dataset(&[ball()]), &look(&[layer]));
+}
+
+#[test]
+fn mistakes_in_layers_are_noticed() {
+    let (volume, layer) = labelled(LayerBlend::Tint);
+    let mut third = second();
+    third.edges = 0.05;
+    let (dataset, settings) = (dataset(&[ball(), waves(), volume]), look(&[second(), third, layer]));
+    let drawn = settings.resolved_for_dataset(&dataset);
+    let reference = Reference::with_layers(&dataset, &drawn, options());
+    let differs = |from, to| differs_with(&dataset, &settings, &reference, (from, to));
+    assert!(!differs("sum += matter", "sum = sum + matter"), "the same");
+    for (from, to) in [
+        ("sum += matter", "sum += 0.99 * matter"),
+        ("found.own[i] - half_width", "found.own[min(i + 1u, 3u)] - half_width"),
+        ("0.5 * found.slope[i]", "1.5 * found.slope[i]"),
+        ("select(0.0, 1.0, found.is_present[i])", "1.0"),
+        ("smoothstep(0.5 * layer.edges, layer.edges, found.slope[i])", "step(layer.edges, found.slope[i])"),
+        ("mix(sum.rgb, color * sum.a, opacity)", "mix(sum.rgb, color, opacity)"),
+        ("layer_tables[layer].integrals[low]", "layer_tables[0].integrals[low]"),
+    ] {
+        assert!(differs(from, to), "{to}");
+    }
+}
