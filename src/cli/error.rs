@@ -6,7 +6,7 @@ use chiaroscuro_files::WriteError;
 use chiaroscuro_media::{EnvironmentMapError, ExportError, ReadPictureError};
 use chiaroscuro_render::GpuError;
 use chiaroscuro_scene::PresetError;
-use chiaroscuro_volume::{LoadError, LoadErrorKind};
+use chiaroscuro_volume::{AddFieldError, LoadError, LoadErrorKind};
 
 /// Reason for the failure of a command.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +68,14 @@ pub enum CliError {
         /// Command-line option that resolves the problem.
         help: &'static str,
     },
+    /// A volume cannot be shown with the first one.
+    #[error("{} is not shown as a layer: {source}", path.display())]
+    Layer {
+        /// Path of the volume.
+        path: PathBuf,
+        /// Reason why it is not.
+        source: AddFieldError,
+    },
     /// Corrections would leave no valid volume.
     #[error("{path} could not be corrected ({by}): {why}; choose other values of `volume.…`")]
     InvalidCorrection {
@@ -110,7 +118,8 @@ impl CliError {
             Self::Preset { .. }
             | Self::Replay { .. }
             | Self::UntrustedVolumePath { .. }
-            | Self::InvalidCorrection { .. } => 3,
+            | Self::InvalidCorrection { .. }
+            | Self::Layer { .. } => 3,
             // Regions are only ever given on the command line.
             Self::Load(err) if err.is_about("--region") => 2,
             Self::Load(err) => match err.kind() {

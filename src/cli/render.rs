@@ -68,7 +68,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     times.attribute("light_search", "shaders", shaders.compile_ms());
     say("rendering");
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
-        .with_choice(loaded.volume().contents().choice());
+        .with_choice(loaded.volume().contents().choice())
+        .with_layers_of(&loaded, output.folder());
     let picture_record = ImageRecord::new(image_spec, context.description());
     let record = LookRecord::to_json(&settings, Some(&volume), Some(&picture_record));
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);

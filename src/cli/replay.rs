@@ -7,14 +7,14 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
 use super::process::StageTimes;
-use super::scene::{LoadArgs, apply_corrections};
+use super::scene::{LoadArgs, add_layer, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
 };
 use chiaroscuro_render::{PictureDistance, Renderer};
 use chiaroscuro_scene::{AppliedSettings, LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
-use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume::{Dataset, DatasetField};
 
 /// Maximum length of a path in a message, in characters.
 const MAX_PATH_CHARS: usize = 4096;
@@ -93,7 +93,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     for warning in warnings {
         warn_line(&format!("warning: {warning} ({path})"));
     }
-    let loaded = Dataset::new(volume);
+    let mut loaded = Dataset::new(volume);
+    for layer in stated.into_iter().flat_map(|stated| &stated.layers) {
+        let source = trusted_volume_path(args, layer)?;
+        loaded = add_layer(&loaded, &source, &layer.choice)?;
+        let is_same = loaded.fields().last().and_then(DatasetField::origin);
+        if !is_same.is_some_and(|origin| layer.matches_content(origin.opened_id)) {
+            return Err(unusable(format!("{} is another volume than that of the layer", source.display())));
+        }
+    }
     if picture_record.adapter != context.description() {
         warn_line(&format!(
             "originally rendered on {}, now on {}",

@@ -67,7 +67,8 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
         Animation::create(&args.output, &AnimationSpec { size, frames, rate: args.rate, transparent })?;
     let folder = AnimationFormat::record_folder(&args.output);
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), folder)
-        .with_choice(loaded.volume().contents().choice());
+        .with_choice(loaded.volume().contents().choice())
+        .with_layers_of(&loaded, folder);
     let image_spec = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = ImageRecord::new(image_spec, context.description());
     let options = RenderOptions::for_image(&image_spec, &settings);

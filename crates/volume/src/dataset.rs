@@ -1,8 +1,9 @@
 //! Dataset: the fields on one grid, each a volume together with its bricks, cells and histogram.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeError, VolumeId};
+use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeChoice, VolumeError, VolumeId};
 
 /// Largest number of fields that one picture can show: the channels of a texel on the GPU.
 pub const MAX_FIELDS: usize = 4;
@@ -14,6 +15,19 @@ pub struct DatasetField {
     volume: Arc<Volume>,
     bricks: Arc<BrickBounds>,
     histogram: Arc<Histogram>,
+    /// Source of a further field; that of the first one is known to its scene.
+    origin: Option<Arc<FieldOrigin>>,
+}
+
+/// Source of a further field of a dataset, by which it can be opened again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldOrigin {
+    /// Path of the file, or `builtin:NAME`.
+    pub source: PathBuf,
+    /// Content ID of the volume as it was opened, before it was resampled.
+    pub opened_id: u64,
+    /// Selected volume, if the file has several.
+    pub choice: VolumeChoice,
 }
 
 /// Fields on one grid, of one or of several files. Clones share the voxels.
@@ -40,7 +54,7 @@ impl DatasetField {
         let volume = volume.into();
         let (bricks, histogram) =
             (Arc::new(BrickBounds::from_volume(&volume)), Arc::new(Histogram::from_volume(&volume)));
-        Self { volume, bricks, histogram }
+        Self { volume, bricks, histogram, origin: None }
     }
 
     /// Maps the same voxels to densities in another way, with bounds and histogram of these.
@@ -48,7 +62,7 @@ impl DatasetField {
         if shown == self.volume.density_mapping() {
             self.clone()
         } else {
-            Self::new(self.volume.with_density_mapping(shown))
+            Self { origin: self.origin.clone(), ..Self::new(self.volume.with_density_mapping(shown)) }
         }
     }
 
@@ -56,7 +70,7 @@ impl DatasetField {
     fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let volume = self.volume.corrected(by)?;
         if !volume.shares_voxels(&self.volume) {
-            return Ok(Self::new(volume));
+            return Ok(Self { origin: self.origin.clone(), ..Self::new(volume) });
         }
         let volume = Arc::new(volume.with_density_mapping(self.volume.density_mapping()));
         Ok(Self { volume, ..self.clone() })
@@ -75,6 +89,11 @@ impl DatasetField {
     /// Returns the histogram of densities.
     pub fn histogram(&self) -> &Arc<Histogram> {
         &self.histogram
+    }
+
+    /// Returns the source of a further field.
+    pub fn origin(&self) -> Option<&FieldOrigin> {
+        self.origin.as_deref()
     }
 }
 
@@ -114,16 +133,29 @@ impl Dataset {
         Ok(Self { fields: self.fields.iter().enumerate().map(corrected).collect::<Result<_, _>>()? })
     }
 
-    /// Adds a volume as the last field, resampled to the grid of the first one where its own differs.
+    /// Creates a dataset of volumes on one grid, the first of which is the one of the scene; at most [`MAX_FIELDS`] of
+    /// them, and only those that have its dimensions.
+    pub fn from_volumes(first: Volume, further: impl IntoIterator<Item = Volume>) -> Self {
+        let dims = first.dims();
+        let others = further.into_iter().filter(|volume| volume.dims() == dims).take(MAX_FIELDS - 1);
+        Self { fields: std::iter::once(first).chain(others).map(DatasetField::new).collect() }
+    }
+
+    /// Adds a volume from a source as the last field, resampled to the grid of the first one where its own differs.
     ///
     /// # Errors
     /// Fails if there are [`MAX_FIELDS`] fields, or the two grids do not meet.
-    pub fn with_field(&self, volume: &Arc<Volume>) -> Result<Self, AddFieldError> {
+    pub fn with_field(&self, volume: &Volume, source: impl Into<PathBuf>) -> Result<Self, AddFieldError> {
         if self.fields.len() == MAX_FIELDS {
             return Err(AddFieldError::TooMany);
         }
+        let origin = FieldOrigin {
+            source: source.into(),
+            opened_id: volume.opened_id(),
+            choice: volume.contents().choice(),
+        };
         let volume = volume.on_grid_of(self.volume()).ok_or(AddFieldError::Apart)?;
-        let field = DatasetField::new(volume);
+        let field = DatasetField { origin: Some(Arc::new(origin)), ..DatasetField::new(volume) };
         Ok(Self { fields: self.fields.iter().cloned().chain([field]).collect() })
     }
 

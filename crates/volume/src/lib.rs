@@ -27,7 +27,7 @@ mod volume;
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
-pub use dataset::{AddFieldError, Dataset, DatasetField, MAX_FIELDS};
+pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin, MAX_FIELDS};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use label_cells::CellOccupancy;
 pub use load_context::{

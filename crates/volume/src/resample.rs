@@ -162,14 +162,15 @@ mod tests {
     #[test]
     fn volumes_that_do_not_meet_and_too_many_are_refused() {
         let dataset = Dataset::new(ramp([5, 6, 7], 1.0, 0.0));
-        let far = ramp([5, 6, 7], 1.0, 100.0).into();
-        assert_eq!(dataset.with_field(&far).unwrap_err(), AddFieldError::Apart);
+        let far = ramp([5, 6, 7], 1.0, 100.0);
+        assert_eq!(dataset.with_field(&far, "far").unwrap_err(), AddFieldError::Apart);
         let mut several = dataset.clone();
         for _ in 1..MAX_FIELDS {
-            several = several.with_field(&ramp([5, 6, 7], 1.0, 0.25).into()).unwrap();
+            several = several.with_field(&ramp([5, 6, 7], 1.0, 0.25), "near").unwrap();
         }
-        let another = ramp([5, 6, 7], 1.0, 0.0).into();
-        assert_eq!(several.with_field(&another).unwrap_err(), AddFieldError::TooMany);
+        let another = ramp([5, 6, 7], 1.0, 0.0);
+        assert_eq!(several.with_field(&another, "another").unwrap_err(), AddFieldError::TooMany);
+        assert_eq!(several.fields()[1].origin().unwrap().source, std::path::Path::new("near"));
         assert_eq!(dataset.id(), dataset.volume().id());
         assert_ne!(several.id(), dataset.id());
         assert_eq!(several.with_fields_where(|_| false).id(), dataset.id());

@@ -2,6 +2,7 @@
 
 mod corrections;
 mod decompression_warning;
+mod layers;
 mod load_args;
 mod look;
 mod option_values;
@@ -17,6 +18,8 @@ pub(super) use self::corrections::{apply_command_line_corrections, apply_correct
 pub(super) use self::decompression_warning::{
     control_with_size_warning, open_for_overview, open_with_size_warning,
 };
+pub(super) use self::layers::add_layer;
+use self::layers::{LayerArg, with_layers};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};
@@ -88,6 +91,10 @@ pub(super) struct LookArgs {
     /// Set a single setting by its path, for instance shadows.strength=0.5; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Further volume to show with the first, with options such as :channel=1 or :blend=tint (add, tint, gate); may be
+    /// repeated
+    #[arg(long = "layer", value_name = "FILE[:KEY=VALUE,...]")]
+    layers: Vec<LayerArg>,
     /// Algorithm of light volumes and shadows
     #[arg(long, value_enum)]
     shadows: Option<ShadowArg>,
@@ -140,7 +147,8 @@ impl SceneArgs {
     /// Loads like [`Self::load`], and records in `times` what volume and adapter took beside each other.
     pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
         let (volume, context) = self.look.load.open(&self.file, None, times)?;
-        Ok((dataset_with_warning(self.look.corrected(&self.file, volume)?), context))
+        let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
+        Ok((self.look.with_layers(dataset)?, context))
     }
 
     /// Path or built-in name of the volume.
@@ -153,7 +161,8 @@ impl SceneArgs {
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
         let LookArgs { preset, session, surroundings, .. } = &self.look;
         let named = [preset, session, surroundings].map(|path| path.as_deref());
-        let inputs = named.into_iter().chain([Some(self.file.as_path())]);
+        let layers = self.look.layers.iter().map(|layer| Some(layer.source()));
+        let inputs = named.into_iter().chain([Some(self.file.as_path())]).chain(layers);
         check_overwrites(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
     }
 
@@ -177,7 +186,12 @@ impl LookArgs {
         context: &GpuContext,
     ) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
-        Ok(dataset_with_warning(self.corrected(source, volume)?))
+        self.with_layers(dataset_with_warning(self.corrected(source, volume)?))
+    }
+
+    /// Adds the volumes of further layers.
+    fn with_layers(&self, dataset: Dataset) -> Result<Dataset, CliError> {
+        with_layers(dataset, &self.layers)
     }
 
     /// Returns the preset and the session that the arguments name; the later one takes precedence.
@@ -248,7 +262,8 @@ impl LookArgs {
     /// anything slow begins.
     pub(super) fn look(&self, loaded: &Dataset) -> Result<SceneLook, CliError> {
         let overlays = self.overlays()?;
-        let automatic = self.first_settings(&overlays, loaded);
+        let mut automatic = self.first_settings(&overlays, loaded);
+        first_look::add_layers(&mut automatic, loaded);
         let (settings, named) = self.apply_to(automatic.clone(), &overlays, loaded, warn_line)?;
         let proposed = match self.look {
             None | Some(1) => None,
@@ -280,6 +295,9 @@ impl LookArgs {
         if let Some(surroundings) = self.environment_map()? {
             settings.apply_environment_map(surroundings);
             named.add(|part| ["lights", "shadows.balance"].contains(&part));
+        }
+        for (layer, index) in self.layers.iter().zip(1..) {
+            settings = layer.apply_to(settings, index)?;
         }
         let mut settings = self.apply_single_settings(settings, warn)?;
         // The volume already has these corrections.

@@ -26,6 +26,7 @@ fn write_picture_of(source: &str, path: &Path) {
         source_bytes: None,
         content_id: String::new(),
         choice: VolumeChoice::default(),
+        layers: Vec::new(),
     };
     let record = LookRecord::to_json(&settings, Some(&volume), None);
     export_png([1, 1], &[0; 4], false, Some(&record), path).expect("written");

@@ -55,7 +55,7 @@ fn labels() -> (Arc<Volume>, LabelTable) {
 
 fn dataset(further: &[Arc<Volume>]) -> Dataset {
     let first = Dataset::new(scenes::creature(EDGE, DVec3::ONE));
-    further.iter().fold(first, |dataset, volume| dataset.with_field(volume).expect("another field"))
+    further.iter().fold(first, |dataset, volume| dataset.with_field(volume, "field").expect("another field"))
 }
 
 /// Layer with another colour and steeper opacities than those of the first.

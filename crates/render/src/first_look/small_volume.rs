@@ -22,7 +22,8 @@ pub fn downsampled_volume(dataset: &Dataset) -> Result<Dataset, GpuError> {
         return Ok(dataset.clone());
     }
     let small = volume.to_block_averaged(block)?;
-    Ok(Dataset::new(small))
+    let further = dataset.fields()[1..].iter().map(|field| field.volume().to_block_averaged(block));
+    Ok(Dataset::from_volumes(small, further.collect::<Result<Vec<_>, _>>()?))
 }
 
 /// Returns the smallest block size, in voxels, with at most `MAX_VOXELS` blocks.
@@ -50,10 +51,12 @@ fn smallest_sufficient_block(dims: [usize; 3], spacing_mm: [f64; 3]) -> [usize; 
 pub(super) fn fast_settings(settings: &Settings, whole: &Volume, small: &Volume) -> Settings {
     let mut quick = with_fast_shadows(settings);
     // Opacities keep their reference length, although voxels are larger.
-    if let OpacityLength::Voxels(_) = quick.layer().opacity_unit {
-        let scene = whole.scene();
-        quick.layer_mut().opacity_unit =
-            OpacityLength::Mm(quick.layer().opacity_unit.scene_units(&scene) * scene.mm_per_unit);
+    let scene = whole.scene();
+    for layer in quick.layers.iter_mut() {
+        if let OpacityLength::Voxels(_) = layer.opacity_unit {
+            layer.opacity_unit =
+                OpacityLength::Mm(layer.opacity_unit.scene_units(&scene) * scene.mm_per_unit);
+        }
     }
     quick.shadows.resolution = LightVolumeResolution::Full;
     (quick.shadows.kernel, quick.sampling.kernel) =

@@ -95,37 +95,39 @@ impl TablesKey {
 impl EyeTableKey {
     /// Creates the key of the eye's table in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        Self(settings.layers.iter().map(EyeLayerKey::new).collect())
+        Self(settings.layers.iter().enumerate().map(EyeLayerKey::new).collect())
     }
 }
 
 impl EyeLayerKey {
-    fn new(layer: &VolumeLayer) -> Self {
+    fn new((index, layer): (usize, &VolumeLayer)) -> Self {
         let looks = if layer.labels.is_empty() {
             EyeTableLooks::Values(layer.transfer.clone())
         } else {
             EyeTableLooks::Labels(layer.labels.materials())
         };
         let is_seen = layer.visibility == LayerVisibility::Shown;
-        Self { looks, unit: layer.opacity_unit, composition: CompositionKey::new(layer, is_seen) }
+        Self { looks, unit: layer.opacity_unit, composition: CompositionKey::new(index, layer, is_seen) }
     }
 }
 
 impl CompositionKey {
-    fn new(layer: &VolumeLayer, has_matter: bool) -> Self {
-        Self { has_matter, blend: layer.blend, edges: layer.edges }
+    fn new(index: usize, layer: &VolumeLayer, has_matter: bool) -> Self {
+        // There is nothing before the first layer.
+        let blend = if index == 0 { LayerBlend::Add } else { layer.blend };
+        Self { has_matter, blend, edges: layer.edges }
     }
 }
 
 impl OpacityKey {
     /// Creates the key of the opacities that attenuate light in a look.
     pub(super) fn new(settings: &Settings) -> Self {
-        Self(settings.layers.iter().map(OpacityLayerKey::new).collect())
+        Self(settings.layers.iter().enumerate().map(OpacityLayerKey::new).collect())
     }
 }
 
 impl OpacityLayerKey {
-    fn new(layer: &VolumeLayer) -> Self {
+    fn new((index, layer): (usize, &VolumeLayer)) -> Self {
         let LightingTransfer { linked, scale, curve } = &layer.lighting;
         let opacities = if layer.labels.is_empty() {
             let curve = if *linked { &layer.transfer } else { curve };
@@ -143,7 +145,7 @@ impl OpacityLayerKey {
             opacities,
             scale: *scale,
             unit: layer.opacity_unit,
-            composition: CompositionKey::new(layer, casts),
+            composition: CompositionKey::new(index, layer, casts),
         }
     }
 }

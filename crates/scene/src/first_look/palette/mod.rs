@@ -1,6 +1,8 @@
 //! Colour palettes by domain. All are about equally light, so that shading conveys the shape, and colour the
 //! material.
 
+pub(super) mod further_layers;
+
 use super::domain::DataDomain;
 use crate::srgb_from_lch;
 

@@ -19,7 +19,7 @@ use super::schema_defaults::fill_in_defaults;
 use super::unknown_content;
 use crate::{AppliedSettings, ImageSpec, PresetError, Settings, VolumeLocation, apply_relative};
 use chiaroscuro_files::{MAX_LOOK_BYTES, with_provenance_mark};
-use chiaroscuro_volume::{Corrections, ValueRanges, VolumeChoice};
+use chiaroscuro_volume::{Corrections, Dataset, DatasetField, FieldOrigin, ValueRanges, VolumeChoice};
 
 /// Name of the setting that belongs to a record's volume, and not to its look.
 const CORRECTIONS: &str = "volume";
@@ -41,6 +41,9 @@ pub struct VolumeRecord {
     /// Selected volume, if the file has several.
     #[serde(default, skip_serializing_if = "VolumeChoice::is_empty")]
     pub choice: VolumeChoice,
+    /// Further volumes that are shown with it, one for each further layer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<VolumeRecord>,
 }
 
 /// Metadata of a rendered image.
@@ -75,7 +78,17 @@ impl VolumeRecord {
         let path = if is_builtin { source.to_owned() } else { relative_path(source, folder) };
         let content_id = format!("{content_id:016x}");
         let (source_bytes, choice) = (encode_path(&path), VolumeChoice::default());
-        Self { source: path.display().to_string(), source_bytes, content_id, choice }
+        Self { source: path.display().to_string(), source_bytes, content_id, choice, layers: Vec::new() }
+    }
+
+    /// Adds the further fields of a dataset, for a record that will be written to `folder`.
+    #[must_use]
+    pub fn with_layers_of(self, dataset: &Dataset, folder: Option<&Path>) -> Self {
+        let origins = dataset.fields().iter().filter_map(DatasetField::origin);
+        let record = |FieldOrigin { source, opened_id, choice }: &FieldOrigin| {
+            Self::new(source, *opened_id, folder).with_choice(choice.clone())
+        };
+        Self { layers: origins.map(record).collect(), ..self }
     }
 
     /// Sets the selected volume of a file with several.

@@ -26,7 +26,7 @@ fn request() -> RenderRequest {
     .with_transfer(TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() });
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
     RenderRequest {
-        volume: VolumeId { content_id: 1, ranges, dims: [256; 3] },
+        volume: VolumeId { content_id: 1, ranges, dims: [256; 3], further_ranges: [None; 3] },
         settings,
         size: [100, 80],
         preview_resolution: None,
@@ -133,6 +133,10 @@ fn every_setting_causes_what_the_design_says() {
         ("lighting.linked", "false", ChangeEffect::AllLights),
         ("lighting.curve.interpolation", "extinction", ChangeEffect::Nothing),
         ("opacity_unit", r#"{"mm": 3}"#, ChangeEffect::AllLights),
+        ("visibility", "hidden", ChangeEffect::AllLights),
+        ("visibility", "casts_shadows", ChangeEffect::Bounces),
+        ("blend", "gate", ChangeEffect::Nothing), // There is no layer before the first.
+        ("edges", "0.1", ChangeEffect::AllLights),
         // Volumes of light stay, but a projection without light needs none.
         ("mode.kind", "maximum", ChangeEffect::Eye),
         ("mode.kind", "mean", ChangeEffect::Eye),
