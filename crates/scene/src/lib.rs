@@ -30,10 +30,10 @@ pub use self::settings::clipping::{
     ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };
 pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
+pub use self::settings::layer::composition::{LayerBlend, LayerVisibility};
 pub use self::settings::layer::density_range::DensityRange;
 pub use self::settings::layer::label_table::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::layer::length::OpacityLength;
-pub use self::settings::layer::composition::{LayerBlend, LayerVisibility};
 pub use self::settings::layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings::light::area_light::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,

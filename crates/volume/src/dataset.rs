@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeChoice, VolumeError, VolumeId};
+use super::{
+    BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeChoice, VolumeError, VolumeId,
+};
 
 /// Largest number of fields that one picture can show: the channels of a texel on the GPU.
 pub const MAX_FIELDS: usize = 4;
@@ -44,7 +46,9 @@ pub enum AddFieldError {
     #[error("{MAX_FIELDS} volumes are shown already, which is the largest number; remove one first")]
     TooMany,
     /// Boxes of the two grids have no point in common.
-    #[error("the two volumes do not meet: no voxel of one lies inside the other; check the positions in their files")]
+    #[error(
+        "the two volumes do not meet: no voxel of one lies inside the other; check the positions in their files"
+    )]
     Apart,
 }
 

@@ -59,9 +59,10 @@ impl Volume {
             Some(self.samples().value(voxel) as i32)
         };
         let labels = at_voxels(dims, index_from_target, label);
-        labels.par_iter().any(Option::is_some).then(|| {
-            labels.into_par_iter().map(|label| label.unwrap_or(OUTSIDE_LABEL)).collect()
-        })
+        labels
+            .par_iter()
+            .any(Option::is_some)
+            .then(|| labels.into_par_iter().map(|label| label.unwrap_or(OUTSIDE_LABEL)).collect())
     }
 
     /// Returns the interpolated value at each voxel of a grid, NaN outside this one; `None` if it is nowhere inside.
@@ -94,7 +95,8 @@ impl Volume {
     /// Returns the index of the present voxel at integer coordinates; `None` outside the grid and where it is missing.
     fn voxel_inside(&self, place: DVec3) -> Option<usize> {
         let [nx, ny, nz] = self.dims();
-        let is_inside = place.cmpge(DVec3::ZERO).all() && place.cmplt(DVec3::new(nx as f64, ny as f64, nz as f64)).all();
+        let is_inside =
+            place.cmpge(DVec3::ZERO).all() && place.cmplt(DVec3::new(nx as f64, ny as f64, nz as f64)).all();
         let voxel = is_inside.then(|| place.x as usize + nx * (place.y as usize + ny * place.z as usize))?;
         (!self.missing().is_some_and(|missing| missing.contains(voxel))).then_some(voxel)
     }

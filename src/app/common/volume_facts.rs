@@ -7,8 +7,8 @@ use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_scene::{LabelTable, Settings};
 use chiaroscuro_volume::{
-    CountedLabel, DataKind, Dataset, DensityMapping, FileContents, Histogram, ValueRange, ValueRanges,
-    Volume, VoxelType, math::SceneSpace,
+    CountedLabel, DataKind, Dataset, DatasetField, DensityMapping, FieldOrigin, FileContents, Histogram,
+    ValueRange, ValueRanges, Volume, VoxelType, math::SceneSpace,
 };
 
 /// Facts about a volume, all fixed except for the range of values that is shown.
@@ -54,8 +54,25 @@ pub(crate) struct VolumeFacts {
     pub is_anatomical: bool,
     /// Labels of a label map, by number; empty for other data.
     pub labels: Arc<[LabelRow]>,
+    /// Names and sources of the further volumes that are shown as layers.
+    pub further: Vec<FurtherVolume>,
     /// Histogram of the values that are shown.
     pub histogram: Arc<Histogram>,
+}
+
+/// Further volume that is shown as a layer.
+#[derive(Debug, Clone)]
+pub(crate) struct FurtherVolume {
+    /// Name of the volume for display.
+    pub name: String,
+    /// Source by which it is opened again.
+    pub origin: FieldOrigin,
+}
+
+impl FurtherVolume {
+    fn new(field: &DatasetField) -> Option<Self> {
+        Some(Self { name: field.volume().name().to_owned(), origin: field.origin()?.clone() })
+    }
 }
 
 /// Counts the integers in a range; saturates, since typed ranges may be of any length.
@@ -131,6 +148,7 @@ impl VolumeFacts {
             kind: volume.kind().kind,
             is_anatomical: volume.is_anatomical(),
             labels: LabelRow::all_of(volume),
+            further: dataset.fields().iter().filter_map(FurtherVolume::new).collect(),
             histogram: Arc::clone(dataset.histogram()),
         }
     }

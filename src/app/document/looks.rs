@@ -62,7 +62,10 @@ impl Document {
     /// Writes the look to a file, which becomes the session; `opened_id` is the identifier of the open file's volume.
     pub(crate) fn save_session(&mut self, path: &Path, opened_id: Option<u64>) -> Result<(), String> {
         let record = self.volume.as_ref().zip(opened_id).map(|(volume, opened_id)| {
-            VolumeRecord::new(&volume.source, opened_id, path.parent()).with_choice(volume.held.choice())
+            let shown = volume.further.iter().take(self.settings.layers.count() - 1);
+            VolumeRecord::new(&volume.source, opened_id, path.parent())
+                .with_choice(volume.held.choice())
+                .with_layers(shown.map(|further| &further.origin), path.parent())
         });
         SessionFile::save(&mut self.session, path, &self.settings, record.as_ref())
     }

@@ -54,6 +54,8 @@ impl App {
             AppCommand::TreatAs(kind) => self.editor.treat_as(kind, ctx),
             AppCommand::UsePreset(preset) => self.editor.use_preset(&preset),
             AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
+            AppCommand::AddLayer => self.ask_file(FileDialogPurpose::AddLayer, frame, ctx),
+            AppCommand::RemoveLayer => self.editor.document.remove_last_layer(),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
             AppCommand::InvertTransfer => self.editor.document.settings.layer_mut().transfer.mirror(),
@@ -208,6 +210,7 @@ impl App {
     ) {
         match purpose {
             FileDialogPurpose::OpenVolume | FileDialogPurpose::OpenFolder => self.opener(ctx).open(path),
+            FileDialogPurpose::AddLayer => self.opener(ctx).add_layer(path),
             FileDialogPurpose::VolumeOfLook => self.opener(ctx).open_for_look(path),
             FileDialogPurpose::ExportPicture => self.windows.export.set_path(path),
             FileDialogPurpose::SaveSettings => self.editor.save_settings(path),

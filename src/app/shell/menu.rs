@@ -159,6 +159,8 @@ fn file(ui: &mut egui::Ui, menu: &mut MenuInputs<'_>) {
     item(ui, menu, AppCommand::OpenDialog, true);
     item(ui, menu, AppCommand::OpenFolder, true);
     item(ui, menu, AppCommand::OpenPath, true);
+    let has_volume = menu.title.is_some();
+    item(ui, menu, AppCommand::AddLayer, has_volume);
     item(ui, menu, AppCommand::NextFile, true);
     item(ui, menu, AppCommand::PreviousFile, true);
     ui.add_enabled_ui(!menu.recent.is_empty(), |ui| {

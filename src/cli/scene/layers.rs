@@ -36,7 +36,9 @@ impl FromStr for LayerArg {
             let (key, value) = (key.trim(), value.trim());
             let number = || {
                 let parsed = value.parse::<usize>();
-                parsed.map(Some).map_err(|_| format!("expected a whole number from 0 for {key}, found {value:?}"))
+                parsed
+                    .map(Some)
+                    .map_err(|_| format!("expected a whole number from 0 for {key}, found {value:?}"))
             };
             match key {
                 "channel" => layer.choice.channel = number()?,
@@ -79,7 +81,9 @@ pub(crate) fn add_layer(
 ) -> Result<Dataset, CliError> {
     let options = LoadOptions { choice: choice.clone(), ..LoadOptions::default() };
     let volume = open_with_size_warning(source, &options)?;
-    dataset.with_field(&volume, source).map_err(|err| CliError::Layer { path: source.to_owned(), source: err })
+    dataset
+        .with_field(&volume, source)
+        .map_err(|err| CliError::Layer { path: source.to_owned(), source: err })
 }
 
 #[cfg(test)]

@@ -19,7 +19,8 @@ fn options() -> ReferenceOptions {
 }
 
 fn volume_of(value: impl Fn(DVec3) -> f32) -> Arc<Volume> {
-    let place = |at: usize| DVec3::new((at % EDGE) as f64, (at / EDGE % EDGE) as f64, (at / EDGE / EDGE) as f64);
+    let place =
+        |at: usize| DVec3::new((at % EDGE) as f64, (at / EDGE % EDGE) as f64, (at / EDGE / EDGE) as f64);
     let values = (0..EDGE.pow(3)).map(|at| value(place(at))).collect();
     Arc::new(Volume::with_spacing("field", [EDGE; 3], DVec3::ONE, Samples::F32(values)).expect("a volume"))
 }
@@ -40,9 +41,11 @@ fn waves() -> Arc<Volume> {
 
 /// Label map of four labels, one of which is hidden.
 fn labels() -> (Arc<Volume>, LabelTable) {
-    let number = |at: usize| [0, 3, 9, 40][(at % EDGE / 11 + at / EDGE % EDGE / 9 + at / EDGE / EDGE / 13) % 4];
+    let number =
+        |at: usize| [0, 3, 9, 40][(at % EDGE / 11 + at / EDGE % EDGE / 9 + at / EDGE / EDGE / 13) % 4];
     let values = (0..EDGE.pow(3)).map(number).collect();
-    let volume = Volume::with_spacing("labels", [EDGE; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
+    let volume =
+        Volume::with_spacing("labels", [EDGE; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
     let look = |number: i64, at: usize| LabelLook {
         color: [[0.9, 0.2, 0.1], [0.1, 0.8, 0.3], [0.2, 0.3, 0.9]][at],
         opacity: [0.5, 0.9, 1.0][at],

@@ -61,8 +61,7 @@ fn a_picture_that_is_given_up_while_its_pipeline_is_compiled_harms_nothing() {
     let dataset = Dataset::new(builtin("sphere", Some(24)).expect("the sphere"));
     let settings = first_look::first_settings(dataset.volume(), dataset.histogram());
     let mut renderer = Renderer::new(&context).expect("a renderer");
-    let request =
-        RenderRequest { volume: dataset.id(), settings, size: [64, 48], preview_resolution: None };
+    let request = RenderRequest { volume: dataset.id(), settings, size: [64, 48], preview_resolution: None };
     drop(renderer.begin(&dataset, request.clone(), &RenderOptions::default()).expect("a job"));
     let mut job = renderer.begin(&dataset, request, &RenderOptions::default()).expect("a job");
     while job.step().expect("a step") {}

@@ -82,8 +82,7 @@ impl Renderer {
         let none = || GpuError::NothingDrawn("sky");
         let settings = settings.resolved_for_dataset(dataset).into_owned();
         self.draw(dataset, &settings, size, &RenderOptions::default())?;
-        let request =
-            RenderRequest { volume: dataset.id(), settings, size, preview_resolution: None };
+        let request = RenderRequest { volume: dataset.id(), settings, size, preview_resolution: None };
         let key = SkyKey::new(&request).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
         let found = loaded.skies.iter().find(|sky| sky.is_valid_for(&key)).ok_or_else(none)?;
@@ -119,12 +118,7 @@ impl Renderer {
         let settings = &*settings.resolved_for_dataset(dataset);
         let size = [8, 8];
         self.draw(dataset, settings, size, &options)?;
-        Ok(RenderRequest {
-            volume: dataset.id(),
-            settings: settings.clone(),
-            size,
-            preview_resolution: None,
-        })
+        Ok(RenderRequest { volume: dataset.id(), settings: settings.clone(), size, preview_resolution: None })
     }
 
     /// Reads back the texels of a texture with four channels.

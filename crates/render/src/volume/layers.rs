@@ -28,7 +28,8 @@ impl BakedLayers {
             return Self { tables: vec![table], parameters: None };
         };
         let fields = || settings.layers.iter().zip(texture.fields.iter());
-        let tables = fields().map(|(layer, field)| bake(layer, field.volume().table_range(), scene)).collect();
+        let tables =
+            fields().map(|(layer, field)| bake(layer, field.volume().table_range(), scene)).collect();
         let empty = LayerUniform { blend: 0, is_label: 0, opacity_unit: 1.0, edges: 0.0 };
         let mut layers = [empty; MAX_FIELDS];
         for (uniform, (layer, field)) in layers.iter_mut().zip(fields()) {
@@ -127,7 +128,9 @@ impl BakedLayers {
     /// Returns the layers with matter of their own, with their indices.
     fn with_matter(&self) -> impl Iterator<Item = (usize, &BakedTransfer)> {
         let adds = |at: usize| {
-            self.parameters.as_ref().is_none_or(|layers| layers.layers[at].blend == blend_number(LayerBlend::Add))
+            self.parameters
+                .as_ref()
+                .is_none_or(|layers| layers.layers[at].blend == blend_number(LayerBlend::Add))
         };
         self.tables.iter().enumerate().filter(move |(at, _)| adds(*at))
     }

@@ -161,10 +161,8 @@ impl PreclassifiedVoxels {
                 bind_buffer("table", table),
                 bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)),
             ]),
-            _ => entries.extend([
-                bind_view("source_texture", &source),
-                sampler("source_sampler", &volume.clamped),
-            ]),
+            _ => entries
+                .extend([bind_view("source_texture", &source), sampler("source_sampler", &volume.clamped)]),
         }
         let bind_group = pass::bind(context, "Materials::bind_group", &pipeline, 0, &entries);
         let groups = two_workgroups_per_brick(bricks.len().max(1) as u32);
@@ -199,9 +197,6 @@ impl PipelineVariant for MaterialsVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![
-            flag("MISSING", self.has_missing),
-            flag("CRISP", self.is_crisp),
-        ]
+        vec![flag("MISSING", self.has_missing), flag("CRISP", self.is_crisp)]
     }
 }

@@ -214,7 +214,9 @@ impl TransferTables {
             (known.product.lighting.clone(), known.product.colors.clone())
         } else {
             baked += 1;
-            let bake = |layer: &VolumeLayer, range, scene: &SceneSpace| settings.bake_lighting_of(layer, range, scene);
+            let bake = |layer: &VolumeLayer, range, scene: &SceneSpace| {
+                settings.bake_lighting_of(layer, range, scene)
+            };
             let lighting = BakedLayers::new(volume, settings, bake);
             let lighting = TransferTable::new(context, volume, lighting, bounded, known().chain([&eye]));
             let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));

@@ -122,7 +122,8 @@ fn sanitise_mode(mode: &mut RenderModeSettings) {
 }
 
 fn sanitise_layer(layer: &mut VolumeLayer) {
-    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility: _, blend: _, edges } = layer;
+    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility: _, blend: _, edges } =
+        layer;
     let LightingTransfer { linked: _, scale, curve } = lighting;
     for function in [transfer, curve] {
         function.points.retain(|point| point.value.is_finite());

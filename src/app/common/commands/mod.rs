@@ -160,6 +160,10 @@ pub(crate) enum AppCommand {
     UsePreset(Preset),
     /// Colour the visible values by a colour map, given by its index; `true` reverses it.
     UseColors(usize, bool),
+    /// Ask for a volume to show with the one that is open.
+    AddLayer,
+    /// Show the volume that was added last no longer.
+    RemoveLayer,
     /// Ask for a transfer function of another program.
     ImportTransfer,
     /// Ask for a file, and write the transfer function for other programs.
@@ -210,6 +214,8 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::ShowStart,
         AppCommand::OpenDialog,
         AppCommand::OpenFolder,
+        AppCommand::AddLayer,
+        AppCommand::RemoveLayer,
         AppCommand::OpenPath,
         AppCommand::NextFile,
         AppCommand::PreviousFile,

@@ -49,6 +49,8 @@ impl AppCommand {
             Self::ShowStart => text::commands::SHOW_START,
             Self::OpenAgain(..) => text::menu::OPEN_RECENT,
             Self::Subsample(thinning) => return text::commands::subsample(*thinning).into(),
+            Self::AddLayer => text::commands::ADD_LAYER,
+            Self::RemoveLayer => text::commands::REMOVE_LAYER,
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,
             Self::InvertTransfer => text::commands::INVERT_TRANSFER,

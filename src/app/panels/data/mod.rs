@@ -3,6 +3,7 @@
 
 mod alternatives;
 mod corrections;
+mod layers;
 mod range;
 
 use eframe::egui::{self, Ui};
@@ -28,6 +29,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     };
     facts(ui, volume);
     alternatives::show(ui, volume, panels.commands);
+    layers::show(ui, panels.settings, volume, panels.commands);
     data_kind_row(ui, panels.treated_as, panels.commands);
     range::show(ui, panels.settings, volume);
     subsampling_row(ui, volume, panels.commands);

@@ -26,6 +26,8 @@ pub(crate) enum ReadPurpose {
     Look,
     /// Compares the look with that of the window.
     Comparison,
+    /// Adds the volume of the file as a layer.
+    Layer,
     /// Imports the transfer function of the file.
     Transfer,
     /// Lights the scene by the environment map.

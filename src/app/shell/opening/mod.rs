@@ -3,6 +3,7 @@
 mod alternatives;
 mod dropped_and_neighbours;
 pub(crate) mod file_tasks;
+mod layers;
 mod look_files;
 mod opened;
 mod other_files;

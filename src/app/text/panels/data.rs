@@ -2,6 +2,7 @@
 
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{ControlText, control_text};
+use chiaroscuro_scene::{LayerBlend, LayerVisibility};
 use chiaroscuro_volume::{DataKind, Downsampling, KindName, Portion, SpacingUnit, VoxelRegion};
 
 /// Text in place of the section while no volume is open.
@@ -19,6 +20,34 @@ pub(crate) const SPACING: &str = "Spacing";
 pub(crate) const VALUES: &str = "Values";
 pub(crate) const MEMORY: &str = "Memory";
 pub(crate) const NOT_FINITE: &str = "Not finite";
+
+/// Labels of the layers, in the order in which they are composed.
+pub(crate) const LAYERS: [&str; 4] = ["Layer 1", "Layer 2", "Layer 3", "Layer 4"];
+pub(crate) const LAYER_COLOR: &str = "Colour of the layer";
+pub(crate) const LAYER_VISIBILITY: ControlText =
+    control_text("Layer is", "Presence of the layer in the picture and in its light");
+pub(crate) const LAYER_BLEND: ControlText =
+    control_text("Layer does", "Effect of the layer on those before it");
+pub(crate) const LAYER_STRENGTH: ControlText =
+    control_text("Layer density", "Factor of the layer's opacities, relative to the length of its data");
+
+/// Name and tooltip of the visibility of a layer.
+pub(crate) fn layer_visibility(visibility: LayerVisibility) -> ControlText {
+    match visibility {
+        LayerVisibility::Shown => control_text("Shown", "Seen, and casts shadows"),
+        LayerVisibility::CastsShadows => control_text("Casts", "Not seen, but casts shadows"),
+        LayerVisibility::Hidden => control_text("Hidden", "Neither seen nor casting shadows"),
+    }
+}
+
+/// Name and tooltip of the blend of a layer.
+pub(crate) fn layer_blend(blend: LayerBlend) -> ControlText {
+    match blend {
+        LayerBlend::Add => control_text("Add", "Adds its own material"),
+        LayerBlend::Tint => control_text("Tint", "Colours the layers before it where it is opaque"),
+        LayerBlend::Gate => control_text("Gate", "Keeps the layers before it only where it is opaque"),
+    }
+}
 
 pub(crate) const SUBSAMPLE: ControlText = control_text(
     "Subsample",

@@ -81,3 +81,9 @@ pub(crate) fn environment_map_applied(name: &str, has_light: bool) -> String {
         format!("Lit by {name}: its colour gradient as the sky; it has no distinct bright light")
     }
 }
+
+/// Messages about volumes that are shown as layers.
+pub(crate) const LAYER_NOT_ADDED: &str = "The volume is not shown as a layer";
+pub(crate) const NO_VOLUME_FOR_LAYER: &str = "Open a volume first; a layer is shown with it";
+pub(crate) const LAYER_OF_OTHER_VOLUME: &str =
+    "Another volume was opened, so the layer is not shown; add it again";

@@ -24,6 +24,8 @@ pub(crate) const OPEN_FOLDER: FileRequest = FileRequest {
     hint: "a folder of DICOM files or pictures",
     verb: "Open",
 };
+pub(crate) const ADD_LAYER: FileRequest =
+    FileRequest { title: "Show another volume as a layer", verb: "Add", ..OPEN_VOLUME };
 pub(crate) const VOLUME_OF_LOOK: FileRequest =
     FileRequest { title: "Open the volume of the look", ..OPEN_VOLUME };
 pub(crate) const LOAD_SETTINGS: FileRequest = FileRequest {

@@ -149,6 +149,9 @@ impl ExportWorker {
         let of = subject.dataset.volume();
         let volume =
             VolumeRecord::new(&subject.source, of.opened_id(), folder).with_choice(of.contents().choice());
+        let count = settings.layers.count();
+        let shown = subject.dataset.with_fields_where(|index| index < count);
+        let volume = volume.with_layers_of(&shown, folder);
         let picture_record = ImageRecord::new(*image_spec, self.adapter.clone());
         LookRecord::to_json(settings, Some(&volume), Some(&picture_record))
     }

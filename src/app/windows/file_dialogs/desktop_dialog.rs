@@ -107,7 +107,7 @@ impl FileDialogOutcome {
 fn dialog_future(purpose: FileDialogPurpose, frame: &eframe::Frame) -> FileDialogFuture {
     let dialog = rfd::AsyncFileDialog::new().set_title(purpose.dialog_text().title).set_parent(frame);
     match purpose {
-        FileDialogPurpose::OpenVolume | FileDialogPurpose::VolumeOfLook => {
+        FileDialogPurpose::OpenVolume | FileDialogPurpose::AddLayer | FileDialogPurpose::VolumeOfLook => {
             // Filters match the part after the last dot.
             let filters: Vec<&str> =
                 supported_extensions().into_iter().filter_map(|ending| ending.rsplit('.').next()).collect();

@@ -25,6 +25,8 @@ pub(crate) enum FileDialogPurpose {
     OpenVolume,
     /// Opens a folder of slices.
     OpenFolder,
+    /// Adds the file of a volume as a layer.
+    AddLayer,
     /// Chooses the volume of a look that waits for it.
     VolumeOfLook,
     /// Loads settings and applies them.
@@ -58,6 +60,7 @@ impl FileDialogPurpose {
         match self {
             Self::OpenVolume => text::files::OPEN_VOLUME,
             Self::OpenFolder => text::files::OPEN_FOLDER,
+            Self::AddLayer => text::files::ADD_LAYER,
             Self::VolumeOfLook => text::files::VOLUME_OF_LOOK,
             Self::LoadSettings => text::files::LOAD_SETTINGS,
             Self::EnvironmentMap => text::files::OPEN_ENVIRONMENT_MAP,

@@ -136,8 +136,7 @@ impl Renderer {
             (Some(known.product.dataset), presence)
         });
         let known = known.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
-        let dataset =
-            known.as_ref().unwrap_or(dataset).with_density_mappings(keys.volume.density_mappings());
+        let dataset = known.as_ref().unwrap_or(dataset).with_density_mappings(keys.volume.density_mappings());
         let has_presence = presence.is_some();
         let (context, settings) = (&self.tools.context, &request.settings);
         let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, presence)?;

@@ -154,10 +154,9 @@ impl TransmissionKey {
     /// Creates the key of the colour channels' extinction in a look; `None` if shadows are grey.
     pub(super) fn new(settings: &Settings) -> Option<Self> {
         let share = settings.shadows.transmission;
-        settings.has_colored_shadows().then(|| Self {
-            colors: settings.layers.iter().map(TransmissionColors::new).collect(),
-            share,
-        })
+        settings
+            .has_colored_shadows()
+            .then(|| Self { colors: settings.layers.iter().map(TransmissionColors::new).collect(), share })
     }
 }
 

@@ -1,15 +1,15 @@
 //! Looks of further layers: what tells the fields of a picture apart.
 
 use crate::{LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer, srgb_from_lch};
-use chiaroscuro_volume::{DataKind, Dataset, DatasetField, FieldOrigin};
+use chiaroscuro_volume::{DataKind, Dataset, DatasetField, Modality};
 
 use super::Lch;
+use crate::first_look::domain::DataDomain;
 use crate::first_look::first_settings;
 
 /// Colours of channels, in the order of microscopes: green, magenta, cyan and yellow, which stay apart for most people
 /// with reduced colour vision, and whose mixtures are pale.
-const CHANNELS: [Lch; 4] =
-    [[0.82, 0.17, 148.0], [0.68, 0.2, 340.0], [0.82, 0.11, 205.0], [0.9, 0.14, 100.0]];
+const CHANNELS: [Lch; 4] = [[0.82, 0.17, 148.0], [0.68, 0.2, 340.0], [0.82, 0.11, 205.0], [0.9, 0.14, 100.0]];
 
 /// Colours of measurements over a scan: glowing iron, from dark red over orange to a yellowish white.
 const HOT: [Lch; 4] = [[0.5, 0.16, 28.0], [0.66, 0.18, 42.0], [0.82, 0.15, 75.0], [0.96, 0.06, 100.0]];
@@ -17,39 +17,70 @@ const HOT: [Lch; 4] = [[0.5, 0.16, 28.0], [0.66, 0.18, 42.0], [0.82, 0.15, 75.0]
 /// Share of the voxels below the value at which a measurement over a scan begins to be seen.
 const SEEN_MEASUREMENT_SHARE: f64 = 0.97;
 
-/// Adds layers to a look of the first field, one for each further field of a dataset: labels tint it, channels of the
-/// same file have the colours of a microscope, and other volumes glow.
+/// Relation of further volumes to the first one, which decides their colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FieldRelation {
+    /// Channels of a microscope, all of which have colours of channels.
+    Channels,
+    /// Measurements over a scan of a body, which glow.
+    Measurements,
+    /// Anything else: the first volume keeps its colours.
+    Others,
+}
+
+/// Adds layers to a look of the first field, one for each further field of a dataset: labels tint it, channels have the
+/// colours of a microscope, and measurements over a scan glow.
 pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
-    let further = &dataset.fields()[1..];
-    let origins: Vec<_> = further.iter().filter_map(DatasetField::origin).collect();
-    let has_labels_first = dataset.volume().is_label_map();
-    let are_channels = are_channels(dataset, &origins);
-    if are_channels && !has_labels_first {
+    let relation = FieldRelation::detect(dataset);
+    if relation == FieldRelation::Channels && dataset.fields().len() > 1 {
         colorize(&mut settings.layer_mut().transfer, &[CHANNELS[0]]);
     }
-    for (index, field) in (1..).zip(further) {
-        let volume = field.volume();
-        let mut layer = first_settings(volume, field.histogram()).layer().clone();
-        match volume.kind().kind {
-            DataKind::LabelMap { .. } | DataKind::Mask { .. } if !has_labels_first => {
-                layer.blend = LayerBlend::Tint;
-            }
-            DataKind::LabelMap { .. } => {}
-            _ if are_channels => colorize(&mut layer.transfer, &[CHANNELS[index % CHANNELS.len()]]),
-            _ => show_measurement(&mut layer, field),
-        }
-        settings.layers.push(layer);
+    for (index, field) in dataset.fields().iter().enumerate().skip(1) {
+        settings.layers.push(further_layer(dataset, index, field, relation));
     }
 }
 
-/// Returns true if all fields are of one file, or are fields of the same kind and size of numbers.
-fn are_channels(dataset: &Dataset, origins: &[&FieldOrigin]) -> bool {
-    let one_file = origins.windows(2).all(|pair| pair[0].source == pair[1].source);
-    let name = dataset.volume().contents();
-    let has_channels = name.choice().channel.is_some() || origins.iter().any(|origin| origin.choice.channel.is_some());
-    let kinds = || dataset.fields().iter().map(|field| std::mem::discriminant(&field.volume().kind().kind));
-    let is_one_kind = kinds().zip(kinds().skip(1)).all(|(a, b)| a == b);
-    (one_file && has_channels) || is_one_kind
+/// Returns the look of the last field of a dataset, as a layer over the others.
+pub fn last_layer(dataset: &Dataset) -> VolumeLayer {
+    let index = dataset.fields().len() - 1;
+    further_layer(dataset, index, &dataset.fields()[index], FieldRelation::detect(dataset))
+}
+
+fn further_layer(
+    dataset: &Dataset,
+    index: usize,
+    field: &DatasetField,
+    relation: FieldRelation,
+) -> VolumeLayer {
+    let volume = field.volume();
+    let mut layer = first_settings(volume, field.histogram()).layer().clone();
+    if matches!(volume.kind().kind, DataKind::LabelMap { .. } | DataKind::Mask { .. }) {
+        if !dataset.volume().is_label_map() {
+            layer.blend = LayerBlend::Tint;
+        }
+    } else if relation == FieldRelation::Measurements {
+        show_measurement(&mut layer, field);
+    } else {
+        colorize(&mut layer.transfer, &[CHANNELS[index % CHANNELS.len()]]);
+    }
+    layer
+}
+
+impl FieldRelation {
+    fn detect(dataset: &Dataset) -> Self {
+        let first = dataset.volume();
+        let is_chosen =
+            |field: &DatasetField| field.origin().is_some_and(|origin| origin.choice.channel.is_some());
+        let is_microscopy = first.metadata().modality == Modality::LightMicroscopy
+            || DataDomain::from_channels(first) == Some(DataDomain::Fluorescence);
+        if is_microscopy || dataset.fields().iter().any(is_chosen) {
+            Self::Channels
+        } else if first.is_anatomical() || matches!(first.kind().kind, DataKind::HounsfieldCt { .. }) {
+            Self::Measurements
+        } else {
+            Self::Others
+        }
+    }
 }
 
 /// Gives a curve the colours of a scale, from its first point to its last; opacities stay.
@@ -60,7 +91,8 @@ fn colorize(transfer: &mut TransferFunction, scale: &[Lch]) {
         let low = (place as usize).min(scale.len() - 1);
         let high = (low + 1).min(scale.len() - 1);
         let t = place - low as f64;
-        point.color = srgb_from_lch(std::array::from_fn(|i| scale[low][i] + (scale[high][i] - scale[low][i]) * t));
+        point.color =
+            srgb_from_lch(std::array::from_fn(|i| scale[low][i] + (scale[high][i] - scale[low][i]) * t));
     }
 }
 
@@ -112,8 +144,8 @@ mod tests {
         assert_eq!(tinted.layers.get(1).map(|layer| layer.blend), Some(LayerBlend::Tint));
         assert!(!tinted.layers.get(1).unwrap().labels.is_empty());
         let channels = look(scan(), &volume(|r| 800.0 - 90.0 * (r - 6.0).abs()));
-        let hue = |index: usize| channels.layers.get(index).unwrap().transfer.points.last().unwrap().color;
-        assert!(hue(0)[1] > hue(0)[0] && hue(1)[0] > hue(1)[1], "green and magenta: {:?} {:?}", hue(0), hue(1));
+        let color = channels.layers.get(1).unwrap().transfer.points.last().unwrap().color;
+        assert!(color[0] > color[1] && color[2] > color[1], "magenta: {color:?}");
         assert!(channels.layers.iter().all(|layer| layer.blend == LayerBlend::Add));
     }
 }

@@ -172,9 +172,18 @@ impl Settings {
     }
 
     /// Returns the table that attenuates light in a layer's field, with extinction shares if shadows are coloured.
-    pub fn bake_lighting_of(&self, layer: &VolumeLayer, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
+    pub fn bake_lighting_of(
+        &self,
+        layer: &VolumeLayer,
+        range: ValueRange,
+        scene: &SceneSpace,
+    ) -> BakedTransfer {
         let baked = layer.bake_lighting(range, scene);
-        if self.has_colored_shadows() { baked.with_extinction_shares(self.shadows.transmission) } else { baked }
+        if self.has_colored_shadows() {
+            baked.with_extinction_shares(self.shadows.transmission)
+        } else {
+            baked
+        }
     }
 
     /// Returns the order of classification if layers are composed.

@@ -84,7 +84,16 @@ impl VolumeRecord {
     /// Adds the further fields of a dataset, for a record that will be written to `folder`.
     #[must_use]
     pub fn with_layers_of(self, dataset: &Dataset, folder: Option<&Path>) -> Self {
-        let origins = dataset.fields().iter().filter_map(DatasetField::origin);
+        self.with_layers(dataset.fields().iter().filter_map(DatasetField::origin), folder)
+    }
+
+    /// Adds further volumes that are shown as layers, for a record that will be written to `folder`.
+    #[must_use]
+    pub fn with_layers<'a>(
+        self,
+        origins: impl Iterator<Item = &'a FieldOrigin>,
+        folder: Option<&Path>,
+    ) -> Self {
         let record = |FieldOrigin { source, opened_id, choice }: &FieldOrigin| {
             Self::new(source, *opened_id, folder).with_choice(choice.clone())
         };
