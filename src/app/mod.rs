@@ -64,7 +64,7 @@ pub struct App {
     /// Handles, overlays and other tools over the picture; boxed, as they would make the frame of the constructor too
     /// large.
     picture: Box<PictureTools>,
-    windows: ToolWindows,
+    windows: Box<ToolWindows>,
     dialogs: AppDialogs,
     /// Panels around the picture.
     panels: OuterPanels,

@@ -186,6 +186,7 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("sky/sharpened_blocks.wgsl", [64, 1, 1]),
         ("sky/surfaces.wgsl", [64, 1, 1]),
         ("sky/sweep.wgsl", [8, 8, 1]),
+        ("volume/composed_voxels.wgsl", [8, 8, 4]),
         ("volume/downsample.wgsl", [8, 8, 4]),
         ("volume/gradients.wgsl", [8, 8, 4]),
         ("volume/preclassified.wgsl", [8, 8, 4]),

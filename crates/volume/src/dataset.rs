@@ -4,11 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{
-    BrickBounds, Corrections, DensityMapping, Histogram, Volume, VolumeChoice, VolumeError, VolumeId,
+    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, Volume, VolumeChoice, VolumeError,
+    VolumeId,
 };
-
-/// Largest number of fields that one picture can show: the channels of a texel on the GPU.
-pub const MAX_FIELDS: usize = 4;
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
 /// combined with those of another volume. Clones share the voxels.

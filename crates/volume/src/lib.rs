@@ -27,7 +27,7 @@ mod volume;
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
-pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin, MAX_FIELDS};
+pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin};
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use label_cells::CellOccupancy;
 pub use load_context::{
@@ -46,6 +46,6 @@ pub use values::robust::ValueRanges;
 pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
-    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
-    PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
+    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MAX_FIELDS, MissingVoxels, Orientation,
+    PaddingValue, PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

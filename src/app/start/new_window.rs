@@ -17,7 +17,7 @@ use crate::app::persistence::PersistentState;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::status_file::StatusFile;
-use crate::app::shell::tool_windows::{AppDialogs, ToolWindows};
+use crate::app::shell::tool_windows::AppDialogs;
 use crate::app::viewport::Viewport;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::windows::recovery::RecoveryDialog;
@@ -144,7 +144,7 @@ impl App {
         Ok(Self {
             opening: OpeningState::new(Loader::new(context, load, storage.as_deref(), &cc.egui_ctx)?),
             picture: Box::default(),
-            windows: ToolWindows::default(),
+            windows: Box::default(),
             dialogs: AppDialogs::default(),
             jobs: Jobs::from_context(&cc.egui_ctx),
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),

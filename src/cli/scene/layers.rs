@@ -36,9 +36,9 @@ impl FromStr for LayerArg {
             let (key, value) = (key.trim(), value.trim());
             let number = || {
                 let parsed = value.parse::<usize>();
-                parsed
-                    .map(Some)
-                    .map_err(|_| format!("expected a whole number from 0 for {key}, found {value:?}"))
+                parsed.map(Some).map_err(|_not_a_number| {
+                    format!("expected a whole number from 0 for {key}, found {value:?}")
+                })
             };
             match key {
                 "channel" => layer.choice.channel = number()?,

@@ -77,7 +77,9 @@ fn labelled(blend: LayerBlend) -> (Arc<Volume>, VolumeLayer) {
 
 fn look(further: &[VolumeLayer]) -> Settings {
     let mut settings = scenes::look();
-    further.iter().for_each(|layer| settings.layers.push(layer.clone()));
+    for layer in further {
+        settings.layers.push(layer.clone());
+    }
     settings
 }
 

@@ -16,7 +16,7 @@ pub(super) mod transfer_tables;
 
 #[cfg(feature = "testing")]
 pub use field_texture::stored_field_density;
-pub(crate) use texture_shapes::texture_3d;
+pub(crate) use texture_shapes::{brick_dims, texture_3d};
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
 pub(crate) use textures::{density_texture, pyramid_texture};
@@ -395,9 +395,4 @@ impl GpuVolume {
 fn texel_count(texture: &wgpu::Texture) -> u64 {
     let size = texture.size();
     u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
-}
-
-/// Returns the number of bricks along each axis of a grid.
-pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
-    dims.map(|n| n.div_ceil(BRICK_EDGE))
 }

@@ -1,5 +1,7 @@
 //! Dimensions and descriptors of volume textures.
 
+use chiaroscuro_volume::BRICK_EDGE;
+
 /// Padding of the pyramid, in voxels on each side, which replicates the border: one texel of the coarsest level.
 pub(super) const PYRAMID_PADDING: usize = 4;
 
@@ -7,6 +9,11 @@ pub(super) const PYRAMID_PADDING: usize = 4;
 /// level.
 pub(super) fn pyramid_dims(dims: [usize; 3]) -> [usize; 3] {
     dims.map(|n| (n + 2 * PYRAMID_PADDING).next_multiple_of(8))
+}
+
+/// Returns the number of bricks along each axis of a grid.
+pub(crate) fn brick_dims(dims: [usize; 3]) -> [usize; 3] {
+    dims.map(|n| n.div_ceil(BRICK_EDGE))
 }
 
 /// Returns the descriptor of a 3D texture with a single mip level.

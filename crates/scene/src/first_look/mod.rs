@@ -1,5 +1,4 @@
-//! Automatic first look at a volume: transfer function, camera, floor and lights from its values and its file's
-//! hints.
+//! Automatic first look at a volume: transfer function, camera, floor and lights, from its values and its file.
 //!
 //! The kind of data decides what is shown: every label, both sides of zero, bone. For other data the background is
 //! recognised by the volume's border, because most scans have a margin, and opacity begins between its level and

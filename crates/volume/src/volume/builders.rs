@@ -102,7 +102,7 @@ impl Volume {
     #[must_use]
     pub(crate) fn with_opened_grid_of(self, other: &Self) -> Self {
         debug_assert_eq!(self.dims(), other.dims(), "one value for each voxel of the grid");
-        Self { grid: other.as_opened().grid.clone(), correction: None, ..self }
+        Self { grid: other.as_opened().grid, correction: None, ..self }
     }
 
     /// Sets the inventory of the file.

@@ -42,8 +42,10 @@ use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
 use super::load_context::FileContents;
 use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
-use crate::dataset::MAX_FIELDS;
 use crate::math::SceneSpace;
+
+/// Largest number of fields that one picture can show: the channels of a texel on the GPU.
+pub const MAX_FIELDS: usize = 4;
 
 /// Identity of a volume together with its value ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]

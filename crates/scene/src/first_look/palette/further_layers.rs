@@ -54,7 +54,7 @@ fn further_layer(
 ) -> VolumeLayer {
     let volume = field.volume();
     let mut layer = first_settings(volume, field.histogram()).layer().clone();
-    if matches!(volume.kind().kind, DataKind::LabelMap { .. } | DataKind::Mask { .. }) {
+    if matches!(volume.kind().kind, DataKind::LabelMap { .. } | DataKind::Mask) {
         if !dataset.volume().is_label_map() {
             layer.blend = LayerBlend::Tint;
         }

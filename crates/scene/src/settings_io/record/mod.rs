@@ -43,7 +43,7 @@ pub struct VolumeRecord {
     pub choice: VolumeChoice,
     /// Further volumes that are shown with it, one for each further layer.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub layers: Vec<VolumeRecord>,
+    pub layers: Vec<Self>,
 }
 
 /// Metadata of a rendered image.

@@ -116,8 +116,7 @@ fn every_setting_causes_what_the_design_says() {
         ("lights.1.density_scale", "0.5", ChangeEffect::OneLight),
         ("lights.1.shape", "disc", ChangeEffect::OneLight),
         ("lights.2.shape", "ball", ChangeEffect::OneLight),
-        // A point light has no size.
-        ("lights.1.size", "0.5", ChangeEffect::Nothing),
+        ("lights.1.size", "0.5", ChangeEffect::Nothing), // A point light has no size.
         ("lights.1.angle_deg", "5", ChangeEffect::Nothing),
         ("lights.1.aspect", "2", ChangeEffect::Nothing),
         ("lights.1.turn_deg", "20", ChangeEffect::Nothing),
