@@ -25,6 +25,9 @@ pub(crate) const RAY_BEER_LAMBERT: f64 = 1e-3;
 /// Opacity of a homogeneous chord, absolute.
 pub(crate) const CHORD_OPACITY: f64 = 2e-3;
 
+/// Matter of layers along a chord, absolute: a third of a step of 8 bits.
+pub(crate) const LAYER_MATTER: f64 = 0.3 / 255.0;
+
 /// Opacity beside the face of a constant volume, absolute: like that of chords, with slabs of half a voxel across
 /// faces that are parallel to the ray.
 pub(crate) const EDGE_PROFILE: f64 = 4e-3;
@@ -36,17 +39,15 @@ pub(crate) const LOBES: ErrorLimit = ErrorLimit { max: 4.0 / 255.0, rmse: 0.5 / 
 /// Change of the picture's mean when slabs become four times thinner, relative.
 pub(crate) const SLAB_MEAN_CHANGE: f64 = 0.005;
 
-/// Headlight identity C = ½ at Δs = ¼, relative.
+/// Headlight identity C = ½, relative, at Δs = ¼ and 1.
 pub(crate) const HEADLIGHT_FINE: f64 = 0.02;
-/// Headlight identity C = ½ at Δs = 1, relative.
 pub(crate) const HEADLIGHT_COARSE: f64 = 0.10;
 
 /// Shadow of a ball on the voxels behind it, RMSE beyond three voxels from its edge, and centre.
 pub(crate) const BALL_SHADOW: f64 = 0.01;
 
-/// Mean luminance over a quarter turn of the camera, peak to peak, relative.
+/// Mean luminance over a quarter turn of the camera, relative: peak to peak, and from frame to frame.
 pub(crate) const ROTATION_RANGE: f64 = 0.005;
-/// Mean luminance over a quarter turn of the camera, from frame to frame, relative.
 pub(crate) const ROTATION_STEP: f64 = 0.001;
 
 /// Largest error of light along a flat face against rays, absolute: the error that slabs as thick as a voxel leave at

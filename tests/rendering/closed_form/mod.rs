@@ -13,6 +13,7 @@ mod brightness;
 mod colored_shadows;
 mod kernels;
 mod labels;
+mod layers;
 mod lights;
 mod multiple_scattering;
 mod outside_renderer;
