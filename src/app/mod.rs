@@ -134,6 +134,11 @@ impl App {
         self.opener(ctx).import_transfer(path);
     }
 
+    /// Reads a volume on a thread and shows it with the open one as the last layer.
+    pub fn add_layer(&mut self, path: &Path, ctx: &egui::Context) {
+        self.opener(ctx).add_layer(path);
+    }
+
     /// Reads an environment map on a thread and lights the scene by it; supersedes one that is still being read.
     pub fn read_environment_map(&mut self, path: &Path, ctx: &egui::Context) {
         self.opener(ctx).read_environment_map(path);

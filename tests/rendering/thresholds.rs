@@ -28,8 +28,7 @@ pub(crate) const CHORD_OPACITY: f64 = 2e-3;
 /// Matter of layers along a chord, absolute: a third of a step of 8 bits.
 pub(crate) const LAYER_MATTER: f64 = 0.3 / 255.0;
 
-/// Opacity beside the face of a constant volume, absolute: like that of chords, with slabs of half a voxel across
-/// faces that are parallel to the ray.
+/// Opacity beside a face that is parallel to the ray, absolute: like that of chords, with slabs of half a voxel.
 pub(crate) const EDGE_PROFILE: f64 = 4e-3;
 
 /// A signed wave against its negative: the ends of a 16-bit range are not symmetrical around its middle, and table
