@@ -21,7 +21,7 @@ struct LayersUniform {
     // Number of layers.
     count: u32,
     // Largest sum of extinctions, per scene unit.
-    largest_extinction: f32,
+    largest: f32,
     pad0: u32,
     pad1: u32,
     layers: array<LayerUniform, 4>,
@@ -59,5 +59,5 @@ fn layered_material(voxel: vec3i) -> vec4f {
             sum += matter;
         }
     }
-    return vec4f(sum.a, sum.rgb) / max(layers.largest_extinction, 1e-20);
+    return vec4f(sum.a, sum.rgb) / max(layers.largest, 1e-20);
 }

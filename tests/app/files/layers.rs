@@ -36,7 +36,7 @@ fn a_layer_is_added_listed_and_removed() {
     click(&mut harness, "Data");
     harness.run_steps(2);
     assert!(harness.query_all_by_label_contains("Layer 2").next().is_some(), "it is listed");
-    click(&mut harness, "Remove last layer");
+    click(&mut harness, "Remove last");
     wait_until(&mut harness, "the layer is gone", |app| app.settings().layers.count() == 1);
 }
 

@@ -1,6 +1,8 @@
 //! Layers in closed form: media that fill the same space, and a gate that keeps a part of one.
 
-use chiaroscuro_scene::{LabelLook, LabelTable, LayerBlend, OpacityLength, RenderEngine, Settings, VolumeLayer};
+use chiaroscuro_scene::{
+    LabelLook, LabelTable, LayerBlend, OpacityLength, RenderEngine, Settings, VolumeLayer,
+};
 use chiaroscuro_volume::Volume;
 
 use super::{base, renderer};

@@ -41,11 +41,11 @@ impl BakedLayers {
             };
         }
         let count = fields().count() as u32;
-        let parameters = LayersUniform { count, largest_extinction: 0.0, pad0: 0, pad1: 0, layers };
+        let parameters = LayersUniform { count, largest: 0.0, pad0: 0, pad1: 0, layers };
         let mut baked = Self { tables, parameters: Some(Box::new(parameters)) };
         let largest = baked.max_extinction();
         if let Some(parameters) = &mut baked.parameters {
-            parameters.largest_extinction = largest;
+            parameters.largest = largest;
         }
         baked
     }

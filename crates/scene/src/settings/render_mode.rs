@@ -130,6 +130,11 @@ impl Settings {
         }
     }
 
+    /// Returns true if material is shown, and neither a surface nor a projection.
+    pub fn shows_matter(&self) -> bool {
+        self.render_mode() == RenderMode::Matter
+    }
+
     /// Returns true if the colours of the curve are shown as they are: light, exposure and tone map have no effect.
     pub fn is_unlit(&self) -> bool {
         match self.ray_projection() {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::controls::{choice_row, color_button, row, unlabelled_row};
+use super::super::controls::{choice_row, color_button, row};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
@@ -25,11 +25,13 @@ pub(super) fn show(
             ui.push_id(("layer", index), |ui| layer_rows(ui, layer, name, index));
         }
     }
-    unlabelled_row(ui, |ui| {
-        if ui.button(text::commands::ADD_LAYER).clicked() {
+    row(ui, text::data::ALL_LAYERS, |ui| {
+        if ui.button(text::data::ADD_LAYER).on_hover_text(text::commands::ADD_LAYER).clicked() {
             commands.push(AppCommand::AddLayer);
         }
-        if count > 1 && ui.button(text::commands::REMOVE_LAYER).clicked() {
+        if count > 1
+            && ui.button(text::data::REMOVE_LAYER).on_hover_text(text::commands::REMOVE_LAYER).clicked()
+        {
             commands.push(AppCommand::RemoveLayer);
         }
     });

@@ -23,6 +23,10 @@ pub(crate) const NOT_FINITE: &str = "Not finite";
 
 /// Labels of the layers, in the order in which they are composed.
 pub(crate) const LAYERS: [&str; 4] = ["Layer 1", "Layer 2", "Layer 3", "Layer 4"];
+pub(crate) const ALL_LAYERS: ControlText =
+    control_text("Layers", "Volumes that are shown together, such as a scan and its segmentation");
+pub(crate) const ADD_LAYER: &str = "Add…";
+pub(crate) const REMOVE_LAYER: &str = "Remove last";
 pub(crate) const LAYER_COLOR: &str = "Colour of the layer";
 pub(crate) const LAYER_VISIBILITY: ControlText =
     control_text("Layer is", "Presence of the layer in the picture and in its light");

@@ -164,7 +164,7 @@ pub struct LayerUniform {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct LayersUniform {
     pub count: u32,
-    pub largest_extinction: f32,
+    pub largest: f32,
     pub pad0: u32,
     pub pad1: u32,
     pub layers: [LayerUniform; MAX_FIELDS],

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::{VolumeLayer, VolumeLayers};
-use crate::{BakedTransfer, ClassificationOrder, RenderMode, Settings};
+use crate::{BakedTransfer, ClassificationOrder, Settings};
 use chiaroscuro_volume::math::SceneSpace;
 use chiaroscuro_volume::{Dataset, DensityMapping, MAX_FIELDS, ValueRange, Volume, VolumeId};
 
@@ -155,7 +155,7 @@ impl Settings {
         let fields = dataset.fields();
         let mut drawn = self.clone();
         drawn.layer_mut().blend = LayerBlend::Add;
-        if self.render_mode() == RenderMode::Matter {
+        if self.shows_matter() {
             drawn.layers.truncate(fields.len());
         } else {
             drawn.layers.truncate(1);
