@@ -13,7 +13,6 @@ mod brightness;
 mod colored_shadows;
 mod kernels;
 mod labels;
-mod layers;
 mod lights;
 mod multiple_scattering;
 mod outside_renderer;

@@ -3,6 +3,7 @@
 mod clipping;
 mod combine;
 mod floor;
+mod layers;
 mod narrow_peaks;
 mod near_field;
 mod phantom;
