@@ -7,7 +7,7 @@
 #import "volume/material.wgsl"
 
 struct LayerUniform {
-    // LAYER_ADD, LAYER_TINT or LAYER_GATE.
+    // LAYER_ADD, LAYER_TINT, LAYER_GATE or LAYER_NONE.
     blend: u32,
     // 1 if densities are classes of labels, which have no mean.
     is_label: u32,
@@ -33,6 +33,7 @@ var<private> layers: LayersUniform;
 const LAYER_ADD = 0u;
 const LAYER_TINT = 1u;
 const LAYER_GATE = 2u;
+const LAYER_NONE = 3u;
 
 // Matter of a voxel as a texel of pre-classified voxels: extinction relative to the largest sum, and colour times that.
 fn layered_material(voxel: vec3i) -> vec4f {
@@ -55,7 +56,7 @@ fn layered_material(voxel: vec3i) -> vec4f {
             sum = vec4f(mix(sum.rgb, color * sum.a, opacity), sum.a);
         } else if (layer.blend == LAYER_GATE) {
             sum *= opacity;
-        } else {
+        } else if (layer.blend == LAYER_ADD) {
             sum += matter;
         }
     }

@@ -53,7 +53,7 @@ pub use light_march::ViewSheets;
 use glam::DVec3;
 
 use chiaroscuro_scene::{
-    BakedTransfer, LayerBlend, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings, VolumeLayer,
+    BakedTransfer, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings, VolumeLayer,
 };
 use chiaroscuro_volume::{Dataset, ValueRange, Volume, math::SceneSpace};
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
@@ -194,8 +194,11 @@ impl<'a> Reference<'a> {
             &dataset.with_density_mappings([settings.shown_content(&id.ranges)].into_iter().chain(further));
         let plain = Self::new(dataset.volume(), settings, options);
         let scene = plain.scene;
-        let adds = |layer: &&VolumeLayer| layer.blend == LayerBlend::Add;
         let classified = ALL_TRANSFER_SIDES.map(|side| {
+            let has_effect = |layer: &VolumeLayer| match side {
+                TransferSide::Eye => layer.is_seen(),
+                TransferSide::Lighting | TransferSide::Indirect => layer.casts_shadows(),
+            };
             let bake = |layer: &VolumeLayer, volume: &Volume| {
                 let range = volume.table_range();
                 match (side, options.color) {
@@ -208,10 +211,10 @@ impl<'a> Reference<'a> {
             };
             let fields = settings.layers.iter().zip(dataset.fields().iter());
             let largest: f64 = fields
-                .filter(|(layer, _)| adds(layer))
+                .filter(|(layer, _)| layer.blend.adds_matter())
                 .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
                 .sum();
-            let matter = composed_voxels(dataset, settings, bake);
+            let matter = composed_voxels(dataset, settings, has_effect, bake);
             let width = kernel_width(options.fault);
             ClassifiedVoxels::from_matter(dataset.volume().dims(), &matter, largest, width, options.rounding)
         });

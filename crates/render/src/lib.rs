@@ -77,4 +77,4 @@ pub use resources::textures::AttenuationData;
 #[cfg(feature = "testing")]
 pub use volume::brick_list::LISTED_PER_ROW;
 #[cfg(feature = "testing")]
-pub use volume::{stored_density, stored_field_density};
+pub use volume::stored_density;

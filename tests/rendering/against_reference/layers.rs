@@ -101,8 +101,11 @@ fn layers_add_their_matter() {
 #[test]
 fn layers_may_cast_without_being_seen_and_may_be_hidden() {
     let with = |visibility| look(&[VolumeLayer { visibility, ..second() }]);
+    let (mask, gate) = labelled(LayerBlend::Gate);
     for visibility in [LayerVisibility::CastsShadows, LayerVisibility::Hidden] {
         check(&format!("{visibility:?}"), &dataset(&[ball()]), &with(visibility));
+        let gated = look(&[VolumeLayer { visibility, ..gate.clone() }]);
+        check(&format!("gate, {visibility:?}"), &dataset(std::slice::from_ref(&mask)), &gated);
     }
 }
 

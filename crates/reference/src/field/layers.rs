@@ -50,17 +50,19 @@ impl LayeredField<'_> {
     }
 }
 
-/// Returns colour times extinction, and extinction, of every voxel of a dataset with layers. `bake` makes the table of
-/// a layer over the values of its field.
+/// Returns colour times extinction, and extinction, of every voxel of a dataset with layers. `has_effect` tells if a
+/// layer counts, and `bake` makes its table over the values of its field.
 pub(crate) fn composed_voxels(
     dataset: &Dataset,
     settings: &Settings,
+    has_effect: impl Fn(&VolumeLayer) -> bool,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
 ) -> Vec<[f64; 4]> {
     let fields: Vec<_> = settings
         .layers
         .iter()
         .zip(dataset.fields().iter())
+        .filter(|(layer, _)| has_effect(layer))
         .map(|(layer, field)| {
             let volume = &**field.volume();
             let [.., slices] = volume.dims();

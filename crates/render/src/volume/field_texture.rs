@@ -94,9 +94,3 @@ impl FieldTexture {
 fn stored(density: f32) -> u16 {
     (density.clamp(0.0, 1.0) * LARGEST_STORED_DENSITY).round() as u16
 }
-
-/// Returns a density as rounded by the field texture; the reference renderer rounds the same way.
-#[cfg(feature = "testing")]
-pub fn stored_field_density(density: f32) -> f32 {
-    f32::from(stored(density)) / LARGEST_STORED_DENSITY
-}

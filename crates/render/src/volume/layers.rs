@@ -16,10 +16,12 @@ pub(crate) struct BakedLayers {
 }
 
 impl BakedLayers {
-    /// Bakes the layers of a volume; `bake` makes the table of a layer over a range of values.
+    /// Bakes the layers of a volume for one side: `has_effect` tells if a layer is seen, or attenuates light, and `bake`
+    /// makes its table over a range of values.
     pub(crate) fn new(
         volume: &GpuVolume,
         settings: &Settings,
+        has_effect: impl Fn(&VolumeLayer) -> bool,
         bake: impl Fn(&VolumeLayer, ValueRange, &SceneSpace) -> BakedTransfer,
     ) -> Self {
         let scene = &volume.scene;
@@ -34,7 +36,7 @@ impl BakedLayers {
         let mut layers = [empty; MAX_FIELDS];
         for (uniform, (layer, field)) in layers.iter_mut().zip(fields()) {
             *uniform = LayerUniform {
-                blend: blend_number(layer.blend),
+                blend: if has_effect(layer) { blend_number(layer.blend) } else { NO_EFFECT },
                 is_label: u32::from(field.volume().shown_labels().is_some()),
                 opacity_unit: layer.opacity_unit_in_scene(scene) as f32,
                 edges: layer.edges as f32,
@@ -135,6 +137,9 @@ impl BakedLayers {
         self.tables.iter().enumerate().filter(move |(at, _)| adds(*at))
     }
 }
+
+/// Number of a layer without effect in `shaders/volume/layers.wgsl`: a hidden gate removes nothing.
+const NO_EFFECT: u32 = 3;
 
 /// Returns the number of a blend in `shaders/volume/layers.wgsl`.
 fn blend_number(blend: LayerBlend) -> u32 {

@@ -14,8 +14,6 @@ mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
-#[cfg(feature = "testing")]
-pub use field_texture::stored_field_density;
 pub(crate) use texture_shapes::{brick_dims, texture_3d};
 #[cfg(feature = "testing")]
 pub use textures::stored_density;

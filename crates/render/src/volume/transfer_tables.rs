@@ -205,7 +205,7 @@ impl TransferTables {
             known.product.eye.clone()
         } else {
             baked += 1;
-            let eye = BakedLayers::new(volume, settings, VolumeLayer::bake_eye);
+            let eye = BakedLayers::new(volume, settings, VolumeLayer::is_seen, VolumeLayer::bake_eye);
             TransferTable::new(context, volume, eye, bounded, known())
         };
         let is_lit_alike =
@@ -217,7 +217,7 @@ impl TransferTables {
             let bake = |layer: &VolumeLayer, range, scene: &SceneSpace| {
                 settings.bake_lighting_of(layer, range, scene)
             };
-            let lighting = BakedLayers::new(volume, settings, bake);
+            let lighting = BakedLayers::new(volume, settings, VolumeLayer::casts_shadows, bake);
             let lighting = TransferTable::new(context, volume, lighting, bounded, known().chain([&eye]));
             let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));
             (lighting, colors.unwrap_or_default())

@@ -2,8 +2,8 @@
 
 use crate::plan::{RenderRequest, VolumeKey};
 use chiaroscuro_scene::{
-    ColorMixing, Easing, LabelMaterial, LayerBlend, LayerVisibility, LightingTransfer, OpacityInterpolation,
-    OpacityLength, Settings, TransferFunction, VolumeLayer,
+    ColorMixing, Easing, LabelMaterial, LayerBlend, LightingTransfer, OpacityInterpolation, OpacityLength,
+    Settings, TransferFunction, VolumeLayer,
 };
 
 /// Inputs of both lookup tables.
@@ -106,8 +106,8 @@ impl EyeLayerKey {
         } else {
             EyeTableLooks::Labels(layer.labels.materials())
         };
-        let is_seen = layer.visibility == LayerVisibility::Shown;
-        Self { looks, unit: layer.opacity_unit, composition: CompositionKey::new(index, layer, is_seen) }
+        let composition = CompositionKey::new(index, layer, layer.is_seen());
+        Self { looks, unit: layer.opacity_unit, composition }
     }
 }
 
@@ -140,12 +140,11 @@ impl OpacityLayerKey {
             let materials = layer.labels.materials().into_iter();
             LightingOpacities::Labels(materials.map(|material| (material.number, material.opacity)).collect())
         };
-        let casts = layer.visibility != LayerVisibility::Hidden;
         Self {
             opacities,
             scale: *scale,
             unit: layer.opacity_unit,
-            composition: CompositionKey::new(index, layer, casts),
+            composition: CompositionKey::new(index, layer, layer.casts_shadows()),
         }
     }
 }

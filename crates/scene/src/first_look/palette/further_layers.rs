@@ -1,18 +1,24 @@
 //! Looks of further layers: what tells the fields of a picture apart.
 
-use crate::{LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer, srgb_from_lch};
+use crate::{ControlPoint, LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer};
 use chiaroscuro_volume::{DataKind, Dataset, DatasetField, Modality};
 
-use super::Lch;
+use super::DomainPalette;
 use crate::first_look::domain::DataDomain;
 use crate::first_look::first_settings;
 
 /// Colours of channels, in the order of microscopes: green, magenta, cyan and yellow, which stay apart for most people
 /// with reduced colour vision, and whose mixtures are pale.
-const CHANNELS: [Lch; 4] = [[0.82, 0.17, 148.0], [0.68, 0.2, 340.0], [0.82, 0.11, 205.0], [0.9, 0.14, 100.0]];
+const CHANNELS: [DomainPalette; 4] = [
+    DomainPalette(&[[0.82, 0.17, 148.0]]),
+    DomainPalette(&[[0.68, 0.2, 340.0]]),
+    DomainPalette(&[[0.82, 0.11, 205.0]]),
+    DomainPalette(&[[0.9, 0.14, 100.0]]),
+];
 
 /// Colours of measurements over a scan: glowing iron, from dark red over orange to a yellowish white.
-const HOT: [Lch; 4] = [[0.5, 0.16, 28.0], [0.66, 0.18, 42.0], [0.82, 0.15, 75.0], [0.96, 0.06, 100.0]];
+const HOT: DomainPalette =
+    DomainPalette(&[[0.5, 0.16, 28.0], [0.66, 0.18, 42.0], [0.82, 0.15, 75.0], [0.96, 0.06, 100.0]]);
 
 /// Share of the voxels below the value at which a measurement over a scan begins to be seen.
 const SEEN_MEASUREMENT_SHARE: f64 = 0.97;
@@ -33,7 +39,7 @@ enum FieldRelation {
 pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
     let relation = FieldRelation::detect(dataset);
     if relation == FieldRelation::Channels && dataset.fields().len() > 1 {
-        colorize(&mut settings.layer_mut().transfer, &[CHANNELS[0]]);
+        colorize(&mut settings.layer_mut().transfer, &CHANNELS[0]);
     }
     for (index, field) in dataset.fields().iter().enumerate().skip(1) {
         settings.layers.push(further_layer(dataset, index, field, relation));
@@ -61,7 +67,7 @@ fn further_layer(
     } else if relation == FieldRelation::Measurements {
         show_measurement(&mut layer, field);
     } else {
-        colorize(&mut layer.transfer, &[CHANNELS[index % CHANNELS.len()]]);
+        colorize(&mut layer.transfer, &CHANNELS[index % CHANNELS.len()]);
     }
     layer
 }
@@ -83,16 +89,11 @@ impl FieldRelation {
     }
 }
 
-/// Gives a curve the colours of a scale, from its first point to its last; opacities stay.
-fn colorize(transfer: &mut TransferFunction, scale: &[Lch]) {
+/// Gives a curve the colours of a palette, from its first point to its last; opacities stay.
+fn colorize(transfer: &mut TransferFunction, palette: &DomainPalette) {
     let last = transfer.points.len().saturating_sub(1).max(1) as f64;
     for (at, point) in transfer.points.iter_mut().enumerate() {
-        let place = at as f64 / last * (scale.len() - 1) as f64;
-        let low = (place as usize).min(scale.len() - 1);
-        let high = (low + 1).min(scale.len() - 1);
-        let t = place - low as f64;
-        point.color =
-            srgb_from_lch(std::array::from_fn(|i| scale[low][i] + (scale[high][i] - scale[low][i]) * t));
+        point.color = palette.color_at(at as f64 / last);
     }
 }
 
@@ -104,7 +105,7 @@ fn show_measurement(layer: &mut VolumeLayer, field: &DatasetField) {
         let places = [0.0, 0.25, 0.6, 1.0];
         let opacities = [0.0, 0.08, 0.3, 0.6];
         let point = |(place, opacity): (f64, f64)| {
-            crate::ControlPoint::new(first + (last - first) * place, [1.0; 3], opacity)
+            ControlPoint::new(first + (last - first) * place, [1.0; 3], opacity)
         };
         layer.transfer.points = places.into_iter().zip(opacities).map(point).collect();
     }

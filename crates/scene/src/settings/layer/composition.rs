@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{VolumeLayer, VolumeLayers};
 use crate::{BakedTransfer, ClassificationOrder, Settings};
 use chiaroscuro_volume::math::SceneSpace;
-use chiaroscuro_volume::{Dataset, DensityMapping, MAX_FIELDS, ValueRange, Volume, VolumeId};
+use chiaroscuro_volume::{Dataset, DensityMapping, MAX_FIELDS, ValueRange, ValueRanges, Volume, VolumeId};
 
 /// Presence of a layer in the picture and in its light.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -47,12 +47,22 @@ impl LayerBlend {
 
 impl VolumeLayer {
     /// Returns the quantity that densities of the layer's field represent, for a field with these value ranges.
-    pub fn density_mapping(&self, ranges: &chiaroscuro_volume::ValueRanges) -> DensityMapping {
+    pub fn density_mapping(&self, ranges: &ValueRanges) -> DensityMapping {
         if self.labels.is_empty() {
             DensityMapping::Range(self.shown_range(ranges, None))
         } else {
             DensityMapping::Labels
         }
+    }
+
+    /// Returns true if the layer has an effect on what is seen.
+    pub fn is_seen(&self) -> bool {
+        self.visibility == LayerVisibility::Shown
+    }
+
+    /// Returns true if the layer has an effect on light.
+    pub fn casts_shadows(&self) -> bool {
+        self.visibility != LayerVisibility::Hidden
     }
 
     /// Returns the opacity unit in scene units, safe to divide by.
@@ -62,15 +72,14 @@ impl VolumeLayer {
 
     /// Returns the transfer function of the eye as a table over a value range; empty if the layer is not seen.
     pub fn bake_eye(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
-        let scale = if self.visibility == LayerVisibility::Shown { 1.0 } else { 0.0 };
+        let scale = if self.is_seen() { 1.0 } else { 0.0 };
         self.transfer.bake(range, self.opacity_unit_in_scene(scene), scale)
     }
 
     /// Returns the lighting transfer function as a table over a value range; empty if the layer casts no shadows.
     pub fn bake_lighting(&self, range: ValueRange, scene: &SceneSpace) -> BakedTransfer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
-        let casts = self.visibility != LayerVisibility::Hidden;
-        let scale = if casts { self.lighting.scale } else { 0.0 };
+        let scale = if self.casts_shadows() { self.lighting.scale } else { 0.0 };
         function.bake(range, self.opacity_unit_in_scene(scene), scale)
     }
 
@@ -104,22 +113,10 @@ impl VolumeLayers {
         self.0.get(index)
     }
 
-    /// Returns a layer, to be changed.
-    pub fn get_mut(&mut self, index: usize) -> Option<&mut VolumeLayer> {
-        self.0.get_mut(index)
-    }
-
     /// Adds a layer at the end, unless there are [`MAX_FIELDS`].
     pub fn push(&mut self, layer: VolumeLayer) {
         if self.0.len() < MAX_FIELDS {
             self.0.push(layer);
-        }
-    }
-
-    /// Removes a layer; never the last one that is left.
-    pub fn remove(&mut self, index: usize) {
-        if self.0.len() > 1 && index < self.0.len() {
-            self.0.remove(index);
         }
     }
 
