@@ -54,7 +54,9 @@ pub(crate) struct VolumeFacts {
     pub is_anatomical: bool,
     /// Labels of a label map, by number; empty for other data.
     pub labels: Arc<[LabelRow]>,
-    /// Names and sources of the further volumes that are shown as layers.
+    /// Index of the layer that shows the volume.
+    pub layer: usize,
+    /// Further volumes that are shown as layers.
     pub further: Vec<FurtherVolume>,
     /// Histogram of the values that are shown.
     pub histogram: Arc<Histogram>,
@@ -63,15 +65,17 @@ pub(crate) struct VolumeFacts {
 /// Further volume that is shown as a layer.
 #[derive(Debug, Clone)]
 pub(crate) struct FurtherVolume {
-    /// Name of the volume for display.
-    pub name: String,
+    /// Facts about the volume on the grid of the first one.
+    pub facts: VolumeFacts,
     /// Source by which it is opened again.
     pub origin: FieldOrigin,
 }
 
 impl FurtherVolume {
-    fn new(field: &DatasetField) -> Option<Self> {
-        Some(Self { name: field.volume().name().to_owned(), origin: field.origin()?.clone() })
+    fn new((layer, field): (usize, &DatasetField)) -> Option<Self> {
+        let origin = field.origin()?.clone();
+        let facts = VolumeFacts::from_field(field, origin.source.clone(), ReadChoices::default());
+        Some(Self { facts: VolumeFacts { layer, ..facts }, origin })
     }
 }
 
@@ -123,7 +127,13 @@ impl LabelRow {
 impl VolumeFacts {
     /// Collects the facts about a dataset.
     pub(crate) fn new(source: PathBuf, reading: ReadChoices, dataset: &Dataset) -> Self {
-        let volume = dataset.volume();
+        let further = dataset.fields().iter().enumerate().skip(1).filter_map(FurtherVolume::new).collect();
+        Self { further, ..Self::from_field(dataset.field(), source, reading) }
+    }
+
+    /// Collects the facts about one field of a dataset.
+    fn from_field(field: &DatasetField, source: PathBuf, reading: ReadChoices) -> Self {
+        let volume = field.volume();
         let voxel_type = volume.samples().voxel_type();
         let range = volume.shown_range();
         let whole = !matches!(voxel_type, VoxelType::F32 | VoxelType::F64);
@@ -148,9 +158,25 @@ impl VolumeFacts {
             kind: volume.kind().kind,
             is_anatomical: volume.is_anatomical(),
             labels: LabelRow::all_of(volume),
-            further: dataset.fields().iter().filter_map(FurtherVolume::new).collect(),
-            histogram: Arc::clone(dataset.histogram()),
+            layer: 0,
+            further: Vec::new(),
+            histogram: Arc::clone(field.histogram()),
         }
+    }
+
+    /// Returns the facts about the volume of a layer, or about the first one if there is no such layer.
+    pub(crate) fn of_layer(&self, layer: usize) -> &Self {
+        let further = layer.checked_sub(1).and_then(|at| self.further.get(at));
+        further.map_or(self, |further| &further.facts)
+    }
+
+    /// Returns true if all volumes are shown with the value ranges that a dataset has.
+    pub(crate) fn shows_ranges_of(&self, dataset: &Dataset) -> bool {
+        let fields = dataset.fields().iter().enumerate();
+        let is_same = |(layer, field): (usize, &DatasetField)| {
+            self.of_layer(layer).shown == field.volume().density_mapping()
+        };
+        fields.clone().count() == self.further.len() + 1 && fields.into_iter().all(is_same)
     }
 
     /// Unit of length that suits the size of the volume.
@@ -165,7 +191,7 @@ impl VolumeFacts {
 
     /// Returns true if pictures with these settings show labels, whose looks are in a table.
     pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
-        !settings.layer().labels.is_empty() && !self.labels.is_empty()
+        !settings.layer_at(self.layer).labels.is_empty() && !self.labels.is_empty()
     }
 
     /// Updates the facts for a dataset that shows other values or is corrected.

@@ -10,7 +10,7 @@ use eframe::egui;
 use super::Document;
 use super::light_placement::LightPlacement;
 use crate::app::worker::jobs::{JobKind, JobSlot};
-use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, first_look};
+use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, VolumeLayer, first_look};
 use chiaroscuro_volume::{Dataset, KindName};
 
 /// Result of a pass over all voxels.
@@ -18,8 +18,8 @@ use chiaroscuro_volume::{Dataset, KindName};
 enum KindTaskResult {
     /// First look for a kind of data.
     Look(Option<KindName>, Box<Settings>),
-    /// Transfer function or table of labels.
-    Transfer(TransferFunction, LabelTable),
+    /// Transfer function and table of labels of a layer, by its index.
+    Transfer(usize, TransferFunction, LabelTable),
 }
 
 /// Kind of data as which the volume is treated, and the first looks for the other kinds.
@@ -82,11 +82,18 @@ impl Document {
         dataset: Option<Dataset>,
         ctx: &egui::Context,
     ) -> io::Result<()> {
-        let (Some(dataset), Some(facts)) = (dataset, &self.volume) else { return Ok(()) };
-        let (histogram, kind) = (Arc::clone(&facts.histogram), self.kind_override.kind);
+        let (Some(dataset), Some(facts)) = (dataset, self.selected_volume()) else { return Ok(()) };
+        let (histogram, kind, index) = (Arc::clone(&facts.histogram), self.kind_override.kind, facts.layer);
         let task = move || {
+            if index > 0
+                && let Some(VolumeLayer { transfer, labels, .. }) =
+                    first_look::layer_of_field(&dataset, index)
+            {
+                return KindTaskResult::Transfer(index, transfer, labels);
+            }
             let volume = dataset.volume();
             KindTaskResult::Transfer(
+                0,
                 first_look::transfer_for_kind(volume, &histogram, kind),
                 first_look::labels_for_kind(volume, kind),
             )
@@ -120,8 +127,8 @@ impl Document {
                 // The object was turned meanwhile.
                 self.treat_as(kind, dataset, ctx).map_err(|err| err.to_string())?;
             }
-            KindTaskResult::Transfer(transfer, labels) => {
-                let layer = self.settings.layer_mut();
+            KindTaskResult::Transfer(index, transfer, labels) => {
+                let layer = self.settings.layer_at_mut(index);
                 (layer.transfer, layer.labels) = (transfer, labels);
             }
         }

@@ -9,12 +9,13 @@ impl Document {
     pub(crate) fn remove_last_layer(&mut self) {
         let count = self.settings.layers.count();
         self.settings.layers.truncate(count - 1);
+        self.selected_layer = self.selected_layer.min(self.settings.layers.count() - 1);
     }
 
     /// Colours the visible values by a colour map, given by its index.
     pub(crate) fn use_colors(&mut self, at: usize, reversed: bool) {
         if let Some(map) = COLOR_MAPS.get(at) {
-            self.settings.layer_mut().transfer.apply_color_map(map, reversed);
+            self.selected_layer_mut().transfer.apply_color_map(map, reversed);
         }
     }
 

@@ -27,7 +27,7 @@ use self::orientation::OrientationTasks;
 use self::outline::OutlineCache;
 use self::session::SessionFile;
 use crate::app::common::volume_facts::VolumeFacts;
-use chiaroscuro_scene::Settings;
+use chiaroscuro_scene::{Settings, VolumeLayer};
 use chiaroscuro_volume::{Dataset, ValueRanges};
 
 /// Look that is edited, the volume that it shows, and what is kept about both.
@@ -41,6 +41,8 @@ pub(crate) struct Document {
     pub volume: Option<VolumeFacts>,
     /// Index of the light that is selected.
     pub selected_light: usize,
+    /// Index of the layer whose curve and range are edited; the first one is if there is no such layer.
+    pub selected_layer: usize,
     /// Undo history of the look.
     pub history: History,
     /// Session file of Ctrl+S, if there is one.
@@ -65,6 +67,7 @@ impl Default for Document {
             defaults: Settings::default(),
             volume: None,
             selected_light: 0,
+            selected_layer: 0,
             history: History::default(),
             session: None,
             corrections: CorrectionState::default(),
@@ -102,6 +105,31 @@ impl Document {
         self.orientation = OrientationTasks::default();
     }
 
+    /// Returns facts about the volume of the selected layer.
+    pub(crate) fn selected_volume(&self) -> Option<&VolumeFacts> {
+        self.volume.as_ref().map(|volume| volume.of_layer(self.selected_layer))
+    }
+
+    /// Returns the ranges of values of the open volume.
+    pub(crate) fn value_ranges(&self) -> ValueRanges {
+        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
+    }
+
+    /// Returns the ranges of values of the selected layer's volume.
+    pub(crate) fn selected_ranges(&self) -> ValueRanges {
+        self.selected_volume().map_or(ValueRanges::UNIT, |volume| volume.ranges)
+    }
+
+    /// Returns the settings with the selected layer in the place of the first one.
+    pub(crate) fn with_selected_first(&self) -> Settings {
+        self.settings.clone().with_first_exchanged(self.selected_layer)
+    }
+
+    /// Returns the selected layer, to be changed.
+    pub(crate) fn selected_layer_mut(&mut self) -> &mut VolumeLayer {
+        self.settings.layer_at_mut(self.selected_layer)
+    }
+
     /// Returns the name of the open volume, or an empty one if there is none.
     pub(crate) fn volume_name(&self) -> &str {
         self.volume.as_ref().map_or("", |volume| volume.name.as_str())
@@ -112,15 +140,10 @@ impl Document {
         self.volume.as_ref().is_some_and(|volume| volume.is_anatomical)
     }
 
-    /// Returns the ranges of values of the open volume.
-    pub(crate) fn value_ranges(&self) -> ValueRanges {
-        self.volume.as_ref().map_or(ValueRanges::UNIT, |volume| volume.ranges)
-    }
-
     /// Updates the facts for editor and panels to the range of values that the picture shows.
     pub(crate) fn update_shown_range(&mut self, dataset: Option<&Dataset>) {
         if let (Some(dataset), Some(facts)) = (dataset, &mut self.volume)
-            && dataset.volume().density_mapping() != facts.shown
+            && !facts.shows_ranges_of(dataset)
         {
             facts.update(dataset);
         }

@@ -7,6 +7,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::dock;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::document::Document;
 use crate::app::kept_views::KeptStrip;
 use crate::app::persistence::RecentThumbnails;
 use crate::app::shell::look_editor::LookEditor;
@@ -115,9 +116,10 @@ impl OuterPanels {
     /// Shows the editor of the transfer function, or the table of labels, if a volume is open.
     fn show_transfer_editor(&mut self, ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
         let OuterPanelInputs { editor, picture, layout, commands, .. } = inputs;
-        let Some(volume) = &editor.document.volume else { return };
+        let Document { settings, volume, selected_layer, .. } = &mut editor.document;
+        let Some(volume) = volume else { return };
         // The label table has a default height of its own.
-        let (name, height) = if volume.is_shown_by_label(&editor.document.settings) {
+        let (name, height) = if volume.of_layer(*selected_layer).is_shown_by_label(settings) {
             ("labels", theme::LABEL_TABLE_HEIGHT)
         } else {
             ("transfer", theme::EDITOR_HEIGHT)
@@ -126,8 +128,8 @@ impl OuterPanels {
         let panel = panel.frame(theme::panel(ui));
         let panel = panel.size_range(90.0..=420.0);
         panel.show_collapsible(ui, &mut layout.transfer, |ui| {
-            let value = picture.light_probe.value().or_else(|| editor.document.settings.shown_isovalue());
-            self.editor.ui(ui, &mut editor.document.settings, volume, value, commands);
+            let value = picture.light_probe.value().or_else(|| settings.shown_isovalue());
+            self.editor.ui(ui, settings, (volume, selected_layer), value, commands);
         });
     }
 
@@ -183,6 +185,7 @@ fn show_side_panel(ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
                 volume: editor.document.volume.as_ref(),
                 treated_as,
                 selected_light: &mut editor.document.selected_light,
+                selected_layer: &mut editor.document.selected_layer,
                 compare: &mut editor.viewport.compare,
                 facts,
                 is_balancing: editor.look_tasks.balance.is_running(),

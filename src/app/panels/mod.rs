@@ -42,6 +42,8 @@ pub(super) struct PanelContext<'a> {
     pub treated_as: Option<KindName>,
     /// Index of the light whose handle is marked.
     pub selected_light: &'a mut usize,
+    /// Index of the layer whose curve and range are edited.
+    pub selected_layer: &'a mut usize,
     /// State of the comparison of two looks.
     pub compare: &'a mut Compare,
     /// Figures about the renderer's work: adapter, costs, memory.

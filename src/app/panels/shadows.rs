@@ -238,17 +238,17 @@ fn darkness_meter(ui: &mut Ui, share: Option<f64>) {
 
 fn light_opacity_rows(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     let opacity = NumberRow::new(text::shadows::LIGHT_OPACITY, 0.01..=2.0).unit(FACTOR_SUFFIX).logarithmic();
-    let lighting = &mut panels.settings.layer_mut().lighting;
-    opacity.show(ui, &mut lighting.scale, panels.first_look.layer().lighting.scale);
-    let mut linked = lighting.linked;
+    let selected = *panels.selected_layer;
+    let layer = panels.settings.layer_at_mut(selected);
+    opacity.show(ui, &mut layer.lighting.scale, panels.first_look.layer_at(selected).lighting.scale);
+    let mut linked = layer.lighting.linked;
     if switch_row(ui, text::shadows::LINKED, &mut linked).changed() {
-        set_linked(panels.settings, linked);
+        set_linked(layer, linked);
     }
 }
 
 /// Links or unlinks the lighting curve; when first unlinked, it starts as a copy of the eye's curve.
-pub(crate) fn set_linked(settings: &mut chiaroscuro_scene::Settings, linked: bool) {
-    let layer = settings.layer_mut();
+pub(crate) fn set_linked(layer: &mut chiaroscuro_scene::VolumeLayer, linked: bool) {
     layer.lighting.linked = linked;
     if !linked && layer.lighting.curve.points.is_empty() {
         layer.lighting.curve = layer.transfer.clone();

@@ -58,7 +58,7 @@ impl App {
             AppCommand::RemoveLayer => self.editor.document.remove_last_layer(),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
-            AppCommand::InvertTransfer => self.editor.document.settings.layer_mut().transfer.mirror(),
+            AppCommand::InvertTransfer => self.editor.document.selected_layer_mut().transfer.mirror(),
             AppCommand::ToggleCrop => self.layout.show_section(ctx, CUTS, self.editor.toggle_crop()),
             AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),

@@ -11,6 +11,11 @@ pub(crate) const PLOT: &str = "Transfer function plot";
 pub(crate) const EYE: ControlText = control_text("Eye", "Edit the opacity curve for the eye");
 pub(crate) const LIGHT: ControlText = control_text("Light", "Edit the opacity curve for light");
 /// Tooltip of the light tab while both curves are linked.
+/// Tooltip of the tab of a layer, counted from 1.
+pub(crate) fn layer_tab_tooltip(number: usize, name: &str) -> String {
+    format!("Edit layer {number}: {name}")
+}
+
 pub(crate) const LINKED_TIP: &str = "Light uses the eye's opacity curve; a click gives it a separate one";
 /// Chain button that links the two curves, between their tabs.
 pub(crate) const LINK: ControlText = control_text(

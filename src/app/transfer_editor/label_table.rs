@@ -38,8 +38,8 @@ pub(super) fn show(
 ) {
     let mut use_curve = false;
     let listed = ui.horizontal(|ui| {
-        let listed = filtered_labels(ui, &settings.layer().labels, &volume.labels);
-        label_tools(ui, &mut settings.layer_mut().labels, &listed, volume.labels.len());
+        let listed = filtered_labels(ui, &settings.layer_at(volume.layer).labels, &volume.labels);
+        label_tools(ui, &mut settings.layer_at_mut(volume.layer).labels, &listed, volume.labels.len());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let curve = text::labels::USE_CURVE;
             use_curve = ui.button(curve.name).on_hover_text(curve.tooltip).clicked();
@@ -50,7 +50,7 @@ pub(super) fn show(
         });
         listed
     });
-    let (table, listed) = (&mut settings.layer_mut().labels, listed.inner);
+    let (table, listed) = (&mut settings.layer_at_mut(volume.layer).labels, listed.inner);
     let fixed = SHOW_WIDTH + COLOR_WIDTH + NUMBER_WIDTH + VOXELS_WIDTH + OPACITY_WIDTH + 6.0 * COLUMN_GAP;
     let name_width = (ui.available_width() - fixed).clamp(*NAME_WIDTHS.start(), *NAME_WIDTHS.end());
     table_header(ui, name_width);

@@ -6,7 +6,7 @@ use std::f32::consts::{PI, TAU};
 use super::super::text;
 use crate::app::common::theme;
 use crate::app::panels::set_linked;
-use chiaroscuro_scene::Settings;
+use chiaroscuro_scene::VolumeLayer;
 
 /// Size of the button, half the straight length of a link, and the radius of its round ends, in points.
 const BUTTON_SIZE: Vec2 = Vec2::new(20.0, 18.0);
@@ -14,8 +14,8 @@ const LINK_HALF_LENGTH: f32 = 2.0;
 const LINK_RADIUS: f32 = 2.8;
 
 /// Shows the button; a click links the two curves, or gives light a curve of its own.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
-    let is_linked = settings.layer().lighting.linked;
+pub(super) fn show(ui: &mut Ui, layer: &mut VolumeLayer) {
+    let is_linked = layer.lighting.linked;
     let (rect, response) = ui.allocate_exact_size(BUTTON_SIZE, Sense::click());
     let named = text::transfer::LINK;
     response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, is_linked, named.name));
@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
     }
     let tip = if is_linked { text::transfer::UNLINK_TIP } else { named.tooltip };
     if response.on_hover_text(tip).clicked() {
-        set_linked(settings, !is_linked);
+        set_linked(layer, !is_linked);
     }
 }
 

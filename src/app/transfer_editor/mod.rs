@@ -6,6 +6,7 @@
 mod backdrop;
 mod freehand;
 mod label_table;
+mod layer_tabs;
 mod link_button;
 mod menus;
 mod plot;
@@ -46,6 +47,8 @@ enum EditedCurve {
 #[derive(Debug)]
 pub(super) struct TransferEditor {
     curve: EditedCurve,
+    /// Index of the layer of the last frame.
+    layer: usize,
     selection: PointSelection,
     /// Curve as the last frame left it; the selection refers to its points.
     last_curve: TransferFunction,
@@ -65,6 +68,7 @@ impl TransferEditor {
         Self {
             backdrop: PlotBackdrop::new(window),
             curve: EditedCurve::Eye,
+            layer: 0,
             selection: PointSelection::default(),
             last_curve: TransferFunction::default(),
             log_histogram: true,
@@ -83,22 +87,31 @@ const KEY_STEP: [f64; 2] = [1.0 / 256.0, 0.01];
 const WIDE_LAYOUT_WIDTH: f32 = 1100.0;
 
 impl TransferEditor {
-    /// Shows the editor in the whole of `ui`. `marked`: value that the probe or a surface marks, if any.
+    /// Shows the editor of the selected layer in the whole of `ui`. `volume`: facts about the first volume; `marked`:
+    /// value of it that the probe or a surface marks, if any.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
-        volume: &VolumeFacts,
+        (volume, selected_layer): (&VolumeFacts, &mut usize),
         marked: Option<f64>,
         commands: &mut Vec<AppCommand>,
     ) {
+        layer_tabs::show(ui, settings, volume, selected_layer);
+        let volume = volume.of_layer(*selected_layer);
+        let marked = marked.filter(|_| volume.layer == 0);
+        if std::mem::replace(&mut self.layer, volume.layer) != volume.layer {
+            self.selection.clear();
+            self.zoom = PlotZoom::default();
+            self.axis_span = AxisSpan::default();
+        }
         if volume.is_shown_by_label(settings) {
             return label_table::show(ui, settings, volume, commands);
         }
-        if settings.layer().lighting.linked {
+        if settings.layer_at(volume.layer).lighting.linked {
             self.curve = EditedCurve::Eye;
         }
-        if *self.edited_curve(settings) != self.last_curve {
+        if *self.edited_curve(settings, volume.layer) != self.last_curve {
             // The curve was changed elsewhere: its points may be others.
             self.selection.clear();
         }
@@ -137,7 +150,7 @@ impl TransferEditor {
         } else {
             text::transfer::EYE_POINT
         };
-        let function = self.edited_curve(settings);
+        let function = self.edited_curve(settings, volume.layer);
         if self.freehand.is_active {
             self.selection.clear();
             self.freehand.draw(ui, &response, &axes, function);
@@ -148,8 +161,8 @@ impl TransferEditor {
             let limits = point_limits(volume.ranges, span);
             self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
         }
-        self.last_curve = self.edited_curve(settings).clone();
-        plot::paint_readout(ui, &axes, &response, settings);
+        self.last_curve = self.edited_curve(settings, volume.layer).clone();
+        plot::paint_readout(ui, &axes, &response, &settings.layer_at(volume.layer).transfer);
         plot::paint_value_mark(ui, &axes, marked);
     }
 
@@ -165,13 +178,13 @@ impl TransferEditor {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, EditedCurve::Eye, text::transfer::EYE.name);
         eye.on_hover_text(text::transfer::EYE.tooltip);
-        link_button::show(ui, settings);
+        link_button::show(ui, settings.layer_at_mut(volume.layer));
         let light = ui.selectable_value(&mut self.curve, EditedCurve::Light, text::transfer::LIGHT.name);
-        let is_linked = settings.layer().lighting.linked;
+        let is_linked = settings.layer_at(volume.layer).lighting.linked;
         let tip = if is_linked { text::transfer::LINKED_TIP } else { text::transfer::LIGHT.tooltip };
         if light.on_hover_text(tip).clicked() && is_linked {
             // Selecting the lighting curve to edit it implies a separate curve.
-            set_linked(settings, false);
+            set_linked(settings.layer_at_mut(volume.layer), false);
         }
         if self.curve != before {
             self.selection.clear();
@@ -179,7 +192,7 @@ impl TransferEditor {
         ui.separator();
         // With coloured shadows, light that passes material takes its hue.
         let has_colors = self.curve == EditedCurve::Eye || settings.has_colored_shadows();
-        let function = self.edited_curve(settings);
+        let function = self.edited_curve(settings, volume.layer);
         let selected = self.selection.retained_indices(function.points.len());
         if selected.is_empty() {
             menus::curve_fields(ui, function, span);
@@ -207,11 +220,11 @@ impl TransferEditor {
         });
     }
 
-    /// Returns the curve that is being edited.
-    fn edited_curve<'a>(&self, settings: &'a mut Settings) -> &'a mut TransferFunction {
+    /// Returns the curve of a layer that is being edited.
+    fn edited_curve<'a>(&self, settings: &'a mut Settings, layer: usize) -> &'a mut TransferFunction {
         match self.curve {
-            EditedCurve::Eye => &mut settings.layer_mut().transfer,
-            EditedCurve::Light => &mut settings.layer_mut().lighting.curve,
+            EditedCurve::Eye => &mut settings.layer_at_mut(layer).transfer,
+            EditedCurve::Light => &mut settings.layer_at_mut(layer).lighting.curve,
         }
     }
 
@@ -223,7 +236,7 @@ impl TransferEditor {
         volume: &VolumeFacts,
         commands: &mut Vec<AppCommand>,
     ) {
-        let function = self.edited_curve(settings);
+        let function = self.edited_curve(settings, volume.layer);
         let automatic = text::transfer::AUTOMATIC;
         if ui.button(automatic.name).on_hover_text(automatic.tooltip).clicked() {
             self.selection.clear();
@@ -257,9 +270,10 @@ impl TransferEditor {
             axes.width() * self.zoom.zoom_factor(volume.range),
         );
         let bars = HistogramBars { range: volume.range, counts, log: self.log_histogram };
-        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &settings.layer().transfer));
-        plot::paint_eye_curve(&painter, axes, &settings.layer().transfer, self.curve == EditedCurve::Eye);
-        plot::paint_light_curve(&painter, axes, settings, self.curve == EditedCurve::Light);
+        let layer = settings.layer_at(volume.layer);
+        painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &layer.transfer));
+        plot::paint_eye_curve(&painter, axes, &layer.transfer, self.curve == EditedCurve::Eye);
+        plot::paint_light_curve(&painter, axes, layer, self.curve == EditedCurve::Light);
         plot::paint_axis_labels(&painter, axes);
     }
 

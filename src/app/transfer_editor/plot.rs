@@ -8,7 +8,7 @@ use super::text;
 use super::theme::{self, PlotColors};
 use super::zoom::ShownValues;
 use crate::app::common::volume_facts::range_decimals;
-use chiaroscuro_scene::{Settings, TransferFunction, VolumeLayer};
+use chiaroscuro_scene::{TransferFunction, VolumeLayer};
 use chiaroscuro_volume::{Histogram, ValueRange};
 
 /// Distance between two samples of a curve, in points.
@@ -114,8 +114,8 @@ pub(super) fn paint_eye_curve(painter: &Painter, axes: &PlotAxes, function: &Tra
 }
 
 /// Paints the lighting curve, dashed while it is linked to the eye's.
-pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, settings: &Settings, edited: bool) {
-    let VolumeLayer { transfer, lighting, .. } = settings.layer();
+pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, layer: &VolumeLayer, edited: bool) {
+    let VolumeLayer { transfer, lighting, .. } = layer;
     let (linked, scale) = (lighting.linked, lighting.scale);
     let function = if linked { transfer } else { &lighting.curve };
     // The scale multiplies the extinction, not the opacity.
@@ -161,13 +161,13 @@ pub(super) fn paint_point(
 }
 
 /// Paints value and opacity under the pointer.
-pub(super) fn paint_readout(ui: &Ui, axes: &PlotAxes, response: &Response, settings: &Settings) {
+pub(super) fn paint_readout(ui: &Ui, axes: &PlotAxes, response: &Response, function: &TransferFunction) {
     let Some(at) = response.hover_pos() else { return };
     let (value, _) = axes.value_and_opacity_at(at);
     let painter = ui.painter_at(axes.area);
     let line = Stroke::new(1.0, axes.ink.eye.gamma_multiply(0.35));
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
-    let opacity = settings.layer().transfer.opacity_at(value);
+    let opacity = function.opacity_at(value);
     let words = text::transfer::pointer_readout(&format_value(value, axes.range), opacity);
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };

@@ -54,7 +54,9 @@ impl PresetMenu {
                 commands.push(AppCommand::TryPresets);
             }
             ui.separator();
-            self.in_use.update(ui, settings, &volume.ranges);
+            // A preset has one layer, which is for the first field.
+            let selected_first = settings.clone().with_first_exchanged(volume.layer);
+            self.in_use.update(ui, &selected_first, &volume.ranges);
             let list = ScrollArea::vertical().id_salt("presets").max_height(height);
             list.min_scrolled_height(height).show(ui, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::splat(2.0);

@@ -71,7 +71,8 @@ pub fn labels_for_kind(volume: &Volume, treated_as: Option<KindName>) -> LabelTa
 /// Settings that do not depend on the kind of data stay as they are: output, sampling, shadows, clipping, the floor's
 /// appearance, and saved views and looks.
 #[must_use]
-pub fn replace_look(look: Settings, settings: &Settings) -> Settings {
+pub fn replace_look(mut look: Settings, settings: &Settings) -> Settings {
+    look.layers.replace_further(&settings.layers);
     let Settings { cuts, output, shadows, sampling, floor, kept, volume, .. } = settings.clone();
     Settings {
         sampling: SamplingSettings { classification: look.sampling.classification, ..sampling },

@@ -25,7 +25,7 @@ pub use self::empty_look_fallback::{densest_transfer, with_visible_transfer};
 pub use self::floor::{floor_color, needs_floor};
 pub use self::frame::ObjectOutline;
 pub use self::look_proposals::{LookProposal, propose_looks};
-pub use self::palette::further_layers::{add_layers, last_layer};
+pub use self::palette::further_layers::{add_layers, layer_of_field};
 
 use self::data_kind_override::{data_kind, find_transfer_as_kind};
 use self::domain::DataDomain;

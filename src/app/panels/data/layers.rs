@@ -2,28 +2,44 @@
 
 use eframe::egui::{self, Ui};
 
-use super::super::controls::{choice_row, color_button, row};
+use super::super::controls::{NumberRow, choice_row, color_button, row, switch_row};
+use super::PanelContext;
 use crate::app::common::commands::AppCommand;
+use crate::app::common::elide::elide_middle;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
-use chiaroscuro_scene::{LayerBlend, LayerVisibility, OpacityLength, Settings, VolumeLayer};
+use chiaroscuro_scene::{LayerBlend, LayerVisibility, OpacityLength, VolumeLayer, VolumeLayers};
 
 /// Range of the factor by which opacities of a layer are shown, a thousandth to a thousand.
 const STRENGTH: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Shows the rows of the layers, and buttons that add one and remove the last.
-pub(super) fn show(
-    ui: &mut Ui,
-    settings: &mut Settings,
-    volume: &VolumeFacts,
-    commands: &mut Vec<AppCommand>,
-) {
+/// Largest change of density per voxel that the row of edges offers: half of the range from one voxel to the next,
+/// which only sharp borders of a scan have.
+const MAX_EDGES: f64 = 0.5;
+
+/// Shows a row for each layer, the settings of the selected one, and buttons that add a layer and remove the last.
+pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFacts) {
+    let PanelContext { settings, first_look, selected_layer, commands, .. } = panels;
     let count = settings.layers.count().min(volume.further.len() + 1);
+    let selected = volume.of_layer(**selected_layer);
     if count > 1 {
-        let names = std::iter::once(&volume.name).chain(volume.further.iter().map(|further| &further.name));
-        for (index, (layer, name)) in settings.layers.iter_mut().zip(names).enumerate() {
-            ui.push_id(("layer", index), |ui| layer_rows(ui, layer, name, index));
+        for (index, layer) in settings.layers.iter_mut().take(count).enumerate() {
+            let name = &volume.of_layer(index).name;
+            ui.push_id(("layer", index), |ui| name_row(ui, layer, name, index, selected_layer));
         }
+        visibility_rows(ui, &mut settings.layers, selected.layer);
+    }
+    let layer = settings.layer_at_mut(selected.layer);
+    if count > 1 {
+        if selected.layer > 0 {
+            let blends = LayerBlend::ALL.map(|blend| (blend, text::data::layer_blend(blend)));
+            choice_row(ui, text::data::LAYER_BLEND, &mut layer.blend, &blends);
+        }
+        strength_row(ui, layer);
+    }
+    if layer.labels.is_empty() {
+        let edges = NumberRow::new(text::data::LAYER_EDGES, 0.0..=MAX_EDGES);
+        edges.show(ui, &mut layer.edges, first_look.layer_at(selected.layer).edges);
     }
     row(ui, text::data::ALL_LAYERS, |ui| {
         if ui.button(text::data::ADD_LAYER).on_hover_text(text::commands::ADD_LAYER).clicked() {
@@ -37,8 +53,9 @@ pub(super) fn show(
     });
 }
 
-fn layer_rows(ui: &mut Ui, layer: &mut VolumeLayer, name: &str, index: usize) {
-    let named = ControlText { name: text::data::LAYERS[index], tooltip: "" };
+/// Shows colour and name of a layer; a click on the name selects it.
+fn name_row(ui: &mut Ui, layer: &mut VolumeLayer, name: &str, index: usize, selected: &mut usize) {
+    let named = ControlText { name: text::data::LAYERS[index], tooltip: text::data::LAYER_TIP };
     row(ui, named, |ui| {
         let is_scale = layer.labels.is_empty() && index > 0;
         if is_scale
@@ -47,16 +64,24 @@ fn layer_rows(ui: &mut Ui, layer: &mut VolumeLayer, name: &str, index: usize) {
         {
             layer.transfer.points.iter_mut().for_each(|point| point.color = color);
         }
-        ui.add(egui::Label::new(name).truncate()).on_hover_text(name);
+        let words = elide_middle(ui, name, &egui::TextStyle::Button, ui.available_width());
+        if ui.selectable_label(*selected == index, words).on_hover_text(name).clicked() {
+            *selected = index;
+        }
     });
+}
+
+/// Shows where a layer has an effect, and whether it is the only one that has.
+fn visibility_rows(ui: &mut Ui, layers: &mut VolumeLayers, selected: usize) {
     let visibility = [LayerVisibility::Shown, LayerVisibility::CastsShadows, LayerVisibility::Hidden]
         .map(|visibility| (visibility, text::data::layer_visibility(visibility)));
-    choice_row(ui, text::data::LAYER_VISIBILITY, &mut layer.visibility, &visibility);
-    if index > 0 {
-        let blends = LayerBlend::ALL.map(|blend| (blend, text::data::layer_blend(blend)));
-        choice_row(ui, text::data::LAYER_BLEND, &mut layer.blend, &blends);
+    if let Some(layer) = layers.iter_mut().nth(selected) {
+        choice_row(ui, text::data::LAYER_VISIBILITY, &mut layer.visibility, &visibility);
     }
-    strength_row(ui, layer);
+    let mut is_alone = layers.is_alone(selected);
+    if switch_row(ui, text::data::LAYER_ALONE, &mut is_alone).changed() {
+        layers.show_alone(selected, is_alone);
+    }
 }
 
 /// Shows how dense a layer is: the inverse of the length to which its opacities refer.

@@ -29,11 +29,12 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
     };
     facts(ui, volume);
     alternatives::show(ui, volume, panels.commands);
-    layers::show(ui, panels.settings, volume, panels.commands);
+    layers::show(ui, panels, volume);
+    let selected = volume.of_layer(*panels.selected_layer);
+    range::show(ui, panels.settings, selected);
+    opacity_unit(ui, panels.settings, panels.first_look, selected);
     data_kind_row(ui, panels.treated_as, panels.commands);
-    range::show(ui, panels.settings, volume);
     subsampling_row(ui, volume, panels.commands);
-    opacity_unit(ui, panels.settings, panels.first_look, volume);
     corrections::show(ui, panels.settings, volume);
 }
 
@@ -139,15 +140,15 @@ fn length_unit_text(length: OpacityLength) -> ControlText {
 
 fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volume: &VolumeFacts) {
     let scene = volume.scene;
-    let in_scene = settings.layer().opacity_unit.scene_units(&scene);
+    let in_scene = settings.layer_at(volume.layer).opacity_unit.scene_units(&scene);
     let conversions = [
         OpacityLength::Mm(in_scene * scene.mm_per_unit),
         OpacityLength::Voxels(in_scene / scene.mean_edge()),
         OpacityLength::Extent(in_scene / 2.0),
     ];
-    let shown = displayed_length(settings.layer().opacity_unit, volume);
-    let first = defaults.layer().opacity_unit;
-    let mut chosen = settings.layer().opacity_unit;
+    let shown = displayed_length(settings.layer_at(volume.layer).opacity_unit, volume);
+    let first = defaults.layer_at(volume.layer).opacity_unit;
+    let mut chosen = settings.layer_at(volume.layer).opacity_unit;
     let named = text::data::OPACITY_UNIT;
     row(ui, named, |ui| {
         let mut number = shown.number();
@@ -180,5 +181,5 @@ fn opacity_unit(ui: &mut Ui, settings: &mut Settings, defaults: &Settings, volum
             chosen = first;
         }
     });
-    settings.layer_mut().opacity_unit = chosen;
+    settings.layer_at_mut(volume.layer).opacity_unit = chosen;
 }

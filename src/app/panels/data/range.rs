@@ -18,7 +18,7 @@ const MIN_SPAN_SHARE: f64 = 1.0 / 65_536.0;
 
 /// Shows the rows of the value range: choice, typed ends, and result.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
-    let chosen = &mut settings.layer_mut().range;
+    let chosen = &mut settings.layer_at_mut(volume.layer).range;
     let typed = match *chosen {
         DensityRange::Typed(range) => range,
         DensityRange::Robust | DensityRange::Full => chosen.resolve(&volume.ranges),
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, volume: &VolumeFacts) {
     if let DensityRange::Typed(range) = chosen {
         unlabelled_row(ui, |ui| range_end_fields(ui, range, volume));
     }
-    let ValueRange { low, high } = settings.shown_range(&volume.ranges);
+    let ValueRange { low, high } = settings.layer_at(volume.layer).shown_range(&volume.ranges, None);
     let all = volume.ranges.all;
     let shown =
         text::data::range_shown(&[low, high].map(format_number), &[all.low, all.high].map(format_number));

@@ -27,9 +27,10 @@ pub(super) fn reset_section(title: &str, settings: &mut Settings, first: &Settin
             // The balance is measured rather than set.
             let ShadowSettings { balance, keep_balanced, .. } = settings.shadows;
             settings.shadows = ShadowSettings { balance, keep_balanced, ..first.shadows.clone() };
-            let VolumeLayer { lighting, opacity_unit, .. } = first.layer().clone();
-            let layer = settings.layer_mut();
-            (layer.lighting, layer.opacity_unit) = (lighting, opacity_unit);
+            for (index, layer) in settings.layers.iter_mut().enumerate() {
+                let VolumeLayer { lighting, opacity_unit, .. } = first.layer_at(index).clone();
+                (layer.lighting, layer.opacity_unit) = (lighting, opacity_unit);
+            }
         }
         SOFT_LIGHT => (settings.sky, settings.scattering) = (first.sky.clone(), first.scattering.clone()),
         SHADING => {

@@ -113,9 +113,11 @@ impl LookEditor {
 
     /// Applies a preset of the library.
     pub(crate) fn use_preset(&mut self, preset: &Preset) {
-        let Some(volume) = &self.document.volume else { return };
-        match preset.apply(&self.document.settings, &volume.ranges) {
-            Ok(settings) => self.document.settings = settings,
+        let Some(volume) = self.document.selected_volume() else { return };
+        // A preset has one layer, which is for the first field.
+        let selected_first = self.document.settings.clone().with_first_exchanged(volume.layer);
+        match preset.apply(&selected_first, &volume.ranges) {
+            Ok(settings) => self.document.settings = settings.with_first_exchanged(volume.layer),
             Err(err) => self.messages.error(text::messages::PRESET_NOT_APPLIED, err.to_string()),
         }
     }

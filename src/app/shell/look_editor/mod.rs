@@ -138,8 +138,8 @@ impl LookEditor {
 
     /// Writes the transfer function to a file for other programs.
     pub(crate) fn export_transfer(&mut self, path: &Path) {
-        let Document { settings, .. } = &self.document;
-        match file_dialogs::export_transfer_file(path, settings, &self.document.value_ranges()) {
+        let (settings, ranges) = (self.document.with_selected_first(), self.document.selected_ranges());
+        match file_dialogs::export_transfer_file(path, &settings, &ranges) {
             Ok(()) => self.messages.note(text::messages::written(path)),
             Err(err) => self.messages.error(text::messages::TRANSFER_NOT_WRITTEN, err),
         }

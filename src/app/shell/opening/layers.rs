@@ -29,7 +29,7 @@ impl VolumeOpener<'_> {
             let volume = open(path, &LoadOptions::default(), &LoadControl::default());
             let volume = volume.map_err(|err| err.to_string())?;
             let dataset = known.with_field(&volume, path).map_err(|err| err.to_string())?;
-            let layer = first_look::last_layer(&dataset);
+            let layer = first_look::layer_of_field(&dataset, dataset.fields().len() - 1).unwrap_or_default();
             Ok(AddedLayer { dataset, layer })
         };
         self.read_file(ReadPurpose::Layer, path, read, move |opener, read| match read {
@@ -50,10 +50,14 @@ impl VolumeOpener<'_> {
             return self.editor.messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
         }
         let document = &mut self.editor.document;
+        let index = dataset.fields().len() - 1;
+        document.defaults.layers.truncate(index);
+        document.defaults.layers.push(layer.clone());
         // A look that was opened may have settings for it.
-        if document.settings.layers.count() < dataset.fields().len() {
+        if document.settings.layers.count() <= index {
             document.settings.layers.push(layer);
         }
+        document.selected_layer = index;
         if let Some(facts) = &mut document.volume {
             facts.update(&dataset);
         }

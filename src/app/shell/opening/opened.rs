@@ -149,7 +149,7 @@ impl VolumeOpener<'_> {
             if places_lights { LightPlacement::new(&document.settings) } else { LightPlacement::default() };
         (document.defaults, document.first_lights) = (first, placement);
         if !keeps_selection {
-            document.selected_light = 0;
+            (document.selected_light, document.selected_layer) = (0, 0);
         }
     }
 

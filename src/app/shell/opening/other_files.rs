@@ -31,11 +31,14 @@ impl VolumeOpener<'_> {
     /// Reads a transfer function of another program on a thread and applies it to the look.
     pub(crate) fn import_transfer(&mut self, path: &Path) {
         let document = &self.editor.document;
-        let range = file_dialogs::transfer_exchange_range(&document.settings, &document.value_ranges());
+        let range = file_dialogs::transfer_exchange_range(
+            &document.with_selected_first(),
+            &document.selected_ranges(),
+        );
         let read = move |path: &Path| file_dialogs::import_transfer_file(path, range);
         self.read_file(ReadPurpose::Transfer, path, read, |opener, read| match read {
             Ok(function) => {
-                let layer = opener.editor.document.settings.layer_mut();
+                let layer = opener.editor.document.selected_layer_mut();
                 (layer.transfer, layer.labels) = (function, LabelTable::default());
             }
             Err(why) => why.report(text::messages::TRANSFER_NOT_IMPORTED, &mut opener.editor.messages),

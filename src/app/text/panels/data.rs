@@ -30,6 +30,16 @@ pub(crate) const REMOVE_LAYER: &str = "Remove last";
 pub(crate) const LAYER_COLOR: &str = "Colour of the layer";
 pub(crate) const LAYER_VISIBILITY: ControlText =
     control_text("Layer is", "Presence of the layer in the picture and in its light");
+/// Tooltip of the row of a layer.
+pub(crate) const LAYER_TIP: &str =
+    "A click on the name selects the layer: its curve, range and light are then edited";
+pub(crate) const LAYER_ALONE: ControlText =
+    control_text("Only this layer", "Hides the other layers, with their shadows; off shows all");
+pub(crate) const LAYER_EDGES: ControlText = control_text(
+    "Edges only",
+    "Change of density per voxel at which material has the opacity of the curve. Where density changes less, it fades, \
+     which leaves borders between materials; 0 shows everything",
+);
 pub(crate) const LAYER_BLEND: ControlText =
     control_text("Layer does", "Effect of the layer on those before it");
 pub(crate) const LAYER_STRENGTH: ControlText =

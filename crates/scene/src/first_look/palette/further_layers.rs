@@ -46,10 +46,10 @@ pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
     }
 }
 
-/// Returns the look of the last field of a dataset, as a layer over the others.
-pub fn last_layer(dataset: &Dataset) -> VolumeLayer {
-    let index = dataset.fields().len() - 1;
-    further_layer(dataset, index, &dataset.fields()[index], FieldRelation::detect(dataset))
+/// Returns the look of a further field of a dataset, as a layer over the first one; `None` if it has no such field.
+pub fn layer_of_field(dataset: &Dataset, index: usize) -> Option<VolumeLayer> {
+    let field = dataset.fields().get(index)?;
+    Some(further_layer(dataset, index, field, FieldRelation::detect(dataset)))
 }
 
 fn further_layer(

@@ -120,6 +120,21 @@ impl VolumeLayers {
         }
     }
 
+    /// Returns true if all layers but one are hidden.
+    pub fn is_alone(&self, index: usize) -> bool {
+        let is_other_hidden =
+            |(at, layer): (usize, &VolumeLayer)| at == index || layer.visibility == LayerVisibility::Hidden;
+        self.0.iter().enumerate().all(is_other_hidden)
+    }
+
+    /// Shows one layer and hides the others, or shows all of them.
+    pub fn show_alone(&mut self, index: usize, is_alone: bool) {
+        for (at, layer) in self.0.iter_mut().enumerate() {
+            let is_shown = at == index || !is_alone;
+            layer.visibility = if is_shown { LayerVisibility::Shown } else { LayerVisibility::Hidden };
+        }
+    }
+
     /// Keeps the first layers, at least one.
     pub fn truncate(&mut self, count: usize) {
         self.0.truncate(count.max(1));

@@ -60,7 +60,7 @@ impl Settings {
 impl VolumeLayer {
     /// Returns the values with densities 0 and 1 of a field with these value ranges, in which a surface may be shown
     /// at an isovalue.
-    pub(crate) fn shown_range(&self, ranges: &ValueRanges, isovalue: Option<f64>) -> ValueRange {
+    pub fn shown_range(&self, ranges: &ValueRanges, isovalue: Option<f64>) -> ValueRange {
         let chosen = self.range.resolve(ranges);
         let span = chosen.span();
         if span <= 0.0 {

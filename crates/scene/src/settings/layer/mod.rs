@@ -110,6 +110,23 @@ impl VolumeLayers {
         &mut self.0[0]
     }
 
+    fn get_or_first_mut(&mut self, index: usize) -> &mut VolumeLayer {
+        let index = if index < self.0.len() { index } else { 0 };
+        &mut self.0[index]
+    }
+
+    fn exchange_with_first(&mut self, index: usize) {
+        if index < self.0.len() {
+            self.0.swap(0, index);
+        }
+    }
+
+    /// Replaces all layers but the first by those of another list.
+    pub fn replace_further(&mut self, from: &Self) {
+        self.0.truncate(1);
+        self.0.extend_from_slice(&from.0[1..]);
+    }
+
     /// Returns all layers, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut VolumeLayer> {
         self.0.iter_mut()
@@ -144,6 +161,24 @@ impl Settings {
     /// settings free to be borrowed.
     pub fn layer_mut(&mut self) -> &mut VolumeLayer {
         self.layers.first_mut()
+    }
+
+    /// Returns the settings of a field, or of the first one if there are none for it.
+    pub fn layer_at(&self, index: usize) -> &VolumeLayer {
+        self.layers.get(index).unwrap_or_else(|| self.layer())
+    }
+
+    /// Returns the settings of a field, or of the first one if there are none for it, to be changed.
+    pub fn layer_at_mut(&mut self, index: usize) -> &mut VolumeLayer {
+        self.layers.get_or_first_mut(index)
+    }
+
+    /// Returns the settings with a layer in the place of the first one and the first one in its place, so that what
+    /// applies to the first field, such as a preset, applies to another one. Twice gives the same settings.
+    #[must_use]
+    pub fn with_first_exchanged(mut self, index: usize) -> Self {
+        self.layers.exchange_with_first(index);
+        self
     }
 
     /// Replaces the range of values that is mapped to densities.
