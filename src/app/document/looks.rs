@@ -59,14 +59,19 @@ impl Document {
         self.keep_balanced.accept(&self.settings);
     }
 
+    /// Lists the open volume, which has the identifier `opened_id`, and those that are shown with it.
+    pub(crate) fn shown_volumes(&self, opened_id: u64) -> Vec<FieldOrigin> {
+        let Some(volume) = &self.volume else { return Vec::new() };
+        let (source, choice) = (volume.source.clone(), volume.held.choice());
+        let first = FieldOrigin { source, opened_id, choice };
+        let shown = volume.further.iter().take(self.settings.layers.count() - 1);
+        std::iter::once(first).chain(shown.map(|further| further.origin.clone())).collect()
+    }
+
     /// Writes the look to a file, which becomes the session; `opened_id` is the identifier of the open file's volume.
     pub(crate) fn save_session(&mut self, path: &Path, opened_id: Option<u64>) -> Result<(), String> {
-        let record = self.volume.as_ref().zip(opened_id).map(|(volume, opened_id)| {
-            let shown = volume.further.iter().take(self.settings.layers.count() - 1);
-            VolumeRecord::new(&volume.source, opened_id, path.parent())
-                .with_choice(volume.held.choice())
-                .with_layers(shown.map(|further| &further.origin), path.parent())
-        });
+        let volumes = opened_id.map(|opened_id| self.shown_volumes(opened_id)).unwrap_or_default();
+        let record = VolumeRecord::from_volumes(&volumes, path.parent());
         SessionFile::save(&mut self.session, path, &self.settings, record.as_ref())
     }
 }

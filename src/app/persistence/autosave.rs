@@ -17,7 +17,7 @@ use super::recent_files::RecentFile;
 use super::{recent_files, recent_thumbnails, thumbnail};
 use chiaroscuro_files::write_atomically;
 use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
-use chiaroscuro_volume::VolumeChoice;
+use chiaroscuro_volume::FieldOrigin;
 
 /// Time for which changes are collected before they are written: together with the time for writing, the maximum
 /// loss, and half of the two seconds that users are promised.
@@ -27,19 +27,18 @@ const COLLECT_TIME: Duration = Duration::from_secs(1);
 /// are promised, since it has a look of its own to write then.
 const TERMINATION_TIMEOUT: Duration = Duration::from_millis(1500);
 
-/// Look with the volume that it belongs to.
+/// Look with the volumes that it belongs to.
 #[derive(Debug, Clone)]
 struct AutosavedLook {
     settings: Settings,
-    source: PathBuf,
-    content_id: u64,
-    choice: VolumeChoice,
+    /// Volume that is open, and those that are shown with it.
+    volumes: Vec<FieldOrigin>,
 }
 
 impl AutosavedLook {
     fn text(&self) -> String {
-        let volume = VolumeRecord::new(&self.source, self.content_id, None).with_choice(self.choice.clone());
-        LookRecord::to_json(&self.settings, Some(&volume), None)
+        let volume = VolumeRecord::from_volumes(&self.volumes, None);
+        LookRecord::to_json(&self.settings, volume.as_ref(), None)
     }
 }
 
@@ -248,15 +247,8 @@ impl AutosaveThread {
     }
 
     /// Schedules the current look for writing.
-    pub(super) fn schedule_look(
-        &self,
-        settings: &Settings,
-        source: &Path,
-        content_id: u64,
-        choice: &VolumeChoice,
-    ) {
-        let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
-        let look = AutosavedLook { settings, source, content_id, choice };
+    pub(super) fn schedule_look(&self, settings: &Settings, volumes: &[FieldOrigin]) {
+        let look = AutosavedLook { settings: settings.clone(), volumes: volumes.to_vec() };
         self.change(|due| due.look = Some(look));
     }
 

@@ -30,7 +30,7 @@ pub(crate) use self::recent_files::RecentFile;
 pub(crate) use self::recent_thumbnails::RecentThumbnails;
 use crate::app::text;
 use chiaroscuro_scene::{SceneAxis, Settings};
-use chiaroscuro_volume::{Corrections, VolumeChoice};
+use chiaroscuro_volume::{Corrections, FieldOrigin, VolumeChoice};
 
 /// Number of successive failed starts after which the next one is a safe start.
 const FAILED_STARTS: usize = 3;
@@ -58,9 +58,8 @@ fn folder_of(source: &Path) -> Option<PathBuf> {
 #[derive(Debug)]
 struct LastAutosave {
     settings: Settings,
-    source: PathBuf,
-    content_id: u64,
-    choice: VolumeChoice,
+    /// Volume that is open, and those that are shown with it.
+    volumes: Vec<FieldOrigin>,
 }
 
 /// State in the storage folder of the program; without a folder, nothing is remembered.
@@ -214,28 +213,21 @@ impl PersistentState {
         self.earlier.iter_mut().filter(|run| run.crashed).for_each(EarlierRun::acknowledge_crash);
     }
 
-    /// Autosaves the look of a volume, unless it is unchanged.
-    pub(crate) fn autosave(
-        &mut self,
-        settings: &Settings,
-        source: &Path,
-        content_id: u64,
-        choice: &VolumeChoice,
-    ) {
-        let is_known = self.kept.as_ref().is_some_and(|kept| {
-            kept.content_id == content_id && kept.choice == *choice && kept.settings == *settings
-        });
+    /// Autosaves the look of a volume and of those that are shown with it, unless it is unchanged.
+    pub(crate) fn autosave(&mut self, settings: &Settings, volumes: Vec<FieldOrigin>) {
+        let is_known =
+            self.kept.as_ref().is_some_and(|kept| kept.volumes == volumes && kept.settings == *settings);
         if let Some(keeper) = self.keeper.as_ref().filter(|_| !is_known) {
-            keeper.schedule_look(settings, source, content_id, choice);
-            let (settings, source, choice) = (settings.clone(), source.to_owned(), choice.clone());
-            self.kept = Some(LastAutosave { settings, source, content_id, choice });
+            keeper.schedule_look(settings, &volumes);
+            self.kept = Some(LastAutosave { settings: settings.clone(), volumes });
         }
     }
 
     /// Autosaves a picture of the look as its thumbnail.
     pub(crate) fn autosave_thumbnail(&self, picture: Arc<ColorImage>) {
-        if let Some((keeper, kept)) = self.keeper.as_ref().zip(self.kept.as_ref()) {
-            keeper.schedule_thumbnail(picture, &kept.source);
+        let volume = self.kept.as_ref().and_then(|kept| kept.volumes.first());
+        if let Some((keeper, volume)) = self.keeper.as_ref().zip(volume) {
+            keeper.schedule_thumbnail(picture, &volume.source);
         }
     }
 

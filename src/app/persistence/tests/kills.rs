@@ -27,7 +27,7 @@ fn write_until_killed(folder: &Path) -> ! {
     for gain in 2.. {
         let settings = look(f64::from(gain) / 1000.0);
         memory.add_recent(Path::new(&format!("/{gain}.nrrd")), &VolumeChoice::default());
-        memory.autosave(&settings, volume, 7, &VolumeChoice::default());
+        memory.autosave(&settings, super::volume(volume, 7));
         words.write();
         for name in ["session.json", "preset.json"] {
             let volume = VolumeRecord::new(volume, 7, Some(folder));

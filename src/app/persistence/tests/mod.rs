@@ -10,6 +10,11 @@ use super::*;
 use chiaroscuro_scene::LookRecord;
 use chiaroscuro_volume::ValueRanges;
 
+/// Volume of an autosaved look.
+fn volume(source: impl Into<PathBuf>, opened_id: u64) -> Vec<FieldOrigin> {
+    vec![FieldOrigin { source: source.into(), opened_id, choice: VolumeChoice::default() }]
+}
+
 pub(super) fn remember(folder: &Path) -> PersistentState {
     PersistentState::new(Some(folder), &egui::Context::default())
 }
@@ -188,10 +193,10 @@ fn the_last_change_is_kept_within_two_seconds() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
     let file = memory.run.as_ref().unwrap().look.clone();
-    memory.autosave(&look(1.5), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    memory.autosave(&look(1.5), volume("builtin:chair", 7));
     wait_until("the first look is kept", || file.exists());
     for gain in [2.0, 2.5, 3.0] {
-        memory.autosave(&look(gain), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+        memory.autosave(&look(gain), volume("builtin:chair", 7));
     }
     let took = wait_until("the last look is kept", || gain_of(&file) == 3.0);
     assert!(took < Duration::from_secs(2), "{took:?}");
@@ -201,7 +206,7 @@ fn the_last_change_is_kept_within_two_seconds() {
 fn looks_of_runs_that_were_cut_off_are_offered_until_the_user_knows() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.autosave(&look(2.0), Path::new("/data/tooth.nrrd"), 7, &VolumeChoice::default());
+    memory.autosave(&look(2.0), volume("/data/tooth.nrrd", 7));
     memory.autosave_thumbnail(Arc::new(ColorImage::filled([40, 20], egui::Color32::RED)));
     kill(memory);
     // Starts and ends of other runs do not remove the look.
@@ -223,7 +228,7 @@ fn a_run_that_panics_is_one_that_was_cut_off() {
     let path = folder.path().to_owned();
     let window = std::panic::catch_unwind(move || {
         let mut memory = remember(&path);
-        memory.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+        memory.autosave(&look(2.0), volume("builtin:chair", 7));
         panic!("as a window might");
     });
     assert!(window.is_err());
@@ -242,7 +247,7 @@ fn starts_that_fail_are_counted_until_one_does_not() {
         fail();
     }
     let mut memory = remember(folder.path());
-    memory.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    memory.autosave(&look(2.0), volume("builtin:chair", 7));
     drop(memory);
     assert!(!starts_have_failed(folder.path()));
     drop(remember(folder.path()));
@@ -253,10 +258,10 @@ fn starts_that_fail_are_counted_until_one_does_not() {
 fn two_windows_take_nothing_from_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let mut first = remember(folder.path());
-    first.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    first.autosave(&look(2.0), volume("builtin:chair", 7));
     let mut second = remember(folder.path());
     assert!(second.earlier_runs().is_empty(), "the first one goes on");
-    second.autosave(&look(3.0), Path::new("builtin:fuel"), 8, &VolumeChoice::default());
+    second.autosave(&look(3.0), volume("builtin:fuel", 8));
     kill(first);
     drop(second);
     let third = remember(folder.path());
@@ -270,7 +275,7 @@ fn ten_runs_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     for at in 0..13 {
         let mut memory = remember(folder.path());
-        memory.autosave(&look(f64::from(at)), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+        memory.autosave(&look(f64::from(at)), volume("builtin:chair", 7));
         drop(memory);
         // Names are in milliseconds.
         std::thread::sleep(Duration::from_millis(3));
@@ -311,7 +316,7 @@ fn what_cannot_be_kept_is_said() {
     let mut memory = remember(folder.path());
     // Nothing can be written without the folder.
     fs::remove_dir_all(folder.path().join("runs")).unwrap();
-    memory.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    memory.autosave(&look(2.0), volume("builtin:chair", 7));
     wait_until("the failure is known", || memory.keeper.as_ref().unwrap().failure().is_some());
     assert_eq!(memory.take_notices().len(), 1);
     assert!(memory.take_notices().is_empty(), "once");
@@ -333,7 +338,7 @@ fn what_cannot_be_kept_is_said() {
 fn last_words_are_written_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = remember(folder.path());
-    memory.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    memory.autosave(&look(2.0), volume("builtin:chair", 7));
     let begin = Instant::now();
     memory.emergency_save().unwrap().write();
     assert!(begin.elapsed() < Duration::from_millis(900), "before changes have been collected");

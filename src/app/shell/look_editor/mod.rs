@@ -147,8 +147,9 @@ impl LookEditor {
 
     /// Autosaves the current look, so that nothing is lost however the run ends, and reports failures.
     pub(crate) fn autosave_look(&mut self) {
-        if let Some((volume, opened_id)) = self.document.volume.as_ref().zip(self.opened_id()) {
-            self.memory.autosave(&self.document.settings, &volume.source, opened_id, &volume.held.choice());
+        let opened_id = self.opened_id().filter(|_| self.document.volume.is_some());
+        if let Some(opened_id) = opened_id {
+            self.memory.autosave(&self.document.settings, self.document.shown_volumes(opened_id));
             if let Some(picture) = self.viewport.take_finished() {
                 self.memory.autosave_thumbnail(picture);
             }

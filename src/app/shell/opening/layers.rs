@@ -1,63 +1,160 @@
 //! Adding of further volumes, which are shown with the open one as layers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::VolumeOpener;
 use super::file_tasks::ReadPurpose;
+use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
-use chiaroscuro_scene::{VolumeLayer, first_look};
-use chiaroscuro_volume::{Dataset, LoadControl};
+use chiaroscuro_scene::{LayerBlend, LookRecord, VolumeLocation, first_look};
+use chiaroscuro_volume::{ChoiceAspect, Dataset, LoadControl, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
-/// Dataset with one more field, and the look of that field.
-struct AddedLayer {
+/// Volume that is to be shown as a layer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct LayerSource {
+    /// Path of the file, or name of a built-in volume.
+    path: PathBuf,
+    /// Selected volume, if the file has several.
+    choice: VolumeChoice,
+    /// Content ID that a record has for the volume, in hexadecimal digits.
+    recorded_id: Option<String>,
+}
+
+/// Dataset with further fields, as far as they could be opened.
+struct DatasetWithLayers {
     dataset: Dataset,
-    layer: VolumeLayer,
+    /// Reason why a volume could not be added; those after it are left out, too.
+    failure: Option<String>,
+    /// True if a volume is not the one that a record names.
+    is_other: bool,
+}
+
+impl LayerSource {
+    fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
+        Self { path: path.into(), choice, recorded_id: None }
+    }
+}
+
+/// Opens volumes and adds them to a dataset, as far as possible.
+fn with_layers(dataset: Dataset, sources: &[LayerSource], options: &LoadOptions) -> DatasetWithLayers {
+    let mut added = DatasetWithLayers { dataset, failure: None, is_other: false };
+    for LayerSource { path, choice, recorded_id } in sources {
+        let choice = choice.clone().with_first_as_fallback();
+        let options = LoadOptions { choice, ..options.clone() };
+        let volume = open(path, &options, &LoadControl::default()).map_err(|err| err.to_string());
+        let with_field = volume.and_then(|volume| {
+            let id = format!("{:016x}", volume.opened_id());
+            added.is_other |= recorded_id.as_ref().is_some_and(|recorded| *recorded != id);
+            added.dataset.with_field(&volume, path).map_err(|err| text::messages::layer_refused(path, &err))
+        });
+        match with_field {
+            Ok(dataset) => added.dataset = dataset,
+            Err(why) => {
+                added.failure = Some(why);
+                break;
+            }
+        }
+    }
+    added
 }
 
 impl VolumeOpener<'_> {
     /// Reads a volume on a thread, and shows it with the open one as the last layer.
     pub(crate) fn add_layer(&mut self, path: &Path) {
+        let count = self.editor.document.settings.layers.count();
+        self.add_layers(vec![LayerSource::new(path, VolumeChoice::default())], count);
+    }
+
+    /// Shows all channels, arrays or components of the open file, as far as there is room: those that are not shown
+    /// become layers. Colours of a file colour its luminance.
+    pub(crate) fn add_all_of(&mut self, aspect: ChoiceAspect) {
+        let Some(volume) = &self.editor.document.volume else { return };
+        let Some(all) = Alternatives::new(&volume.held, aspect) else { return };
+        let others = (0..all.count()).filter(|&at| at != all.current()).take(MAX_FIELDS - 1);
+        let sources = others.map(|at| LayerSource::new(&volume.source, all.choice(at))).collect();
+        self.add_layers(sources, 1);
+    }
+
+    /// Opens the further volumes that a record names, unless they are shown.
+    pub(super) fn add_recorded_layers(&mut self, record: &LookRecord) {
+        let file = record.file.as_deref().unwrap_or_else(|| Path::new(""));
+
+        let recorded = record.volume.as_ref().map(|volume| volume.layers.as_slice()).unwrap_or_default();
+        if recorded.is_empty() {
+            return;
+        }
+        let shown = self.editor.document.volume.as_ref();
+        let is_shown = shown.is_some_and(|volume| {
+            volume.further.len() >= recorded.len()
+                && std::iter::zip(&volume.further, recorded)
+                    .all(|(further, recorded)| recorded.matches_content(further.origin.opened_id))
+        });
+        if is_shown {
+            return;
+        }
+        // The user agreed to open the first volume from its folder.
+        let trusted = shown.and_then(|volume| volume.source.parent()).map(Path::to_owned);
+        let mut sources = Vec::new();
+        for volume in recorded {
+            let path = match self.locate_volume(volume, file) {
+                VolumeLocation::Builtin(name) => PathBuf::from(name),
+                VolumeLocation::InRecordFolder(path) => path,
+                VolumeLocation::OtherFolder(path) if trusted.as_deref() == path.parent() => path,
+                VolumeLocation::OtherFolder(path) => {
+                    let path = path.display().to_string();
+                    return self.editor.messages.note(text::messages::layer_not_opened(&path));
+                }
+                VolumeLocation::Refused(_) => {
+                    return self.editor.messages.note(text::messages::layer_not_opened(&volume.source));
+                }
+            };
+            let recorded_id = Some(volume.content_id.clone());
+            sources.push(LayerSource { path, choice: volume.choice.clone(), recorded_id });
+        }
+        self.add_layers(sources, 1);
+    }
+
+    /// Reads volumes on a thread, and shows them with the first `kept` ones that are open.
+    fn add_layers(&mut self, sources: Vec<LayerSource>, kept: usize) {
         let Some(shown) = self.editor.viewport.dataset() else {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);
         };
+        let Some(path) = sources.first().map(|source| source.path.clone()) else { return };
         // Fields whose layers were removed make room.
-        let count = self.editor.document.settings.layers.count();
-        let known = shown.with_fields_where(|index| index < count);
-        let opened_id = shown.volume().opened_id();
-        let read = move |path: &Path| {
-            let volume = open(path, &LoadOptions::default(), &LoadControl::default());
-            let volume = volume.map_err(|err| err.to_string())?;
-            let dataset = known.with_field(&volume, path).map_err(|err| err.to_string())?;
-            let layer = first_look::layer_of_field(&dataset, dataset.fields().len() - 1).unwrap_or_default();
-            Ok(AddedLayer { dataset, layer })
-        };
-        self.read_file(ReadPurpose::Layer, path, read, move |opener, read| match read {
-            Ok(added) => opener.show_layer(added, opened_id),
+        let known = shown.with_fields_where(|index| index < kept);
+        let (opened_id, options) = (shown.volume().opened_id(), self.state.loader.options().clone());
+        let read = move |_: &Path| Ok(with_layers(known, &sources, &options));
+        self.read_file(ReadPurpose::Layer, &path, read, move |opener, read| match read {
+            Ok(added) => opener.show_layers(added, kept, opened_id),
             Err(why) => why.report(text::messages::LAYER_NOT_ADDED, &mut opener.editor.messages),
         });
     }
 
-    /// Shows a dataset with one more field, unless another volume was opened meanwhile.
-    fn show_layer(&mut self, added: AddedLayer, opened_id: u64) {
+    /// Shows a dataset with further fields after the first `kept` ones, unless another volume was opened meanwhile.
+    fn show_layers(&mut self, added: DatasetWithLayers, kept: usize, opened_id: u64) {
         let shown = self.editor.viewport.dataset();
-        let AddedLayer { dataset, layer } = added;
+        let DatasetWithLayers { dataset, failure, is_other } = added;
+        let messages = &mut self.editor.messages;
+        if let Some(why) = failure {
+            messages.error(text::messages::LAYER_NOT_ADDED, why);
+        }
         let is_same = shown.is_some_and(|shown| {
             shown.volume().opened_id() == opened_id
                 && shown.volume().corrections() == dataset.volume().corrections()
         });
         if !is_same {
-            return self.editor.messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
+            return messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
+        }
+        if is_other {
+            messages.note(text::opening::OTHER_VALUES);
         }
         let document = &mut self.editor.document;
-        let index = dataset.fields().len() - 1;
-        document.defaults.layers.truncate(index);
-        document.defaults.layers.push(layer.clone());
-        // A look that was opened may have settings for it.
-        if document.settings.layers.count() <= index {
-            document.settings.layers.push(layer);
-        }
-        document.selected_layer = index;
+        document.defaults.layers.truncate(kept);
+        first_look::add_layers(&mut document.defaults, &dataset);
+        // A look that was opened may have settings for them.
+        first_look::add_layers(&mut document.settings, &dataset);
+        document.selected_layer = kept.min(dataset.fields().len() - 1);
         if let Some(facts) = &mut document.volume {
             facts.update(&dataset);
         }

@@ -57,7 +57,7 @@ impl VolumeOpener<'_> {
                     }
                 }
             }
-            Some(_) => drop(self.editor.apply_record_to_open(&record)),
+            Some(_) => self.apply_record_to_open(&record),
             None => self.apply_look(record),
         }
     }
@@ -88,7 +88,14 @@ impl VolumeOpener<'_> {
         } else if self.editor.volume_record().is_none() {
             self.open_with(Path::new(DEFAULT_SOURCE), record);
         } else {
-            self.editor.apply_record_to_open(&record);
+            self.apply_record_to_open(&record);
+        }
+    }
+
+    /// Applies a look to the open volume, and opens the further volumes that it names.
+    fn apply_record_to_open(&mut self, record: &LookRecord) {
+        if self.editor.apply_record_to_open(record) {
+            self.add_recorded_layers(record);
         }
     }
 

@@ -61,7 +61,7 @@ impl VolumeOpener<'_> {
         });
         // Session and adjustment apply to the first volume only.
         self.state.requests.session_is_due = false;
-        self.apply_plan(plan, settings, session, &volume);
+        let applied = self.apply_plan(plan, settings, session, &volume);
         self.editor.memory.add_recent(&source, &volume.contents().choice());
         self.editor.look_tasks.light_search.discard();
         let facts = VolumeFacts::new(source, reading, &dataset);
@@ -76,6 +76,9 @@ impl VolumeOpener<'_> {
         let title = text::opening::title(document.volume_name());
         self.state.has_opened = true;
         self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        if let Some(record) = applied {
+            self.add_recorded_layers(&record);
+        }
     }
 
     /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.
@@ -92,14 +95,16 @@ impl VolumeOpener<'_> {
         }
     }
 
-    /// Applies the plan for a volume to the document; `first` is the first look of the volume.
+    /// Applies the plan for a volume to the document; `first` is the first look of the volume. Returns the record that
+    /// was applied last, if one was.
     fn apply_plan(
         &mut self,
         plan: OpenPlan,
         first: Settings,
         mut session: Option<SessionRead>,
         volume: &Volume,
-    ) {
+    ) -> Option<LookRecord> {
+        let mut applied = None;
         let OpenPlan { start, changes, keeps_selection, places_lights } = plan;
         let before = std::mem::take(&mut self.editor.document.settings);
         self.editor.document.settings = match start {
@@ -113,7 +118,7 @@ impl VolumeOpener<'_> {
             match change {
                 LookChange::Session => {
                     if let Some(read) = session.take() {
-                        self.apply_session(read, volume);
+                        applied = self.apply_session(read, volume);
                     }
                 }
                 LookChange::Record(record) => {
@@ -121,7 +126,9 @@ impl VolumeOpener<'_> {
                     if of.is_some_and(|of| !of.matches_content(volume.opened_id())) {
                         self.editor.messages.note(text::opening::OTHER_VALUES);
                     }
-                    self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id()));
+                    if self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                        applied = Some(*record);
+                    }
                 }
                 LookChange::Settings(settings) => self.editor.document.replace_settings(*settings),
                 LookChange::Current(corrections) => {
@@ -151,20 +158,25 @@ impl VolumeOpener<'_> {
         if !keeps_selection {
             (document.selected_light, document.selected_layer) = (0, 0);
         }
+        applied
     }
 
-    /// Applies the session that was read for a volume, or reports why it was not read.
-    fn apply_session(&mut self, read: SessionRead, volume: &Volume) {
-        let Some(mut session) = self.editor.document.session.take() else { return };
+    /// Applies the session that was read for a volume, and returns its record, or reports why it was not read.
+    fn apply_session(&mut self, read: SessionRead, volume: &Volume) -> Option<LookRecord> {
+        let mut session = self.editor.document.session.take()?;
         session.set_record(read.as_ref().ok());
+        let mut applied = None;
         match read {
             Ok(record) => {
-                if !self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                if self.editor.apply_record(&record, &volume.ranges(), Some(volume.opened_id())) {
+                    applied = Some(record);
+                } else {
                     session.protect_invalid();
                 }
             }
             Err(why) => why.report(text::opening::SESSION_NOT_LOADED, &mut self.editor.messages),
         }
         self.editor.document.session = Some(session);
+        applied
     }
 }

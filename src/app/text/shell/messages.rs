@@ -85,5 +85,18 @@ pub(crate) fn environment_map_applied(name: &str, has_light: bool) -> String {
 /// Messages about volumes that are shown as layers.
 pub(crate) const LAYER_NOT_ADDED: &str = "The volume is not shown as a layer";
 pub(crate) const NO_VOLUME_FOR_LAYER: &str = "Open a volume first; a layer is shown with it";
+/// Reason why a volume is not shown as a layer, with its file.
+pub(crate) fn layer_refused(path: &Path, why: impl std::fmt::Display) -> String {
+    format!("{}: {why}", shown_path(path))
+}
+
+/// Message about a further volume of a look that is in a folder from which the look may open nothing.
+pub(crate) fn layer_not_opened(path: &str) -> String {
+    format!(
+        "The look also shows {}, which is in another folder: add it with File › Add volume as layer…",
+        sanitised(path, MAX_PATH_CHARS)
+    )
+}
+
 pub(crate) const LAYER_OF_OTHER_VOLUME: &str =
     "Another volume was opened, so the layer is not shown; add it again";

@@ -236,7 +236,8 @@ pub(crate) fn load_record(path: &Path) -> Result<LookRecord, String> {
     } else {
         read_small_file(path).map_err(|err| text::files::settings_not_read(path, err))?
     };
-    LookRecord::from_bytes(&record).map_err(|err| text::files::settings_invalid(path, err))
+    let record = LookRecord::from_bytes(&record).map_err(|err| text::files::settings_invalid(path, err))?;
+    Ok(LookRecord { file: Some(path.to_owned()), ..record })
 }
 
 /// Value range onto which transfer functions of other programs are mapped at import and export: the shown range.

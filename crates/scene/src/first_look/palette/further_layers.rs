@@ -34,14 +34,14 @@ enum FieldRelation {
     Others,
 }
 
-/// Adds layers to a look of the first field, one for each further field of a dataset: labels tint it, channels have the
-/// colours of a microscope, and measurements over a scan glow.
+/// Adds layers to a look, one for each field of a dataset for which it has none: labels tint the first one, channels
+/// have the colours of a microscope, and measurements over a scan glow.
 pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
-    let relation = FieldRelation::detect(dataset);
-    if relation == FieldRelation::Channels && dataset.fields().len() > 1 {
+    let (relation, count) = (FieldRelation::detect(dataset), settings.layers.count());
+    if relation == FieldRelation::Channels && count == 1 && dataset.fields().len() > 1 {
         colorize(&mut settings.layer_mut().transfer, &CHANNELS[0]);
     }
-    for (index, field) in dataset.fields().iter().enumerate().skip(1) {
+    for (index, field) in dataset.fields().iter().enumerate().skip(count) {
         settings.layers.push(further_layer(dataset, index, field, relation));
     }
 }

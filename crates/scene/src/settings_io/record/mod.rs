@@ -68,6 +68,8 @@ pub struct LookRecord {
     pub volume: Option<VolumeRecord>,
     /// Metadata of the image that contains the record.
     pub image: Option<ImageRecord>,
+    /// File from which the record was read, in whose folder its volumes may be.
+    pub file: Option<PathBuf>,
 }
 
 impl VolumeRecord {
@@ -79,6 +81,17 @@ impl VolumeRecord {
         let content_id = format!("{content_id:016x}");
         let (source_bytes, choice) = (encode_path(&path), VolumeChoice::default());
         Self { source: path.display().to_string(), source_bytes, content_id, choice, layers: Vec::new() }
+    }
+
+    /// Creates a reference to a volume and to those that are shown with it as layers, for a record that will be
+    /// written to `folder`; `None` if there is no volume.
+    pub fn from_volumes(volumes: &[FieldOrigin], folder: Option<&Path>) -> Option<Self> {
+        let (FieldOrigin { source, opened_id, choice }, further) = volumes.split_first()?;
+        Some(
+            Self::new(source, *opened_id, folder)
+                .with_choice(choice.clone())
+                .with_layers(further.iter(), folder),
+        )
     }
 
     /// Adds the further fields of a dataset, for a record that will be written to `folder`.
@@ -192,6 +205,7 @@ impl LookRecord {
             image: parse_remark(&overlay, "_picture")?,
             overlay,
             cuts,
+            file: None,
         })
     }
 
