@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Document;
 use super::session::SessionFile;
 use chiaroscuro_scene::{AppliedSettings, LookRecord, Settings, VolumeRecord};
-use chiaroscuro_volume::ValueRanges;
+use chiaroscuro_volume::{FieldOrigin, ValueRanges};
 
 /// Settings with the look of a file, and notes about what could not be applied.
 #[derive(Debug)]

@@ -55,6 +55,7 @@ impl App {
             AppCommand::UsePreset(preset) => self.editor.use_preset(&preset),
             AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
             AppCommand::AddLayer => self.ask_file(FileDialogPurpose::AddLayer, frame, ctx),
+            AppCommand::ShowTogether(aspect) => self.opener(ctx).add_all_of(aspect),
             AppCommand::RemoveLayer => self.editor.document.remove_last_layer(),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),

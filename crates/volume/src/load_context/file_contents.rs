@@ -15,6 +15,9 @@ pub enum ChoiceAspect {
 }
 
 impl ChoiceAspect {
+    /// Aspects of which a file's volumes are on one grid at one time, and can be shown together.
+    pub const SHOWN_TOGETHER: [Self; 2] = [Self::Dimension(FileDimension::Channel), Self::Component];
+
     /// All aspects, in the order in which the user selects.
     pub const ALL: [Self; 5] = [
         Self::Dimension(FileDimension::Series),

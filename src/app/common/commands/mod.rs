@@ -162,6 +162,8 @@ pub(crate) enum AppCommand {
     UseColors(usize, bool),
     /// Ask for a volume to show with the one that is open.
     AddLayer,
+    /// Show all channels or components of the open file together, as layers.
+    ShowTogether(ChoiceAspect),
     /// Show the volume that was added last no longer.
     RemoveLayer,
     /// Ask for a transfer function of another program.
@@ -281,6 +283,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
     ];
     all.extend(SUBSAMPLINGS.map(AppCommand::Subsample));
     all.extend(ChoiceAspect::ALL.map(AppCommand::ShowChooser));
+    all.extend(ChoiceAspect::SHOWN_TOGETHER.map(AppCommand::ShowTogether));
     all.extend(
         ChoiceAspect::ALL
             .into_iter()

@@ -50,6 +50,7 @@ impl AppCommand {
             Self::OpenAgain(..) => text::menu::OPEN_RECENT,
             Self::Subsample(thinning) => return text::commands::subsample(*thinning).into(),
             Self::AddLayer => text::commands::ADD_LAYER,
+            Self::ShowTogether(aspect) => text::chooser::show_together(*aspect),
             Self::RemoveLayer => text::commands::REMOVE_LAYER,
             Self::ImportTransfer => text::commands::IMPORT_TRANSFER,
             Self::ExportTransfer => text::commands::EXPORT_TRANSFER,

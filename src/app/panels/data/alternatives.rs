@@ -19,6 +19,13 @@ pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<AppComm
         alternative_row(ui, aspect, &alternatives, commands);
         if alternatives.has_colors() {
             unlabelled_row(ui, |ui| ui.add(egui::Label::new(text::chooser::NO_COLORS).wrap()));
+        } else if ChoiceAspect::SHOWN_TOGETHER.contains(&aspect) {
+            unlabelled_row(ui, |ui| {
+                let button = ui.button(text::chooser::TOGETHER);
+                if button.on_hover_text(text::chooser::together_tooltip(alternatives.count())).clicked() {
+                    commands.push(AppCommand::ShowTogether(aspect));
+                }
+            });
         }
     }
 }

@@ -6,7 +6,7 @@ use super::VolumeOpener;
 use super::file_tasks::ReadPurpose;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
-use chiaroscuro_scene::{LayerBlend, LookRecord, VolumeLocation, first_look};
+use chiaroscuro_scene::{LookRecord, VolumeLocation, first_look};
 use chiaroscuro_volume::{ChoiceAspect, Dataset, LoadControl, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
@@ -46,7 +46,7 @@ fn with_layers(dataset: Dataset, sources: &[LayerSource], options: &LoadOptions)
         let with_field = volume.and_then(|volume| {
             let id = format!("{:016x}", volume.opened_id());
             added.is_other |= recorded_id.as_ref().is_some_and(|recorded| *recorded != id);
-            added.dataset.with_field(&volume, path).map_err(|err| text::messages::layer_refused(path, &err))
+            added.dataset.with_field(&volume, path).map_err(|err| text::messages::layer_refused(path, err))
         });
         match with_field {
             Ok(dataset) => added.dataset = dataset,

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use chiaroscuro_files::sanitised;
+
 /// Texts of the window that lists all messages.
 pub(crate) const LIST: &str = "Messages";
 pub(crate) const LIST_TIP: &str = "All messages since the start";
@@ -87,14 +89,14 @@ pub(crate) const LAYER_NOT_ADDED: &str = "The volume is not shown as a layer";
 pub(crate) const NO_VOLUME_FOR_LAYER: &str = "Open a volume first; a layer is shown with it";
 /// Reason why a volume is not shown as a layer, with its file.
 pub(crate) fn layer_refused(path: &Path, why: impl std::fmt::Display) -> String {
-    format!("{}: {why}", shown_path(path))
+    format!("{}: {why}", path.display())
 }
 
 /// Message about a further volume of a look that is in a folder from which the look may open nothing.
 pub(crate) fn layer_not_opened(path: &str) -> String {
     format!(
         "The look also shows {}, which is in another folder: add it with File › Add volume as layer…",
-        sanitised(path, MAX_PATH_CHARS)
+        sanitised(path, 200)
     )
 }
 

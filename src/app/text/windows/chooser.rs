@@ -1,7 +1,7 @@
 //! Texts of the chooser of series, channels, time steps and components, and of the rows that open it.
 
 use crate::app::text::{ControlText, control_text};
-use chiaroscuro_volume::{ChoiceAspect, DefaultComponent, FileDimension, VoxelComponents};
+use chiaroscuro_volume::{ChoiceAspect, DefaultComponent, FileDimension, MAX_FIELDS, VoxelComponents};
 
 /// Name and tooltip of the row of an aspect.
 pub(crate) fn row(aspect: ChoiceAspect) -> ControlText {
@@ -121,6 +121,26 @@ pub(crate) fn size([x, y, z]: [u64; 3]) -> String {
 
 /// Mark of the item that is shown already.
 pub(crate) const SHOWN_MARK: &str = "shown";
+
+/// Button of the command below.
+pub(crate) const TOGETHER: &str = "Show all together";
+
+/// Command that shows what a file has several of as layers.
+pub(crate) fn show_together(aspect: ChoiceAspect) -> &'static str {
+    match aspect {
+        ChoiceAspect::Component => "Show all components together",
+        ChoiceAspect::Dimension(_) => "Show all channels together",
+    }
+}
+
+/// Tooltip of that command for a file with too many.
+pub(crate) fn together_tooltip(count: usize) -> String {
+    if count > MAX_FIELDS {
+        format!("Shows {MAX_FIELDS} of the {count} as layers, each in a colour of its own")
+    } else {
+        "Shows each as a layer in a colour of its own, with the shadows of all".to_owned()
+    }
+}
 
 /// Note for colours, which are shown as luminance.
 pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one component";

@@ -236,8 +236,10 @@ pub(crate) fn load_record(path: &Path) -> Result<LookRecord, String> {
     } else {
         read_small_file(path).map_err(|err| text::files::settings_not_read(path, err))?
     };
-    let record = LookRecord::from_bytes(&record).map_err(|err| text::files::settings_invalid(path, err))?;
-    Ok(LookRecord { file: Some(path.to_owned()), ..record })
+    let mut record =
+        LookRecord::from_bytes(&record).map_err(|err| text::files::settings_invalid(path, err))?;
+    record.file = Some(path.to_owned());
+    Ok(record)
 }
 
 /// Value range onto which transfer functions of other programs are mapped at import and export: the shown range.

@@ -99,7 +99,7 @@ impl VolumeLayer {
 
 impl VolumeLayers {
     /// Returns all layers.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &VolumeLayer> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &VolumeLayer> + DoubleEndedIterator {
         self.0.iter()
     }
 
@@ -168,7 +168,9 @@ impl Settings {
         let mut drawn = self.clone();
         drawn.layer_mut().blend = LayerBlend::Add;
         if self.shows_matter() {
-            drawn.layers.truncate(fields.len());
+            // Hidden layers at the end change nothing, and one field is drawn sharper and faster.
+            let used = self.layers.iter().take(fields.len()).rposition(VolumeLayer::casts_shadows);
+            drawn.layers.truncate(used.map_or(1, |last| last + 1));
         } else {
             drawn.layers.truncate(1);
             drawn.layer_mut().edges = 0.0;
