@@ -233,5 +233,5 @@ fn shade_segment(ray: Ray, front: f32, back: f32, a: FaceLight, b: FaceLight, su
         lit = add_light(lit, slab_light(7u, surface, a.shares.light_7, b.shares.light_7, sum));
 #endif
     }
-    return shade_surface(surface, lit, material);
+    return shade_surface(surface, lit, tinted(material, p, kernel_level(eye.frame, depth)));
 }

@@ -216,7 +216,7 @@ fn shade(found: VolumeSample, material: vec3f) -> vec3f {
     } else {
         lit = shadowed_light_sum(surface);
     }
-    return shade_surface(surface, lit, material);
+    return shade_surface(surface, lit, tinted(material, found.point, found.level));
 }
 
 // Diffuse light of all lights that cast shadows, from the combined volume.

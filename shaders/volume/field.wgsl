@@ -42,6 +42,8 @@ var<private> grid: GridUniform;
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
 // Pyramid that rays in the near field read: with pre-classification that of light, which is 0 where no voxel is.
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
+// Pyramid of the tints of further layers (volume/tint_voxels.wgsl).
+@group(1) @binding(11) var tint_pyramid: texture_3d<f32>;
 // Density texture, or pyramid level, from which a pass makes a level of a pyramid.
 @group(0) @binding(20) var source_texture: texture_3d<f32>;
 @group(0) @binding(21) var source_sampler: sampler;
@@ -208,6 +210,11 @@ fn presence_gradient(p: vec3f, level: f32) -> vec3f {
 #endif
 }
 
+// Tint of further layers at a point: opacity, and colour times opacity.
+fn tint_texel(p: vec3f, level: f32) -> vec4f {
+    return textureSampleLevel(tint_pyramid, clamped, pyramid_place(p), level);
+}
+
 // Pre-classified material of the eye at a point, as volume/material.wgsl stores it.
 fn look_texel(p: vec3f, level: f32) -> vec4f {
     return textureSampleLevel(look_pyramid, clamped, pyramid_place(p), level);
@@ -295,6 +302,14 @@ fn stored_density(stored: vec4u) -> vec4f {
 // Number of voxels of the fields along x, y and z.
 fn field_grid() -> vec3i {
     return vec3i(textureDimensions(field_texture));
+}
+
+// Density of a field at a voxel; −1 if it is missing or outside the grid.
+fn field_value(i: u32, voxel: vec3i) -> f32 {
+    let inside = clamp(voxel, vec3i(0), field_grid() - 1);
+    let stored = textureLoad(field_texture, inside, 0);
+    let is_there = all(inside == voxel) && stored[i] <= LARGEST_STORED_DENSITY;
+    return select(-1.0, stored_density(stored)[i], is_there);
 }
 
 // Densities of the fields around a voxel. Beside missing voxels, and outside the grid, its own continue.

@@ -35,28 +35,82 @@ const LAYER_TINT = 1u;
 const LAYER_GATE = 2u;
 const LAYER_NONE = 3u;
 
+// Matter of a layer around a voxel: colour × extinction, and extinction.
+fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
+    let layer = layers.layers[i];
+    let half_width = select(0.5 * found.slope[i], 0.0, layer.is_label == 1u);
+    // Within the values around the voxel, by which empty bricks are known.
+    let low = max(found.own[i] - half_width, found.lowest[i]);
+    let high = min(found.own[i] + half_width, found.highest[i]);
+    let matter = layer_mean(i, low, high) * select(0.0, 1.0, found.is_present[i]);
+    if (layer.edges > 0.0) {
+        return matter * smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
+    }
+    return matter;
+}
+
+// Opacity of matter over the length to which a layer's opacities refer.
+fn layer_opacity(i: u32, matter: vec4f) -> f32 {
+    return 1.0 - exp(-matter.a * layers.layers[i].opacity_unit);
+}
+
+// Mixture of a material, colour times weight and weight, with the colour of a tint.
+fn with_tint(sum: vec4f, weight: f32, matter: vec4f, opacity: f32) -> vec4f {
+    let color = matter.rgb / max(matter.a, 1e-20);
+    return vec4f(mix(sum.rgb, color * weight, opacity), sum.a);
+}
+
+// Tint of a voxel by all layers that tint: opacity, and colour times opacity.
+//
+// The surface of a labelled structure lies between its voxels and those beside them, so the tint of labels reaches one
+// voxel further: to voxels without one, from the neighbour with the highest opacity.
+fn voxel_tint(voxel: vec3i) -> vec4f {
+    let found = field_neighbourhood(voxel);
+    var tint = vec4f(0.0);
+    for (var i = 0u; i < layers.count; i += 1u) {
+        if (layers.layers[i].blend != LAYER_TINT) {
+            continue;
+        }
+        var matter = layer_matter(i, found);
+        if (layers.layers[i].is_label == 1u && matter.a <= 0.0) {
+            matter = densest_beside(i, voxel);
+        }
+        let opacity = layer_opacity(i, matter);
+        tint = vec4f(with_tint(vec4f(tint.rgb, 0.0), 1.0, matter, opacity).rgb, mix(tint.a, 1.0, opacity));
+    }
+    return vec4f(tint.a, tint.rgb);
+}
+
+// Matter of labels with the largest extinction among the six voxels beside one.
+fn densest_beside(i: u32, voxel: vec3i) -> vec4f {
+    var densest = vec4f(0.0);
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        let step = vec3i(vec3u(axis) == vec3u(0u, 1u, 2u));
+        for (var side = -1; side < 2; side += 2) {
+            let beside = field_value(i, voxel + side * step);
+            if (beside >= 0.0) {
+                let matter = layer_mean(i, beside, beside);
+                densest = select(densest, matter, matter.a > densest.a);
+            }
+        }
+    }
+    return densest;
+}
+
 // Matter of a voxel as a texel of pre-classified voxels: extinction relative to the largest sum, and colour times that.
 fn layered_material(voxel: vec3i) -> vec4f {
     let found = field_neighbourhood(voxel);
     // Colour × extinction, and extinction.
     var sum = vec4f(0.0);
     for (var i = 0u; i < layers.count; i += 1u) {
-        let layer = layers.layers[i];
-        let half_width = select(0.5 * found.slope[i], 0.0, layer.is_label == 1u);
-        // Within the values around the voxel, by which empty bricks are known.
-        let low = max(found.own[i] - half_width, found.lowest[i]);
-        let high = min(found.own[i] + half_width, found.highest[i]);
-        var matter = layer_mean(i, low, high) * select(0.0, 1.0, found.is_present[i]);
-        if (layer.edges > 0.0) {
-            matter *= smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
-        }
-        let opacity = 1.0 - exp(-matter.a * layer.opacity_unit);
-        if (layer.blend == LAYER_TINT) {
-            let color = matter.rgb / max(matter.a, 1e-20);
-            sum = vec4f(mix(sum.rgb, color * sum.a, opacity), sum.a);
-        } else if (layer.blend == LAYER_GATE) {
+        let blend = layers.layers[i].blend;
+        let matter = layer_matter(i, found);
+        let opacity = layer_opacity(i, matter);
+        if (blend == LAYER_TINT) {
+            sum = with_tint(sum, sum.a, matter, opacity);
+        } else if (blend == LAYER_GATE) {
             sum *= opacity;
-        } else if (layer.blend == LAYER_ADD) {
+        } else if (blend == LAYER_ADD) {
             sum += matter;
         }
     }

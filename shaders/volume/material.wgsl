@@ -3,6 +3,8 @@
 #import "common/transmittance.wgsl"
 #import "volume/field.wgsl"
 
+#option TINTED: further layers tint the material of the first one
+
 // Baked transfer function: linear RGB and extinction per scene unit over densities 0 … 1.
 const TABLE_SIZE = 1024u;
 
@@ -188,7 +190,27 @@ fn look_color(p: vec3f, level: f32) -> vec3f {
     return clamp(found.gba / max(found.r, 1e-20), vec3f(0.0), vec3f(1.0));
 #else
     let at = table_entry(pyramid_density(p, level));
-    return mix(look_table.entries[at.low].rgb, look_table.entries[at.low + 1u].rgb, at.fraction);
+    let color = mix(look_table.entries[at.low].rgb, look_table.entries[at.low + 1u].rgb, at.fraction);
+#if TINTED
+    // Without pre-classification the pyramid of the look is that of tints.
+    return with_tint_texel(color, look_texel(p, level));
+#else
+    return color;
+#endif
+#endif
+}
+
+// Colour under a tint: its opacity, and its colour times that.
+fn with_tint_texel(color: vec3f, tint: vec4f) -> vec3f {
+    return color * (1.0 - tint.r) + tint.gba;
+}
+
+// Colour of material at a point under the tints of further layers.
+fn tinted(color: vec3f, p: vec3f, level: f32) -> vec3f {
+#if TINTED
+    return with_tint_texel(color, tint_texel(p, level));
+#else
+    return color;
 #endif
 }
 

@@ -53,11 +53,12 @@ pub use light_march::ViewSheets;
 use glam::DVec3;
 
 use chiaroscuro_scene::{
-    BakedTransfer, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings, VolumeLayer,
+    BakedTransfer, LayerComposition, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings,
+    VolumeLayer,
 };
 use chiaroscuro_volume::{Dataset, ValueRange, Volume, math::SceneSpace};
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
-use field::layers::composed_voxels;
+use field::layers::{composed_voxels, tint_voxels};
 use kernel::KernelProfile;
 
 /// Weights with which densities and light are summed.
@@ -135,6 +136,8 @@ pub struct Reference<'a> {
     presence_changes: Option<[Pyramid; 3]>,
     /// Pre-classified voxels of the eye and of light, if voxels are classified before kernels spread them.
     classified: Option<Box<[ClassifiedVoxels; 3]>>,
+    /// Tints of the first field by further layers: opacity in place of extinction.
+    tints: Option<Box<ClassifiedVoxels>>,
 }
 
 /// Returns the transfer function of a side, for the colour channel of light that is followed, if any.
@@ -182,7 +185,18 @@ impl<'a> Reference<'a> {
                 ClassifiedVoxels::classify(&field, table, presence.as_ref(), width, rounding)
             }))
         });
-        Self { settings, options, scene, range, field, pyramid, presence, presence_changes, classified }
+        Self {
+            settings,
+            options,
+            scene,
+            range,
+            field,
+            pyramid,
+            presence,
+            presence_changes,
+            classified,
+            tints: None,
+        }
     }
 
     /// Creates a reference for a dataset whose fields are shown as layers; settings must be [as
@@ -194,6 +208,14 @@ impl<'a> Reference<'a> {
             &dataset.with_density_mappings([settings.shown_content(&id.ranges)].into_iter().chain(further));
         let plain = Self::new(dataset.volume(), settings, options);
         let scene = plain.scene;
+        let (dims, width) = (dataset.volume().dims(), kernel_width(options.fault));
+        if settings.layer_composition() != LayerComposition::Composed {
+            let bake = |layer: &VolumeLayer, volume: &Volume| layer.bake_eye(volume.table_range(), &scene);
+            let tints = settings.has_tints().then(|| tint_voxels(dataset, settings, bake));
+            let tints =
+                tints.map(|tints| ClassifiedVoxels::from_matter(dims, &tints, 1.0, width, options.rounding));
+            return Self { tints: tints.map(Box::new), ..plain };
+        }
         let classified = ALL_TRANSFER_SIDES.map(|side| {
             let has_effect = |layer: &VolumeLayer| match side {
                 TransferSide::Eye => layer.is_seen(),
@@ -215,10 +237,17 @@ impl<'a> Reference<'a> {
                 .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
                 .sum();
             let matter = composed_voxels(dataset, settings, has_effect, bake);
-            let width = kernel_width(options.fault);
-            ClassifiedVoxels::from_matter(dataset.volume().dims(), &matter, largest, width, options.rounding)
+            ClassifiedVoxels::from_matter(dims, &matter, largest, width, options.rounding)
         });
         Self { classified: Some(Box::new(classified)), ..plain }
+    }
+
+    /// Returns a colour under the tints of further layers at a point in index space.
+    fn tinted(&self, color: [f64; 3], point: DVec3, level: f64) -> [f64; 3] {
+        let Some(tints) = &self.tints else { return color };
+        let point = point + self.kernel_shift();
+        let left = 1.0 - tints.shares.fetch(point, level);
+        std::array::from_fn(|i| color[i] * left + tints.colors[i].fetch(point, level))
     }
 
     /// Returns the pre-classified voxels of a side, if voxels are classified before kernels spread them.

@@ -30,7 +30,7 @@ pub use self::settings::clipping::{
     ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };
 pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
-pub use self::settings::layer::composition::{LayerBlend, LayerVisibility};
+pub use self::settings::layer::composition::{LayerBlend, LayerComposition, LayerVisibility};
 pub use self::settings::layer::density_range::DensityRange;
 pub use self::settings::layer::label_table::{LabelLook, LabelMaterial, LabelTable};
 pub use self::settings::layer::length::OpacityLength;

@@ -26,6 +26,11 @@ impl LayeredField<'_> {
         (!is_missing).then(|| self.densities[voxel])
     }
 
+    /// Returns the opacity of matter over the length to which opacities refer.
+    fn opacity(&self, matter: [f64; 4]) -> f64 {
+        -(-matter[3] * self.layer.opacity_unit.scene_units(&self.scene)).exp_m1()
+    }
+
     /// Returns colour times extinction, and extinction, of a voxel: the mean over the densities in it.
     fn matter(&self, place: [i64; 3]) -> [f64; 4] {
         let Some(own) = self.density(place) else { return [0.0; 4] };
@@ -58,7 +63,24 @@ pub(crate) fn composed_voxels(
     has_effect: impl Fn(&VolumeLayer) -> bool,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
 ) -> Vec<[f64; 4]> {
-    let fields: Vec<_> = settings
+    let fields = layered_fields(dataset, settings, has_effect, bake);
+    let places = voxel_places(dataset.volume().dims());
+    places.map(|place| fields.iter().fold([0.0; 4], |sum, field| composed(sum, field, place))).collect()
+}
+
+/// Lists the places of all voxels, x fastest.
+fn voxel_places([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [i64; 3]> {
+    (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z].map(|c| c as i64))))
+}
+
+/// Returns the fields whose layers have an effect, with their tables.
+fn layered_fields<'a>(
+    dataset: &'a Dataset,
+    settings: &'a Settings,
+    has_effect: impl Fn(&VolumeLayer) -> bool,
+    bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
+) -> Vec<LayeredField<'a>> {
+    settings
         .layers
         .iter()
         .zip(dataset.fields().iter())
@@ -74,18 +96,43 @@ pub(crate) fn composed_voxels(
                 scene: dataset.volume().scene(),
             }
         })
-        .collect();
-    let [nx, ny, nz] = dataset.volume().dims();
-    let places =
-        (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z].map(|c| c as i64))));
-    places.map(|place| fields.iter().fold([0.0; 4], |sum, field| composed(sum, field, place))).collect()
+        .collect()
+}
+
+/// Returns colour times opacity, and opacity, of the tint of every voxel by the seen layers that tint.
+pub(crate) fn tint_voxels(
+    dataset: &Dataset,
+    settings: &Settings,
+    bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
+) -> Vec<[f64; 4]> {
+    let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend == LayerBlend::Tint;
+    let fields = layered_fields(dataset, settings, tints, bake);
+    let tint = |place: [i64; 3]| {
+        fields.iter().fold([0.0; 4], |[r, g, b, covered], field| {
+            let mut matter = field.matter(place);
+            if field.volume.shown_labels().is_some() && matter[3] <= 0.0 {
+                // Labels tint one voxel further, since their surfaces lie between voxels.
+                let steps = [0, 1, 2].into_iter().flat_map(|axis| [(axis, -1), (axis, 1)]);
+                matter = steps.fold([0.0; 4], |densest: [f64; 4], (axis, step)| {
+                    let mut beside = place;
+                    beside[axis] += step;
+                    let matter = field.matter(beside);
+                    if matter[3] > densest[3] { matter } else { densest }
+                });
+            }
+            let opacity = field.opacity(matter);
+            let [red, green, blue, _] = unassociated(matter);
+            let over = |below: f64, color: f64| below * (1.0 - opacity) + color * opacity;
+            [over(r, red), over(g, green), over(b, blue), over(covered, 1.0)]
+        })
+    };
+    voxel_places(dataset.volume().dims()).map(tint).collect()
 }
 
 /// Returns the matter of a voxel with that of one more layer.
 fn composed(sum: [f64; 4], field: &LayeredField<'_>, place: [i64; 3]) -> [f64; 4] {
     let matter = field.matter(place);
-    let unit = field.layer.opacity_unit.scene_units(&field.scene);
-    let opacity = 1.0 - (-matter[3] * unit).exp();
+    let opacity = field.opacity(matter);
     match field.layer.blend {
         LayerBlend::Add => std::array::from_fn(|i| sum[i] + matter[i]),
         LayerBlend::Gate => sum.map(|number| number * opacity),

@@ -219,6 +219,7 @@ impl Reference<'_> {
         let table = self.gathered_table(TransferSide::Eye);
         let level = (divisor as f64 / 2.0).max(1.0).log2();
         let color = |point: DVec3| {
+            let place = point;
             let point = point + self.kernel_shift();
             if let Some(classified) = self.classified(TransferSide::Eye) {
                 let share = classified.shares.fetch(point, level).max(1e-20);
@@ -228,7 +229,7 @@ impl Reference<'_> {
                     .map(|color| (color.fetch(point, level) / share).clamp(0.0, 1.0));
             }
             let [r, g, b, _] = table.sample(self.gathered_pyramid(TransferSide::Eye).fetch(point, level));
-            [r, g, b]
+            self.tinted([r, g, b], place, level)
         };
         let blocks = self.blocks(dims, divisor, !self.settings.sky.is_on(), |point, extinction| {
             let [r, g, b] = color(point).map(|color| color * scattering.albedo * extinction);

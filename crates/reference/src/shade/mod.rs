@@ -122,7 +122,8 @@ impl<'r> Shader<'r> {
         base: [f64; 3],
         attenuations: &[Option<f64>],
     ) -> [f64; 3] {
-        let &ShadedSample { point, density, gradient, .. } = sample;
+        let &ShadedSample { point, density, gradient, level } = sample;
+        let base = self.reference.tinted(base, point, level);
         let shading = &self.reference.settings.shading;
         let scene = &self.reference.scene;
         let surface = self.surface(gradient);

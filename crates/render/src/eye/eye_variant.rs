@@ -84,6 +84,7 @@ impl EyeVariant {
                     || (casts_rays || near_steps > 0) && is_cut(cuts.shadowing_part()),
                 sides: shading.sides,
                 is_preclassified: settings.classification().is_pre(),
+                is_tinted: settings.has_tints(),
                 sky: SkyVariant::from_settings(settings),
                 has_scattered_light: settings.has_bounces(),
                 is_anisotropic: settings.scattering.anisotropy != 0.0,

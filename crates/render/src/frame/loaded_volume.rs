@@ -15,7 +15,7 @@ use crate::volume::preclassified::PreclassifiedVoxels;
 use crate::volume::presence::PresenceTexture;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
-use chiaroscuro_scene::{Settings, SheetOrder};
+use chiaroscuro_scene::{LayerComposition, Settings, SheetOrder};
 use chiaroscuro_volume::Dataset;
 
 /// Inputs for finding or creating the products of a picture.
@@ -40,6 +40,8 @@ pub(crate) struct LoadedVolume {
     pub tables: CacheEntry<TablesKey, TransferTables>,
     /// Pre-classified voxels, if a picture has asked for them.
     materials: Vec<Arc<PreclassifiedVoxels>>,
+    /// Tints of the first field by further layers, if there are some.
+    tints: Option<Arc<PreclassifiedVoxels>>,
     /// Attenuation volumes, most recently used first.
     pub lights: ProductCache<LightKey, LightVolume>,
     /// Diffuse light of all shadowed lights in one volume.
@@ -65,10 +67,11 @@ impl LoadedVolume {
         presence: Option<PresenceTexture>,
     ) -> Result<Self, GpuError> {
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
-        let volume = if tables_key.volume.is_layered {
-            volume.with_fields(context, dataset.fields())?
-        } else {
-            volume
+        let volume = match tables_key.volume.composition {
+            LayerComposition::First => volume,
+            LayerComposition::Tinted | LayerComposition::Composed => {
+                volume.with_fields(context, dataset.fields())?
+            }
         };
         let TableBakeResult { tables, .. } =
             TransferTables::bake(context, &volume, settings, tables_key, None)?;
@@ -80,6 +83,7 @@ impl LoadedVolume {
             dataset,
             tables,
             materials,
+            tints: None,
             lights: ProductCache::default(),
             combined: None,
             skies: ProductCache::default(),
@@ -126,6 +130,19 @@ impl LoadedVolume {
     ) -> Result<(), GpuError> {
         let tables = &mut self.tables.product;
         tables.set_materials(None, None);
+        let tints = tables.tints.as_ref().map(|table| (table.baked(), &table.occupied_bricks));
+        let known = self.tints.take();
+        self.tints = match tints {
+            None => None,
+            Some((baked, _)) if known.as_ref().is_some_and(|known| known.matches(baked, false)) => known,
+            Some((baked, occupied)) => {
+                let left = known.and_then(Arc::into_inner);
+                Some(Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, false, occupied, left)?))
+            }
+        };
+        if let Some(table) = &mut tables.tints {
+            table.materials.clone_from(&self.tints);
+        }
         let classification = settings.classification();
         if !classification.is_pre() {
             return Ok(());
@@ -188,7 +205,8 @@ impl LoadedVolume {
     /// Returns the size of all textures and buffers, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let voxels = self.scatter_voxels.as_ref().map_or(0, |voxels| voxels.bytes());
-        let materials = self.materials.iter().map(|materials| materials.bytes()).sum::<u64>();
+        let materials =
+            self.materials.iter().chain(&self.tints).map(|materials| materials.bytes()).sum::<u64>();
         self.volume.bytes()
             + materials
             + voxels

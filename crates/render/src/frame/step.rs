@@ -60,19 +60,21 @@ pub(crate) struct RaycastStep {
     pub bricks: Range<usize>,
 }
 
-/// Transfer function: of the eye or of light.
+/// Transfer function: of the eye, of light, or of layers that tint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TransferSelector {
     Eye,
     Lighting,
+    Tints,
 }
 
 impl TransferSelector {
-    /// Returns the table of this transfer function.
-    pub(super) fn table(self, tables: &TransferTables) -> &TransferTable {
+    /// Returns the table of this transfer function, if there is one.
+    pub(super) fn table(self, tables: &TransferTables) -> Option<&TransferTable> {
         match self {
-            Self::Eye => &tables.eye,
-            Self::Lighting => &tables.lighting,
+            Self::Eye => Some(&tables.eye),
+            Self::Lighting => Some(&tables.lighting),
+            Self::Tints => tables.tints.as_ref(),
         }
     }
 }

@@ -181,6 +181,8 @@ pub(crate) struct ShadingVariant {
     pub sides: LitSides,
     /// `true` if voxels are classified before reconstruction.
     pub is_preclassified: bool,
+    /// `true` if further layers tint the material.
+    pub is_tinted: bool,
     pub sky: SkyVariant,
     /// `true` if scattered light is looked up in a volume.
     pub has_scattered_light: bool,
@@ -197,6 +199,7 @@ impl ShadingVariant {
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("ONE_SIDED", self.sides == LitSides::One));
         constants.push(flag("PRECLASSIFY", self.is_preclassified));
+        constants.push(flag("TINTED", self.is_tinted));
         if self.is_combined {
             constants.push(("COMBINED", 1.0));
         }

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use super::PixelWindow;
-use chiaroscuro_scene::{ImageSpec, LightVolumeResolution, OutputSettings, PixelFormat, Settings};
+use chiaroscuro_scene::{
+    ImageSpec, LayerComposition, LightVolumeResolution, OutputSettings, PixelFormat, Settings,
+};
 use chiaroscuro_volume::{DensityMapping, MAX_FIELDS, VolumeId};
 
 /// Request for a picture: the volume, its look and the size.
@@ -28,8 +30,8 @@ pub struct VolumeKey {
     pub density_mapping: DensityMapping,
     /// Quantities that densities of the further fields represent, which are shown as layers.
     pub further: [Option<DensityMapping>; MAX_FIELDS - 1],
-    /// True if voxels are composed of layers, for which their fields are stored together.
-    pub is_layered: bool,
+    /// Way in which layers become one picture; if not by the first alone, their fields are stored together.
+    pub composition: LayerComposition,
 }
 
 impl VolumeKey {
@@ -47,7 +49,7 @@ impl RenderRequest {
             content_id,
             density_mapping: self.settings.shown_content(&ranges),
             further: self.settings.further_mappings(&self.volume),
-            is_layered: self.settings.is_layered(),
+            composition: self.settings.layer_composition(),
         }
     }
 

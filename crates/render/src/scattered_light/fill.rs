@@ -248,7 +248,7 @@ impl ScatteredLightFill {
         };
         let entries = [
             bind_buffer("look_table", tables.eye.lookup_buffer()),
-            bind_view("look_pyramid", &tables.pyramids(gpu.volume).primary.all),
+            bind_view("look_pyramid", &tables.tint_views().unwrap_or(tables.eye.pyramid(gpu.volume)).all),
             bind_buffer("scattering", &self.textures.scattering),
             bind_view("medium", &self.textures.medium),
         ];

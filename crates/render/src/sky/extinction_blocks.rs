@@ -91,6 +91,7 @@ impl BlocksPass<'_> {
             ends: gpu.volume.possible_boundaries(),
             is_cut: is_cut(shading),
             is_preclassified: settings.classification().is_pre(),
+            is_tinted: settings.has_tints(),
         };
         let pipeline = gpu.shaders.pipeline_into(&variant, self.format)?;
         let uniform = uniforms::BlocksUniform {
@@ -129,6 +130,7 @@ struct BlocksVariant {
     ends: GridBoundaries,
     is_cut: bool,
     is_preclassified: bool,
+    is_tinted: bool,
 }
 
 impl PipelineVariant for BlocksVariant {
@@ -141,6 +143,7 @@ impl PipelineVariant for BlocksVariant {
         constants.push(flag("ONE_COLOR", self.one_color));
         constants.push(flag("CUT", self.is_cut));
         constants.push(flag("PRECLASSIFY", self.is_preclassified));
+        constants.push(flag("TINTED", self.is_tinted));
         // Sample points are fetched from the pyramid: the prefiltered kernel, with stretch.
         constants.extend([("KERNEL", 2.0), ("STRETCH", 1.0)]);
         constants

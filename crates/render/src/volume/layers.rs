@@ -1,6 +1,7 @@
 //! Baked layers: the transfer functions of all layers, for the eye or for light, and the cells where they have matter.
 
 use super::GpuVolume;
+use super::field_texture::FieldTexture;
 use crate::pipelines::uniforms::{LayerUniform, LayersUniform};
 use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer};
 use chiaroscuro_volume::math::SceneSpace;
@@ -13,6 +14,8 @@ pub(crate) struct BakedLayers {
     tables: Vec<BakedTransfer>,
     /// Parameters of layers, if voxels are composed of them.
     parameters: Option<Box<LayersUniform>>,
+    /// True if the layers that count are those that tint, instead of those with matter.
+    are_tints: bool,
 }
 
 impl BakedLayers {
@@ -25,10 +28,33 @@ impl BakedLayers {
         bake: impl Fn(&VolumeLayer, ValueRange, &SceneSpace) -> BakedTransfer,
     ) -> Self {
         let scene = &volume.scene;
-        let Some(texture) = &volume.fields else {
+        let Some(texture) = volume.fields.as_ref().filter(|_| settings.is_layered()) else {
             let table = bake(settings.layer(), volume.volume.table_range(), scene);
-            return Self { tables: vec![table], parameters: None };
+            return Self { tables: vec![table], parameters: None, are_tints: false };
         };
+        let mut baked = Self::from_fields(texture, settings, scene, has_effect, bake);
+        let largest = baked.max_extinction();
+        if let Some(parameters) = &mut baked.parameters {
+            parameters.largest = largest;
+        }
+        baked
+    }
+
+    /// Bakes the layers that tint the first field; `None` if there are none.
+    pub(crate) fn from_tints(volume: &GpuVolume, settings: &Settings) -> Option<Self> {
+        let texture = volume.fields.as_ref().filter(|_| settings.has_tints())?;
+        let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend == LayerBlend::Tint;
+        let baked = Self::from_fields(texture, settings, &volume.scene, tints, VolumeLayer::bake_eye);
+        Some(Self { are_tints: true, ..baked })
+    }
+
+    fn from_fields(
+        texture: &FieldTexture,
+        settings: &Settings,
+        scene: &SceneSpace,
+        has_effect: impl Fn(&VolumeLayer) -> bool,
+        bake: impl Fn(&VolumeLayer, ValueRange, &SceneSpace) -> BakedTransfer,
+    ) -> Self {
         let fields = || settings.layers.iter().zip(texture.fields.iter());
         let tables =
             fields().map(|(layer, field)| bake(layer, field.volume().table_range(), scene)).collect();
@@ -44,18 +70,18 @@ impl BakedLayers {
         }
         let count = fields().count() as u32;
         let parameters = LayersUniform { count, largest: 0.0, pad0: 0, pad1: 0, layers };
-        let mut baked = Self { tables, parameters: Some(Box::new(parameters)) };
-        let largest = baked.max_extinction();
-        if let Some(parameters) = &mut baked.parameters {
-            parameters.largest = largest;
-        }
-        baked
+        Self { tables, parameters: Some(Box::new(parameters)), are_tints: false }
+    }
+
+    /// Returns true if the layers are those that tint.
+    pub(crate) fn are_tints(&self) -> bool {
+        self.are_tints
     }
 
     /// Returns the tables for one colour of light.
     pub(crate) fn for_light_color(&self, color: usize) -> Self {
         let tables = self.tables.iter().map(|table| table.for_light_color(color)).collect();
-        Self { tables, parameters: self.parameters.clone() }
+        Self { tables, ..self.clone() }
     }
 
     /// Returns the parameters of layers, if voxels are composed of them.
@@ -102,13 +128,14 @@ impl BakedLayers {
     pub(crate) fn has_same_matter(&self, other: &Self) -> bool {
         let entries = |layers: &Self| layers.tables.len();
         entries(self) == entries(other)
+            && self.are_tints == other.are_tints
             && self.parameters == other.parameters
             && self.tables.iter().zip(&other.tables).all(|(a, b)| a.entries == b.entries)
     }
 
     /// Returns the bricks and cells in which any layer has extinction.
     pub(crate) fn occupancy(&self, volume: &GpuVolume, bounded: bool) -> CellOccupancy {
-        let Some(texture) = &volume.fields else {
+        let Some(texture) = volume.fields.as_ref().filter(|_| self.parameters.is_some()) else {
             return occupancy_of(&volume.volume, &volume.bricks, &self.tables[0], bounded);
         };
         let mut found: Option<CellOccupancy> = None;
@@ -127,14 +154,12 @@ impl BakedLayers {
         found.unwrap_or_else(|| CellOccupancy { bricks: vec![false; bricks], cells: vec![0; bricks] })
     }
 
-    /// Returns the layers with matter of their own, with their indices.
+    /// Returns the layers with matter of their own, or those that tint, with their indices.
     fn with_matter(&self) -> impl Iterator<Item = (usize, &BakedTransfer)> {
-        let adds = |at: usize| {
-            self.parameters
-                .as_ref()
-                .is_none_or(|layers| layers.layers[at].blend == blend_number(LayerBlend::Add))
-        };
-        self.tables.iter().enumerate().filter(move |(at, _)| adds(*at))
+        let counted = blend_number(if self.are_tints { LayerBlend::Tint } else { LayerBlend::Add });
+        let counts =
+            move |at: usize| self.parameters.as_ref().is_none_or(|layers| layers.layers[at].blend == counted);
+        self.tables.iter().enumerate().filter(move |(at, _)| counts(*at))
     }
 }
 

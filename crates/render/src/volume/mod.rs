@@ -142,7 +142,11 @@ impl VolumeContext<'_> {
             sampler("clamped", &volume.clamped),
             sampler("nearest", &volume.nearest),
         ];
-        entries.extend(pyramids.lighting.map(|views| bind_view("lighting_pyramid", levels.choose(views))));
+        if let Some(views) = pyramids.lighting {
+            let tints = pyramids.tints.map_or(self.placeholder, |views| levels.choose(views));
+            entries.push(bind_view("lighting_pyramid", levels.choose(views)));
+            entries.push(bind_view("tint_pyramid", tints));
+        }
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
@@ -158,6 +162,8 @@ pub(crate) struct PassPyramids<'a> {
     pub primary: &'a PyramidViews,
     /// Pyramid of what attenuates light, for eye passes that cast near-field rays.
     pub lighting: Option<&'a PyramidViews>,
+    /// Pyramid of the tints of further layers, for eye passes.
+    pub tints: Option<&'a PyramidViews>,
 }
 
 /// Range of pyramid levels that a pass may read.

@@ -130,6 +130,7 @@ impl PreclassifiedVoxels {
         let bricks = &self.bricks[level as usize][range.clone()];
         let layers = self.baked.parameters().zip(volume.fields.as_ref());
         let pipeline = match level {
+            0 if self.baked.are_tints() => shaders.pipeline(&SingleVariant("volume/tint_voxels.wgsl"))?,
             0 if layers.is_some() => shaders.pipeline(&SingleVariant("volume/composed_voxels.wgsl"))?,
             0 => shaders.pipeline(&MaterialsVariant {
                 has_missing: volume.presence.is_some(),

@@ -163,6 +163,8 @@ pub(crate) struct TransferTables {
     pub eye: TransferTable,
     /// Table of the lighting transfer function.
     pub lighting: TransferTable,
+    /// Tables of layers that tint the first one, if there are some.
+    pub tints: Option<TransferTable>,
     /// Tables for red, green and blue light if shadows are coloured; else empty.
     colors: Vec<TransferTable>,
     /// Distances in cells to the nearest cell that is visible to the eye.
@@ -201,12 +203,15 @@ impl TransferTables {
         let previous = previous.filter(|known| known.key().cells_are_bounds == bounded);
         let known = || previous.into_iter().flat_map(|known| [&known.product.eye, &known.product.lighting]);
         let mut baked = 0;
-        let eye = if let Some(known) = previous.filter(|known| known.key().eye == key.eye) {
-            known.product.eye.clone()
+        let (eye, tints) = if let Some(known) = previous.filter(|known| known.key().eye == key.eye) {
+            (known.product.eye.clone(), known.product.tints.clone())
         } else {
             baked += 1;
             let eye = BakedLayers::new(volume, settings, VolumeLayer::is_seen, VolumeLayer::bake_eye);
-            TransferTable::new(context, volume, eye, bounded, known())
+            let known_tints = previous.and_then(|known| known.product.tints.as_ref());
+            let tints = BakedLayers::from_tints(volume, settings);
+            let tints = tints.map(|tints| TransferTable::new(context, volume, tints, bounded, known_tints));
+            (TransferTable::new(context, volume, eye, bounded, known()), tints)
         };
         let is_lit_alike =
             |known: &TablesKey| (&known.lighting, &known.transmission) == (&key.lighting, &key.transmission);
@@ -226,7 +231,7 @@ impl TransferTables {
             let is_same = |a: &TransferTable, b: &TransferTable| Arc::ptr_eq(&a.distances, &b.distances);
             if is_same(&eye, &tables.eye) && is_same(&lighting, &tables.lighting) {
                 return Ok(TableBakeResult {
-                    tables: Self { eye, lighting, colors, ..tables.clone() },
+                    tables: Self { eye, lighting, tints, colors, ..tables.clone() },
                     baked,
                 });
             }
@@ -263,6 +268,7 @@ impl TransferTables {
         let tables = Self {
             eye,
             lighting,
+            tints,
             colors,
             eye_distances,
             light_distances,
@@ -293,12 +299,18 @@ impl TransferTables {
 
     /// Returns the pyramids for passes of the eye.
     pub(crate) fn pyramids<'a>(&'a self, volume: &'a GpuVolume) -> PassPyramids<'a> {
-        PassPyramids { primary: self.eye.pyramid(volume), lighting: Some(self.lighting.pyramid(volume)) }
+        let lighting = Some(self.lighting.pyramid(volume));
+        PassPyramids { primary: self.eye.pyramid(volume), lighting, tints: self.tint_views() }
+    }
+
+    /// Returns the pyramid of tints, if there is one.
+    pub(crate) fn tint_views(&self) -> Option<&PyramidViews> {
+        Some(&self.tints.as_ref()?.materials.as_ref()?.views)
     }
 
     /// Returns the pyramids for passes that follow light.
     pub(crate) fn lighting_pyramids<'a>(&'a self, volume: &'a GpuVolume) -> PassPyramids<'a> {
-        PassPyramids { primary: self.lighting.pyramid(volume), lighting: None }
+        PassPyramids { primary: self.lighting.pyramid(volume), lighting: None, tints: None }
     }
 
     /// Returns the grid boundaries near cells occupied in either table, for samples of the eye and rays from them.

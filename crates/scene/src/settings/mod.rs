@@ -255,7 +255,7 @@ impl Settings {
     pub fn uses_scattering_engine(&self) -> bool {
         self.sampling.engine == RenderEngine::Scatter
             && self.shadows.algorithm != ShadowAlgorithm::Direct
-            && !self.is_layered()
+            && self.layer_composition() == crate::LayerComposition::First
     }
 
     /// Returns true if the diffuse light of all shadowed lights is stored in one combined volume of colours. With

@@ -330,7 +330,7 @@ fn what_cannot_be_kept_is_said() {
     fs::write(folder.path().join("file"), "").unwrap();
     let mut nowhere = remember(&folder.path().join("file"));
     assert_eq!(nowhere.take_notices().len(), 1);
-    nowhere.autosave(&look(2.0), Path::new("builtin:chair"), 7, &VolumeChoice::default());
+    nowhere.autosave(&look(2.0), volume("builtin:chair", 7));
     assert!(PersistentState::new(None, &egui::Context::default()).emergency_save().is_none());
 }
 

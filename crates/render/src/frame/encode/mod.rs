@@ -54,7 +54,7 @@ impl RenderJob<'_> {
             }
             RenderStep::Materials { side, level, bricks } => {
                 self.report.step_counts.materials += 1;
-                let table = side.table(&self.loaded.product.tables.product);
+                let Some(table) = side.table(&self.loaded.product.tables.product) else { return Ok(()) };
                 let Some(materials) = &table.materials else { return Ok(()) };
                 materials.fill(VolumeContext::new(self.tools, volume), &table.buffer, *level, bricks, encoder)
             }
@@ -114,7 +114,8 @@ impl RenderJob<'_> {
                     }
                 }
                 FrameProduct::Materials(side) => {
-                    if let Some(materials) = &side.table(&self.loaded.product.tables.product).materials {
+                    let table = side.table(&self.loaded.product.tables.product);
+                    if let Some(materials) = table.and_then(|table| table.materials.as_ref()) {
                         materials.mark_complete();
                     }
                 }

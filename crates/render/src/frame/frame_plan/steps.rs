@@ -37,8 +37,9 @@ pub(super) fn pyramid_steps(volume: &GpuVolume) -> Vec<RenderStep> {
 pub(super) fn material_steps(tables: &TransferTables) -> Vec<RenderStep> {
     let mut steps = Vec::new();
     let mut begun: Option<&Arc<PreclassifiedVoxels>> = None;
-    for side in [TransferSelector::Eye, TransferSelector::Lighting] {
-        let Some(materials) = &side.table(tables).materials else { continue };
+    for side in [TransferSelector::Eye, TransferSelector::Lighting, TransferSelector::Tints] {
+        let table = side.table(tables);
+        let Some(materials) = table.and_then(|table| table.materials.as_ref()) else { continue };
         // Both tables usually share one set of voxels.
         if materials.is_complete() || begun.is_some_and(|begun| Arc::ptr_eq(begun, materials)) {
             continue;

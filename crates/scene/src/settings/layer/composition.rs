@@ -35,6 +35,17 @@ pub enum LayerBlend {
     Gate,
 }
 
+/// Way in which the layers of a scene become the matter of one picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LayerComposition {
+    /// The first field alone.
+    First,
+    /// The first field, whose colours others tint: its matter is that of the field alone.
+    Tinted,
+    /// Voxels that are composed of several fields, or classified by more than their value.
+    Composed,
+}
+
 impl LayerBlend {
     /// Blends in the order of lists.
     pub const ALL: [Self; 3] = [Self::Add, Self::Tint, Self::Gate];
@@ -81,6 +92,11 @@ impl VolumeLayer {
         let function = if self.lighting.linked { &self.transfer } else { &self.lighting.curve };
         let scale = if self.casts_shadows() { self.lighting.scale } else { 0.0 };
         function.bake(range, self.opacity_unit_in_scene(scene), scale)
+    }
+
+    /// Returns true if the layer changes the picture of those before it: unless it is hidden, or only tints unseen.
+    fn has_effect_on_others(&self) -> bool {
+        self.is_seen() || self.casts_shadows() && self.blend != LayerBlend::Tint
     }
 
     /// Returns true if opacity depends on more than the value, so that voxels are classified first.
@@ -142,10 +158,35 @@ impl VolumeLayers {
 }
 
 impl Settings {
+    /// Returns the way in which layers become the matter of one picture. Tints of a field that is classified after
+    /// reconstruction leave its matter, and need no more than a colour, except where light takes colours, too.
+    pub fn layer_composition(&self) -> LayerComposition {
+        let further = || self.layers.iter().skip(1).filter(|layer| layer.has_effect_on_others());
+        let first = self.layer();
+        if self.layers.iter().any(|layer| layer.casts_shadows() && layer.depends_on_gradients()) {
+            LayerComposition::Composed
+        } else if further().next().is_none() {
+            LayerComposition::First
+        } else if further().all(|layer| layer.blend == LayerBlend::Tint)
+            && first.labels.is_empty()
+            && !self.sampling.classification.is_pre()
+            && !self.has_colored_shadows()
+        {
+            LayerComposition::Tinted
+        } else {
+            LayerComposition::Composed
+        }
+    }
+
     /// Returns true if matter is composed of several layers, or depends on more than a value: voxels are then
     /// classified before reconstruction.
     pub fn is_layered(&self) -> bool {
-        self.layers.count() > 1 || self.layers.iter().any(VolumeLayer::depends_on_gradients)
+        self.layer_composition() == LayerComposition::Composed
+    }
+
+    /// Returns true if further layers change the colours of the first one, and nothing else.
+    pub fn has_tints(&self) -> bool {
+        self.layer_composition() == LayerComposition::Tinted
     }
 
     /// Returns the quantities that densities of the further fields represent.
@@ -161,24 +202,25 @@ impl Settings {
     /// a layer for each of its fields. Layers without a field are left out. Modes other than matter show the first
     /// field alone.
     pub fn resolved_for_dataset(&self, dataset: &Dataset) -> Cow<'_, Self> {
-        if !self.is_layered() {
+        if self.layers.count() == 1 && !self.is_layered() {
             return self.resolved_for(dataset.volume());
         }
         let fields = dataset.fields();
         let mut drawn = self.clone();
         drawn.layer_mut().blend = LayerBlend::Add;
         if self.shows_matter() {
-            // Hidden layers at the end change nothing, and one field is drawn sharper and faster.
-            let used = self.layers.iter().take(fields.len()).rposition(VolumeLayer::casts_shadows);
+            // Layers at the end without effect change nothing, and one field is drawn sharper and faster.
+            let used = self.layers.iter().take(fields.len()).rposition(VolumeLayer::has_effect_on_others);
             drawn.layers.truncate(used.map_or(1, |last| last + 1));
         } else {
             drawn.layers.truncate(1);
             drawn.layer_mut().edges = 0.0;
         }
-        if !drawn.is_layered() {
-            return Cow::Owned(drawn.resolved_for(dataset.volume()).into_owned());
+        if drawn.is_layered() {
+            drawn.sampling.classification = drawn.classification();
+        } else {
+            drawn = drawn.resolved_for(dataset.volume()).into_owned();
         }
-        drawn.sampling.classification = self.classification();
         for (layer, field) in drawn.layers.iter_mut().zip(fields.iter()) {
             layer.resolve_labels(field.volume());
         }

@@ -1,0 +1,26 @@
+// Tints of the first field's material by further layers, level 0 of their pyramid: opacity first, then colour times
+// that, so that all channels can be summed.
+#import "volume/layers.wgsl"
+#import "volume/spread_voxels.wgsl"
+
+// Tint of a voxel; 0 outside the grid.
+fn voxel_material(place: vec3i) -> vec4f {
+    let voxel = clamp(place, vec3i(0), field_grid() - 1);
+    return select(vec4f(0.0), voxel_tint(voxel), all(voxel == place));
+}
+
+@compute @workgroup_size(8, 8, 4)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
+    resample = bound_resample;
+    layers = bound_layers;
+    let sum = spread_material(group, local, index);
+    let texel = level_texel(group, local);
+    if (any(texel >= textureDimensions(level))) {
+        return;
+    }
+    textureStore(level, texel, sum);
+}
