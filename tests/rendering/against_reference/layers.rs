@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
-use chiaroscuro_scene::{LabelLook, LabelTable, LayerBlend, LayerVisibility, Settings, VolumeLayer};
+use chiaroscuro_scene::{
+    LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, Settings, VolumeLayer,
+};
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::mutations::differs_with;
 use super::{check_with, round_to_f16};
-use crate::common::Dataset;
+use crate::closed_form::renderer;
+use crate::common::{Dataset, full_attenuation};
 use crate::scenes;
 
 const EDGE: usize = 32;
@@ -118,6 +121,29 @@ fn labels_tint_gate_and_add() {
 }
 
 #[test]
+fn tints_of_one_field_leave_its_matter() {
+    let (volume, layer) = labelled(LayerBlend::Tint);
+    let glow = VolumeLayer { blend: LayerBlend::Tint, ..second() };
+    let (dataset, mut settings) = (dataset(&[volume, ball()]), look(&[layer, glow]));
+    assert_eq!(settings.layer_composition(), LayerComposition::Tinted);
+    check("labels and a field", &dataset, &settings);
+    let drawn = settings.resolved_for_dataset(&dataset).into_owned();
+    let reference = Reference::with_layers(&dataset, &drawn, options());
+    for (from, to) in [
+        ("color * (1.0 - tint.r) + tint.gba", "color + tint.gba"),
+        ("matter = densest_beside(i, voxel)", "matter = vec4f(0.0)"),
+        ("mix(tint.a, 1.0, opacity)", "opacity"),
+    ] {
+        assert!(differs_with(&dataset, &settings, &reference, (from, to)), "{to}");
+    }
+    // The opacities of a tint are not those of its matter, and light does not meet them.
+    let light = |settings: &Settings| full_attenuation(&mut renderer(), &dataset, settings, 0);
+    let tinted = light(&settings);
+    settings.layers.truncate(1);
+    assert_eq!(tinted, light(&settings));
+}
+
+#[test]
 fn edges_are_left_of_one_field_and_of_several() {
     let mut settings = look(&[]);
     settings.layer_mut().edges = 0.08;
@@ -142,7 +168,7 @@ fn mistakes_in_layers_are_noticed() {
         ("0.5 * found.slope[i]", "1.5 * found.slope[i]"),
         ("select(0.0, 1.0, found.is_present[i])", "1.0"),
         ("smoothstep(0.5 * layer.edges, layer.edges, found.slope[i])", "step(layer.edges, found.slope[i])"),
-        ("mix(sum.rgb, color * sum.a, opacity)", "mix(sum.rgb, color, opacity)"),
+        ("mix(sum.rgb, color * weight, opacity)", "mix(sum.rgb, color, opacity)"),
         ("layer_tables[layer].integrals[low]", "layer_tables[0].integrals[low]"),
     ] {
         assert!(differs(from, to), "{to}");

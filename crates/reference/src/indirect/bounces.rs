@@ -218,9 +218,8 @@ impl Reference<'_> {
         let dims = self.scene.dims.map(|n| n.div_ceil(divisor));
         let table = self.gathered_table(TransferSide::Eye);
         let level = (divisor as f64 / 2.0).max(1.0).log2();
-        let color = |point: DVec3| {
-            let place = point;
-            let point = point + self.kernel_shift();
+        let color = |place: DVec3| {
+            let point = place + self.kernel_shift();
             if let Some(classified) = self.classified(TransferSide::Eye) {
                 let share = classified.shares.fetch(point, level).max(1e-20);
                 return classified

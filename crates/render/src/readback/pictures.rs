@@ -75,8 +75,11 @@ impl Renderer {
 
     /// Returns the complete volume of a light, if it is cached.
     pub(crate) fn light_volume(&self, request: &RenderRequest, light: usize) -> Option<&LightVolume> {
-        let key = LightKey::new(request, light)?;
-        let lights = &self.loaded.as_ref()?.product.lights;
+        let loaded = &self.loaded.as_ref()?.product;
+        // The volume was filled with the settings as they are drawn.
+        let settings = request.settings.resolved_for_dataset(&loaded.dataset).into_owned();
+        let key = LightKey::new(&RenderRequest { settings, ..request.clone() }, light)?;
+        let lights = &loaded.lights;
         lights.iter().find(|known| known.is_valid_for(&key)).map(|known| &known.product)
     }
 

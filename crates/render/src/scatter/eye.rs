@@ -185,6 +185,7 @@ impl EyeScatter {
                     bind_buffer("bound_grid", &grid),
                     bind_view("pyramid_texture", eye.levels().choose(tables.eye.pyramid(volume))),
                     bind_view("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
+                    bind_view("tint_pyramid", gpu.placeholder),
                     bind_view("presence_texture", gpu.presence(eye.levels())),
                     sampler("clamped", &volume.clamped),
                     bind_buffer("bound_scatter", &slab),

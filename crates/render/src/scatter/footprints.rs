@@ -137,6 +137,7 @@ impl FootprintPhases {
                 bind_buffer("bound_grid", &grid),
                 bind_view("pyramid_texture", PyramidLevels::Finest.choose(gpu.volume.pyramid_views())),
                 bind_view("presence_texture", gpu.presence(PyramidLevels::Finest)),
+                bind_view("tint_pyramid", gpu.placeholder),
                 bind_buffer("bound_scatter", &slab),
                 bind_buffer("footprint_table", scatterer.footprints()),
                 bind_buffer("rays", rays),

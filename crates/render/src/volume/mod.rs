@@ -26,7 +26,7 @@ use half::f16;
 use self::density_pyramid::DensityPyramid;
 use self::field_texture::FieldTexture;
 use self::presence::PresenceTexture;
-use self::texture_shapes::pyramid_dims;
+use self::texture_shapes::{pyramid_dims, texel_count};
 use self::textures::{density_is_unorm, unorm16};
 use super::resources::gpu_tools::GpuTools;
 use super::resources::resource_pool::ResourcePool;
@@ -393,10 +393,4 @@ impl GpuVolume {
         let fields = self.fields.as_ref().map_or(0, |fields| fields.bytes());
         2 * texel_count(&self.density) + pyramid + presence + fields
     }
-}
-
-/// Returns the number of texels of the finest level of a texture.
-fn texel_count(texture: &wgpu::Texture) -> u64 {
-    let size = texture.size();
-    u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
 }

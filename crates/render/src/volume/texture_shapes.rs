@@ -38,3 +38,9 @@ pub(crate) fn texture_3d(
         view_formats: &[],
     }
 }
+
+/// Returns the number of texels of the finest level of a texture.
+pub(super) fn texel_count(texture: &wgpu::Texture) -> u64 {
+    let size = texture.size();
+    u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+}

@@ -12,7 +12,7 @@ use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Volume that is to be shown as a layer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct LayerSource {
+pub(super) struct LayerFile {
     /// Path of the file, or name of a built-in volume.
     path: PathBuf,
     /// Selected volume, if the file has several.
@@ -30,16 +30,16 @@ struct DatasetWithLayers {
     is_other: bool,
 }
 
-impl LayerSource {
+impl LayerFile {
     fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
         Self { path: path.into(), choice, recorded_id: None }
     }
 }
 
 /// Opens volumes and adds them to a dataset, as far as possible.
-fn with_layers(dataset: Dataset, sources: &[LayerSource], options: &LoadOptions) -> DatasetWithLayers {
+fn with_layers(dataset: Dataset, sources: &[LayerFile], options: &LoadOptions) -> DatasetWithLayers {
     let mut added = DatasetWithLayers { dataset, failure: None, is_other: false };
-    for LayerSource { path, choice, recorded_id } in sources {
+    for LayerFile { path, choice, recorded_id } in sources {
         let choice = choice.clone().with_first_as_fallback();
         let options = LoadOptions { choice, ..options.clone() };
         let volume = open(path, &options, &LoadControl::default()).map_err(|err| err.to_string());
@@ -63,7 +63,7 @@ impl VolumeOpener<'_> {
     /// Reads a volume on a thread, and shows it with the open one as the last layer.
     pub(crate) fn add_layer(&mut self, path: &Path) {
         let count = self.editor.document.settings.layers.count();
-        self.add_layers(vec![LayerSource::new(path, VolumeChoice::default())], count);
+        self.add_layers(vec![LayerFile::new(path, VolumeChoice::default())], count);
     }
 
     /// Shows all channels, arrays or components of the open file, as far as there is room: those that are not shown
@@ -72,7 +72,7 @@ impl VolumeOpener<'_> {
         let Some(volume) = &self.editor.document.volume else { return };
         let Some(all) = Alternatives::new(&volume.held, aspect) else { return };
         let others = (0..all.count()).filter(|&at| at != all.current()).take(MAX_FIELDS - 1);
-        let sources = others.map(|at| LayerSource::new(&volume.source, all.choice(at))).collect();
+        let sources = others.map(|at| LayerFile::new(&volume.source, all.choice(at))).collect();
         self.add_layers(sources, 1);
     }
 
@@ -110,13 +110,13 @@ impl VolumeOpener<'_> {
                 }
             };
             let recorded_id = Some(volume.content_id.clone());
-            sources.push(LayerSource { path, choice: volume.choice.clone(), recorded_id });
+            sources.push(LayerFile { path, choice: volume.choice.clone(), recorded_id });
         }
         self.add_layers(sources, 1);
     }
 
     /// Reads volumes on a thread, and shows them with the first `kept` ones that are open.
-    fn add_layers(&mut self, sources: Vec<LayerSource>, kept: usize) {
+    fn add_layers(&mut self, sources: Vec<LayerFile>, kept: usize) {
         let Some(shown) = self.editor.viewport.dataset() else {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);
         };
