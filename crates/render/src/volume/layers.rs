@@ -56,8 +56,11 @@ impl BakedLayers {
         bake: impl Fn(&VolumeLayer, ValueRange, &SceneSpace) -> BakedTransfer,
     ) -> Self {
         let fields = || settings.layers.iter().zip(texture.fields.iter());
-        let tables =
-            fields().map(|(layer, field)| bake(layer, field.volume().table_range(), scene)).collect();
+        let table = |layer: &VolumeLayer, range: ValueRange| {
+            // An edit of a layer without effect changes nothing.
+            if has_effect(layer) { bake(layer, range, scene) } else { BakedTransfer::linear_ramp(0.0) }
+        };
+        let tables = fields().map(|(layer, field)| table(layer, field.volume().table_range())).collect();
         let empty = LayerUniform { blend: 0, is_label: 0, opacity_unit: 1.0, edges: 0.0 };
         let mut layers = [empty; MAX_FIELDS];
         for (uniform, (layer, field)) in layers.iter_mut().zip(fields()) {
