@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::alternatives::Alternatives;
 use crate::app::text::common::LengthUnit;
 use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_scene::{LabelTable, Settings};
 use chiaroscuro_volume::{
-    CountedLabel, DataKind, Dataset, DatasetField, DensityMapping, FieldOrigin, FileContents, Histogram,
-    ValueRange, ValueRanges, Volume, VoxelType, math::SceneSpace,
+    ChoiceAspect, CountedLabel, DataKind, Dataset, DatasetField, DensityMapping, FieldOrigin, FileContents,
+    Histogram, ValueRange, ValueRanges, Volume, VoxelType, math::SceneSpace,
 };
 
 /// Facts about a volume, all fixed except for the range of values that is shown.
@@ -177,6 +178,13 @@ impl VolumeFacts {
             self.of_layer(layer).shown == field.volume().density_mapping()
         };
         fields.clone().count() == self.further.len() + 1 && fields.into_iter().all(is_same)
+    }
+
+    /// Name of the channel or component that is shown, or else of the volume.
+    pub(crate) fn part_name(&self) -> String {
+        let parts =
+            ChoiceAspect::SHOWN_TOGETHER.into_iter().filter_map(|of| Alternatives::new(&self.held, of));
+        parts.last().map_or_else(|| self.name.clone(), |all| all.name(all.current()))
     }
 
     /// Unit of length that suits the size of the volume.

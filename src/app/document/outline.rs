@@ -10,7 +10,7 @@ use super::Document;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::jobs::{JobKind, JobSlot};
 use chiaroscuro_scene::{
-    Clipping, DensityRange, LabelTable, Settings, TransferFunction, VolumeLayer, first_look::ObjectOutline,
+    Clipping, LightingTransfer, OpacityLength, Settings, VolumeLayers, first_look::ObjectOutline,
 };
 use chiaroscuro_volume::Dataset;
 
@@ -18,22 +18,26 @@ use chiaroscuro_volume::Dataset;
 #[derive(Debug, Clone, PartialEq)]
 struct OutlineInputs {
     content_id: u64,
-    transfer: TransferFunction,
-    labels: LabelTable,
-    range: DensityRange,
+    layers: VolumeLayers,
     cuts: Clipping,
 }
 
 impl OutlineInputs {
     fn matches(&self, settings: &Settings, content_id: u64) -> bool {
-        let Self { content_id: of, transfer, labels, range, cuts } = self;
-        let layer = settings.layer();
-        *of == content_id
-            && *transfer == layer.transfer
-            && *labels == layer.labels
-            && *range == layer.range
-            && *cuts == settings.cuts
+        let Self { content_id: of, layers, cuts } = self;
+        *of == content_id && *cuts == settings.cuts && *layers == outlined_layers(settings)
     }
+}
+
+/// Returns the layers without what their outlines do not depend on.
+fn outlined_layers(settings: &Settings) -> VolumeLayers {
+    let mut layers = settings.layers.clone();
+    for layer in layers.iter_mut() {
+        layer.lighting = LightingTransfer::default();
+        layer.opacity_unit = OpacityLength::Voxels(1.0);
+        layer.edges = 0.0;
+    }
+    layers
 }
 
 /// Outline of the object with the search for it.
@@ -49,7 +53,7 @@ pub(crate) struct OutlineCache {
 
 /// Content identifier of the volume that is shown.
 fn content_id(dataset: Option<&Dataset>) -> Option<u64> {
-    dataset.map(|dataset| dataset.volume().content_id())
+    dataset.map(|dataset| dataset.id().content_id)
 }
 
 impl Document {
@@ -111,13 +115,13 @@ impl Document {
             return;
         };
         let settings = self.settings.clone();
-        let VolumeLayer { transfer, labels, range, .. } = settings.layer().clone();
-        let cuts = settings.cuts.clone();
-        let content_id = dataset.volume().content_id();
-        let inputs = OutlineInputs { content_id, transfer, labels, range, cuts };
-        let started = self.outline_cache.search.start(JobKind::Outline, ctx, inputs, move |_| {
-            ObjectOutline::from_settings(&settings, dataset.volume())
-        });
+        let (layers, cuts) = (outlined_layers(&settings), settings.cuts.clone());
+        let content_id = dataset.id().content_id;
+        let inputs = OutlineInputs { content_id, layers, cuts };
+        let started = self
+            .outline_cache
+            .search
+            .start(JobKind::Outline, ctx, inputs, move |_| ObjectOutline::from_dataset(&settings, &dataset));
         if let Err(err) = started {
             log::warn!("the search for the outline of the object could not start: {err}");
             self.outline_cache.failed = Some(content_id);

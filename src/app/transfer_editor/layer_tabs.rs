@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, settings: &Settings, volume: &VolumeFacts, selec
     }
     ui.horizontal(|ui| {
         for (index, layer) in settings.layers.iter().take(count).enumerate() {
-            let name = &volume.of_layer(index).name;
+            let name = &volume.of_layer(index).part_name();
             if let Some(color) = layer_color(layer) {
                 let (area, _) = ui.allocate_exact_size(Vec2::splat(SWATCH_EDGE), Sense::hover());
                 ui.painter().rect_filled(area, 2.0, color);

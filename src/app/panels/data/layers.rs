@@ -8,7 +8,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::elide::elide_middle;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
-use chiaroscuro_scene::{LayerBlend, LayerVisibility, OpacityLength, VolumeLayer, VolumeLayers};
+use chiaroscuro_scene::{LayerBlend, LayerVisibility, VolumeLayer, VolumeLayers};
 
 /// Range of the factor by which opacities of a layer are shown, a thousandth to a thousand.
 const STRENGTH: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFa
     let selected = volume.of_layer(**selected_layer);
     if count > 1 {
         for (index, layer) in settings.layers.iter_mut().take(count).enumerate() {
-            let name = &volume.of_layer(index).name;
+            let name = &volume.of_layer(index).part_name();
             ui.push_id(("layer", index), |ui| name_row(ui, layer, name, index, selected_layer));
         }
         visibility_rows(ui, &mut settings.layers, selected.layer);
@@ -92,12 +92,7 @@ fn strength_row(ui: &mut Ui, layer: &mut VolumeLayer) {
         let speed = 0.01 * strength;
         let field = egui::DragValue::new(&mut strength).speed(speed).range(STRENGTH).max_decimals(3);
         if ui.name_inputs(named.name, |ui| ui.add(field)).on_hover_text(named.tooltip).changed() {
-            let length = 1.0 / strength;
-            layer.opacity_unit = match layer.opacity_unit {
-                OpacityLength::Mm(_) => OpacityLength::Mm(length),
-                OpacityLength::Voxels(_) => OpacityLength::Voxels(length),
-                OpacityLength::Extent(_) => OpacityLength::Extent(length),
-            };
+            layer.opacity_unit = layer.opacity_unit.scaled(1.0 / (strength * layer.opacity_unit.number()));
         }
     });
 }

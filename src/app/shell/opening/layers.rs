@@ -6,7 +6,7 @@ use super::VolumeOpener;
 use super::file_tasks::ReadPurpose;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
-use chiaroscuro_scene::{LookRecord, VolumeLocation, first_look};
+use chiaroscuro_scene::{LookRecord, Settings, VolumeLocation, first_look};
 use chiaroscuro_volume::{ChoiceAspect, Dataset, LoadControl, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
@@ -24,6 +24,8 @@ pub(super) struct LayerFile {
 /// Dataset with further fields, as far as they could be opened.
 struct DatasetWithLayers {
     dataset: Dataset,
+    /// First look at the dataset.
+    first: Settings,
     /// Reason why a volume could not be added; those after it are left out, too.
     failure: Option<String>,
     /// True if a volume is not the one that a record names.
@@ -37,8 +39,13 @@ impl LayerFile {
 }
 
 /// Opens volumes and adds them to a dataset, as far as possible.
-fn with_layers(dataset: Dataset, sources: &[LayerFile], options: &LoadOptions) -> DatasetWithLayers {
-    let mut added = DatasetWithLayers { dataset, failure: None, is_other: false };
+fn with_layers(
+    dataset: Dataset,
+    first: Settings,
+    sources: &[LayerFile],
+    options: &LoadOptions,
+) -> DatasetWithLayers {
+    let mut added = DatasetWithLayers { dataset, first, failure: None, is_other: false };
     for LayerFile { path, choice, recorded_id } in sources {
         let choice = choice.clone().with_first_as_fallback();
         let options = LoadOptions { choice, ..options.clone() };
@@ -56,6 +63,7 @@ fn with_layers(dataset: Dataset, sources: &[LayerFile], options: &LoadOptions) -
             }
         }
     }
+    first_look::add_layers(&mut added.first, &added.dataset);
     added
 }
 
@@ -124,7 +132,9 @@ impl VolumeOpener<'_> {
         // Fields whose layers were removed make room.
         let known = shown.with_fields_where(|index| index < kept);
         let (opened_id, options) = (shown.volume().opened_id(), self.state.loader.options().clone());
-        let read = move |_: &Path| Ok(with_layers(known, &sources, &options));
+        let mut first = self.editor.document.defaults.clone();
+        first.layers.truncate(kept);
+        let read = move |_: &Path| Ok(with_layers(known, first, &sources, &options));
         self.read_file(ReadPurpose::Layer, &path, read, move |opener, read| match read {
             Ok(added) => opener.show_layers(added, kept, opened_id),
             Err(why) => why.report(text::messages::LAYER_NOT_ADDED, &mut opener.editor.messages),
@@ -134,7 +144,7 @@ impl VolumeOpener<'_> {
     /// Shows a dataset with further fields after the first `kept` ones, unless another volume was opened meanwhile.
     fn show_layers(&mut self, added: DatasetWithLayers, kept: usize, opened_id: u64) {
         let shown = self.editor.viewport.dataset();
-        let DatasetWithLayers { dataset, failure, is_other } = added;
+        let DatasetWithLayers { dataset, first, failure, is_other } = added;
         let messages = &mut self.editor.messages;
         if let Some(why) = failure {
             messages.error(text::messages::LAYER_NOT_ADDED, why);
@@ -150,10 +160,11 @@ impl VolumeOpener<'_> {
             messages.note(text::opening::OTHER_VALUES);
         }
         let document = &mut self.editor.document;
-        document.defaults.layers.truncate(kept);
-        first_look::add_layers(&mut document.defaults, &dataset);
-        // A look that was opened may have settings for them.
-        first_look::add_layers(&mut document.settings, &dataset);
+        // A look that was opened may have settings for them, and what the user has changed stays.
+        if document.settings.layers.count() <= kept {
+            document.settings.take_layers(&first, &document.defaults);
+        }
+        document.defaults = first;
         document.selected_layer = kept.min(dataset.fields().len() - 1);
         if let Some(facts) = &mut document.volume {
             facts.update(&dataset);

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::super::object::VisibleObject;
 use super::{frame_points, outline_points};
-use crate::{Camera, FRAME_ASPECT, Projection, Settings};
-use chiaroscuro_volume::Volume;
+use crate::{Camera, FRAME_ASPECT, LayerBlend, Projection, Settings};
+use chiaroscuro_volume::{Dataset, Volume};
 
 /// Share of the frame that the object may reach when orbiting: all but a small margin.
 const MAX_FRAME_SHARE: f64 = 0.98;
@@ -32,6 +32,19 @@ impl ObjectOutline {
         let is_left = |point: &DVec3| region.contains(index_from_scene.transform_point3(*point));
         if points.iter().any(is_left) {
             points.retain(is_left);
+        }
+        Self { points }
+    }
+
+    /// Computes the outline of what settings show of all fields of a dataset that have matter. Reads all voxels.
+    pub fn from_dataset(settings: &Settings, dataset: &Dataset) -> Self {
+        let mut points = Vec::new();
+        for (index, (layer, field)) in settings.layers.iter().zip(dataset.fields().iter()).enumerate() {
+            let has_matter = index == 0 || layer.blend == LayerBlend::Add;
+            if layer.is_seen() && has_matter {
+                let shown_first = settings.clone().with_first_exchanged(index);
+                points.extend(Self::from_settings(&shown_first, field.volume()).points);
+            }
         }
         Self { points }
     }

@@ -4,6 +4,8 @@ use crate::{ControlPoint, LayerBlend, LightingTransfer, Settings, TransferFuncti
 use chiaroscuro_volume::{DataKind, Dataset, DatasetField, Modality};
 
 use super::DomainPalette;
+use super::covering_layers::thin_covering_layers;
+use crate::first_look::ObjectOutline;
 use crate::first_look::domain::DataDomain;
 use crate::first_look::first_settings;
 
@@ -34,15 +36,24 @@ enum FieldRelation {
     Others,
 }
 
-/// Adds layers to a look, one for each field of a dataset for which it has none: labels tint the first one, channels
-/// have the colours of a microscope, and measurements over a scan glow.
+/// Adds layers to a look, one for each field of a dataset for which it has none.
+///
+/// Labels tint the first field, channels have the colours of a microscope, and measurements over a scan glow. Layers
+/// that would hide others are thinned, and the camera is moved so that all are in its frame.
 pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
+    if settings.layers.count() >= dataset.fields().len() {
+        return;
+    }
     let (relation, count) = (FieldRelation::detect(dataset), settings.layers.count());
     if relation == FieldRelation::Channels && count == 1 && dataset.fields().len() > 1 {
         colorize(&mut settings.layer_mut().transfer, &CHANNELS[0]);
     }
     for (index, field) in dataset.fields().iter().enumerate().skip(count) {
         settings.layers.push(further_layer(dataset, index, field, relation));
+    }
+    thin_covering_layers(settings, dataset);
+    if settings.layers.iter().skip(count).any(|layer| layer.blend == LayerBlend::Add) {
+        ObjectOutline::from_dataset(settings, dataset).frame(&mut settings.camera);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Colour palettes by domain. All are about equally light, so that shading conveys the shape, and colour the
 //! material.
 
+mod covering_layers;
 pub(super) mod further_layers;
 
 use super::domain::DataDomain;

@@ -30,6 +30,16 @@ impl OpacityLength {
         }
     }
 
+    /// Returns the length times a factor, in the same unit.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Mm(mm) => Self::Mm(factor * mm),
+            Self::Voxels(count) => Self::Voxels(factor * count),
+            Self::Extent(share) => Self::Extent(factor * share),
+        }
+    }
+
     /// Returns the number without its unit.
     pub fn number(self) -> f64 {
         match self {

@@ -181,6 +181,22 @@ impl Settings {
         self
     }
 
+    /// Takes the layers of another look that these settings lack, and replaces those that they have, and the camera,
+    /// where they are as in `before`.
+    pub fn take_layers(&mut self, from: &Self, before: &Self) {
+        let known = before.layers.0.iter();
+        for ((own, before), new) in self.layers.0.iter_mut().zip(known).zip(&from.layers.0) {
+            if own == before {
+                own.clone_from(new);
+            }
+        }
+        let count = self.layers.0.len().min(from.layers.0.len());
+        self.layers.0.extend_from_slice(&from.layers.0[count..]);
+        if self.camera == before.camera {
+            self.camera.clone_from(&from.camera);
+        }
+    }
+
     /// Replaces the range of values that is mapped to densities.
     #[must_use]
     pub fn with_range(mut self, range: DensityRange) -> Self {
