@@ -2,11 +2,25 @@
 
 use std::path::Path;
 
-use chiaroscuro::app::App;
+use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro_scene::LayerVisibility;
+use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{picture, wait_until, wait_until_idle, window};
+use crate::harness::{SCENE, adjusted_window, click, picture, wait_until, wait_until_idle, window};
+
+fn window_of(source: &Path, session: Option<&Path>) -> Harness<'static, App> {
+    let (source, session) = (Some(source.to_owned()), session.map(Path::to_owned));
+    let options = WindowOptions { source, session, ..WindowOptions::default() };
+    adjusted_window(options, Vec2::new(900.0, 1500.0))
+}
+
+fn wait_until_read(harness: &mut Harness<'_, App>) {
+    wait_until_idle(harness);
+    wait_until(harness, "the volumes are read", |app| app.file_being_read().is_none());
+    wait_until_idle(harness);
+}
 
 fn add(harness: &mut Harness<'_, App>, source: &str) {
     let ctx = harness.ctx.clone();
@@ -25,12 +39,12 @@ fn a_layer_is_added_undone_and_redone() {
     let both = picture(&mut harness);
     assert!(both != alone, "the sphere is seen");
     // Undo takes the layer away, and redo brings it back.
-    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, eframe::egui::Key::Z);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     wait_until(&mut harness, "the layer is gone", |app| app.settings().layers.count() == 1);
     wait_until_idle(&mut harness);
     assert!(picture(&mut harness) == alone, "as before");
-    let redo = eframe::egui::Modifiers::COMMAND.plus(eframe::egui::Modifiers::SHIFT);
-    harness.key_press_modifiers(redo, eframe::egui::Key::Z);
+    let redo = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+    harness.key_press_modifiers(redo, Key::Z);
     wait_until(&mut harness, "the layer is back", |app| app.settings().layers.count() == 2);
     wait_until_idle(&mut harness);
     assert!(picture(&mut harness) == both, "the same two");
@@ -47,4 +61,60 @@ fn what_is_no_volume_is_reported_and_nothing_is_lost() {
     add(&mut harness, &path.to_string_lossy());
     assert_eq!(*harness.state().settings(), before);
     assert!(harness.query_all_by_label_contains("not shown as a layer").next().is_some());
+}
+
+#[test]
+fn a_session_opens_its_layers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = folder.path().join("session.json");
+    let saved = {
+        let mut harness = window_of(Path::new(SCENE), Some(&session));
+        wait_until_idle(&mut harness);
+        add(&mut harness, "builtin:sphere:32");
+        // The note about the saved file is none of the picture.
+        let shown = picture(&mut harness);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+        harness.run_steps(3);
+        shown
+    };
+    let mut harness = window_of(Path::new(SCENE), Some(&session));
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().errors(), [""; 0]);
+    assert!(picture(&mut harness) == saved, "both volumes are seen");
+}
+
+#[test]
+fn components_are_shown_together_and_one_by_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("vectors.nrrd");
+    let header = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 16 16 16\n\
+                  kinds: 2-vector domain domain domain\nencoding: raw\n\n";
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend((0..2 * 4096).map(|at| {
+        let (part, place) = (at % 2, [at / 2 % 16, at / 32 % 16, at / 512]);
+        if place.iter().all(|c| (3 + 4 * part..8 + 4 * part).contains(c)) { 200 } else { (at % 5) as u8 }
+    }));
+    std::fs::write(&path, bytes).expect("written");
+    let mut harness = window_of(&path, None);
+    click(&mut harness, "Data");
+    harness.run_steps(8);
+    click(&mut harness, "Show all together");
+    wait_until(&mut harness, "both are shown", |app| app.settings().layers.count() == 3);
+    wait_until_read(&mut harness);
+    // The last one that was added is selected.
+    click(&mut harness, "Only this layer");
+    harness.run_steps(3);
+    let hidden = |harness: &Harness<'_, App>| {
+        let layers = &harness.state().settings().layers;
+        layers.iter().map(|layer| layer.visibility == LayerVisibility::Hidden).collect::<Vec<_>>()
+    };
+    assert_eq!(hidden(&harness), [true, false, true]);
+    click(&mut harness, "Only this layer");
+    harness.run_steps(3);
+    assert_eq!(hidden(&harness), [false; 3]);
+    // A transfer function is mirrored in the selected layer alone.
+    let before = harness.state().settings().clone();
+    click(&mut harness, "Automatic");
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().settings().layer(), before.layer());
 }
