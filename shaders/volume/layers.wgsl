@@ -22,8 +22,9 @@ struct LayersUniform {
     count: u32,
     // Largest sum of extinctions, per scene unit.
     largest: f32,
+    // Edge of a voxel in scene units, over which tables and texels have opacities; 0 if they have extinctions.
+    voxel: f32,
     pad0: u32,
-    pad1: u32,
     layers: array<LayerUniform, 4>,
 }
 
@@ -35,6 +36,25 @@ const LAYER_TINT = 1u;
 const LAYER_GATE = 2u;
 const LAYER_NONE = 3u;
 
+// Matter with the mean colour × opacity and opacity of a voxel's edge: between an opaque voxel and an empty one, half of
+// the opacity is half, while half of the extinction would be opaque, too.
+fn matter_of_mean(mean: vec4f) -> vec4f {
+    // Differences of integrals may be rounded below 0. An opacity of 1 would have no extinction; the eye tells none above
+    // 1 − 10⁻⁶ from it.
+    let opacity = clamp(mean.a, 0.0, 1.0 - 1e-6);
+    // Below it the logarithm is rounded more than the two differ.
+    let is_faint = opacity < 1e-4;
+    let depth_per_opacity = select(-log(1.0 - opacity) / select(opacity, 1.0, is_faint), 1.0, is_faint);
+    return max(mean, vec4f(0.0)) * select(1.0, depth_per_opacity / max(layers.voxel, 1e-20), layers.voxel > 0.0);
+}
+
+// Texel of a pyramid for matter: extinction or opacity relative to the largest, and colour times that.
+fn texel_of_matter(matter: vec4f) -> vec4f {
+    let opacity = (1.0 - exp(-matter.a * layers.voxel)) / max(1.0 - exp(-layers.largest * layers.voxel), 1e-20);
+    let share = select(matter.a / max(layers.largest, 1e-20), opacity, layers.voxel > 0.0);
+    return vec4f(share, matter.rgb * (share / max(matter.a, 1e-20)));
+}
+
 // Matter of a layer around a voxel: colour × extinction, and extinction.
 fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
     let layer = layers.layers[i];
@@ -42,7 +62,7 @@ fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
     // Within the values around the voxel, by which empty bricks are known.
     let low = max(found.own[i] - half_width, found.lowest[i]);
     let high = min(found.own[i] + half_width, found.highest[i]);
-    let matter = layer_mean(i, low, high) * select(0.0, 1.0, found.is_present[i]);
+    let matter = matter_of_mean(layer_mean(i, low, high)) * select(0.0, 1.0, found.is_present[i]);
     if (layer.edges > 0.0) {
         return matter * smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
     }
@@ -89,7 +109,7 @@ fn densest_beside(i: u32, voxel: vec3i) -> vec4f {
         for (var side = -1; side < 2; side += 2) {
             let beside = field_value(i, voxel + side * step);
             if (beside >= 0.0) {
-                let matter = layer_mean(i, beside, beside);
+                let matter = matter_of_mean(layer_mean(i, beside, beside));
                 densest = select(densest, matter, matter.a > densest.a);
             }
         }
@@ -97,7 +117,7 @@ fn densest_beside(i: u32, voxel: vec3i) -> vec4f {
     return densest;
 }
 
-// Matter of a voxel as a texel of pre-classified voxels: extinction relative to the largest sum, and colour times that.
+// Matter of a voxel as a texel of pre-classified voxels.
 fn layered_material(voxel: vec3i) -> vec4f {
     let found = field_neighbourhood(voxel);
     // Colour × extinction, and extinction.
@@ -114,5 +134,5 @@ fn layered_material(voxel: vec3i) -> vec4f {
             sum += matter;
         }
     }
-    return vec4f(sum.a, sum.rgb) / max(layers.largest, 1e-20);
+    return texel_of_matter(sum);
 }

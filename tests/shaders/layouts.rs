@@ -390,7 +390,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 floor_exposure
             }),
         ),
-        ("volume/composed_voxels.wgsl", layout!(LayersUniform { count, largest, pad0, pad1, layers })),
+        ("volume/composed_voxels.wgsl", layout!(LayersUniform { count, largest, voxel, pad0, layers })),
         ("volume/composed_voxels.wgsl", layout!(LayerUniform { blend, is_label, opacity_unit, edges })),
         ("volume/prefilter.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
         ("volume/downsample.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),

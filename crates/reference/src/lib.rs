@@ -212,8 +212,9 @@ impl<'a> Reference<'a> {
         if settings.layer_composition() != LayerComposition::Composed {
             let bake = |layer: &VolumeLayer, volume: &Volume| layer.bake_eye(volume.table_range(), &scene);
             let tints = settings.has_tints().then(|| tint_voxels(dataset, settings, bake));
-            let tints =
-                tints.map(|tints| ClassifiedVoxels::from_matter(dims, &tints, 1.0, width, options.rounding));
+            let tints = tints.map(|tints| {
+                ClassifiedVoxels::from_matter(dims, &tints, (1.0, None), width, options.rounding)
+            });
             return Self { tints: tints.map(Box::new), ..plain };
         }
         let classified = ALL_TRANSFER_SIDES.map(|side| {
@@ -231,13 +232,16 @@ impl<'a> Reference<'a> {
                     _ => settings.bake_lighting_of(layer, range, &scene),
                 }
             };
+            // Light of several colours is attenuated in proportion to extinctions.
+            let has_colors = side != TransferSide::Eye && settings.has_colored_shadows();
+            let opacity_length = (!has_colors).then(|| scene.mean_edge());
             let fields = settings.layers.iter().zip(dataset.fields().iter());
             let largest: f64 = fields
                 .filter(|(layer, _)| layer.blend.adds_matter())
                 .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
                 .sum();
-            let matter = composed_voxels(dataset, settings, has_effect, bake);
-            ClassifiedVoxels::from_matter(dims, &matter, largest, width, options.rounding)
+            let matter = composed_voxels(dataset, settings, has_effect, bake, opacity_length);
+            ClassifiedVoxels::from_matter(dims, &matter, (largest, opacity_length), width, options.rounding)
         });
         Self { classified: Some(Box::new(classified)), ..plain }
     }

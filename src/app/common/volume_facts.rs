@@ -182,9 +182,9 @@ impl VolumeFacts {
 
     /// Name of the channel or component that is shown, or else of the volume.
     pub(crate) fn part_name(&self) -> String {
-        let parts =
+        let mut parts =
             ChoiceAspect::SHOWN_TOGETHER.into_iter().filter_map(|of| Alternatives::new(&self.held, of));
-        parts.last().map_or_else(|| self.name.clone(), |all| all.name(all.current()))
+        parts.next_back().map_or_else(|| self.name.clone(), |all| all.name(all.current()))
     }
 
     /// Unit of length that suits the size of the volume.

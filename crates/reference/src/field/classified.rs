@@ -67,25 +67,40 @@ impl ClassifiedVoxels {
 }
 
 impl ClassifiedVoxels {
-    /// Spreads voxels of which colour times extinction, and extinction, are known; `largest` is the extinction that
-    /// counts as a share of 1.
+    /// Spreads voxels of which colour times extinction, and extinction, are known, as shares of the largest extinction,
+    /// or of the opacity that it has over a length.
     pub(crate) fn from_matter(
         dims: [usize; 3],
         matter: &[[f64; 4]],
-        largest: f64,
+        (largest, opacity_length): (f64, Option<f64>),
         width: f64,
         rounding: Option<Rounding>,
     ) -> Self {
+        // A share of the largest extinction, or of the opacity that it has over a length.
+        let share = |extinction: f64| match opacity_length {
+            None => extinction / largest.max(1e-20),
+            Some(length) => (-extinction * length).exp_m1() / (-largest * length).exp_m1().min(-1e-20),
+        };
         let field_of = |channel: usize| {
-            let shares = matter.iter().map(|matter| matter[channel] / largest.max(1e-20)).collect();
-            DensityField { dims, densities: shares, border: BorderMode::Zero }
+            let shares = matter.iter().map(|matter| {
+                let [.., extinction] = *matter;
+                if channel == 3 {
+                    share(extinction)
+                } else {
+                    matter[channel] * share(extinction) / extinction.max(1e-20)
+                }
+            });
+            DensityField { dims, densities: shares.collect(), border: BorderMode::Zero }
         };
         let spread = |channel: usize| Pyramid::new(&field_of(channel), width, rounding);
         Self {
             field: field_of(3),
             shares: spread(3),
             colors: [0, 1, 2].map(spread),
-            table: BakedTransfer::linear_ramp(largest as f32),
+            table: match opacity_length {
+                None => BakedTransfer::linear_ramp(largest as f32),
+                Some(length) => BakedTransfer::opacity_ramp(largest as f32, length),
+            },
         }
     }
 }

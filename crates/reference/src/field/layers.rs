@@ -10,7 +10,9 @@ struct LayeredField<'a> {
     volume: &'a Volume,
     densities: Vec<f64>,
     layer: &'a VolumeLayer,
+    /// Table over densities, of opacities if there is a length to which they refer.
     table: IntegratedTable,
+    opacity_length: Option<f64>,
     scene: SceneSpace,
 }
 
@@ -45,7 +47,12 @@ impl LayeredField<'_> {
         let highest = pairs.iter().flatten().copied().fold(own, f64::max);
         let width = if self.volume.shown_labels().is_some() { 0.0 } else { slope };
         let (low, high) = ((own - 0.5 * width).max(lowest), (own + 0.5 * width).min(highest));
-        let matter = self.table.mean_between(low, high);
+        let mut matter = self.table.mean_between(low, high);
+        if let Some(length) = self.opacity_length {
+            let opacity = matter[3].clamp(1e-12, 1.0 - 1e-6);
+            let extinction = -(-opacity).ln_1p() / length;
+            matter = matter.map(|number| number.max(0.0) * extinction / opacity);
+        }
         let edges = self.layer.edges;
         if edges <= 0.0 {
             return matter;
@@ -56,14 +63,16 @@ impl LayeredField<'_> {
 }
 
 /// Returns colour times extinction, and extinction, of every voxel of a dataset with layers. `has_effect` tells if a
-/// layer counts, and `bake` makes its table over the values of its field.
+/// layer counts, and `bake` makes its table over the values of its field. Opacities over a length are composed, or
+/// extinctions if there is none.
 pub(crate) fn composed_voxels(
     dataset: &Dataset,
     settings: &Settings,
     has_effect: impl Fn(&VolumeLayer) -> bool,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
+    opacity_length: Option<f64>,
 ) -> Vec<[f64; 4]> {
-    let fields = layered_fields(dataset, settings, has_effect, bake);
+    let fields = layered_fields(dataset, settings, has_effect, bake, opacity_length);
     let places = voxel_places(dataset.volume().dims());
     places.map(|place| fields.iter().fold([0.0; 4], |sum, field| composed(sum, field, place))).collect()
 }
@@ -79,6 +88,7 @@ fn layered_fields<'a>(
     settings: &'a Settings,
     has_effect: impl Fn(&VolumeLayer) -> bool,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
+    opacity_length: Option<f64>,
 ) -> Vec<LayeredField<'a>> {
     settings
         .layers
@@ -92,7 +102,14 @@ fn layered_fields<'a>(
                 volume,
                 densities: (0..slices).flat_map(|z| volume.slice_densities(z)).map(f64::from).collect(),
                 layer,
-                table: IntegratedTable::new(bake(layer, volume), true),
+                table: IntegratedTable::new(
+                    match (bake(layer, volume), opacity_length) {
+                        (table, None) => table,
+                        (table, Some(length)) => table.with_opacities(length),
+                    },
+                    true,
+                ),
+                opacity_length,
                 scene: dataset.volume().scene(),
             }
         })
@@ -106,7 +123,7 @@ pub(crate) fn tint_voxels(
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
 ) -> Vec<[f64; 4]> {
     let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend == LayerBlend::Tint;
-    let fields = layered_fields(dataset, settings, tints, bake);
+    let fields = layered_fields(dataset, settings, tints, bake, Some(dataset.volume().scene().mean_edge()));
     let tint = |place: [i64; 3]| {
         fields.iter().fold([0.0; 4], |[r, g, b, covered], field| {
             let mut matter = field.matter(place);

@@ -40,6 +40,21 @@ impl BakedLayers {
         baked
     }
 
+    /// Composes extinctions instead of opacities, in proportion to which coloured light is attenuated.
+    #[must_use]
+    pub(crate) fn with_extinctions(mut self) -> Self {
+        if let Some(parameters) = &mut self.parameters {
+            parameters.voxel = 0.0;
+        }
+        self
+    }
+
+    /// Returns the edge of a voxel over which opacities are composed, in scene units; `None` for extinctions.
+    fn opacity_length(&self) -> Option<f64> {
+        let parameters = self.parameters.as_ref().filter(|parameters| parameters.voxel > 0.0)?;
+        Some(f64::from(parameters.voxel))
+    }
+
     /// Bakes the layers that tint the first field; `None` if there are none.
     pub(crate) fn from_tints(volume: &GpuVolume, settings: &Settings) -> Option<Self> {
         let texture = volume.fields.as_ref().filter(|_| settings.has_tints())?;
@@ -72,7 +87,8 @@ impl BakedLayers {
             };
         }
         let count = fields().count() as u32;
-        let parameters = LayersUniform { count, largest: 0.0, pad0: 0, pad1: 0, layers };
+        let parameters =
+            LayersUniform { count, largest: 0.0, voxel: scene.mean_edge() as f32, pad0: 0, layers };
         Self { tables, parameters: Some(Box::new(parameters)), are_tints: false }
     }
 
@@ -94,14 +110,22 @@ impl BakedLayers {
 
     /// Returns the tables as the shaders read them, one after the other.
     pub(crate) fn to_f32s(&self) -> Vec<f32> {
-        self.tables.iter().flat_map(BakedTransfer::to_f32s).collect()
+        match self.opacity_length() {
+            None => self.tables.iter().flat_map(BakedTransfer::to_f32s).collect(),
+            Some(length) => {
+                self.tables.iter().flat_map(|table| table.with_opacities(length).to_f32s()).collect()
+            }
+        }
     }
 
     /// Returns the table that converts relative extinction of pre-classified voxels to extinction.
     pub(crate) fn conversion_table(&self, is_crisp: bool) -> BakedTransfer {
         match &self.tables[..] {
             [table] if is_crisp => table.crisp_ramp(),
-            _ => BakedTransfer::linear_ramp(self.max_extinction()),
+            _ => match self.opacity_length() {
+                None => BakedTransfer::linear_ramp(self.max_extinction()),
+                Some(length) => BakedTransfer::opacity_ramp(self.max_extinction(), length),
+            },
         }
     }
 

@@ -222,7 +222,10 @@ impl TransferTables {
             let bake = |layer: &VolumeLayer, range, scene: &SceneSpace| {
                 settings.bake_lighting_of(layer, range, scene)
             };
-            let lighting = BakedLayers::new(volume, settings, VolumeLayer::casts_shadows, bake);
+            let mut lighting = BakedLayers::new(volume, settings, VolumeLayer::casts_shadows, bake);
+            if key.transmission.is_some() {
+                lighting = lighting.with_extinctions();
+            }
             let lighting = TransferTable::new(context, volume, lighting, bounded, known().chain([&eye]));
             let colors = key.transmission.as_ref().map(|_| lighting.color_tables(context));
             (lighting, colors.unwrap_or_default())

@@ -11,6 +11,7 @@ mod crisp_ramp;
 mod freehand;
 pub(super) mod label_colors;
 pub(super) mod oklab;
+mod opacity_ramp;
 
 use serde::{Deserialize, Serialize};
 

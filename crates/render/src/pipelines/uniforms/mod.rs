@@ -165,8 +165,8 @@ pub struct LayerUniform {
 pub struct LayersUniform {
     pub count: u32,
     pub largest: f32,
+    pub voxel: f32,
     pub pad0: u32,
-    pub pad1: u32,
     pub layers: [LayerUniform; MAX_FIELDS],
 }
 
