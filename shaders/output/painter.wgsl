@@ -3,7 +3,7 @@
 //
 // The window does not leave this to egui's shader, which filters textures in two ways, for the pictures of tests, too,
 // and chooses between them for every pixel. Software drivers execute both: 900 cycles for each pixel of the window.
-#import "output/srgb.wgsl"
+#import "common/srgb.wgsl"
 
 // Set if the target encodes to sRGB on writing.
 override LINEAR_TARGET: bool = false;

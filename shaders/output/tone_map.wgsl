@@ -1,5 +1,5 @@
 // Display of linear, premultiplied light: average of a pixel's samples, tone map, background, sRGB.
-#import "output/srgb.wgsl"
+#import "common/srgb.wgsl"
 
 struct DisplayUniform {
     // Background colours at the top and the bottom, in sRGB.

@@ -4,10 +4,11 @@
 // A steep curve would turn voxels on or off as a whole, and surfaces into stairs. So a voxel has the mean matter of the
 // densities within it: those of a linear field in a cube spread evenly, nearly, over a range as wide as its gradient is
 // long, whose variance is the same: a twelfth of the sum of the squared differences across the cube.
+#import "common/srgb.wgsl"
 #import "volume/material.wgsl"
 
 struct LayerUniform {
-    // LAYER_ADD, LAYER_TINT, LAYER_GATE or LAYER_NONE.
+    // LAYER_ADD, LAYER_TINT, LAYER_GATE or LAYER_NONE; LAYER_RED plus the number of a channel of colour.
     blend: u32,
     // 1 if densities are classes of labels, which have no mean.
     is_label: u32,
@@ -35,6 +36,7 @@ const LAYER_ADD = 0u;
 const LAYER_TINT = 1u;
 const LAYER_GATE = 2u;
 const LAYER_NONE = 3u;
+const LAYER_RED = 4u;
 
 // Matter with the mean colour × opacity and opacity of a voxel's edge: between an opaque voxel and an empty one, half of
 // the opacity is half, while half of the extinction would be opaque, too.
@@ -80,6 +82,13 @@ fn with_tint(sum: vec4f, weight: f32, matter: vec4f, opacity: f32) -> vec4f {
     return vec4f(mix(sum.rgb, color * weight, opacity), sum.a);
 }
 
+// Color with the channel of a layer replaced by the density at a voxel, times a weight, if the layer is of a channel and
+// the voxel is there.
+fn with_channel(color: vec3f, weight: f32, i: u32, found: FieldNeighbourhood) -> vec3f {
+    let is_replaced = (vec3u(0u, 1u, 2u) + LAYER_RED == vec3u(layers.layers[i].blend)) & vec3<bool>(found.is_present[i]);
+    return select(color, weight * linear_from_srgb(vec3f(found.own[i])), is_replaced);
+}
+
 // Tint of a voxel by all layers that tint: opacity, and colour times opacity.
 //
 // The surface of a labelled structure lies between its voxels and those beside them, so the tint of labels reaches one
@@ -88,6 +97,11 @@ fn voxel_tint(voxel: vec3i) -> vec4f {
     let found = field_neighbourhood(voxel);
     var tint = vec4f(0.0);
     for (var i = 0u; i < layers.count; i += 1u) {
+        if (layers.layers[i].blend >= LAYER_RED) {
+            let is_there = select(0.0, 1.0, found.is_present[i]);
+            tint = vec4f(with_channel(tint.rgb, 1.0, i, found), max(tint.a, is_there));
+            continue;
+        }
         if (layers.layers[i].blend != LAYER_TINT) {
             continue;
         }
@@ -132,6 +146,8 @@ fn layered_material(voxel: vec3i) -> vec4f {
             sum *= opacity;
         } else if (blend == LAYER_ADD) {
             sum += matter;
+        } else {
+            sum = vec4f(with_channel(sum.rgb, sum.a, i, found), sum.a);
         }
     }
     return texel_of_matter(sum);

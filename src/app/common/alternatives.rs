@@ -101,13 +101,14 @@ impl<'a> Alternatives<'a> {
         }
     }
 
-    /// Returns true if the file has colours, which are shown as luminance.
+    /// Returns true if the file has colours, of which the luminance is shown.
     pub(crate) fn has_colors(&self) -> bool {
         matches!(
             self.of,
             AlternativeSource::Components(VoxelComponents {
                 is_color: true,
                 default_component: DefaultComponent::Luminance,
+                selected: None,
                 ..
             })
         )

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
 use chiaroscuro_scene::{
-    LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, Settings, VolumeLayer,
+    DensityRange, LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, Settings, VolumeLayer,
 };
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
@@ -59,7 +59,7 @@ fn labels() -> (Arc<Volume>, LabelTable) {
     (volume.into(), table)
 }
 
-fn dataset(further: &[Arc<Volume>]) -> Dataset {
+fn dataset_of(further: &[Arc<Volume>]) -> Dataset {
     let first = Dataset::new(scenes::creature(EDGE, DVec3::ONE));
     further.iter().fold(first, |dataset, volume| dataset.with_field(volume, "field").expect("another field"))
 }
@@ -93,12 +93,12 @@ fn check(name: &str, dataset: &Dataset, settings: &Settings) {
 
 #[test]
 fn layers_add_their_matter() {
-    check("two fields", &dataset(&[ball()]), &look(&[second()]));
+    check("two fields", &dataset_of(&[ball()]), &look(&[second()]));
     let mut third = second();
     third.lighting.linked = false;
     third.lighting.curve = scenes::linear_extinction(0.2);
     third.transfer.points[1].color = [1.0, 0.2, 0.1];
-    check("three fields", &dataset(&[ball(), waves()]), &look(&[second(), third]));
+    check("three fields", &dataset_of(&[ball(), waves()]), &look(&[second(), third]));
 }
 
 #[test]
@@ -106,9 +106,9 @@ fn layers_may_cast_without_being_seen_and_may_be_hidden() {
     let with = |visibility| look(&[VolumeLayer { visibility, ..second() }]);
     let (mask, gate) = labelled(LayerBlend::Gate);
     for visibility in [LayerVisibility::CastsShadows, LayerVisibility::Hidden] {
-        check(&format!("{visibility:?}"), &dataset(&[ball()]), &with(visibility));
+        check(&format!("{visibility:?}"), &dataset_of(&[ball()]), &with(visibility));
         let gated = look(&[VolumeLayer { visibility, ..gate.clone() }]);
-        check(&format!("gate, {visibility:?}"), &dataset(std::slice::from_ref(&mask)), &gated);
+        check(&format!("gate, {visibility:?}"), &dataset_of(std::slice::from_ref(&mask)), &gated);
     }
 }
 
@@ -116,7 +116,7 @@ fn layers_may_cast_without_being_seen_and_may_be_hidden() {
 fn labels_tint_gate_and_add() {
     for blend in LayerBlend::ALL {
         let (volume, layer) = labelled(blend);
-        check(&format!("{blend:?}"), &dataset(&[volume]), &look(&[layer]));
+        check(&format!("{blend:?}"), &dataset_of(&[volume]), &look(&[layer]));
     }
 }
 
@@ -124,7 +124,7 @@ fn labels_tint_gate_and_add() {
 fn tints_of_one_field_leave_its_matter() {
     let (volume, layer) = labelled(LayerBlend::Tint);
     let glow = VolumeLayer { blend: LayerBlend::Tint, ..second() };
-    let (dataset, mut settings) = (dataset(&[volume, ball()]), look(&[layer, glow]));
+    let (dataset, mut settings) = (dataset_of(&[volume, ball()]), look(&[layer, glow]));
     assert_eq!(settings.layer_composition(), LayerComposition::Tinted);
     check("labels and a field", &dataset, &settings);
     let drawn = settings.resolved_for_dataset(&dataset).into_owned();
@@ -135,6 +135,18 @@ fn tints_of_one_field_leave_its_matter() {
         ("mix(tint.a, 1.0, opacity)", "opacity"),
     ] {
         assert!(differs_with(&dataset, &settings, &reference, (from, to)), "{to}");
+    }
+    // Channels of color, alone and after a layer with matter.
+    for blend in LayerBlend::CHANNELS {
+        let channel = VolumeLayer { blend, range: DensityRange::Full, ..VolumeLayer::default() };
+        let colors = look(&[channel.clone(), channel.clone()]);
+        let two = dataset_of(&[waves(), ball()]);
+        check(&format!("{blend:?}"), &two, &colors);
+        check(&format!("{blend:?} after matter"), &two, &look(&[second(), channel]));
+        let drawn = colors.resolved_for_dataset(&two).into_owned();
+        let reference = Reference::with_layers(&two, &drawn, options());
+        let swap = ("vec3u(0u, 1u, 2u) + LAYER_RED", "vec3u(1u, 2u, 0u) + LAYER_RED");
+        assert!(differs_with(&two, &colors, &reference, swap), "another channel than {blend:?}");
     }
     // The opacities of a tint are not those of its matter, and light does not meet them.
     let light = |settings: &Settings| full_attenuation(&mut renderer(), &dataset, settings, 0);
@@ -147,9 +159,9 @@ fn tints_of_one_field_leave_its_matter() {
 fn edges_are_left_of_one_field_and_of_several() {
     let mut settings = look(&[]);
     settings.layer_mut().edges = 0.08;
-    check("edges of one field", &dataset(&[]), &settings);
+    check("edges of one field", &dataset_of(&[]), &settings);
     let layer = VolumeLayer { edges: 0.05, ..second() };
-    check("edges of the second field", &dataset(&[ball()]), &look(&[layer]));
+    check("edges of the second field", &dataset_of(&[ball()]), &look(&[layer]));
 }
 
 #[test]
@@ -157,7 +169,7 @@ fn mistakes_in_layers_are_noticed() {
     let (volume, layer) = labelled(LayerBlend::Tint);
     let mut third = second();
     third.edges = 0.05;
-    let (dataset, settings) = (dataset(&[ball(), waves(), volume]), look(&[second(), third, layer]));
+    let (dataset, settings) = (dataset_of(&[ball(), waves(), volume]), look(&[second(), third, layer]));
     let drawn = settings.resolved_for_dataset(&dataset);
     let reference = Reference::with_layers(&dataset, &drawn, options());
     let differs = |from, to| differs_with(&dataset, &settings, &reference, (from, to));

@@ -2,7 +2,7 @@
 
 use super::classified::unassociated;
 use super::integrated_table::IntegratedTable;
-use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer};
+use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer, linear_from_srgb};
 use chiaroscuro_volume::{Dataset, Volume, math::SceneSpace};
 
 /// Field with its layer and the layer's transfer function of a side.
@@ -122,10 +122,18 @@ pub(crate) fn tint_voxels(
     settings: &Settings,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
 ) -> Vec<[f64; 4]> {
-    let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend == LayerBlend::Tint;
+    let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend.changes_color_alone();
     let fields = layered_fields(dataset, settings, tints, bake, Some(dataset.volume().scene().mean_edge()));
     let tint = |place: [i64; 3]| {
         fields.iter().fold([0.0; 4], |[r, g, b, covered], field| {
+            if let Some(channel) = field.layer.blend.channel() {
+                let mut tint = [r, g, b, covered];
+                if let Some(density) = field.density(place) {
+                    tint[channel] = linear_from_srgb(density);
+                    tint[3] = 1.0;
+                }
+                return tint;
+            }
             let mut matter = field.matter(place);
             if field.volume.shown_labels().is_some() && matter[3] <= 0.0 {
                 // Labels tint one voxel further, since their surfaces lie between voxels.
@@ -153,6 +161,13 @@ fn composed(sum: [f64; 4], field: &LayeredField<'_>, place: [i64; 3]) -> [f64; 4
     match field.layer.blend {
         LayerBlend::Add => std::array::from_fn(|i| sum[i] + matter[i]),
         LayerBlend::Gate => sum.map(|number| number * opacity),
+        LayerBlend::Red | LayerBlend::Green | LayerBlend::Blue => {
+            let mut replaced = sum;
+            if let (Some(channel), Some(density)) = (field.layer.blend.channel(), field.density(place)) {
+                replaced[channel] = linear_from_srgb(density) * sum[3];
+            }
+            replaced
+        }
         LayerBlend::Tint => {
             let [r, g, b, _] = unassociated(matter);
             let tinted = [r, g, b].map(|color| color * sum[3]);

@@ -58,8 +58,16 @@ impl BakedLayers {
     /// Bakes the layers that tint the first field; `None` if there are none.
     pub(crate) fn from_tints(volume: &GpuVolume, settings: &Settings) -> Option<Self> {
         let texture = volume.fields.as_ref().filter(|_| settings.has_tints())?;
-        let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend == LayerBlend::Tint;
-        let baked = Self::from_fields(texture, settings, &volume.scene, tints, VolumeLayer::bake_eye);
+        let tints = |layer: &VolumeLayer| layer.is_seen() && layer.blend.changes_color_alone();
+        let bake = |layer: &VolumeLayer, range: ValueRange, scene: &SceneSpace| {
+            // A channel of colour is there at all densities.
+            if layer.blend.channel().is_some() {
+                BakedTransfer::constant(1.0)
+            } else {
+                layer.bake_eye(range, scene)
+            }
+        };
+        let baked = Self::from_fields(texture, settings, &volume.scene, tints, bake);
         Some(Self { are_tints: true, ..baked })
     }
 
@@ -183,9 +191,15 @@ impl BakedLayers {
 
     /// Returns the layers with matter of their own, or those that tint, with their indices.
     fn with_matter(&self) -> impl Iterator<Item = (usize, &BakedTransfer)> {
-        let counted = blend_number(if self.are_tints { LayerBlend::Tint } else { LayerBlend::Add });
-        let counts =
-            move |at: usize| self.parameters.as_ref().is_none_or(|layers| layers.layers[at].blend == counted);
+        let counted: Vec<u32> = LayerBlend::ALL
+            .into_iter()
+            .filter(|blend| if self.are_tints { blend.changes_color_alone() } else { blend.adds_matter() })
+            .map(blend_number)
+            .collect();
+        let counts = move |at: usize| {
+            let parameters = self.parameters.as_ref();
+            parameters.is_none_or(|layers| counted.contains(&layers.layers[at].blend))
+        };
         self.tables.iter().enumerate().filter(move |(at, _)| counts(*at))
     }
 }
@@ -199,6 +213,9 @@ fn blend_number(blend: LayerBlend) -> u32 {
         LayerBlend::Add => 0,
         LayerBlend::Tint => 1,
         LayerBlend::Gate => 2,
+        LayerBlend::Red => 4,
+        LayerBlend::Green => 5,
+        LayerBlend::Blue => 6,
     }
 }
 

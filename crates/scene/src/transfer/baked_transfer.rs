@@ -111,6 +111,11 @@ impl BakedTransfer {
         Self::new((0..LUT_SIZE).map(|entry| [1.0, 1.0, 1.0, largest * entry as f32 / last]).collect())
     }
 
+    /// Creates a white table with the same extinction everywhere.
+    pub fn constant(extinction: f32) -> Self {
+        Self::new(vec![[1.0, 1.0, 1.0, extinction]; LUT_SIZE])
+    }
+
     /// Returns all numbers in the order of the shaders' declaration (`volume/material.wgsl`).
     pub fn to_f32s(&self) -> Vec<f32> {
         let Self { entries, slope_signs: sides, range_maxima: peaks, integrals } = self;

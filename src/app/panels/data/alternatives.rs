@@ -17,12 +17,14 @@ pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<AppComm
     for aspect in ChoiceAspect::ALL {
         let Some(alternatives) = Alternatives::new(&volume.held, aspect) else { continue };
         alternative_row(ui, aspect, &alternatives, commands);
-        if alternatives.has_colors() {
-            unlabelled_row(ui, |ui| ui.add(egui::Label::new(text::chooser::NO_COLORS).wrap()));
-        } else if ChoiceAspect::SHOWN_TOGETHER.contains(&aspect) {
+        if ChoiceAspect::SHOWN_TOGETHER.contains(&aspect) {
+            let (name, tooltip) = if alternatives.has_colors() {
+                (text::chooser::COLORS.name, text::chooser::COLORS.tooltip.to_owned())
+            } else {
+                (text::chooser::TOGETHER, text::chooser::together_tooltip(alternatives.count()))
+            };
             unlabelled_row(ui, |ui| {
-                let button = ui.button(text::chooser::TOGETHER);
-                if button.on_hover_text(text::chooser::together_tooltip(alternatives.count())).clicked() {
+                if ui.button(name).on_hover_text(tooltip).clicked() {
                     commands.push(AppCommand::ShowTogether(aspect));
                 }
             });

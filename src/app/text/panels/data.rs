@@ -60,6 +60,9 @@ pub(crate) fn layer_blend(blend: LayerBlend) -> ControlText {
         LayerBlend::Add => control_text("Add", "Adds its own material"),
         LayerBlend::Tint => control_text("Tint", "Colours the layers before it where it is opaque"),
         LayerBlend::Gate => control_text("Gate", "Keeps the layers before it only where it is opaque"),
+        LayerBlend::Red => control_text("Red", "Replaces red of the layers before it by its density"),
+        LayerBlend::Green => control_text("Green", "Replaces green of the layers before it by its density"),
+        LayerBlend::Blue => control_text("Blue", "Replaces blue of the layers before it by its density"),
     }
 }
 

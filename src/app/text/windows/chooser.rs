@@ -128,7 +128,7 @@ pub(crate) const TOGETHER: &str = "Show all together";
 /// Command that shows what a file has several of as layers.
 pub(crate) fn show_together(aspect: ChoiceAspect) -> &'static str {
     match aspect {
-        ChoiceAspect::Component => "Show all components together",
+        ChoiceAspect::Component => "Show colours, or all components together",
         ChoiceAspect::Dimension(_) => "Show all channels together",
     }
 }
@@ -142,8 +142,11 @@ pub(crate) fn together_tooltip(count: usize) -> String {
     }
 }
 
-/// Note for colours, which are shown as luminance.
-pub(crate) const NO_COLORS: &str = "Colours are not shown yet: choose their luminance or one component";
+/// Button that shows a volume in the colours of its file.
+pub(crate) const COLORS: ControlText = control_text(
+    "Show colours",
+    "Colours the material by red, green and blue of the file; opacity is by luminance",
+);
 
 /// Keyboard hint below the list.
 pub(crate) const KEYS: &str = "Arrow keys and Enter choose, Esc closes";

@@ -23,6 +23,9 @@ impl UniformLightColor {
     pub fn detect(settings: &Settings) -> Option<Self> {
         let is_grey = |color: [f32; 3]| color[0] == color[1] && color[1] == color[2];
         let layer_is_grey = |layer: &VolumeLayer| {
+            if layer.blend.channel().is_some() {
+                return false;
+            }
             if layer.labels.is_empty() {
                 layer.transfer.points.iter().all(|point| is_grey(point.color))
             } else {

@@ -1,7 +1,12 @@
 //! Looks of further layers: what tells the fields of a picture apart.
 
-use crate::{ControlPoint, LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer};
-use chiaroscuro_volume::{DataKind, Dataset, DatasetField, Modality};
+use crate::{
+    ControlPoint, DensityRange, LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer,
+};
+use chiaroscuro_volume::{
+    DataKind, Dataset, DatasetField, DefaultComponent, Modality, ValueRange, Volume, VoxelComponents,
+    VoxelType,
+};
 
 use super::DomainPalette;
 use super::covering_layers::thin_covering_layers;
@@ -28,6 +33,8 @@ const SEEN_MEASUREMENT_SHARE: f64 = 0.97;
 /// Relation of further volumes to the first one, which decides their colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FieldRelation {
+    /// Red, green and blue of a volume of colours, whose luminance is the first one.
+    Colors,
     /// Channels of a microscope, all of which have colours of channels.
     Channels,
     /// Measurements over a scan of a body, which glow.
@@ -70,6 +77,13 @@ fn further_layer(
     relation: FieldRelation,
 ) -> VolumeLayer {
     let volume = field.volume();
+    let component = field.origin().and_then(|origin| origin.choice.component);
+    if relation == FieldRelation::Colors
+        && let Some(&blend) = component.and_then(|component| LayerBlend::CHANNELS.get(component))
+    {
+        let range = DensityRange::Typed(color_range(volume));
+        return VolumeLayer { blend, range, ..VolumeLayer::default() };
+    }
     let mut layer = first_settings(volume, field.histogram()).layer().clone();
     if matches!(volume.kind().kind, DataKind::LabelMap { .. } | DataKind::Mask) {
         if !dataset.volume().is_label_map() {
@@ -90,7 +104,12 @@ impl FieldRelation {
             |field: &DatasetField| field.origin().is_some_and(|origin| origin.choice.channel.is_some());
         let is_microscopy = first.metadata().modality == Modality::LightMicroscopy
             || DataDomain::from_channels(first) == Some(DataDomain::Fluorescence);
-        if is_microscopy || dataset.fields().iter().any(is_chosen) {
+        let is_color = |part: &VoxelComponents| {
+            part.is_color && part.selected.is_none() && part.default_component == DefaultComponent::Luminance
+        };
+        if first.contents().components.as_ref().is_some_and(is_color) {
+            Self::Colors
+        } else if is_microscopy || dataset.fields().iter().any(is_chosen) {
             Self::Channels
         } else if first.is_anatomical() || matches!(first.kind().kind, DataKind::HounsfieldCt { .. }) {
             Self::Measurements
@@ -98,6 +117,16 @@ impl FieldRelation {
             Self::Others
         }
     }
+}
+
+/// Returns the numbers for the absence and the full amount of a channel of colour.
+fn color_range(volume: &Volume) -> ValueRange {
+    let largest = match volume.samples().voxel_type() {
+        VoxelType::U8 => f64::from(u8::MAX),
+        VoxelType::U16 => f64::from(u16::MAX),
+        _ => volume.ranges().all.high.max(1.0),
+    };
+    ValueRange::new(0.0, largest)
 }
 
 /// Gives a curve the colours of a palette, from its first point to its last; opacities stay.

@@ -33,6 +33,12 @@ pub enum LayerBlend {
     Tint,
     /// Keeps the matter of the layers before it as far as its opacity goes, and removes the rest. Adds no matter.
     Gate,
+    /// Replaces red of the colour of the layers before it by its density, as an sRGB value. Adds no matter.
+    Red,
+    /// Replaces green likewise.
+    Green,
+    /// Replaces blue likewise.
+    Blue,
 }
 
 /// Way in which the layers of a scene become the matter of one picture.
@@ -48,7 +54,20 @@ pub enum LayerComposition {
 
 impl LayerBlend {
     /// Blends in the order of lists.
-    pub const ALL: [Self; 3] = [Self::Add, Self::Tint, Self::Gate];
+    pub const ALL: [Self; 6] = [Self::Add, Self::Tint, Self::Gate, Self::Red, Self::Green, Self::Blue];
+
+    /// Blends that replace red, green and blue.
+    pub const CHANNELS: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
+
+    /// Returns the channel of colour that the blend replaces, from 0 for red.
+    pub fn channel(self) -> Option<usize> {
+        Self::CHANNELS.iter().position(|channel| *channel == self)
+    }
+
+    /// Returns true if the layer changes the colour of matter and not its amount.
+    pub fn changes_color_alone(self) -> bool {
+        self == Self::Tint || self.channel().is_some()
+    }
 
     /// Returns true if the layer has matter of its own.
     pub fn adds_matter(self) -> bool {
@@ -96,7 +115,7 @@ impl VolumeLayer {
 
     /// Returns true if the layer changes the picture of those before it: unless it is hidden, or only tints unseen.
     fn has_effect_on_others(&self) -> bool {
-        self.is_seen() || self.casts_shadows() && self.blend != LayerBlend::Tint
+        self.is_seen() || self.casts_shadows() && !self.blend.changes_color_alone()
     }
 
     /// Returns true if opacity depends on more than the value, so that voxels are classified first.
@@ -167,7 +186,7 @@ impl Settings {
             LayerComposition::Composed
         } else if further().next().is_none() {
             LayerComposition::First
-        } else if further().all(|layer| layer.blend == LayerBlend::Tint)
+        } else if further().all(|layer| layer.blend.changes_color_alone())
             && first.labels.is_empty()
             && !self.sampling.classification.is_pre()
             && !self.has_colored_shadows()
