@@ -142,6 +142,9 @@ pub(crate) fn together_tooltip(count: usize) -> String {
     }
 }
 
+/// Note in the list for a file of colours, of which the luminance is shown.
+pub(crate) const COLORS_NOTE: &str = "Show colours, in the section Data, shows the colours of the file";
+
 /// Button that shows a volume in the colours of its file.
 pub(crate) const COLORS: ControlText = control_text(
     "Show colours",

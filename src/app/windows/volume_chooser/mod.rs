@@ -83,7 +83,7 @@ impl VolumeChooser {
         window.open(&mut open).resizable(false).collapsible(false).show(ctx, |ui| {
             ui.set_width(LIST_WIDTH);
             if all.has_colors() {
-                ui.label(text::chooser::NO_COLORS);
+                ui.label(text::chooser::COLORS_NOTE);
             }
             visible = self.show_list(ui, &all, &mut chosen);
             ui.separator();
