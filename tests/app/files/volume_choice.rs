@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro_scene::LookRecord;
+use chiaroscuro_scene::{LayerBlend, LookRecord};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -116,13 +116,20 @@ fn a_session_and_the_list_of_files_open_the_same_one_again() {
 }
 
 #[test]
-fn colours_say_that_they_are_not_shown() {
+fn colours_open_as_their_luminance_and_are_shown_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("colors.npy");
     write_npy(&path, "6, 6, 6, 3", 648, |at| (at * 37 % 251) as u8);
     let mut harness = window_of(&path, None);
-    assert!(harness.query_by_label_contains("Colours are not shown yet").is_some());
     assert!(harness.query_by_label("Luminance").is_some(), "beside the name of the file");
+    click(&mut harness, "Show colours");
+    wait_until(&mut harness, "the colors are shown", |app| app.settings().layers.count() == 4);
+    let blends: Vec<_> = harness.state().settings().layers.iter().skip(1).map(|layer| layer.blend).collect();
+    assert_eq!(blends, LayerBlend::CHANNELS);
+    wait_until_idle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    wait_until(&mut harness, "the luminance is back", |app| app.settings().layers.count() == 1);
+    wait_until_idle(&mut harness);
     click(&mut harness, "1 of 4 · Luminance");
     harness.run_steps(3);
     click(&mut harness, "Green");
