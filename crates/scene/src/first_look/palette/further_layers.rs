@@ -82,7 +82,7 @@ fn further_layer(
         && let Some(&blend) = component.and_then(|component| LayerBlend::CHANNELS.get(component))
     {
         let range = DensityRange::Typed(color_range(volume));
-        return VolumeLayer { blend, range, ..VolumeLayer::default() };
+        return VolumeLayer { range, blend, ..VolumeLayer::default() };
     }
     let mut layer = first_settings(volume, field.histogram()).layer().clone();
     if matches!(volume.kind().kind, DataKind::LabelMap { .. } | DataKind::Mask) {
