@@ -59,13 +59,16 @@ impl Document {
         self.keep_balanced.accept(&self.settings);
     }
 
-    /// Lists the open volume, which has the identifier `opened_id`, and those that are shown with it.
+    /// Lists the open volume, which has the identifier `opened_id`, and those that are shown with it, or would be if
+    /// they could be opened.
     pub(crate) fn shown_volumes(&self, opened_id: u64) -> Vec<FieldOrigin> {
         let Some(volume) = &self.volume else { return Vec::new() };
         let (source, choice) = (volume.source.clone(), volume.held.choice());
         let first = FieldOrigin { source, opened_id, choice };
-        let shown = volume.further.iter().take(self.settings.layers.count() - 1);
-        std::iter::once(first).chain(shown.map(|further| further.origin.clone())).collect()
+        let shown = volume.further.iter().map(|further| &further.origin);
+        let missing = self.recorded_layers.iter().skip(volume.further.len());
+        let further = shown.chain(missing).take(self.settings.layers.count() - 1);
+        std::iter::once(first).chain(further.cloned()).collect()
     }
 
     /// Writes the look to a file, which becomes the session; `opened_id` is the identifier of the open file's volume.

@@ -28,7 +28,7 @@ use self::outline::OutlineCache;
 use self::session::SessionFile;
 use crate::app::common::volume_facts::VolumeFacts;
 use chiaroscuro_scene::{Settings, VolumeLayer};
-use chiaroscuro_volume::{Dataset, ValueRanges};
+use chiaroscuro_volume::{Dataset, FieldOrigin, ValueRanges};
 
 /// Look that is edited, the volume that it shows, and what is kept about both.
 #[derive(Debug)]
@@ -43,6 +43,8 @@ pub(crate) struct Document {
     pub selected_light: usize,
     /// Index of the layer whose curve and range are edited; the first one is if there is no such layer.
     pub selected_layer: usize,
+    /// Further volumes that the record of the look names; those that could not be opened stay in what is saved.
+    pub recorded_layers: Vec<FieldOrigin>,
     /// Undo history of the look.
     pub history: History,
     /// Session file of Ctrl+S, if there is one.
@@ -68,6 +70,7 @@ impl Default for Document {
             volume: None,
             selected_light: 0,
             selected_layer: 0,
+            recorded_layers: Vec::new(),
             history: History::default(),
             session: None,
             corrections: CorrectionState::default(),

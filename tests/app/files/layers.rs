@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro_scene::LayerVisibility;
+use chiaroscuro_scene::{LayerVisibility, LookRecord};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
+use super::volume_choice::write_npy;
 use crate::harness::{SCENE, adjusted_window, click, picture, wait_until, wait_until_idle, window};
 
 fn window_of(source: &Path, session: Option<&Path>) -> Harness<'static, App> {
@@ -117,4 +118,27 @@ fn components_are_shown_together_and_one_by_one() {
     click(&mut harness, "Automatic");
     wait_until_read(&mut harness);
     assert_eq!(harness.state().settings().layer(), before.layer());
+}
+
+#[test]
+fn a_session_keeps_layers_that_cannot_be_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (session, layer) = (folder.path().join("session.json"), folder.path().join("layer.npy"));
+    write_npy(&layer, "16, 16, 16", 4096, |at| (at % 16 * 15) as u8);
+    let save = |layer: Option<&Path>| {
+        let mut harness = window_of(Path::new(SCENE), Some(&session));
+        wait_until_read(&mut harness);
+        if let Some(layer) = layer {
+            add(&mut harness, &layer.to_string_lossy());
+        }
+        harness.key_press(Key::CloseBracket);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+        harness.run_steps(5);
+        let text = std::fs::read_to_string(&session).expect("saved");
+        LookRecord::parse(&text).expect("a record").volume.expect("a volume").layers
+    };
+    let before = save(Some(&layer));
+    assert_eq!(before.len(), 1);
+    std::fs::remove_file(&layer).expect("removed");
+    assert_eq!(save(None), before);
 }

@@ -89,6 +89,8 @@ impl VolumeOpener<'_> {
         let file = record.file.as_deref().unwrap_or_else(|| Path::new(""));
 
         let recorded = record.volume.as_ref().map(|volume| volume.layers.as_slice()).unwrap_or_default();
+        self.editor.document.recorded_layers =
+            recorded.iter().map(|volume| volume.origin(file.parent())).collect();
         if recorded.is_empty() {
             return;
         }

@@ -68,6 +68,7 @@ impl VolumeOpener<'_> {
         self.editor.viewport.set_scene(renderer, dataset);
         let document = &mut self.editor.document;
         document.volume = Some(facts);
+        document.recorded_layers.clear();
         // Treated as its own kind of data, with its own up axis.
         document.kind_override = KindOverride::default();
         document.drop_turns();

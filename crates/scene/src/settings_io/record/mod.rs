@@ -132,6 +132,19 @@ impl VolumeRecord {
         VolumeLocation::classify(&self.path(), folder)
     }
 
+    /// Returns the source of the volume as it was recorded, for a record read from `folder`.
+    pub fn origin(&self, folder: Option<&Path>) -> FieldOrigin {
+        let path = self.path();
+        let is_builtin = path.to_str().is_some_and(|name| name.starts_with("builtin:"));
+        let source = match folder.filter(|_| !is_builtin) {
+            // An absolute path replaces the folder.
+            Some(folder) => folder.join(path),
+            None => path,
+        };
+        let opened_id = u64::from_str_radix(&self.content_id, 16).unwrap_or_default();
+        FieldOrigin { source, opened_id, choice: self.choice.clone() }
+    }
+
     /// Returns true if a volume has the recorded values and geometry.
     pub fn matches_content(&self, content_id: u64) -> bool {
         self.content_id == format!("{content_id:016x}")
