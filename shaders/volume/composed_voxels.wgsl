@@ -1,11 +1,18 @@
-// Voxels composed of layers, level 0 of their pyramid: materials from several fields, spread.
+// Voxels composed of layers, level 0 of their pyramid: materials from several fields, spread; or the tints of the first
+// field's material by further ones.
+#option TINTS: tints instead of materials
 #import "volume/layers.wgsl"
 #import "volume/spread_voxels.wgsl"
 
-// Material of a voxel; 0 outside the grid.
+// Material or tint of a voxel; 0 outside the grid.
 fn voxel_material(place: vec3i) -> vec4f {
     let voxel = clamp(place, vec3i(0), field_grid() - 1);
-    return select(vec4f(0.0), layered_material(voxel), all(voxel == place));
+#if TINTS
+    let found = voxel_tint(voxel);
+#else
+    let found = layered_material(voxel);
+#endif
+    return select(vec4f(0.0), found, all(voxel == place));
 }
 
 @compute @workgroup_size(8, 8, 4)

@@ -42,7 +42,7 @@ var<private> grid: GridUniform;
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
 // Pyramid that rays in the near field read: with pre-classification that of light, which is 0 where no voxel is.
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
-// Pyramid of the tints of further layers (volume/tint_voxels.wgsl).
+// Pyramid of the tints of further layers (volume/composed_voxels.wgsl).
 @group(1) @binding(11) var tint_pyramid: texture_3d<f32>;
 // Density texture, or pyramid level, from which a pass makes a level of a pyramid.
 @group(0) @binding(20) var source_texture: texture_3d<f32>;

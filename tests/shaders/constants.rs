@@ -191,7 +191,6 @@ fn workgroups_have_the_size_that_the_dispatches_count_on() {
         ("volume/gradients.wgsl", [8, 8, 4]),
         ("volume/preclassified.wgsl", [8, 8, 4]),
         ("volume/prefilter.wgsl", [8, 8, 4]),
-        ("volume/tint_voxels.wgsl", [8, 8, 4]),
     ];
     let names: Vec<_> = expected.iter().map(|(name, _)| *name).collect();
     let passes: Vec<_> =

@@ -19,7 +19,7 @@ pub struct DatasetField {
     origin: Option<Arc<FieldOrigin>>,
 }
 
-/// Source of a further field of a dataset, by which it can be opened again.
+/// Source of a field of a dataset, by which it can be opened again.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldOrigin {
     /// Path of the file, or `builtin:NAME`.

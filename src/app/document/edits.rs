@@ -9,7 +9,7 @@ impl Document {
     pub(crate) fn remove_last_layer(&mut self) {
         let count = self.settings.layers.count();
         self.settings.layers.truncate(count - 1);
-        self.selected_layer = self.selected_layer.min(self.settings.layers.count() - 1);
+        self.clamp_selected_layer();
     }
 
     /// Colours the visible values by a colour map, given by its index.

@@ -108,6 +108,11 @@ impl Document {
         self.orientation = OrientationTasks::default();
     }
 
+    /// Selects a layer that there is, after layers were removed or undone.
+    pub(crate) fn clamp_selected_layer(&mut self) {
+        self.selected_layer = self.selected_layer.min(self.settings.layers.count() - 1);
+    }
+
     /// Returns facts about the volume of the selected layer.
     pub(crate) fn selected_volume(&self) -> Option<&VolumeFacts> {
         self.volume.as_ref().map(|volume| volume.of_layer(self.selected_layer))

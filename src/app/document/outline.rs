@@ -9,9 +9,7 @@ use eframe::egui;
 use super::Document;
 use crate::app::common::commands::AppCommand;
 use crate::app::worker::jobs::{JobKind, JobSlot};
-use chiaroscuro_scene::{
-    Clipping, LightingTransfer, OpacityLength, Settings, VolumeLayers, first_look::ObjectOutline,
-};
+use chiaroscuro_scene::{Clipping, Settings, VolumeLayer, VolumeLayers, first_look::ObjectOutline};
 use chiaroscuro_volume::Dataset;
 
 /// Inputs on which an outline depends.
@@ -25,19 +23,22 @@ struct OutlineInputs {
 impl OutlineInputs {
     fn matches(&self, settings: &Settings, content_id: u64) -> bool {
         let Self { content_id: of, layers, cuts } = self;
-        *of == content_id && *cuts == settings.cuts && *layers == outlined_layers(settings)
+        *of == content_id
+            && *cuts == settings.cuts
+            && layers.count() == settings.layers.count()
+            && layers.iter().zip(settings.layers.iter()).all(|(known, layer)| has_same_outline(known, layer))
     }
 }
 
-/// Returns the layers without what their outlines do not depend on.
-fn outlined_layers(settings: &Settings) -> VolumeLayers {
-    let mut layers = settings.layers.clone();
-    for layer in layers.iter_mut() {
-        layer.lighting = LightingTransfer::default();
-        layer.opacity_unit = OpacityLength::Voxels(1.0);
-        layer.edges = 0.0;
-    }
-    layers
+/// Returns true if two layers have the same outline, on which light, densities and edges have no influence.
+fn has_same_outline(a: &VolumeLayer, b: &VolumeLayer) -> bool {
+    let VolumeLayer { range, labels, transfer, visibility, blend, lighting: _, opacity_unit: _, edges: _ } =
+        a;
+    *range == b.range
+        && *labels == b.labels
+        && *transfer == b.transfer
+        && *visibility == b.visibility
+        && *blend == b.blend
 }
 
 /// Outline of the object with the search for it.
@@ -115,7 +116,7 @@ impl Document {
             return;
         };
         let settings = self.settings.clone();
-        let (layers, cuts) = (outlined_layers(&settings), settings.cuts.clone());
+        let (layers, cuts) = (settings.layers.clone(), settings.cuts.clone());
         let content_id = dataset.id().content_id;
         let inputs = OutlineInputs { content_id, layers, cuts };
         let started = self

@@ -58,6 +58,7 @@ impl OuterPanels {
 
     /// Shows the panels around the picture; while only the picture is shown, just the help windows.
     pub(crate) fn show(&mut self, ui: &mut egui::Ui, inputs: &mut OuterPanelInputs<'_>) {
+        inputs.editor.document.clamp_selected_layer();
         inputs.layout.observe_theme(ui.ctx());
         inputs.windows.help.ui(ui.ctx(), inputs.facts, inputs.editor.document.settings.camera.up);
         if inputs.layout.picture_only {

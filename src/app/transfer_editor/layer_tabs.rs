@@ -17,7 +17,6 @@ const SWATCH_EDGE: f32 = 9.0;
 /// volume.
 pub(super) fn show(ui: &mut Ui, settings: &Settings, volume: &VolumeFacts, selected: &mut usize) {
     let count = settings.layers.count().min(volume.further.len() + 1);
-    *selected = (*selected).min(count - 1);
     if count == 1 {
         return;
     }

@@ -117,5 +117,4 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "volume/prefilter.wgsl",
     "volume/resample.wgsl",
     "volume/spread_voxels.wgsl",
-    "volume/tint_voxels.wgsl",
 ];

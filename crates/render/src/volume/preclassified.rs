@@ -130,8 +130,9 @@ impl PreclassifiedVoxels {
         let bricks = &self.bricks[level as usize][range.clone()];
         let layers = self.baked.parameters().zip(volume.fields.as_ref());
         let pipeline = match level {
-            0 if self.baked.are_tints() => shaders.pipeline(&SingleVariant("volume/tint_voxels.wgsl"))?,
-            0 if layers.is_some() => shaders.pipeline(&SingleVariant("volume/composed_voxels.wgsl"))?,
+            0 if layers.is_some() => {
+                shaders.pipeline(&ComposedVariant { are_tints: self.baked.are_tints() })?
+            }
             0 => shaders.pipeline(&MaterialsVariant {
                 has_missing: volume.presence.is_some(),
                 is_crisp: self.is_crisp,
@@ -183,6 +184,22 @@ impl PreclassifiedVoxels {
 /// a seventh.
 fn bytes(texels: u64) -> u64 {
     texels * 64 / 7
+}
+
+/// Pipeline variant of the pass that composes voxels of layers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct ComposedVariant {
+    are_tints: bool,
+}
+
+impl PipelineVariant for ComposedVariant {
+    fn shader(&self) -> &'static str {
+        "volume/composed_voxels.wgsl"
+    }
+
+    fn constants(&self) -> ShaderConstants {
+        vec![flag("TINTS", self.are_tints)]
+    }
 }
 
 /// Pipeline variant of the pass that classifies voxels.

@@ -21,6 +21,15 @@ pub(super) struct LayerFile {
     recorded_id: Option<String>,
 }
 
+/// Layers that further volumes replace.
+#[derive(Debug, Clone, Copy)]
+struct LayerReplacement {
+    /// Number of volumes that stay, from the first on.
+    kept: usize,
+    /// True if the settings have looks for those that are added.
+    has_looks: bool,
+}
+
 /// Dataset with further fields, as far as they could be opened.
 struct DatasetWithLayers {
     dataset: Dataset,
@@ -70,8 +79,9 @@ fn with_layers(
 impl VolumeOpener<'_> {
     /// Reads a volume on a thread, and shows it with the open one as the last layer.
     pub(crate) fn add_layer(&mut self, path: &Path) {
-        let count = self.editor.document.settings.layers.count();
-        self.add_layers(vec![LayerFile::new(path, VolumeChoice::default())], count);
+        let kept = self.editor.document.settings.layers.count();
+        let file = LayerFile::new(path, VolumeChoice::default());
+        self.add_layers(vec![file], LayerReplacement { kept, has_looks: false });
     }
 
     /// Shows all channels, arrays or components of the open file, as far as there is room: those that are not shown
@@ -81,13 +91,12 @@ impl VolumeOpener<'_> {
         let Some(all) = Alternatives::new(&volume.held, aspect) else { return };
         let others = (0..all.count()).filter(|&at| at != all.current()).take(MAX_FIELDS - 1);
         let sources = others.map(|at| LayerFile::new(&volume.source, all.choice(at))).collect();
-        self.add_layers(sources, 1);
+        self.add_layers(sources, LayerReplacement { kept: 1, has_looks: false });
     }
 
     /// Opens the further volumes that a record names, unless they are shown.
     pub(super) fn add_recorded_layers(&mut self, record: &LookRecord) {
         let file = record.file.as_deref().unwrap_or_else(|| Path::new(""));
-
         let recorded = record.volume.as_ref().map(|volume| volume.layers.as_slice()).unwrap_or_default();
         self.editor.document.recorded_layers =
             recorded.iter().map(|volume| volume.origin(file.parent())).collect();
@@ -122,11 +131,12 @@ impl VolumeOpener<'_> {
             let recorded_id = Some(volume.content_id.clone());
             sources.push(LayerFile { path, choice: volume.choice.clone(), recorded_id });
         }
-        self.add_layers(sources, 1);
+        self.add_layers(sources, LayerReplacement { kept: 1, has_looks: true });
     }
 
-    /// Reads volumes on a thread, and shows them with the first `kept` ones that are open.
-    fn add_layers(&mut self, sources: Vec<LayerFile>, kept: usize) {
+    /// Reads volumes on a thread, and shows them with those that stay.
+    fn add_layers(&mut self, sources: Vec<LayerFile>, replaced: LayerReplacement) {
+        let kept = replaced.kept;
         let Some(shown) = self.editor.viewport.dataset() else {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);
         };
@@ -138,34 +148,33 @@ impl VolumeOpener<'_> {
         first.layers.truncate(kept);
         let read = move |_: &Path| Ok(with_layers(known, first, &sources, &options));
         self.read_file(ReadPurpose::Layer, &path, read, move |opener, read| match read {
-            Ok(added) => opener.show_layers(added, kept, opened_id),
+            Ok(added) => opener.show_layers(added, replaced, opened_id),
             Err(why) => why.report(text::messages::LAYER_NOT_ADDED, &mut opener.editor.messages),
         });
     }
 
-    /// Shows a dataset with further fields after the first `kept` ones, unless another volume was opened meanwhile.
-    fn show_layers(&mut self, added: DatasetWithLayers, kept: usize, opened_id: u64) {
+    /// Shows a dataset with further fields, unless another volume was opened meanwhile.
+    fn show_layers(&mut self, added: DatasetWithLayers, replaced: LayerReplacement, opened_id: u64) {
+        let LayerReplacement { kept, has_looks } = replaced;
         let shown = self.editor.viewport.dataset();
         let DatasetWithLayers { dataset, first, failure, is_other } = added;
         let messages = &mut self.editor.messages;
         if let Some(why) = failure {
             messages.error(text::messages::LAYER_NOT_ADDED, why);
         }
-        let is_same = shown.is_some_and(|shown| {
-            shown.volume().opened_id() == opened_id
-                && shown.volume().corrections() == dataset.volume().corrections()
-        });
-        if !is_same {
+        // Corrections that were made meanwhile are made again, of all fields.
+        if shown.is_none_or(|shown| shown.volume().opened_id() != opened_id) {
             return messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
         }
         if is_other {
             messages.note(text::opening::OTHER_VALUES);
         }
         let document = &mut self.editor.document;
-        // A look that was opened may have settings for them, and what the user has changed stays.
-        if document.settings.layers.count() <= kept {
-            document.settings.take_layers(&first, &document.defaults);
+        if !has_looks {
+            document.settings.layers.truncate(kept);
         }
+        // What the user has changed stays.
+        document.settings.take_layers(&first, &document.defaults);
         document.defaults = first;
         document.selected_layer = kept.min(dataset.fields().len() - 1);
         if let Some(facts) = &mut document.volume {

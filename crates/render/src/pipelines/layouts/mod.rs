@@ -316,23 +316,6 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
     (
-        "volume/tint_voxels.wgsl",
-        &[&[
-            BindingSlot::storage_texture(
-                2,
-                "level",
-                TextureShape::D3,
-                StorageFormat::Fixed(wgpu::TextureFormat::Rgba16Float),
-            ),
-            BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
-            BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
-            BindingSlot::uniform::<uniforms::LayersUniform>(6, "bound_layers"),
-            BindingSlot::uint_texture(28, "field_texture", TextureShape::D3),
-            BindingSlot::storage(29, "layer_tables", TABLE_BYTES, BufferAccess::Read),
-        ]],
-    ),
-    ("volume/downsample.wgsl", &[RESAMPLE]),
-    (
         "volume/gradients.wgsl",
         &[&[
             SOURCE_TEXELS,
