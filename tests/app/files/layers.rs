@@ -142,3 +142,36 @@ fn a_session_keeps_layers_that_cannot_be_opened() {
     std::fs::remove_file(&layer).expect("removed");
     assert_eq!(save(None), before);
 }
+
+#[test]
+fn corrections_of_a_session_apply_to_its_layers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let session = folder.path().join("session.json");
+    {
+        let mut harness = window_of(Path::new(SCENE), Some(&session));
+        wait_until_idle(&mut harness);
+        add(&mut harness, "builtin:sphere:32");
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+        harness.run_steps(3);
+    }
+    let plain = {
+        let mut harness = window_of(Path::new(SCENE), Some(&session));
+        wait_until_read(&mut harness);
+        picture(&mut harness)
+    };
+    let text = std::fs::read_to_string(&session).expect("saved");
+    let mut record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    record["volume"]["flip"] = serde_json::json!([true, false, false]);
+    std::fs::write(&session, record.to_string()).expect("written");
+    let mut harness = window_of(Path::new(SCENE), Some(&session));
+    wait_until_read(&mut harness);
+    assert!(!harness.state().settings().volume.is_none(), "the correction is applied");
+    let corrected = picture(&mut harness);
+    assert!(corrected != plain, "flipped");
+    // The sphere is still seen: without its layer the picture is another.
+    click(&mut harness, "Data");
+    harness.run_steps(8);
+    click(&mut harness, "Hidden");
+    wait_until_read(&mut harness);
+    assert!(picture(&mut harness) != corrected, "the layer was there");
+}
