@@ -50,11 +50,13 @@ pub use indirect::sky::SkyVisibility;
 pub use kernel::{cubic_b_spline, gaussian, tent};
 pub use light_march::ViewSheets;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use chiaroscuro_scene::{
     BakedTransfer, LayerComposition, LightVolumeResolution, ReconstructionKernel, SceneLight, Settings,
-    VolumeLayer,
+    VolumeLayer, mask_from_shapes,
 };
 use chiaroscuro_volume::{Dataset, ValueRange, Volume, math::SceneSpace};
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
@@ -160,7 +162,8 @@ impl<'a> Reference<'a> {
     /// Creates a reference for a volume and settings; for labels, the settings must be [as
     /// drawn](Settings::resolved_for).
     pub fn new(volume: &Volume, settings: &'a Settings, options: ReferenceOptions) -> Self {
-        let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges()));
+        let mask = mask_from_shapes(volume, settings.cuts.enabled_shapes()).map(Arc::new);
+        let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges())).with_mask(mask);
         let range = volume.table_range();
         let field = DensityField::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::new(&field, kernel_width(options.fault), options.rounding);
@@ -217,6 +220,8 @@ impl<'a> Reference<'a> {
             });
             return Self { tints: tints.map(Box::new), ..plain };
         }
+        let mask = mask_from_shapes(dataset.volume(), settings.cuts.enabled_shapes()).map(Arc::new);
+        let dataset = &dataset.with_mask(mask);
         let classified = ALL_TRANSFER_SIDES.map(|side| {
             let has_effect = |layer: &VolumeLayer| match side {
                 TransferSide::Eye => layer.is_seen(),

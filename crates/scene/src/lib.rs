@@ -18,6 +18,7 @@ mod lighting_rig;
 mod object_rotation;
 mod settings;
 mod settings_io;
+mod shape_mask;
 mod simple_light;
 mod transfer;
 mod transfer_exchange;
@@ -26,6 +27,10 @@ mod turntable;
 pub use self::settings::camera_settings::camera::{Camera, FRAME_ASPECT, FovReference, Projection};
 pub use self::settings::camera_settings::scene_axis::SceneAxis;
 pub use self::settings::camera_settings::standard_view::StandardView;
+pub use self::settings::shape_cuts::{
+    ComponentCut, CutAction, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS, OutlineCut, ShapeCut, SphereCut,
+};
+pub use self::shape_mask::mask_from_shapes;
 pub use self::settings::clipping::{
     ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };

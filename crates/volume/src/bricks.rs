@@ -26,8 +26,8 @@ pub struct BrickBounds {
     pub ranges: Vec<[f32; 2]>,
     /// Bounds of the density reconstructed in each cell of the bricks, by an unstretched kernel.
     pub cells: Vec<CellBounds>,
-    /// Bit mask for each brick of the cells in which an unstretched kernel reaches any voxel that is not missing;
-    /// `None` if no voxel is missing.
+    /// Bit mask for each brick of the cells in which an unstretched kernel reaches any voxel that is neither missing nor
+    /// hidden; `None` if all are present.
     present: Option<Vec<u64>>,
 }
 
@@ -37,11 +37,15 @@ impl BrickBounds {
         let dims = volume.dims().map(|n| n.div_ceil(BRICK_EDGE));
         let ranges = ranges(volume, dims);
         let cells = cells::bounds(volume, dims, &ranges);
-        let present = volume.missing().map(|missing| missing.present_cells(dims));
-        Self { dims, ranges, cells, present }
+        Self { dims, ranges, cells, present: volume.present_cells(dims) }
     }
 
-    /// Returns the mask of cells of a brick that are not entirely missing.
+    /// Returns the bounds of the same voxels where others of them are missing or hidden.
+    pub(super) fn with_presence_of(&self, volume: &Volume) -> Self {
+        Self { present: volume.present_cells(self.dims), ..self.clone() }
+    }
+
+    /// Returns the mask of cells of a brick that are not entirely missing or hidden.
     pub(super) fn present_cells(&self, brick: usize) -> u64 {
         self.present.as_ref().map_or(u64::MAX, |present| present[brick])
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{
     BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, Volume, VolumeChoice, VolumeError,
-    VolumeId,
+    VolumeId, VoxelMask,
 };
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
@@ -68,6 +68,15 @@ impl DatasetField {
         }
     }
 
+    /// Hides voxels by a mask, with the cells that are left.
+    fn with_mask(&self, mask: Option<&Arc<VoxelMask>>) -> Self {
+        if self.volume.mask().is_none() && mask.is_none() {
+            return self.clone();
+        }
+        let volume = self.volume.with_mask(mask.cloned());
+        Self { bricks: Arc::new(self.bricks.with_presence_of(&volume)), volume: Arc::new(volume), ..self.clone() }
+    }
+
     /// Corrects the opened volume; immediate if voxel values are unaffected.
     fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
         let volume = self.volume.corrected(by)?;
@@ -121,6 +130,12 @@ impl Dataset {
             shown.next().map_or_else(|| field.clone(), |shown| field.with_density_mapping(shown))
         };
         Self { fields: self.fields.iter().map(mapped).collect() }
+    }
+
+    /// Returns the dataset with voxels of all fields hidden by a mask, in place of an earlier one ([`Volume::with_mask`]).
+    #[must_use]
+    pub fn with_mask(&self, mask: Option<Arc<VoxelMask>>) -> Self {
+        Self { fields: self.fields.iter().map(|field| field.with_mask(mask.as_ref())).collect() }
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.

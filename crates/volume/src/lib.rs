@@ -18,11 +18,13 @@ mod histogram;
 mod label_cells;
 mod load_context;
 pub mod math;
+mod presence;
 mod resample;
 pub mod synthetic;
 mod value_metadata;
 mod values;
 mod volume;
+mod voxel_mask;
 
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
@@ -49,3 +51,4 @@ pub use volume::{
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MAX_FIELDS, MissingVoxels, Orientation,
     PaddingValue, PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };
+pub use voxel_mask::VoxelMask;

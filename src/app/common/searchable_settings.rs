@@ -99,6 +99,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (row_named(sections::CUTS, text::cuts::AXES[2]), text::synonyms::CROP_ALONG),
     (row(sections::CUTS, text::cuts::OUTSIDE), text::synonyms::CUT_AWAY),
     (row(sections::CUTS, text::cuts::PLANE), text::synonyms::CLIP),
+    (row(sections::CUTS, text::cuts::BY_SHAPE), text::synonyms::CUT_BY_SHAPE),
     (row(sections::CUTS, text::cuts::OFFSET), text::synonyms::CLIP_OFFSET),
     (row(sections::CUTS, text::cuts::FACING), text::synonyms::CLIP_FACING),
     (row(sections::CUTS, text::cuts::IN_FRONT), text::synonyms::CUT_AWAY),
@@ -167,10 +168,11 @@ mod tests {
     use super::*;
 
     /// Sources of the panels, which the tests scan for rows.
-    const PANELS: [&str; 13] = [
+    const PANELS: [&str; 14] = [
         include_str!("../panels/camera.rs"),
         include_str!("../panels/compare.rs"),
-        include_str!("../panels/clipping.rs"),
+        include_str!("../panels/clipping/mod.rs"),
+        include_str!("../panels/clipping/shape_cuts.rs"),
         include_str!("../panels/data/corrections.rs"),
         include_str!("../panels/data/mod.rs"),
         include_str!("../panels/data/range.rs"),

@@ -23,6 +23,7 @@ mod preintegrated;
 mod presence;
 mod scatter;
 mod scatter_mutations;
+mod shape_cuts;
 mod sky;
 
 const SIZE: [u32; 2] = [96, 80];

@@ -20,6 +20,7 @@ const SIZE: [u32; 2] = [64, 56];
 fn cuts(crop: ClipEffect, plane: ClipEffect) -> Clipping {
     Clipping {
         crop: CropBox { on: true, low: [0.21, 0.0, 0.13], high: [1.0, 0.73, 0.9], effect: crop },
+        shapes: Vec::new(),
         plane: ClipPlane { on: true, normal: [0.6, -1.0, 0.7], offset: 0.17, effect: plane },
     }
 }

@@ -43,12 +43,17 @@ impl DensityField {
         Self { dims, densities, border: BorderMode::Clamp }
     }
 
-    /// Creates the presence of voxels, 1 for present and 0 for missing ones; `None` if no voxel is missing.
+    /// Creates the presence of voxels, 1 for present and 0 for missing or hidden ones; `None` if all are present.
     pub(crate) fn from_presence(volume: &Volume) -> Option<Self> {
-        let missing = volume.missing()?;
-        let there = |voxel| if missing.contains(voxel) { 0.0 } else { 1.0 };
-        let densities = (0..volume.voxel_count()).map(there).collect();
-        Some(Self { dims: volume.dims(), densities, border: BorderMode::Zero })
+        let missing = volume.missing();
+        let mask = volume.mask();
+        let share = |voxel: usize| match mask {
+            _ if missing.is_some_and(|missing| missing.contains(voxel)) => 0.0,
+            Some(mask) => 1.0 - f64::from(mask.hidden(voxel)) / 255.0,
+            None => 1.0,
+        };
+        let densities = (0..volume.voxel_count()).map(share).collect();
+        (missing.is_some() || mask.is_some()).then_some(Self { dims: volume.dims(), densities, border: BorderMode::Zero })
     }
 
     /// Returns the density of one voxel, inside the grid or outside.

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use crate::light::combined_light::CombinedLight;
 use crate::light::light_volume::LightVolume;
-use crate::plan::{BouncesKey, CombinedKey, FrameKeys, LightKey, RenderRequest, SkyKey, TablesKey};
+use crate::plan::{
+    BouncesKey, CombinedKey, FrameKeys, LightKey, RenderRequest, SkyKey, TablesKey, VolumeKey,
+};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::product_cache::ProductCache;
 use crate::scatter::voxels::ScatterVoxels;
@@ -54,8 +56,35 @@ pub(crate) struct LoadedVolume {
     pub scatter_voxels: Option<Arc<ScatterVoxels>>,
 }
 
+/// Textures of an earlier picture of the same volume that hold for the next one.
+#[derive(Debug, Default)]
+pub(crate) struct ReusedTextures {
+    /// Densities, if they represent the same quantity.
+    pub density: Option<wgpu::Texture>,
+    /// Presence, if the same voxels are hidden.
+    pub presence: Option<PresenceTexture>,
+}
+
+impl ReusedTextures {
+    /// Returns the textures of a volume with the same content that hold under another key.
+    pub(crate) fn from_known(known: &CacheEntry<VolumeKey, LoadedVolume>, wanted: &VolumeKey) -> Self {
+        if !known.is_complete() {
+            return Self::default();
+        }
+        let volume = &known.product.volume;
+        // Fields of layers are uploaded together with the densities.
+        let is_first_alone = wanted.composition == LayerComposition::First;
+        let has_same_densities = VolumeKey { mask: wanted.mask, ..*known.key() } == *wanted;
+        let has_same_mask = known.key().mask == wanted.mask;
+        Self {
+            density: (is_first_alone && has_same_densities).then(|| volume.density_texture().clone()),
+            presence: volume.presence.clone().filter(|_| has_same_mask),
+        }
+    }
+}
+
 impl LoadedVolume {
-    /// Allocates a volume and its tables. Nothing is uploaded yet, except a `presence` texture that is passed in.
+    /// Allocates a volume and its tables. Nothing is uploaded yet, except textures that are passed in.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold them.
@@ -64,14 +93,15 @@ impl LoadedVolume {
         dataset: &Dataset,
         settings: &Settings,
         tables_key: &TablesKey,
-        presence: Option<PresenceTexture>,
+        reused: ReusedTextures,
     ) -> Result<Self, GpuError> {
-        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), presence)?;
+        let ReusedTextures { density, presence } = reused;
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), (density, presence))?;
         let volume = match tables_key.volume.composition {
             LayerComposition::First => volume,
-            LayerComposition::Tinted | LayerComposition::Composed => {
-                volume.with_fields(context, dataset.fields())?
-            }
+            // Tints colour matter up to the edge of what is hidden.
+            LayerComposition::Tinted => volume.with_fields(context, dataset.with_mask(None).fields())?,
+            LayerComposition::Composed => volume.with_fields(context, dataset.fields())?,
         };
         let TableBakeResult { tables, .. } =
             TransferTables::bake(context, &volume, settings, tables_key, None)?;

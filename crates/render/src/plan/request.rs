@@ -30,6 +30,8 @@ pub struct VolumeKey {
     pub density_mapping: DensityMapping,
     /// Quantities that densities of the further fields represent, which are shown as layers.
     pub further: [Option<DensityMapping>; MAX_FIELDS - 1],
+    /// Hash of the cuts that hide voxels, if there are some.
+    pub mask: Option<u64>,
     /// Way in which layers become one picture; if not by the first alone, their fields are stored together.
     pub composition: LayerComposition,
 }
@@ -49,6 +51,7 @@ impl RenderRequest {
             content_id,
             density_mapping: self.settings.shown_content(&ranges),
             further: self.settings.further_mappings(&self.volume),
+            mask: self.settings.cuts.shapes_id(),
             composition: self.settings.layer_composition(),
         }
     }

@@ -150,7 +150,7 @@ impl VolumeContext<'_> {
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
-    /// Returns the view of the presence texture if voxels are missing, else the placeholder.
+    /// Returns the view of the presence texture if voxels are missing or hidden, else the placeholder.
     pub(crate) fn presence(&self, levels: PyramidLevels) -> &wgpu::TextureView {
         self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
     }
@@ -192,7 +192,7 @@ impl PyramidLevels {
 
 /// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
 /// computes the level sizes for each lane and fetch, which the second view avoids.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct PyramidViews {
     /// View of all levels of the pyramid.
     pub all: wgpu::TextureView,
@@ -225,7 +225,7 @@ pub(crate) struct GpuVolume {
     no_pyramid: PyramidViews,
     /// Densities of all fields, if voxels are composed of layers.
     pub fields: Option<Box<FieldTexture>>,
-    /// Presence texture, if voxels are missing.
+    /// Presence texture, if voxels are missing or hidden.
     pub presence: Option<PresenceTexture>,
     /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid of densities.
     pub filled_levels: Vec<Vec<u32>>,
@@ -236,7 +236,7 @@ pub(crate) struct GpuVolume {
 }
 
 impl GpuVolume {
-    /// Creates the textures. Nothing is uploaded yet, except a `presence` texture that is passed in.
+    /// Creates the textures. Nothing is uploaded yet, except textures that are passed in.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the textures.
@@ -244,10 +244,13 @@ impl GpuVolume {
         context: &GpuContext,
         volume: &Arc<Volume>,
         bricks: &Arc<BrickBounds>,
-        presence: Option<PresenceTexture>,
+        (density, presence): (Option<wgpu::Texture>, Option<PresenceTexture>),
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let density = density_texture(context, volume, dims)?;
+        let density = match density {
+            None => density_texture(context, volume, dims)?,
+            Some(known) => known,
+        };
         let texel = context.texture(&texture_3d(
             "Volume::no_pyramid",
             [1; 3],
@@ -289,6 +292,11 @@ impl GpuVolume {
             is_unorm: density_is_unorm(context, volume),
             grid,
         })
+    }
+
+    /// Returns the density texture, to share it with another picture of the volume.
+    pub(crate) fn density_texture(&self) -> &wgpu::Texture {
+        &self.density
     }
 
     /// Adds the texture of all fields, of which voxels are composed.

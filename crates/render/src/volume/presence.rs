@@ -1,8 +1,7 @@
-//! Presence texture of volumes with missing voxels: presence (the fraction of the kernel on existing voxels) and its
-//! differences.
+//! Presence texture of volumes with missing or hidden voxels: presence (the fraction of the kernel on existing voxels)
+//! and its differences.
 //!
-//! A mip pyramid parallel to that of density. Computed on the CPU and uploaded, since few volumes have missing
-//! voxels.
+//! A mip pyramid parallel to that of density. Computed on the CPU and uploaded, since few volumes have such voxels.
 
 use std::ops::Range;
 
@@ -12,7 +11,7 @@ use super::PyramidViews;
 use super::texture_shapes::{PYRAMID_PADDING, pyramid_dims, texture_3d};
 use crate::plan::MAX_STRETCH_LEVEL;
 use crate::{GpuContext, GpuError};
-use chiaroscuro_volume::{MissingVoxels, Volume};
+use chiaroscuro_volume::Volume;
 
 /// Index of the coarsest level.
 const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
@@ -27,15 +26,15 @@ const SNORM_STEPS: f32 = 127.0;
 /// Number of texels of level 0 per upload step: some 20 ms, and 16 MiB of temporary memory.
 const STEP_TEXELS: usize = 1 << 20;
 
-/// Presence texture of a volume with missing voxels.
-#[derive(Debug)]
+/// Presence texture of a volume with missing or hidden voxels.
+#[derive(Debug, Clone)]
 pub(crate) struct PresenceTexture {
     pub texture: wgpu::Texture,
     pub views: PyramidViews,
 }
 
 impl PresenceTexture {
-    /// Creates the texture for a volume as if it had these dimensions; `None` if no voxel is missing.
+    /// Creates the texture for a volume as if it had these dimensions; `None` if all voxels are present.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold it.
@@ -44,7 +43,7 @@ impl PresenceTexture {
         volume: &Volume,
         dims: [usize; 3],
     ) -> Result<Option<Self>, GpuError> {
-        if volume.missing().is_none() {
+        if !volume.has_absent_voxels() {
             return Ok(None);
         }
         let texture = context.texture(&wgpu::TextureDescriptor {
@@ -71,8 +70,7 @@ impl PresenceTexture {
 
     /// Computes and uploads some slices of the coarsest level, with the corresponding slices of all finer levels.
     pub(crate) fn upload(&self, context: &GpuContext, volume: &Volume, slices: Range<usize>) {
-        let Some(missing) = volume.missing() else { return };
-        for (mip_level, slab) in (0..).zip(presence_levels(missing, volume.dims(), slices.clone())) {
+        for (mip_level, slab) in (0..).zip(presence_levels(volume, slices.clone())) {
             let kept = slices.start << (MAX_LEVEL - mip_level)..slices.end << (MAX_LEVEL - mip_level);
             let [width, height, _] = slab.dims.map(|n| n as u32);
             context.queue.write_texture(
@@ -115,8 +113,8 @@ struct PresenceSlab {
 
 /// Computes all levels, finest first: at least the slices within the given ones of the coarsest level, and one to
 /// either side.
-fn presence_levels(missing: &MissingVoxels, dims: [usize; 3], coarsest: Range<usize>) -> Vec<PresenceSlab> {
-    let depth = pyramid_dims(dims)[2];
+fn presence_levels(volume: &Volume, coarsest: Range<usize>) -> Vec<PresenceSlab> {
+    let depth = pyramid_dims(volume.dims())[2];
     // Differences read the neighbouring slices.
     let widened = coarsest.start.saturating_sub(1)..(coarsest.end + 1).min(depth >> MAX_LEVEL);
     // Slices of each level that the next is computed from: texel i from 2i − 1 … 2i + 2.
@@ -128,7 +126,7 @@ fn presence_levels(missing: &MissingVoxels, dims: [usize; 3], coarsest: Range<us
     let mut slabs: Vec<PresenceSlab> = Vec::with_capacity(slices.len());
     for kept in slices.into_iter().rev() {
         let slab = match slabs.last() {
-            None => prefiltered_presence(missing, dims, kept),
+            None => prefiltered_presence(volume, kept),
             Some(finer) => finer.downsample(kept),
         };
         slabs.push(slab);
@@ -136,9 +134,10 @@ fn presence_levels(missing: &MissingVoxels, dims: [usize; 3], coarsest: Range<us
     slabs
 }
 
-/// Computes slices of level 0: 1 for voxels that exist, else 0, blurred like densities
-/// (`shaders/volume/prefilter.wgsl`). Outside the grid is 0.
-fn prefiltered_presence(missing: &MissingVoxels, dims: [usize; 3], slices: Range<usize>) -> PresenceSlab {
+/// Computes slices of level 0: the presence of voxels, blurred like densities (`shaders/volume/prefilter.wgsl`).
+/// Outside the grid is 0.
+fn prefiltered_presence(volume: &Volume, slices: Range<usize>) -> PresenceSlab {
+    let dims = volume.dims();
     let [nx, ny, depth] = pyramid_dims(dims);
     let voxel = |texel: usize, n: usize| texel.checked_sub(PYRAMID_PADDING).filter(|&voxel| voxel < n);
     // The blur along z reads the neighbouring slices, too.
@@ -149,7 +148,7 @@ fn prefiltered_presence(missing: &MissingVoxels, dims: [usize; 3], slices: Range
         let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(|axis| voxel(place[axis], dims[axis])) else {
             return 0.0;
         };
-        if missing.contains(x + dims[0] * (y + dims[1] * z)) { 0.0 } else { 1.0 }
+        volume.presence(x + dims[0] * (y + dims[1] * z))
     };
     let shares = (0..nx * ny * count).into_par_iter().map(share).collect();
     let start =
@@ -247,7 +246,7 @@ mod tests {
     fn levels_keep_the_sum_of_what_is_there() {
         let dims = [13, 9, 7];
         let (volume, there) = volume_with_holes(dims);
-        let slabs = presence_levels(volume.missing().unwrap(), dims, 0..16 >> MAX_LEVEL);
+        let slabs = presence_levels(&volume, 0..16 >> MAX_LEVEL);
         assert_eq!(slabs.len(), MAX_LEVEL as usize + 1);
         assert_eq!(slabs[0].dims, [24, 24, 16]);
         for (level, slab) in (0..).zip(&slabs) {
@@ -263,7 +262,7 @@ mod tests {
         let values: Vec<f32> =
             (0..dims.iter().product::<usize>()).map(|at| if at % 16 < 8 { f32::NAN } else { 1.0 }).collect();
         let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap();
-        let slabs = presence_levels(volume.missing().unwrap(), dims, 0..pyramid_dims(dims)[2] >> MAX_LEVEL);
+        let slabs = presence_levels(&volume, 0..pyramid_dims(dims)[2] >> MAX_LEVEL);
         let [nx, ny, _] = slabs[0].dims;
         let row = nx * (PYRAMID_PADDING + 2 + ny * (PYRAMID_PADDING + 2));
         let along_x: Vec<[i8; TEXEL_BYTES]> =
@@ -278,12 +277,11 @@ mod tests {
     fn slab_by_slab_it_is_the_same() {
         let dims = [7, 9, 21];
         let (volume, _) = volume_with_holes(dims);
-        let missing = volume.missing().unwrap();
         let coarsest = pyramid_dims(dims)[2] >> MAX_LEVEL;
-        let at_once = presence_levels(missing, dims, 0..coarsest);
+        let at_once = presence_levels(&volume, 0..coarsest);
         for first in 0..coarsest {
             for ((level, whole), slab) in
-                (0..).zip(&at_once).zip(presence_levels(missing, dims, first..first + 1))
+                (0..).zip(&at_once).zip(presence_levels(&volume, first..first + 1))
             {
                 let kept = first << (MAX_LEVEL - level)..(first + 1) << (MAX_LEVEL - level);
                 assert_eq!(slab.texels(&kept), whole.texels(&kept), "slice {first}, level {level}");

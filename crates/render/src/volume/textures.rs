@@ -53,7 +53,7 @@ pub(crate) fn pyramid_texture(
         ..texture_3d(
             "Volume::pyramid",
             pyramid_dims(dims),
-            if volume.missing().is_some() {
+            if volume.has_absent_voxels() {
                 pair_format(context.storage_format)
             } else {
                 context.storage_format

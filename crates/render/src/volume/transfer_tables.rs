@@ -74,7 +74,7 @@ impl TransferTable {
             let [x, y, z] = voxel.map(|c| c / CELL_EDGE);
             distances.values[x + width * (y + height * z)]
         };
-        let from_missing = volume.volume.missing().map_or(u8::MAX, |missing| missing.min_over(distance_of));
+        let from_missing = volume.volume.min_over_absent(distance_of);
         Self {
             baked: Arc::new(baked),
             buffer,

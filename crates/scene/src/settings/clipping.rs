@@ -1,8 +1,9 @@
-//! Clipping of the volume by a crop box and a plane, each for the eye, for the light or for both.
+//! Clipping of the volume: by a crop box and a plane, each for the eye, for the light or for both, and by shapes.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::shape_cuts::{ShapeCut, enabled_id};
 use chiaroscuro_volume::math::{Aabb, ClipRegion, HalfSpace, SceneSpace};
 
 /// Largest distance of a clip plane from the centre, in scene units: that of a cube's corner, √3, with a margin.
@@ -100,6 +101,8 @@ pub struct Clipping {
     pub crop: CropBox,
     /// Clip plane with a free orientation.
     pub plane: ClipPlane,
+    /// Cuts by shapes in the order in which they are applied, at most [`super::shape_cuts::MAX_SHAPE_CUTS`].
+    pub shapes: Vec<ShapeCut>,
 }
 
 /// Part of the volume that is left after clipping, for the eye or for the light.
@@ -120,8 +123,19 @@ impl Clipping {
         self.part_where(ClipEffect::is_shadowless)
     }
 
+    /// Returns the cuts by shapes that are enabled.
+    pub fn enabled_shapes(&self) -> impl Iterator<Item = &ShapeCut> {
+        self.shapes.iter().filter(|cut| cut.on)
+    }
+
+    /// Returns a hash of the cuts by shapes that are enabled; `None` if there are none.
+    pub fn shapes_id(&self) -> Option<u64> {
+        enabled_id(&self.shapes)
+    }
+
     fn part_where(&self, counts: impl Fn(ClipEffect) -> bool) -> ClippedPart {
-        let Self { crop, plane } = self;
+        // Shapes hide voxels by a mask.
+        let Self { crop, plane, shapes: _ } = self;
         let cuts = crop.low.iter().chain(&crop.high).any(|&at| at > 0.0 && at < 1.0);
         ClippedPart {
             crop: (crop.on && cuts && counts(crop.effect)).then_some([crop.low, crop.high]),
@@ -199,6 +213,7 @@ mod tests {
         let cuts = Clipping {
             crop: CropBox { on: true, low: [0.25, 0.0, 0.0], high: [1.0, 0.5, 1.0], ..CropBox::default() },
             plane: ClipPlane { on: true, normal: [1.0, 2.0, -2.0], offset: 0.1, ..ClipPlane::default() },
+            shapes: Vec::new(),
         };
         let region = cuts.visible_part().region(&scene);
         assert_eq!(region.low, DVec3::new(9.5, f64::NEG_INFINITY, f64::NEG_INFINITY));

@@ -12,6 +12,7 @@ pub(super) mod sampling;
 pub(super) mod sanitise;
 pub(super) mod saved_entries;
 pub(super) mod shadows;
+pub(super) mod shape_cuts;
 
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +50,7 @@ pub struct Settings {
     pub sky: SkySettings,
     /// Multiple scattering of light inside the volume.
     pub scattering: ScatteringSettings,
-    /// Clipping by a crop box and a plane.
+    /// Clipping by a crop box, a plane, and shapes.
     pub cuts: Clipping,
     /// Floor under the volume that receives shadows.
     pub floor: FloorSettings,

@@ -2,15 +2,25 @@
 //! negative extinction or as an endless loop.
 
 use crate::{
-    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ControlPoint, CropBox, EnvironmentLight,
+    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox, CutShape,
+    EnvironmentLight,
     FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES,
     MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG,
-    MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_PLANE_OFFSET,
-    MAX_POINTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutputSettings, PhongShading, ReconstructionKernel,
+    MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET,
+    MAX_POINTS, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutlineCut, OutputSettings, PhongShading, ReconstructionKernel,
     RenderModeSettings, SKY_DIRECTIONS, SamplingSettings, SavedEntry, ScatteringSettings, Settings,
-    ShadowSettings, SkySettings, Spotlight, VolumeLayer,
+    ShadowSettings, SkySettings, SphereCut, Spotlight, VolumeLayer,
 };
 use chiaroscuro_files::sanitised_line;
+
+/// Smallest width of a picture by its height, and height by its width, through which an outline is drawn.
+const MIN_OUTLINE_ASPECT: f64 = 0.01;
+
+/// Largest coordinate of an outline, in widths or heights of the picture: a line may leave it.
+const MAX_OUTLINE_PLACE: f64 = 10.0;
+
+/// Largest coordinate of the shape of a cut, in scene units: beyond that of a cube's corner, √3.
+const MAX_SHAPE_PLACE: f64 = 10.0;
 
 impl Settings {
     /// Clamps every number to its documented range, so that no typed or loaded value reaches a shader as NaN, as a
@@ -145,7 +155,7 @@ fn sanitise_layer(layer: &mut VolumeLayer) {
 }
 
 fn sanitise_clipping(cuts: &mut Clipping) {
-    let Clipping { crop, plane } = cuts;
+    let Clipping { crop, plane, shapes } = cuts;
     let CropBox { on: _, low, high, effect: _ } = crop;
     for axis in 0..3 {
         clamp_number(&mut low[axis], 0.0, 1.0 - MIN_CROP_EXTENT, 0.0);
@@ -157,6 +167,25 @@ fn sanitise_clipping(cuts: &mut Clipping) {
         *normal = ClipPlane::default().normal;
     }
     clamp_number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
+    shapes.truncate(MAX_SHAPE_CUTS);
+    shapes.retain_mut(|cut| match &mut cut.shape {
+        CutShape::Outline(OutlineCut { camera, aspect, points }) => {
+            sanitise_camera(camera, &Camera::default());
+            clamp_number(aspect, MIN_OUTLINE_ASPECT, 1.0 / MIN_OUTLINE_ASPECT, 1.0);
+            points.truncate(MAX_OUTLINE_POINTS);
+            points.retain(|point| point.iter().all(|at| at.abs() <= MAX_OUTLINE_PLACE));
+            points.len() >= 3
+        }
+        CutShape::Sphere(SphereCut { center, radius }) => {
+            clamp_point(center, MAX_SHAPE_PLACE);
+            clamp_number(radius, 0.0, MAX_SHAPE_PLACE, SphereCut::default().radius);
+            true
+        }
+        CutShape::Component(ComponentCut { seed, values }) => {
+            clamp_point(seed, MAX_SHAPE_PLACE);
+            values.low.is_finite() && values.high.is_finite()
+        }
+    });
 }
 
 fn sanitise_floor(floor: &mut FloorSettings, default: &FloorSettings) {

@@ -9,7 +9,9 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapAccess
 use serde_json::{Map, Number, Value};
 
 use super::preset_error::PresetError;
-use crate::{MAX_LIGHTS, MAX_NAME_CHARS, MAX_POINTS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES};
+use crate::{
+    MAX_LIGHTS, MAX_NAME_CHARS, MAX_POINTS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES, MAX_SHAPE_CUTS,
+};
 use chiaroscuro_files::{MAX_LOOK_BYTES, sanitised};
 
 // A transfer function of MAX_POINTS points takes nearly a mebibyte with one item per line, and the saved views and
@@ -19,9 +21,9 @@ const _: () = assert!(MAX_LOOK_BYTES == (1 << 20) + MAX_SAVED_BYTES);
 /// Largest nesting depth of lists and objects: settings have 8 levels.
 const MAX_NESTING: usize = 64;
 
-/// Largest number of values in a look: two transfer functions have 2 × 4096 points of 8, a label table 4096 of 8, and
-/// the rest a few hundred; saved views and looks have no more than one value per eight bytes.
-const MAX_VALUES: usize = 140_000 + MAX_SAVED_BYTES / 8;
+/// Largest number of values in a look: two transfer functions have 2 × 4096 points of 8, a label table 4096 of 8, cuts
+/// 32 × 256 points of 3, and the rest a few hundred; saved views and looks have no more than one value per eight bytes.
+const MAX_VALUES: usize = 165_000 + MAX_SAVED_BYTES / 8;
 
 /// Largest number of views in the format before they had names: one per digit key.
 const MAX_LEGACY_VIEWS: usize = 9;
@@ -115,6 +117,7 @@ impl TreePosition<'_> {
     fn max_items(&self) -> usize {
         match self.path.as_str() {
             "lights" => MAX_LIGHTS,
+            "cuts.shapes" => MAX_SHAPE_CUTS,
             "views" => MAX_LEGACY_VIEWS,
             "kept" => MAX_SAVED_ENTRIES,
             // Transfer functions, label tables, and settings of later versions.

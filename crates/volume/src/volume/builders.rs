@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::corrections::PatientTable;
 use super::provenance::VolumeProvenance;
 use super::{Volume, VolumeError};
-use crate::ValueMetadata;
+use crate::{ValueMetadata, VoxelMask};
 use crate::load_context::{FileContents, ResolvedPortion};
 
 /// Difference of the content id of a volume whose table is hidden: the letters of "table".
@@ -61,6 +61,17 @@ impl Volume {
     /// Returns the table under a body that is hidden, if there is one.
     pub fn hidden_table(&self) -> Option<&PatientTable> {
         self.voxels.table()
+    }
+
+    /// Sets the mask, which has the dimensions of the grid.
+    pub(crate) fn with_own_mask(mut self, mask: Option<Arc<VoxelMask>>) -> Self {
+        self.voxels.mask = mask;
+        self
+    }
+
+    /// Returns the mask that hides voxels, if there is one.
+    pub fn mask(&self) -> Option<&Arc<VoxelMask>> {
+        self.voxels.mask.as_ref()
     }
 
     /// Returns true if a table was to be hidden, and none was found.

@@ -55,53 +55,6 @@ impl MissingVoxels {
         self.bits[voxel / 64] >> (voxel % 64) & 1 == 1
     }
 
-    /// Returns for each brick of 4³ cells of 2³ voxels the bit mask, x fastest, of the cells in which an unstretched
-    /// kernel reaches a present voxel: one in the cell itself or in a neighbouring cell.
-    pub(crate) fn present_cells(&self, bricks: [usize; 3]) -> Vec<u64> {
-        let [width, height, depth] = bricks.map(|n| n * 4);
-        let [nx, ny, nz] = self.dims;
-        let holds = |cell: usize| {
-            let low = [cell % width, cell / width % height, cell / (width * height)].map(|c| 2 * c);
-            let place = |corner: usize| [0, 1, 2].map(|axis| low[axis] + (corner >> axis & 1));
-            let is_there =
-                |[x, y, z]: [usize; 3]| x < nx && y < ny && z < nz && !self.contains(x + nx * (y + ny * z));
-            (0..8).any(|corner| is_there(place(corner)))
-        };
-        let mut cells: Vec<bool> = (0..width * height * depth).into_par_iter().map(holds).collect();
-        for (stride, count) in [(1, width), (width, height), (width * height, depth)] {
-            let beside = |at: usize| {
-                let place = at / stride % count;
-                cells[at] || place > 0 && cells[at - stride] || place + 1 < count && cells[at + stride]
-            };
-            cells = (0..cells.len()).into_par_iter().map(beside).collect();
-        }
-        let mask = |brick: usize| {
-            let first = [brick % bricks[0], brick / bricks[0] % bricks[1], brick / (bricks[0] * bricks[1])];
-            let bit = |cell: usize| {
-                let [x, y, z] = [cell % 4, cell / 4 % 4, cell / 16];
-                let at = 4 * first[0] + x + width * (4 * first[1] + y + height * (4 * first[2] + z));
-                u64::from(cells[at]) << cell
-            };
-            (0..64).map(bit).sum()
-        };
-        (0..bricks.iter().product()).into_par_iter().map(mask).collect()
-    }
-
-    /// Returns the minimum of `number` over all missing voxels; `u8::MAX` if there are none.
-    pub fn min_over(&self, number: impl Fn([usize; 3]) -> u8 + Sync) -> u8 {
-        let [nx, ny, nz] = self.dims;
-        let least_of_row = |z: usize, y: usize| {
-            let first = nx * (y + ny * z);
-            let missing = (0..nx).filter(|x| self.contains(first + x));
-            missing.map(|x| number([x, y, z])).min().unwrap_or(u8::MAX)
-        };
-        (0..nz)
-            .into_par_iter()
-            .map(|z| (0..ny).map(|y| least_of_row(z, y)).min().unwrap_or(u8::MAX))
-            .min()
-            .unwrap_or(u8::MAX)
-    }
-
     /// Iterates over the missing voxels of slice `z`: indices within the slice, x fastest, and substitute values.
     pub(super) fn substitutes_in_slice(&self, z: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let [nx, ny, _] = self.dims;
@@ -173,7 +126,6 @@ mod tests {
             MissingVoxels::find(dims, |voxel| (!lost.contains(&voxel)).then_some(voxel as f64)).unwrap();
         assert_eq!(missing.count(), 5);
         assert!((0..60).all(|voxel| missing.contains(voxel) == lost.contains(&voxel)));
-        assert_eq!(missing.min_over(|[x, y, z]| 100 - (x + 5 * y + 20 * z) as u8), 100 - 59);
         // Voxels 1, 5, 20, 21, 25 and 26 remain in the block of 0 and 6.
         let mean = (1.0 + 5.0 + 20.0 + 21.0 + 25.0 + 26.0) / 6.0;
         let near = |found: f64, wanted: f64| (found - wanted).abs() < 1e-5;
@@ -194,18 +146,6 @@ mod tests {
         assert_eq!(missing.count(), 12 * 256);
         assert!((0..16).all(|z| missing.substitutes_in_slice(z).all(|(_, value)| value == 3.0)));
         assert_eq!(MissingVoxels::find(dims, |_| Some(1.0)), None);
-    }
-
-    #[test]
-    fn cells_count_that_a_kernel_finds_something_from() {
-        // Voxels 13 … 15 of 20 along x are present, so that cells 5 … 8 are reached.
-        let missing =
-            MissingVoxels::find([20, 8, 8], |voxel| (13..16).contains(&(voxel % 20)).then_some(1.0)).unwrap();
-        let masks = missing.present_cells([3, 1, 1]);
-        let row = |mask: u64| (0..4).map(|x| mask >> x & 1 == 1).collect::<Vec<_>>();
-        assert_eq!(row(masks[0]), [false; 4]);
-        assert_eq!(row(masks[1]), [false, true, true, true]);
-        assert_eq!(row(masks[2]), [true, false, false, false]);
     }
 
     #[test]

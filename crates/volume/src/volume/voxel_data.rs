@@ -8,7 +8,7 @@ use super::error::VolumeError;
 use super::missing::MissingVoxels;
 use super::voxel_statistics::VoxelStatistics;
 use crate::values::robust::quantile;
-use crate::{Samples, ValueMetadata, ValueRanges};
+use crate::{Samples, ValueMetadata, ValueRanges, VoxelMask};
 
 /// Values of one scalar field, one per voxel of a grid, x fastest, in data units. At least one of them is finite and
 /// present. Clones share the samples.
@@ -19,6 +19,8 @@ pub(super) struct VoxelData {
     padding_value: Option<f64>,
     /// Table under a body, whose voxels count as missing.
     table: Option<Arc<PatientTable>>,
+    /// Mask that hides voxels of the picture.
+    pub(super) mask: Option<Arc<VoxelMask>>,
     /// Metadata of the values, as the file states it.
     metadata: ValueMetadata,
     /// Length in mm to which opacities refer, if the values have one.
@@ -40,6 +42,7 @@ impl VoxelData {
             samples,
             padding_value: None,
             table: None,
+            mask: None,
             metadata: ValueMetadata::default(),
             opacity_unit_mm: None,
             density_mapping: DensityMapping::Range(statistics.ranges.robust),

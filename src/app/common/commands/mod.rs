@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use super::reveal::SettingPlace;
 use super::searchable_settings::SEARCHABLE_SETTINGS;
 use chiaroscuro_scene::{
+    CutShapeKind,
     COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, RenderMode,
     SceneAxis, Settings, StandardView,
 };
@@ -120,6 +121,10 @@ pub(crate) enum AppCommand {
     ToggleOverlay,
     /// Switch the probe on or off, which explains the light under the pointer.
     ToggleProbe,
+    /// Begin or end cutting by shapes of a kind in the picture.
+    CutByShape(CutShapeKind),
+    /// Show all that cuts by shapes hide, by removing them.
+    RemoveShapeCuts,
     /// Show the palette that finds commands by name.
     ShowPalette,
     /// Add a light beside the camera.
@@ -243,6 +248,10 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::ToggleCrop,
         AppCommand::TogglePlane,
         AppCommand::FacePlane,
+        AppCommand::CutByShape(CutShapeKind::Outline),
+        AppCommand::CutByShape(CutShapeKind::Sphere),
+        AppCommand::CutByShape(CutShapeKind::Component),
+        AppCommand::RemoveShapeCuts,
         AppCommand::ToggleFloor,
         AppCommand::ToggleTable,
         AppCommand::AddLight,

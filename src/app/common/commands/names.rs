@@ -76,6 +76,8 @@ impl AppCommand {
             Self::ToggleCrop => text::commands::TOGGLE_CROP,
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
+            Self::CutByShape(kind) => text::cuts::cut_by_shape(*kind).name,
+            Self::RemoveShapeCuts => text::cuts::REMOVE_SHAPES.name,
             Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
             Self::ToggleTable => text::commands::TOGGLE_TABLE,
             Self::ShowPalette => text::commands::SHOW_PALETTE,

@@ -98,6 +98,13 @@ impl PictureInputs<'_> {
         let is_one_view = self.is_one_view();
         let Self { document, viewport, tools, .. } = self;
         let is_by_value = document.settings.layer().labels.is_empty();
+        let dataset = viewport.dataset();
+        if is_one_view
+            && let Some(dataset) = &dataset
+            && tools.shape_cuts.handle_mouse(ui, response, &mut document.settings, dataset.volume())
+        {
+            return;
+        }
         mouse_navigation::navigate(
             ui,
             response,
@@ -105,7 +112,7 @@ impl PictureInputs<'_> {
             document.selected_light,
             !(tools.handles.captures_wheel || tools.cut_handles.captures_wheel),
             // Label maps have no window and level.
-            viewport.dataset().map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
+            dataset.map(|dataset| dataset.volume().shown_range()).filter(|_| is_by_value),
             (&mut tools.orbit, self.outline),
         );
         let settings = &mut document.settings;
@@ -163,6 +170,7 @@ impl PictureInputs<'_> {
         let Document { settings, volume, selected_light, .. } = &mut *self.document;
         let Some(volume) = volume else { return };
         let (tools, commands) = (&mut *self.tools, &mut *self.commands);
+        tools.shape_cuts.paint(ui, area, &settings.camera);
         // A comparison has captions at the top and at the bottom.
         let body = volume.is_anatomical.then(|| self.viewport.compare.area_without_labels(ui, area));
         let chips = tools

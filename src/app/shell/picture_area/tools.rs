@@ -3,6 +3,7 @@
 use crate::app::viewport::camera_transition::CameraTransition;
 use crate::app::viewport::canvas::Canvas;
 use crate::app::viewport::cut_handles::CutHandles;
+use crate::app::viewport::cut_handles::shape_tool::ShapeCutTool;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
@@ -20,6 +21,8 @@ pub(crate) struct PictureTools {
     pub handles: LightHandles,
     /// Handles of the crop box and the clip plane.
     pub cut_handles: CutHandles,
+    /// Tool that cuts by shapes.
+    pub shape_cuts: ShapeCutTool,
     /// Overlay of light chips, bounding box, scale bar and orientation cube.
     pub overlay: ViewportOverlay,
     /// Preview of the marks that would be drawn over an exported picture.

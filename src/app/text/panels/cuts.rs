@@ -1,7 +1,8 @@
-//! Texts of the clipping section: crop box and clip plane.
+//! Texts of the clipping section: crop box, clip plane, and cuts by shapes.
 
 use crate::app::text::common::LengthUnit;
 use crate::app::text::{ControlText, control_text};
+use chiaroscuro_scene::{CutAction, CutShapeKind};
 
 /// Text in place of the section while no volume is open.
 pub(crate) const NOTHING_OPEN: &str = "Nothing is open";
@@ -36,6 +37,69 @@ pub(crate) const IN_FRONT: ControlText = control_text("In front", EFFECT_TIP);
 pub(crate) const REMOVED: &str = "Hidden, no shadow";
 pub(crate) const HIDDEN: &str = "Hidden, shadow stays";
 pub(crate) const SHADOWLESS: &str = "Visible, no shadow";
+
+/// Buttons that begin a cut by a shape.
+pub(crate) const BY_SHAPE: ControlText = control_text(
+    "By shape",
+    "Cuts parts away in the picture; hold Q to draw around a part, or to click one, at any time",
+);
+/// List of cuts by shapes.
+pub(crate) const SHAPE: ControlText =
+    control_text("Cut", "Cut by a shape; without the tick, what it hides is visible again");
+pub(crate) const REMOVE_SHAPE: ControlText = control_text("×", "Removes the cut");
+pub(crate) const REMOVE_SHAPES: ControlText =
+    control_text("Remove all cuts by shapes", "Shows all that cuts by shapes hide");
+/// Tooltip of the button that changes the effect of a cut.
+pub(crate) const ACTION_TIP: &str = "What happens to the part inside; a click takes the next effect";
+/// Hint on the end of cutting.
+pub(crate) const ESCAPE_ENDS: &str = "Esc ends cutting";
+
+/// Name and effect of the command that begins cutting by a kind of shape.
+pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
+    match kind {
+        CutShapeKind::Outline => {
+            control_text("Cut by outline", "Hides what lies behind a line that you draw around it in the picture")
+        }
+        CutShapeKind::Sphere => {
+            control_text("Cut by sphere", "Hides a ball around the place that you click in the picture")
+        }
+        CutShapeKind::Component => {
+            control_text("Cut a part", "Hides the part that you click, with all that is connected with it")
+        }
+    }
+}
+
+/// Name of a kind of shape.
+pub(crate) fn shape_name(kind: CutShapeKind) -> &'static str {
+    match kind {
+        CutShapeKind::Outline => "Outline",
+        CutShapeKind::Sphere => "Sphere",
+        CutShapeKind::Component => "Part",
+    }
+}
+
+/// Effect of a cut on what is inside its shape.
+pub(crate) fn action_name(action: CutAction) -> &'static str {
+    match action {
+        CutAction::Hide => "hidden",
+        CutAction::Keep => "kept alone",
+        CutAction::Restore => "shown again",
+    }
+}
+
+/// Hint on the gestures while cutting by a kind of shape, with Shift or without.
+pub(crate) fn shape_hint(kind: CutShapeKind, is_reversed: bool) -> &'static str {
+    match (kind, is_reversed) {
+        (CutShapeKind::Outline, false) => {
+            "Draw around what to hide, or click a part · with Shift, it is kept alone"
+        }
+        (CutShapeKind::Outline, true) => "Draw around what to keep, or click it: all else is hidden",
+        (CutShapeKind::Sphere, false) => "Click to hide a ball · wheel: size · with Shift, it is shown again",
+        (CutShapeKind::Sphere, true) => "Click to show what was hidden in the ball · wheel: size",
+        (CutShapeKind::Component, false) => "Click the part to hide · with Shift, it is kept alone",
+        (CutShapeKind::Component, true) => "Click the part to keep: all else is hidden",
+    }
+}
 
 /// Extent of the crop box along an axis, as the tooltip of its reset button names it.
 pub(crate) fn crop(axis: &str) -> String {

@@ -82,6 +82,9 @@ pub(crate) const CLIP: &str = "clip plane section slice cut cross-section";
 pub(crate) const CLIP_OFFSET: &str = "clip plane move position depth slice";
 pub(crate) const CLIP_FACING: &str = "clip plane normal direction orientation axis turn flip";
 
+pub(crate) const CUT_BY_SHAPE: &str =
+    "scissors lasso outline polygon sphere eraser brush part component island hide isolate segment mask cut";
+
 pub(crate) const FLOOR: &str = "floor ground plane shadow catcher";
 pub(crate) const FLOOR_HEIGHT: &str = "ground level position raise lower";
 pub(crate) const FLOOR_RADIUS: &str = "ground size extent fade";

@@ -198,6 +198,13 @@ fn describe_mode(before: &RenderModeSettings, after: &RenderModeSettings) -> &'s
 }
 
 fn describe_cuts(before: &Clipping, after: &Clipping) -> &'static str {
+    if before.shapes != after.shapes {
+        return match before.shapes.len().cmp(&after.shapes.len()) {
+            Ordering::Less => "cut by shape",
+            Ordering::Greater => "remove cut",
+            Ordering::Equal => "change cut",
+        };
+    }
     match (before.plane.on, after.plane.on, before.crop.on, after.crop.on) {
         (false, true, ..) => "switch on clip plane",
         (true, false, ..) => "switch off clip plane",

@@ -57,10 +57,8 @@ pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
     "play playing playback player time lapse timelapse slider",
     "Time steps are not played; these commands step through them",
 );
-pub(crate) const NO_COMPOSITE: PaletteSynonyms = synonyms_with_note(
-    "composite compositing merge merged channels multichannel rgb",
-    "Channels are shown one at a time: there is no composite of them",
-);
+pub(crate) const COMPOSITE: PaletteSynonyms =
+    synonyms("composite compositing merge merged channels multichannel rgb");
 pub(crate) const NO_ANNOTATION: PaletteSynonyms = synonyms_with_note(
     "annotation annotate arrow caption callout",
     "There are no arrows or captions; exported pictures have a scale bar, letters and a legend",
@@ -71,18 +69,14 @@ pub(crate) const NO_FILTER: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const NO_STEREO: PaletteSynonyms =
     synonyms_with_note("stereo stereoscopic anaglyph 3d glasses vr headset", "There is no stereo picture");
-pub(crate) const NO_FUSION: PaletteSynonyms = synonyms_with_note(
-    "fusion fuse fused registration coregister second volume",
-    "Volumes are not fused: one is shown at a time",
-);
+pub(crate) const FUSION: PaletteSynonyms = synonyms("fusion fuse fused overlay second volume layer");
 pub(crate) const NO_DEPTH_OF_FIELD: PaletteSynonyms = synonyms_with_note(
     "depth of field dof bokeh lens focus",
     "There is no depth of field: the whole picture is sharp",
 );
-pub(crate) const NO_OBJECTS: PaletteSynonyms = synonyms_with_note(
-    "remove object holder island islands largest connected component",
-    "Single objects are not removed; a crop box or clip plane hides all that lies beyond it",
-);
+pub(crate) const OBJECTS: PaletteSynonyms =
+    synonyms("remove object holder island islands largest connected component isolate part eraser");
+pub(crate) const SCISSORS: PaletteSynonyms = synonyms("scissors lasso polygon outline freehand cut sculpt mask");
 pub(crate) const NO_SEGMENTATION: PaletteSynonyms = synonyms_with_note(
     "segmentation segment segments labels label region growing",
     "There is no segmentation; label maps of other programs can be opened",

@@ -1,7 +1,8 @@
 //! Handles for the crop box and the clip plane in the picture: the faces of the box are dragged along their axes, the
-//! plane along its normal, and the normal is rotated by the tip of an arrow.
+//! plane along its normal, and the normal is rotated by the tip of an arrow. [`shape_tool`] cuts by shapes.
 
 mod geometry;
+pub(crate) mod shape_tool;
 
 use eframe::egui::{
     Color32, CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,

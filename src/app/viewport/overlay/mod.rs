@@ -4,7 +4,7 @@
 pub(crate) mod ct_preset_row;
 pub(crate) mod export_marks_preview;
 pub(crate) mod orientation_letters;
-mod outlined_text;
+pub(crate) mod outlined_text;
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,

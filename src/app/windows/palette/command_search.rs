@@ -97,7 +97,7 @@ fn matches_any(word: &str, among: &[&str]) -> bool {
 mod tests {
     use super::*;
     use crate::app::common::reveal::SettingPlace;
-    use chiaroscuro_scene::{ObjectRotation, RenderMode, StandardView};
+    use chiaroscuro_scene::{CutShapeKind, ObjectRotation, RenderMode, StandardView};
     use chiaroscuro_volume::{ChoiceAspect, FileDimension};
 
     /// Commands that a text finds, for a volume without labels.
@@ -199,12 +199,13 @@ mod tests {
             ("turntable", AppCommand::Export, false),
             ("annotation", AppCommand::Export, true),
             ("play", AppCommand::StepChoice(frame, true), true),
-            ("composite", AppCommand::ShowChooser(channel), true),
+            ("composite", AppCommand::ShowTogether(channel), false),
             ("mip", AppCommand::UseRenderMode(RenderMode::Maximum), false),
             ("maximum intensity projection", AppCommand::UseRenderMode(RenderMode::Maximum), false),
             ("isosurface", AppCommand::UseRenderMode(RenderMode::Surface), false),
             ("remove table", AppCommand::ToggleTable, false),
-            ("island", AppCommand::ToggleCrop, true),
+            ("island", AppCommand::CutByShape(CutShapeKind::Component), false),
+            ("scissors", AppCommand::CutByShape(CutShapeKind::Outline), false),
             ("segmentation", AppCommand::OpenDialog, true),
         ] {
             let findings = search_commands(words, PaletteContext::default());
@@ -234,7 +235,7 @@ mod tests {
                 findings.missing_feature
             );
         }
-        for words in ["stereo", "fusion"] {
+        for words in ["stereo"] {
             assert!(search_commands(words, PaletteContext::default()).missing_feature.is_some(), "{words}");
         }
         let measure = search_commands("measure", PaletteContext::default());

@@ -4,7 +4,7 @@ use crate::app::common::commands::AppCommand;
 use crate::app::common::searchable_settings::SEARCHABLE_SETTINGS;
 use crate::app::text::palette_synonyms::{self, PaletteSynonyms};
 use crate::app::text::{self, sections};
-use chiaroscuro_scene::{ObjectRotation, RenderMode};
+use chiaroscuro_scene::{CutShapeKind, ObjectRotation, RenderMode};
 use chiaroscuro_volume::{ChoiceAspect, Downsampling, FileDimension, KindName};
 
 /// Search words with the commands that they lead to.
@@ -34,7 +34,6 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
     let missing = |sought, targets| Synonym { is_supported: false, ..supported(sought, targets) };
     let channel = ChoiceAspect::Dimension(FileDimension::Channel);
     let frame = ChoiceAspect::Dimension(FileDimension::Frame);
-    let series = ChoiceAspect::Dimension(FileDimension::Series);
     let mut all = vec![
         supported(palette_synonyms::TILT, vec![Some(AppCommand::TurnObject(ObjectRotation::TipBack))]),
         supported(palette_synonyms::ROTATE, vec![Some(AppCommand::RotateObject)]),
@@ -82,9 +81,9 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
             palette_synonyms::NO_PLAYING,
             vec![Some(AppCommand::StepChoice(frame, true)), Some(AppCommand::ShowChooser(frame))],
         ),
-        missing(
-            palette_synonyms::NO_COMPOSITE,
-            vec![Some(AppCommand::ShowChooser(channel)), Some(AppCommand::StepChoice(channel, true))],
+        supported(
+            palette_synonyms::COMPOSITE,
+            vec![Some(AppCommand::ShowTogether(channel)), Some(AppCommand::ShowChooser(channel))],
         ),
         missing(palette_synonyms::NO_ANNOTATION, vec![Some(AppCommand::Export)]),
         missing(
@@ -96,17 +95,18 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
             ],
         ),
         missing(palette_synonyms::NO_STEREO, Vec::new()),
-        missing(
-            palette_synonyms::NO_FUSION,
-            vec![Some(AppCommand::ShowChooser(series)), Some(AppCommand::NextFile)],
-        ),
+        supported(palette_synonyms::FUSION, vec![Some(AppCommand::AddLayer)]),
         missing(
             palette_synonyms::NO_DEPTH_OF_FIELD,
             vec![reveal_row(sections::CAMERA, Some(text::camera::FIELD_OF_VIEW.name))],
         ),
-        missing(
-            palette_synonyms::NO_OBJECTS,
-            vec![Some(AppCommand::ToggleCrop), Some(AppCommand::TogglePlane)],
+        supported(
+            palette_synonyms::OBJECTS,
+            vec![Some(AppCommand::CutByShape(CutShapeKind::Component)), Some(AppCommand::ToggleCrop)],
+        ),
+        supported(
+            palette_synonyms::SCISSORS,
+            vec![Some(AppCommand::CutByShape(CutShapeKind::Outline)), Some(AppCommand::TogglePlane)],
         ),
     ];
     all.push(if has_labels {

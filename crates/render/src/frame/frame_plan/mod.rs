@@ -5,22 +5,23 @@ mod planner;
 mod steps;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 use std::time::Instant;
 
 pub(super) use self::light_inputs::light_inputs;
 use self::planner::FramePlanner;
 use self::steps::{pyramid_steps, upload_steps};
-use super::loaded_volume::LoadedVolume;
+use super::loaded_volume::{LoadedVolume, ReusedTextures};
 use super::render_job::RenderJob;
 use super::report::RenderReport;
-use super::step::RenderStep;
+use super::step::{FrameProduct, RenderStep};
 use crate::output::render_target::TargetShape;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::volume::density_pyramid::needs_density_pyramid;
 use crate::volume::presence::PresenceTexture;
 use crate::{GpuError, RenderOptions, Renderer};
-use chiaroscuro_scene::PixelFormat;
+use chiaroscuro_scene::{PixelFormat, mask_from_shapes};
 use chiaroscuro_volume::Dataset;
 
 impl Renderer {
@@ -131,20 +132,29 @@ impl Renderer {
         let known = other.filter(|known| {
             known.key().content_id == keys.volume.content_id && known.product.has_voxel_type_of(dataset)
         });
-        let (known, presence) = known.map_or((None, None), |known| {
-            let presence = if known.is_complete() { known.product.volume.presence } else { None };
-            (Some(known.product.dataset), presence)
+        let reused = known.as_ref().map_or_else(ReusedTextures::default, |known| {
+            ReusedTextures::from_known(known, &keys.volume)
         });
+        let is_same_mask = known.as_ref().is_some_and(|known| known.key().mask == keys.volume.mask);
+        let known = known.map(|known| known.product.dataset);
+        let mask = match &known {
+            Some(known) if is_same_mask => known.volume().mask().cloned(),
+            _ => mask_from_shapes(dataset.volume(), request.settings.cuts.enabled_shapes()).map(Arc::new),
+        };
         let known = known.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
         let dataset = known.as_ref().unwrap_or(dataset).with_density_mappings(keys.volume.density_mappings());
-        let has_presence = presence.is_some();
+        let dataset = dataset.with_mask(mask);
+        let (has_presence, has_density) = (reused.presence.is_some(), reused.density.is_some());
         let (context, settings) = (&self.tools.context, &request.settings);
-        let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, presence)?;
+        let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, reused)?;
         if !has_presence {
             let slices = fresh.volume.presence.iter().flat_map(PresenceTexture::steps);
             steps.extend(slices.map(RenderStep::Presence));
         }
-        steps.extend(upload_steps(&fresh.volume));
+        if !has_density {
+            steps.extend(upload_steps(&fresh.volume));
+        }
+        steps.push(RenderStep::Finish(FrameProduct::Volume));
         self.report.step_counts.tables = 2;
         self.report.tables_ms = start.elapsed().as_secs_f64() * 1000.0;
         Ok(CacheEntry::incomplete(keys.volume, fresh))

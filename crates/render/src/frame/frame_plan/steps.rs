@@ -12,14 +12,11 @@ use crate::volume::transfer_tables::TransferTables;
 use crate::volume::{GpuVolume, pyramid};
 use chiaroscuro_scene::SheetOrder;
 
-/// Returns the steps that upload a volume.
+/// Returns the steps that upload the densities of a volume.
 pub(super) fn upload_steps(volume: &GpuVolume) -> Vec<RenderStep> {
     let slices = volume.volume.dims()[2];
     let each = volume.slices_per_step();
-    let mut steps: Vec<_> =
-        (0..slices).step_by(each).map(|first| RenderStep::Upload(first..slices.min(first + each))).collect();
-    steps.push(RenderStep::Finish(FrameProduct::Volume));
-    steps
+    (0..slices).step_by(each).map(|first| RenderStep::Upload(first..slices.min(first + each))).collect()
 }
 
 /// Returns the steps that compute the pyramid of densities and its gradients.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use chiaroscuro_scene::BakedTransfer;
 use chiaroscuro_volume::{
-    MissingVoxels, Volume,
+    Volume,
     math::{Aabb, ClipRegion, RayInterval, SceneSpace},
 };
 
@@ -220,7 +220,7 @@ impl VolumeRays<'_> {
         for (voxel, weight) in self.nearest_voxels(index) {
             let [x, y, z] = voxel;
             let value = self.volume.value(x, y, z);
-            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
+            if self.volume.presence(x + dims[0] * (y + dims[1] * z)) <= 0.0 {
                 continue;
             }
             match parts.iter_mut().find(|(known, _)| *known == value) {
@@ -229,10 +229,6 @@ impl VolumeRays<'_> {
             }
         }
         parts.into_iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0.0, |(value, _)| value)
-    }
-
-    fn is_missing(&self, voxel: usize) -> bool {
-        self.volume.missing().is_some_and(|missing: &MissingVoxels| missing.contains(voxel))
     }
 
     /// Iterates over the eight voxels around a point, with their linear weights.
@@ -256,11 +252,11 @@ impl VolumeRays<'_> {
         let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
         for ([x, y, z], weight) in self.nearest_voxels(index) {
-            if self.is_missing(x + dims[0] * (y + dims[1] * z)) {
-                continue;
+            let weight = weight * f64::from(self.volume.presence(x + dims[0] * (y + dims[1] * z)));
+            if weight > 0.0 {
+                sum += weight * of(self.volume.value(x, y, z));
+                there += weight;
             }
-            sum += weight * of(self.volume.value(x, y, z));
-            there += weight;
         }
         let value = if there > 0.0 { sum / there } else { 0.0 };
         InterpolatedValue { value, presence: there }

@@ -209,6 +209,8 @@ fn every_setting_causes_what_the_design_says() {
         ("cuts.plane", r#"{"offset": 0.1}"#, ChangeEffect::Nothing),
         ("cuts.plane", r#"{"on": true}"#, ChangeEffect::AllLights),
         ("cuts.plane", r#"{"on": true, "effect": "shadowless"}"#, ChangeEffect::AllLights),
+        ("cuts.shapes", r#"[{"on": false}]"#, ChangeEffect::Nothing),
+        ("cuts.shapes", r"[{}]", ChangeEffect::AllLights),
         ("floor", r#"{"on": true}"#, ChangeEffect::Floor),
         ("sampling.kernel", "prefiltered", ChangeEffect::Eye),
         ("sampling.slab", "0.5", ChangeEffect::Eye),

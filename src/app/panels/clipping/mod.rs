@@ -1,13 +1,15 @@
-//! Section "Clipping" of the side panel: the crop box and the clip plane.
+//! Section "Clipping" of the side panel: the crop box, the clip plane, and cuts by shapes.
+
+mod shape_cuts;
 
 use eframe::egui::{self, DragValue, Ui};
 use glam::DVec3;
 
-use super::super::text::{self, ControlText};
 use super::PanelContext;
 use super::controls::{NumberRow, reset_button_cell, row, switch_row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
 use crate::app::common::volume_facts::VolumeFacts;
+use crate::app::text::{self, ControlText};
 use chiaroscuro_scene::{ClipEffect, CropBox, MIN_CROP_EXTENT};
 
 /// Shows the section "Clipping" of the side panel.
@@ -50,6 +52,8 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
         });
         cut_effect_row(ui, text::cuts::IN_FRONT, &mut cuts.plane.effect);
     });
+    ui.add_space(4.0);
+    shape_cuts::show(ui, &mut cuts.shapes, panels.commands);
 }
 
 /// Row for the extent of the crop box along an axis, in voxels.

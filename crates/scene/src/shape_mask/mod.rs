@@ -1,0 +1,202 @@
+//! Mask of the voxels that cuts by shapes hide: one shape after another, each with an edge as wide as a voxel.
+
+mod component;
+mod outline;
+
+use rayon::prelude::*;
+
+use self::component::component_voxels;
+use self::outline::OutlineDistance;
+use crate::{CutAction, CutShape, ShapeCut, SphereCut};
+use chiaroscuro_volume::{Volume, VoxelMask, math::SceneSpace};
+use glam::DVec3;
+
+/// Hidden share of a voxel that is not visible at all.
+const HIDDEN: u8 = 255;
+
+/// Returns the mask of the voxels that cuts hide, applied in their order; `None` if all of the volume is visible.
+/// Takes a tenth of a second per cut for 256³ voxels on two cores.
+pub fn mask_from_shapes<'a>(
+    volume: &Volume,
+    cuts: impl IntoIterator<Item = &'a ShapeCut>,
+) -> Option<VoxelMask> {
+    let mut hidden = vec![0; volume.voxel_count()];
+    for ShapeCut { on: _, action, shape } in cuts {
+        apply_shape(volume, &mut hidden, *action, shape);
+    }
+    VoxelMask::from_hidden_shares(volume.dims(), hidden)
+}
+
+/// Hides or shows voxels inside or outside a shape.
+fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &CutShape) {
+    let scene = volume.scene();
+    match shape {
+        CutShape::Outline(outline) => {
+            let distance = OutlineDistance::new(outline, &scene);
+            apply_distance(hidden, action, scene.dims, |index| distance.voxels_inside(index));
+        }
+        CutShape::Sphere(SphereCut { center, radius }) => {
+            let edge = voxel_edge(&scene);
+            let center = DVec3::from(*center);
+            apply_distance(hidden, action, scene.dims, |index| {
+                (radius - scene.scene_from_index.transform_point3(index).distance(center)) / edge
+            });
+        }
+        CutShape::Component(component) => {
+            if let Some(inside) = component_voxels(volume, hidden, component) {
+                hidden.par_iter_mut().zip(inside).for_each(|(hidden, is_inside)| {
+                    *hidden = applied(action, *hidden, if is_inside { HIDDEN } else { 0 });
+                });
+            }
+        }
+    }
+}
+
+/// Applies an action to all voxels of a grid, with the signed distance in voxels by which each lies inside a shape.
+fn apply_distance(
+    hidden: &mut [u8],
+    action: CutAction,
+    [nx, ny, _]: [usize; 3],
+    voxels_inside: impl Fn(DVec3) -> f64 + Sync,
+) {
+    hidden.par_chunks_mut(nx).enumerate().for_each(|(row, hidden)| {
+        let (y, z) = ((row % ny) as f64, (row / ny) as f64);
+        for (x, hidden) in hidden.iter_mut().enumerate() {
+            // A voxel whose centre lies on the edge is hidden by half.
+            let share = (voxels_inside(DVec3::new(x as f64, y, z)) + 0.5).clamp(0.0, 1.0);
+            *hidden = applied(action, *hidden, (share * f64::from(HIDDEN)).round() as u8);
+        }
+    });
+}
+
+/// Returns the hidden share of a voxel after an action of which `inside` is the share inside the shape.
+fn applied(action: CutAction, hidden: u8, inside: u8) -> u8 {
+    match action {
+        CutAction::Hide => hidden.max(inside),
+        CutAction::Keep => hidden.max(HIDDEN - inside),
+        CutAction::Restore => hidden.saturating_sub(inside),
+    }
+}
+
+/// Returns the edge of a cube of a voxel's size, in scene units.
+fn voxel_edge(scene: &SceneSpace) -> f64 {
+    scene.scene_from_index.matrix3.determinant().abs().cbrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Camera, ComponentCut, OutlineCut, Projection};
+    use chiaroscuro_volume::{Samples, ValueRange};
+
+    const EDGE: usize = 16;
+
+    fn volume(value: impl Fn([usize; 3]) -> u8) -> Volume {
+        let values = (0..EDGE * EDGE * EDGE)
+            .map(|at| value([at % EDGE, at / EDGE % EDGE, at / EDGE / EDGE]))
+            .collect();
+        Volume::with_spacing("t", [EDGE; 3], DVec3::ONE, Samples::U8(values)).unwrap()
+    }
+
+    fn cut(action: CutAction, shape: CutShape) -> ShapeCut {
+        ShapeCut { on: true, action, shape }
+    }
+
+    fn hidden_at(mask: &VoxelMask, [x, y, z]: [usize; 3]) -> u8 {
+        mask.hidden(x + EDGE * (y + EDGE * z))
+    }
+
+    /// Square outline of half of the picture's height, as seen through a camera.
+    fn square(camera: Camera) -> CutShape {
+        let points = vec![[0.375, 0.25], [0.625, 0.25], [0.625, 0.75], [0.375, 0.75]];
+        CutShape::Outline(OutlineCut { camera, aspect: 2.0, points })
+    }
+
+    #[test]
+    fn spheres_have_an_edge_of_a_voxel() {
+        let volume = volume(|[x, ..]| x as u8);
+        let scene = volume.scene();
+        let center = scene.scene_from_index.transform_point3(DVec3::splat(8.0));
+        let radius = 4.25 * voxel_edge(&scene);
+        let sphere = CutShape::Sphere(SphereCut { center: center.into(), radius });
+        let mask = mask_from_shapes(&volume, &[cut(CutAction::Hide, sphere.clone())]).unwrap();
+        let along_x = [3, 4, 5, 8, 12, 13].map(|x| hidden_at(&mask, [x, 8, 8]));
+        assert_eq!(along_x, [0, 191, 255, 255, 191, 0]);
+        let kept = mask_from_shapes(&volume, &[cut(CutAction::Keep, sphere.clone())]).unwrap();
+        assert!((0..4096).all(|voxel| kept.hidden(voxel) == 255 - mask.hidden(voxel)));
+        // Restored, everything is visible again; in the other order the sphere is hidden.
+        let [hide, restore] = [CutAction::Hide, CutAction::Restore].map(|action| cut(action, sphere.clone()));
+        assert_eq!(mask_from_shapes(&volume, [&hide, &restore]).map(|mask| hidden_at(&mask, [8, 8, 8])), None);
+        assert_eq!(mask_from_shapes(&volume, [&restore, &hide]), Some(mask));
+    }
+
+    #[test]
+    fn outlines_hide_the_voxels_that_project_into_them() {
+        let volume = volume(|[x, ..]| x as u8);
+        let scene = volume.scene();
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let camera = Camera { projection, azimuth_deg: 23.0, elevation_deg: 31.0, ..Camera::default() };
+            let mask = mask_from_shapes(&volume, &[cut(CutAction::Hide, square(camera.clone()))]).unwrap();
+            let mut counts = [0; 3];
+            for z in 0..EDGE {
+                for y in 0..EDGE {
+                    for x in 0..EDGE {
+                        let index = DVec3::new(x as f64, y as f64, z as f64);
+                        let point = scene.scene_from_index.transform_point3(index);
+                        let (px, py, _) = camera.pixel_from_scene(point, 800.0, 400.0).unwrap();
+                        let inside = (px - 400.0).abs().max((py - 200.0).abs()) < 100.0;
+                        let share = hidden_at(&mask, [x, y, z]);
+                        // An edge as wide as a voxel lies between both.
+                        assert!(if inside { share >= 127 } else { share <= 128 }, "{index}: {share}");
+                        counts[match share {
+                            0 => 0,
+                            255 => 2,
+                            _ => 1,
+                        }] += 1;
+                    }
+                }
+            }
+            assert!(counts.iter().all(|&count| count > 100), "{projection:?}: {counts:?}");
+        }
+    }
+
+    #[test]
+    fn an_edge_crossed_twice_is_inside() {
+        // Loop that a hand draws where it begins: a corner of the square once more.
+        let camera = Camera { projection: Projection::Orthographic, ..Camera::default() };
+        let CutShape::Outline(mut outline) = square(camera) else { panic!("an outline") };
+        outline.points.extend([[0.45, 0.25], [0.45, 0.5]]);
+        let distance = OutlineDistance::new(&outline, &volume(|_| 0).scene());
+        assert!(distance.voxels_inside(DVec3::splat(7.5)) > 1.0);
+    }
+
+    #[test]
+    fn components_end_where_values_do() {
+        // Two blocks, one bridge between them below the lowest value, and a skin around each.
+        let volume = volume(|[x, y, z]| {
+            let is_across = |margin: usize| [y, z].iter().all(|at| (4 - margin..=9 + margin).contains(at));
+            match x {
+                2..=5 | 10..=13 if is_across(0) => 200,
+                6..=9 if (y, z) == (7, 7) => 90,
+                1 | 6 if is_across(1) => 50,
+                _ => 0,
+            }
+        });
+        let seed = volume.scene().scene_from_index.transform_point3(DVec3::new(1.2, 6.0, 6.0)).into();
+        let component = |values| CutShape::Component(ComponentCut { seed, values });
+        let hide = |values| mask_from_shapes(&volume, &[cut(CutAction::Hide, component(values))]).unwrap();
+        let mask = hide(ValueRange::new(100.0, 255.0));
+        let along_x = [0, 2, 5, 6, 8, 10, 13].map(|x| hidden_at(&mask, [x, 6, 6]));
+        assert_eq!(along_x, [255, 255, 255, 255, 0, 0, 0]);
+        // The bridge counts among lower values.
+        assert_eq!(hidden_at(&hide(ValueRange::new(80.0, 255.0)), [13, 6, 6]), 255);
+        assert_eq!(
+            mask_from_shapes(
+                &volume,
+                &[cut(CutAction::Hide, component(ValueRange::new(240.0, 255.0)))]
+            ),
+            None,
+            "no value in the range"
+        );
+    }
+}
