@@ -1,4 +1,4 @@
-// Downsampling by two, to the next level of a pyramid: density, density with presence, or pre-classified voxels. The
+// Downsampling by two, to the next level of a pyramid: density or pre-classified voxels. The
 // target takes as many channels as it has.
 //
 // A level must have the B-spline's variance at its own scale: 4^l/3 in voxels², of which the trilinear fetch

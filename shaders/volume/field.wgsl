@@ -32,12 +32,12 @@ struct GridUniform {
 @group(1) @binding(0) var<uniform> bound_grid: GridUniform;
 var<private> grid: GridUniform;
 @group(1) @binding(1) var density_texture: texture_3d<f32>;
-// Density in r; presence in g where voxels are missing.
+// Density in r.
 @group(1) @binding(2) var pyramid_texture: texture_3d<f32>;
 @group(1) @binding(3) var clamped: sampler;
 // Sampler that takes the nearest texel.
 @group(1) @binding(4) var nearest: sampler;
-// Presence where voxels are missing, with the levels of the pyramid: r is presence, from −1 for none to 1, and gba
+// Presence where voxels are missing or hidden, with the levels of the pyramid: r is presence, from −1 for none to 1, and gba
 // are its differences from the previous to the next texel along x, y and z.
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
 // Pyramid that rays in the near field read: with pre-classification that of light, which is 0 where no voxel is.
@@ -174,13 +174,7 @@ fn decode_presence(texel: vec4f) -> f32 {
 // Presence at a point: the fraction of the kernel on existing voxels.
 fn presence_at(p: vec3f, level: f32) -> f32 {
 #if MISSING
-#if PRECLASSIFY
-    // With pre-classification the pyramid holds materials instead of presence.
     return decode_presence(textureSampleLevel(presence_texture, clamped, pyramid_place(p), level));
-#else
-    // Together with a density from the pyramid at the same point this needs no additional fetch.
-    return pyramid_texel(p, level).g;
-#endif
 #else
     return presence_in_grid(p, level);
 #endif
@@ -267,7 +261,7 @@ fn source_size() -> vec3u {
     return textureDimensions(source_texture);
 }
 
-// Texel of the source: a density, density and presence, or a pre-classified material.
+// Texel of the source: a density or a pre-classified material.
 fn source_texel(texel: vec3i) -> vec4f {
     return textureLoad(source_texture, texel, 0);
 }

@@ -174,12 +174,17 @@ fn extinction_of_colors(met: vec3f) -> vec3f {
     return vec3f(extinction_of(Field(met.r)), extinction_of(Field(met.g)), extinction_of(Field(met.b)));
 }
 
-// Extinction at a point, times its presence: one fetch from the pyramid.
+// Extinction at a point, times its presence.
 fn pyramid_extinction(p: vec3f, level: f32) -> f32 {
 #if PRECLASSIFY
     return extinction_of(Field(preclassified_at(p, level).r));
 #else
-    return extinction_of(pyramid_field(p, level)) * pyramid_presence(p, level);
+    var extinction = extinction_of(pyramid_field(p, level));
+    // Most points are empty; presence is only fetched for the others.
+    if (extinction > 0.0) {
+        extinction *= pyramid_presence(p, level);
+    }
+    return extinction;
 #endif
 }
 

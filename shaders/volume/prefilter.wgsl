@@ -2,9 +2,6 @@
 // fetch has the variance of the cubic B-spline (1/6 from the blur, 1/6 from the fetch; 1/3 in all).
 //
 // [a, 1 − 2a, a] along an axis is the mean of two linear fetches at ± 2a from the voxel.
-//
-// If voxels are missing, the second channel is presence: the fraction of the blur that falls on existing voxels. One
-// fetch returns density and presence.
 #import "volume/resample.wgsl"
 
 @group(0) @binding(2) var level: texture_storage_3d<TARGET_FORMAT, write>;
@@ -21,10 +18,5 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     // From the density texture, which is bound as the source. The pyramid has a padding of four voxels, the density
     // texture one.
     let prefiltered = mean_around(vec3f(texel) - 4.0 + 1.0 + 0.5, OFFSET).r;
-#if MISSING
-    let share = presence_at_texel(texel);
-    textureStore(level, texel, vec4f(prefiltered, share, 0.0, 0.0));
-#else
     textureStore(level, texel, vec4f(prefiltered));
-#endif
 }

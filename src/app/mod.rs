@@ -57,8 +57,9 @@ use chiaroscuro_volume::ValueRanges;
 
 /// State of the main window, which implements [`eframe::App`].
 pub struct App {
-    /// Look that is edited, with its volume, its picture and the messages about it.
-    editor: LookEditor,
+    /// Look that is edited, with its volume, its picture and the messages about it; boxed, as it would make the frame of
+    /// the constructor too large.
+    editor: Box<LookEditor>,
     /// Requests for the next volume, and files that are being read.
     opening: OpeningState,
     /// Handles, overlays and other tools over the picture; boxed, as they would make the frame of the constructor too

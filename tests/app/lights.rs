@@ -124,9 +124,8 @@ fn missing_features_are_reported() {
         harness.event(Event::Text(words.to_owned()));
         harness.run_steps(3);
     };
-    type_words(&mut harness, "composite");
-    harness.get_by_label_contains("there is no composite");
-    harness.get_by_label_contains("Choose a channel");
+    type_words(&mut harness, "stereo");
+    harness.get_by_label_contains("There is no stereo picture");
     type_words(&mut harness, "measure");
     harness.get_by_label_contains("two clicks");
     type_words(&mut harness, "qwertz");

@@ -221,7 +221,7 @@ impl<'a> Reference<'a> {
             return Self { tints: tints.map(Box::new), ..plain };
         }
         let mask = mask_from_shapes(dataset.volume(), settings.cuts.enabled_shapes()).map(Arc::new);
-        let dataset = &dataset.with_mask(mask);
+        let dataset = &dataset.with_mask(mask.as_ref());
         let classified = ALL_TRANSFER_SIDES.map(|side| {
             let has_effect = |layer: &VolumeLayer| match side {
                 TransferSide::Eye => layer.is_seen(),

@@ -27,10 +27,6 @@ mod turntable;
 pub use self::settings::camera_settings::camera::{Camera, FRAME_ASPECT, FovReference, Projection};
 pub use self::settings::camera_settings::scene_axis::SceneAxis;
 pub use self::settings::camera_settings::standard_view::StandardView;
-pub use self::settings::shape_cuts::{
-    ComponentCut, CutAction, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS, OutlineCut, ShapeCut, SphereCut,
-};
-pub use self::shape_mask::mask_from_shapes;
 pub use self::settings::clipping::{
     ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };
@@ -72,6 +68,10 @@ pub use self::settings::shadows::{
     MAX_BIAS_VOXELS, MAX_LIGHT_SAMPLES, MAX_MIN_BLOCKS, NearFieldRay, ReverseKernel, ShadowAlgorithm,
     ShadowSettings,
 };
+pub use self::settings::shape_cuts::{
+    ComponentCut, CutAction, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS, OutlineCut,
+    ShapeCut, SphereCut,
+};
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
 pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value};
@@ -80,6 +80,7 @@ pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
 pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
 pub use self::settings_io::volume_location::VolumeLocation;
+pub use self::shape_mask::mask_from_shapes;
 pub use self::transfer::baked_transfer::BakedTransfer;
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::colored_shadows::LIGHT_COLORS;

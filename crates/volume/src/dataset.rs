@@ -74,7 +74,11 @@ impl DatasetField {
             return self.clone();
         }
         let volume = self.volume.with_mask(mask.cloned());
-        Self { bricks: Arc::new(self.bricks.with_presence_of(&volume)), volume: Arc::new(volume), ..self.clone() }
+        Self {
+            bricks: Arc::new(self.bricks.with_presence_of(&volume)),
+            volume: Arc::new(volume),
+            ..self.clone()
+        }
     }
 
     /// Corrects the opened volume; immediate if voxel values are unaffected.
@@ -134,8 +138,8 @@ impl Dataset {
 
     /// Returns the dataset with voxels of all fields hidden by a mask, in place of an earlier one ([`Volume::with_mask`]).
     #[must_use]
-    pub fn with_mask(&self, mask: Option<Arc<VoxelMask>>) -> Self {
-        Self { fields: self.fields.iter().map(|field| field.with_mask(mask.as_ref())).collect() }
+    pub fn with_mask(&self, mask: Option<&Arc<VoxelMask>>) -> Self {
+        Self { fields: self.fields.iter().map(|field| field.with_mask(mask)).collect() }
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.

@@ -24,7 +24,6 @@ pub mod synthetic;
 mod value_metadata;
 mod values;
 mod volume;
-mod voxel_mask;
 
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
@@ -39,6 +38,7 @@ pub use load_context::{
     VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing, memory_budget_bytes,
     quoted, spacing_ratio_error,
 };
+pub use presence::VoxelMask;
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
 };
@@ -51,4 +51,3 @@ pub use volume::{
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MAX_FIELDS, MissingVoxels, Orientation,
     PaddingValue, PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };
-pub use voxel_mask::VoxelMask;

@@ -148,7 +148,7 @@ impl App {
             dialogs: AppDialogs::default(),
             jobs: Jobs::from_context(&cc.egui_ctx),
             panels: OuterPanels::new(painter.clone(), memory.recent_pictures()),
-            editor: LookEditor::new(viewport, memory),
+            editor: Box::new(LookEditor::new(viewport, memory)),
             layout,
             drag_cancel: DragCancel::default(),
             device: WindowDevice::new(painter, window_context, storage, legacy),

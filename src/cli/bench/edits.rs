@@ -5,10 +5,14 @@ use serde_json::Value;
 use super::VolumeBenchmark;
 use super::report::CaseTimings;
 use crate::cli::CliError;
+use chiaroscuro_scene::{CutShape, ShapeCut, SphereCut};
 
 /// Displacement of all control points per edit, relative to the value range: enough to change the set of visible
 /// cells.
 pub(super) const EDIT_SHARE: f64 = 0.002;
+
+/// Displacement of a cut per edit, in scene units: a voxel of 256.
+const CUT_STEP: f64 = 2.0 / 256.0;
 
 impl VolumeBenchmark<'_> {
     /// Measures small displacements of all control points, to and fro: tables, visible cells, light and picture are
@@ -27,6 +31,23 @@ impl VolumeBenchmark<'_> {
         }
         let rebuilds = self.renderer.light_rebuilds().iter().sum::<u64>() - before;
         cases.push(self.case("tf-edit", &samples, rebuilds));
+        Ok(())
+    }
+
+    /// Measures small displacements of a ball that is cut out of the middle of the volume: presence of voxels, visible
+    /// cells, light and picture are recomputed.
+    pub(super) fn cut_edit(&mut self, cases: &mut Vec<Value>) -> Result<(), CliError> {
+        let mut samples = CaseTimings::default();
+        let before: u64 = self.renderer.light_rebuilds().iter().sum();
+        for frame in self.alternating_frames() {
+            let mut settings = self.settings.clone();
+            let center = [(frame % 7) as f64 * CUT_STEP, 0.0, 0.0];
+            let shape = CutShape::Sphere(SphereCut { center, ..SphereCut::default() });
+            settings.cuts.shapes = vec![ShapeCut { shape, ..ShapeCut::default() }];
+            self.alternate(frame, &settings, &mut samples)?;
+        }
+        let rebuilds = self.renderer.light_rebuilds().iter().sum::<u64>() - before;
+        cases.push(self.case("cut-edit", &samples, rebuilds));
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Cases: *orbit* (shadows from the cache) and *orbit-unshadowed*, with alternating frames; *light-drag* (the light
 //! moves, so its volume is filled for every frame); *light-build* (the two halves of the light pass of those frames);
-//! *tf-edit* (a transfer function changes); *background* (only the background does); *load* (from a file to its first
+//! *tf-edit* (a transfer function changes); *cut-edit* (a cut by a shape moves); *background* (only the background does); *load* (from a file to its first
 //! picture, stage by stage) and *memory*; *read* (the stages of *load* that need no adapter); *growth* (light volumes
 //! of clouds of growing size, splatted and by rays, with all optimisations and without); *sky*, *area* and
 //! *scattering* (light volumes of the sky, of area lights and of multiple scattering, in units of one light's);
@@ -41,11 +41,12 @@ const WARM_UP_FRAMES: usize = 2;
 const STEP_DEG: f64 = 12.0;
 
 /// Names of the benchmark cases.
-const CASES: [&str; 14] = [
+const CASES: [&str; 15] = [
     "orbit",
     "light-drag",
     "light-build",
     "tf-edit",
+    "cut-edit",
     "background",
     "load",
     "read",
@@ -137,6 +138,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         }
         if wants("tf-edit") {
             bench.transfer_edit(&mut cases)?;
+        }
+        if wants("cut-edit") {
+            bench.cut_edit(&mut cases)?;
         }
         if wants("background") {
             bench.background(&mut cases)?;

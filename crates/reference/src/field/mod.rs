@@ -53,7 +53,11 @@ impl DensityField {
             None => 1.0,
         };
         let densities = (0..volume.voxel_count()).map(share).collect();
-        (missing.is_some() || mask.is_some()).then_some(Self { dims: volume.dims(), densities, border: BorderMode::Zero })
+        (missing.is_some() || mask.is_some()).then_some(Self {
+            dims: volume.dims(),
+            densities,
+            border: BorderMode::Zero,
+        })
     }
 
     /// Returns the density of one voxel, inside the grid or outside.

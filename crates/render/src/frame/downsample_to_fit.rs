@@ -105,8 +105,8 @@ fn enlarge_block(block: [usize; 3], dims: [usize; 3], spacing_mm: [f64; 3]) -> [
 
 /// Tries to allocate the textures of a volume and of one light, and drops them again.
 fn try_allocation(context: &GpuContext, like: &Volume, dims: [usize; 3]) -> Result<(), GpuError> {
-    // Sevenths of bytes per voxel: 44 for density, pyramid and light, 48 for presence, 64 for classified labels.
-    let of_missing = if like.has_absent_voxels() { 48 } else { 0 };
+    // Sevenths of bytes per voxel: 44 for density, pyramid and light, 32 for presence, 64 for classified labels.
+    let of_missing = if like.has_absent_voxels() { 32 } else { 0 };
     let of_labels = if matches!(like.kind().kind, DataKind::LabelMap { .. }) { 64 } else { 0 };
     let voxels = dims.iter().fold(1u64, |all, &n| all.saturating_mul(n as u64));
     let bytes = voxels.saturating_mul(44 + of_missing + of_labels) / 7;
@@ -115,7 +115,7 @@ fn try_allocation(context: &GpuContext, like: &Volume, dims: [usize; 3]) -> Resu
         return Err(GpuError::OutOfMemory { what: "the volume".to_owned(), mebibytes: bytes >> 20 });
     }
     let made = volume::density_texture(context, like, dims).and_then(|density| {
-        let textures = (density, volume::pyramid_texture(context, like, dims)?);
+        let textures = (density, volume::pyramid_texture(context, dims)?);
         let presence = PresenceTexture::new(context, like, dims)?;
         Ok((textures, presence, attenuation_texture(context, dims, context.storage_format)?))
     });

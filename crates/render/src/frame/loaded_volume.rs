@@ -14,7 +14,7 @@ use crate::scattered_light::volume::ScatteredLightVolume;
 use crate::sky::volume::SkyVolume;
 use crate::volume::GpuVolume;
 use crate::volume::preclassified::PreclassifiedVoxels;
-use crate::volume::presence::PresenceTexture;
+use crate::volume::reused_textures::ReusedTextures;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{LayerComposition, Settings, SheetOrder};
@@ -56,33 +56,6 @@ pub(crate) struct LoadedVolume {
     pub scatter_voxels: Option<Arc<ScatterVoxels>>,
 }
 
-/// Textures of an earlier picture of the same volume that hold for the next one.
-#[derive(Debug, Default)]
-pub(crate) struct ReusedTextures {
-    /// Densities, if they represent the same quantity.
-    pub density: Option<wgpu::Texture>,
-    /// Presence, if the same voxels are hidden.
-    pub presence: Option<PresenceTexture>,
-}
-
-impl ReusedTextures {
-    /// Returns the textures of a volume with the same content that hold under another key.
-    pub(crate) fn from_known(known: &CacheEntry<VolumeKey, LoadedVolume>, wanted: &VolumeKey) -> Self {
-        if !known.is_complete() {
-            return Self::default();
-        }
-        let volume = &known.product.volume;
-        // Fields of layers are uploaded together with the densities.
-        let is_first_alone = wanted.composition == LayerComposition::First;
-        let has_same_densities = VolumeKey { mask: wanted.mask, ..*known.key() } == *wanted;
-        let has_same_mask = known.key().mask == wanted.mask;
-        Self {
-            density: (is_first_alone && has_same_densities).then(|| volume.density_texture().clone()),
-            presence: volume.presence.clone().filter(|_| has_same_mask),
-        }
-    }
-}
-
 impl LoadedVolume {
     /// Allocates a volume and its tables. Nothing is uploaded yet, except textures that are passed in.
     ///
@@ -95,8 +68,7 @@ impl LoadedVolume {
         tables_key: &TablesKey,
         reused: ReusedTextures,
     ) -> Result<Self, GpuError> {
-        let ReusedTextures { density, presence } = reused;
-        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), (density, presence))?;
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), reused)?;
         let volume = match tables_key.volume.composition {
             LayerComposition::First => volume,
             // Tints colour matter up to the edge of what is hidden.
@@ -120,6 +92,23 @@ impl LoadedVolume {
             bounces: ProductCache::default(),
             scatter_voxels: None,
         })
+    }
+
+    /// Returns the textures that hold for a picture of the same content under another key.
+    pub(crate) fn into_reused(entry: CacheEntry<VolumeKey, Self>, wanted: &VolumeKey) -> ReusedTextures {
+        if !entry.is_complete() {
+            return ReusedTextures::default();
+        }
+        // Fields of layers are uploaded together with the densities.
+        let is_first_alone = wanted.composition == LayerComposition::First;
+        let has_same_densities = VolumeKey { mask: wanted.mask, ..*entry.key() } == *wanted;
+        let Self { volume, .. } = entry.product;
+        let mask = volume.volume.mask().cloned();
+        let GpuVolume { density, pyramid, presence, .. } = volume;
+        ReusedTextures {
+            density: (is_first_alone && has_same_densities).then_some((density, pyramid)),
+            presence: presence.map(|presence| (presence, mask)),
+        }
     }
 
     /// Returns true if the dataset has the voxel type of the loaded one; equal numbers of another type have another

@@ -107,8 +107,8 @@ pub(crate) enum FrameProduct {
 pub(crate) enum RenderStep {
     /// Uploads slices of the volume.
     Upload(Range<usize>),
-    /// Uploads slices of the coarsest level of the presence texture, with those of the finer levels.
-    Presence(Range<usize>),
+    /// Uploads a box of texels of the coarsest level of the presence texture, with those of the finer levels.
+    Presence([Range<usize>; 3]),
     /// Prefilters bricks of one pyramid level.
     Pyramid(u32, Range<usize>),
     /// Computes gradients in bricks of one pyramid level.

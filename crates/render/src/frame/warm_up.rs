@@ -8,7 +8,6 @@ use crate::light::backproject::BackprojectVariant;
 use crate::light::march::MarchVariant;
 use crate::output::display::DisplayVariant;
 use crate::pipelines::pipeline_variant::{LightCount, PipelineVariant, SingleVariant};
-use crate::volume::pyramid::PrefilterVariant;
 use crate::{GpuError, RenderOptions, Renderer, ShaderLibrary};
 use chiaroscuro_scene::{
     ClipPlane, Clipping, ReconstructionKernel, SamplingSettings, Settings, ShadowSettings, SkyMode,
@@ -35,8 +34,7 @@ impl ShaderLibrary {
     /// # Errors
     /// Returns an error if a shader is invalid.
     pub fn warm_up(&self, cancel: &CancelToken) -> Result<(), GpuError> {
-        self.compile_unless_cancelled(&PrefilterVariant { has_missing: false }, cancel)?;
-        for shader in ["volume/downsample.wgsl", "volume/gradients.wgsl"] {
+        for shader in ["volume/prefilter.wgsl", "volume/downsample.wgsl", "volume/gradients.wgsl"] {
             self.compile_unless_cancelled(&SingleVariant(shader), cancel)?;
         }
         self.compile_unless_cancelled(&SingleVariant("light/clear_margin.wgsl"), cancel)?;

@@ -115,8 +115,7 @@ impl BlocksPass<'_> {
         ];
         own.extend_from_slice(entries);
         let own = gpu.bind("Blocks::own", &pipeline, 0, &own);
-        let of_volume =
-            gpu.bind_pyramid_without_presence(&pipeline, tables.lighting_pyramids(gpu.volume).primary);
+        let of_volume = gpu.bind_pyramid(&pipeline, tables.lighting_pyramids(gpu.volume).primary);
         pass::dispatch(encoder, "Blocks::pass", &pipeline, &[&own, &of_volume], cells.workgroups());
         Ok(())
     }

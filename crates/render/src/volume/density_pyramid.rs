@@ -26,7 +26,7 @@ impl DensityPyramid {
     /// # Errors
     /// Returns an error if the adapter cannot hold the pyramid.
     pub(super) fn new(context: &GpuContext, volume: &Volume) -> Result<Self, GpuError> {
-        let texture = pyramid_texture(context, volume, volume.dims())?;
+        let texture = pyramid_texture(context, volume.dims())?;
         let gradients = gradient_texture(context, &texture);
         Ok(Self {
             views: PyramidViews::new(&texture),

@@ -10,6 +10,7 @@ pub(super) mod layers;
 pub(super) mod preclassified;
 pub(super) mod presence;
 pub(super) mod pyramid;
+pub(super) mod reused_textures;
 mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
@@ -26,6 +27,7 @@ use half::f16;
 use self::density_pyramid::DensityPyramid;
 use self::field_texture::FieldTexture;
 use self::presence::PresenceTexture;
+use self::reused_textures::ReusedTextures;
 use self::texture_shapes::{pyramid_dims, texel_count};
 use self::textures::{density_is_unorm, unorm16};
 use super::resources::gpu_tools::GpuTools;
@@ -108,22 +110,6 @@ impl VolumeContext<'_> {
         )
     }
 
-    /// Creates bind group 1 of passes that read a pyramid without presence.
-    pub(crate) fn bind_pyramid_without_presence(
-        &self,
-        pipeline: &ShaderPipeline,
-        pyramid: &PyramidViews,
-    ) -> wgpu::BindGroup {
-        let volume = self.volume;
-        let grid = self.uniform("Volume::grid", volume.grid(0));
-        let entries = [
-            bind_buffer("bound_grid", &grid),
-            bind_view("pyramid_texture", &pyramid.all),
-            sampler("clamped", &volume.clamped),
-        ];
-        self.bind("Volume::pyramid_alone_bind_group", pipeline, 1, &entries)
-    }
-
     /// Creates bind group 1 of passes that sample density.
     pub(crate) fn bind_volume(
         &self,
@@ -192,7 +178,7 @@ impl PyramidLevels {
 
 /// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
 /// computes the level sizes for each lane and fetch, which the second view avoids.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct PyramidViews {
     /// View of all levels of the pyramid.
     pub all: wgpu::TextureView,
@@ -217,7 +203,8 @@ pub(crate) struct GpuVolume {
     pub bricks: Arc<BrickBounds>,
     /// Transform between index space and scene space.
     pub scene: SceneSpace,
-    density: wgpu::Texture,
+    /// Densities with a border of one voxel.
+    pub density: wgpu::Texture,
     pub density_view: wgpu::TextureView,
     /// Pyramid of densities, once a picture has read it.
     pub pyramid: Option<DensityPyramid>,
@@ -244,11 +231,11 @@ impl GpuVolume {
         context: &GpuContext,
         volume: &Arc<Volume>,
         bricks: &Arc<BrickBounds>,
-        (density, presence): (Option<wgpu::Texture>, Option<PresenceTexture>),
+        reused: ReusedTextures,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
-        let density = match density {
-            None => density_texture(context, volume, dims)?,
+        let (density, pyramid) = match reused.density {
+            None => (density_texture(context, volume, dims)?, None),
             Some(known) => known,
         };
         let texel = context.texture(&texture_3d(
@@ -257,9 +244,9 @@ impl GpuVolume {
             wgpu::TextureFormat::R16Float,
             wgpu::TextureUsages::TEXTURE_BINDING,
         ))?;
-        let presence = match presence {
+        let presence = match reused.presence.filter(|_| volume.has_absent_voxels()) {
             None => PresenceTexture::new(context, volume, dims)?,
-            known => known,
+            Some((known, _)) => Some(known),
         };
         let padded = pyramid_dims(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
@@ -279,8 +266,8 @@ impl GpuVolume {
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
-            filled_levels: pyramid::nonempty_bricks(bricks, dims, presence.is_some()),
-            pyramid: None,
+            filled_levels: pyramid::nonempty_bricks(bricks, dims),
+            pyramid,
             no_pyramid: PyramidViews::new(&texel),
             fields: None,
             presence,
@@ -292,11 +279,6 @@ impl GpuVolume {
             is_unorm: density_is_unorm(context, volume),
             grid,
         })
-    }
-
-    /// Returns the density texture, to share it with another picture of the volume.
-    pub(crate) fn density_texture(&self) -> &wgpu::Texture {
-        &self.density
     }
 
     /// Adds the texture of all fields, of which voxels are composed.
@@ -392,11 +374,11 @@ impl GpuVolume {
 
     /// Returns the size of the textures, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
-        // Two channels where voxels are missing; the coarser levels of the pyramid add a seventh.
-        let channels = if self.presence.is_some() { 2 } else { 1 };
-        let pyramid = self.pyramid.as_ref().map_or(0, |pyramid| {
-            channels * texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes()
-        });
+        // The coarser levels of the pyramid add a seventh.
+        let pyramid = self
+            .pyramid
+            .as_ref()
+            .map_or(0, |pyramid| texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes());
         let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
         let fields = self.fields.as_ref().map_or(0, |fields| fields.bytes());
         2 * texel_count(&self.density) + pyramid + presence + fields

@@ -1,13 +1,11 @@
 //! Pyramid of prefiltered density: level 0 by `volume/prefilter.wgsl`, coarser levels by `volume/downsample.wgsl`.
-//!
-//! Volumes with missing voxels have presence as a second channel.
 
 use std::ops::Range;
 
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, VolumeContext};
 use crate::pipelines::binding::{bind_buffer, bind_view, sampler};
-use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, SingleVariant, flag};
+use crate::pipelines::pipeline_variant::SingleVariant;
 use crate::pipelines::uniforms;
 use crate::plan::{BrickSet, MAX_STRETCH_LEVEL};
 use crate::resources::pass;
@@ -20,11 +18,9 @@ const STEP_BRICKS: usize = 512;
 
 /// Returns the packed coordinates of the bricks of 8³ texels in which each level of the pyramid of densities, or its
 /// gradients, are non-zero.
-///
-/// With missing voxels all bricks count, because presence is non-zero at any density.
-pub(crate) fn nonempty_bricks(bricks: &BrickBounds, dims: [usize; 3], has_missing: bool) -> Vec<Vec<u32>> {
+pub(crate) fn nonempty_bricks(bricks: &BrickBounds, dims: [usize; 3]) -> Vec<Vec<u32>> {
     // A brick's range covers three voxels beyond it: one for the blur, two for differences.
-    level_bricks(dims, bricks.dims, |at| has_missing || bricks.ranges[at] != [0.0, 0.0])
+    level_bricks(dims, bricks.dims, |at| bricks.ranges[at] != [0.0, 0.0])
 }
 
 /// Returns the packed coordinates of the bricks of 8³ texels, in each level of a pyramid of `dims` voxels, that overlap
@@ -102,23 +98,6 @@ pub(crate) fn level_buffers(context: &GpuContext, level: u32, bricks: &[u32]) ->
     }
 }
 
-/// Pipeline variant of the pass that blurs the volume into level 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct PrefilterVariant {
-    /// `true` if presence is stored as a second channel.
-    pub has_missing: bool,
-}
-
-impl PipelineVariant for PrefilterVariant {
-    fn shader(&self) -> &'static str {
-        "volume/prefilter.wgsl"
-    }
-
-    fn constants(&self) -> ShaderConstants {
-        vec![flag("MISSING", self.has_missing)]
-    }
-}
-
 /// Fills some bricks of one level. The finer level must be complete.
 pub(crate) fn fill_pyramid(
     gpu: VolumeContext<'_>,
@@ -126,33 +105,28 @@ pub(crate) fn fill_pyramid(
     range: &Range<usize>,
     encoder: &mut wgpu::CommandEncoder,
 ) -> Result<(), GpuError> {
-    let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
+    let VolumeContext { context, shaders, volume, .. } = gpu;
     let bricks = &volume.filled_levels[level as usize][range.clone()];
     let Some(pyramid) = &volume.pyramid else { return Ok(()) };
     let texture = &pyramid.texture;
     let format = texture.format();
     let pipeline = match level {
-        0 => shaders.pipeline_into(&PrefilterVariant { has_missing: volume.presence.is_some() }, format)?,
+        0 => shaders.pipeline_into(&SingleVariant("volume/prefilter.wgsl"), format)?,
         _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), format)?,
     };
     let source = match level {
         0 => volume.density_view.clone(),
         _ => level_view(texture, level - 1),
     };
-    let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
     let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
     let target = level_view(texture, level);
-    let mut entries = vec![
+    let entries = [
         bind_view("source_texture", &source),
         sampler("source_sampler", &volume.clamped),
         bind_view("level", &target),
         bind_buffer("bound_resample", &uniform),
         bind_buffer("bricks", &list),
     ];
-    // Coarser levels take presence from the finer one.
-    if level == 0 {
-        entries.push(bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)));
-    }
     let bind_group = pass::bind(context, "Pyramid::bind_group", &pipeline, 0, &entries);
     let groups = brick_list::two_workgroups_per_brick(bricks.len().max(1) as u32);
     pass::dispatch(encoder, "Pyramid::fill", &pipeline, &[&bind_group], groups);

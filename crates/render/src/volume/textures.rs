@@ -4,7 +4,6 @@
 use half::f16;
 
 use super::texture_shapes::{pyramid_dims, texture_3d};
-use crate::context::pair_format;
 use crate::plan::MAX_STRETCH_LEVEL;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_volume::{BRICK_EDGE, Volume, VoxelType};
@@ -39,25 +38,17 @@ pub(crate) fn density_texture(
     ))
 }
 
-/// Creates the texture for the pyramid of a volume as if it had these dimensions.
+/// Creates the texture for the pyramid of a volume of these dimensions.
 ///
 /// # Errors
 /// Returns an error if the adapter cannot hold it.
-pub(crate) fn pyramid_texture(
-    context: &GpuContext,
-    volume: &Volume,
-    dims: [usize; 3],
-) -> Result<wgpu::Texture, GpuError> {
+pub(crate) fn pyramid_texture(context: &GpuContext, dims: [usize; 3]) -> Result<wgpu::Texture, GpuError> {
     context.texture(&wgpu::TextureDescriptor {
         mip_level_count: MAX_STRETCH_LEVEL as u32 + 1,
         ..texture_3d(
             "Volume::pyramid",
             pyramid_dims(dims),
-            if volume.has_absent_voxels() {
-                pair_format(context.storage_format)
-            } else {
-                context.storage_format
-            },
+            context.storage_format,
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         )
     })

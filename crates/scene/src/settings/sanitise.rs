@@ -2,14 +2,14 @@
 //! negative extinction or as an endless loop.
 
 use crate::{
-    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox, CutShape,
-    EnvironmentLight,
-    FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY, MAX_BIAS_VOXELS, MAX_BOUNCES,
-    MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS, MAX_LIGHT_ANGLE_DEG,
-    MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET,
-    MAX_POINTS, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, MIN_EXPOSURE, OutlineCut, OutputSettings, PhongShading, ReconstructionKernel,
-    RenderModeSettings, SKY_DIRECTIONS, SamplingSettings, SavedEntry, ScatteringSettings, Settings,
-    ShadowSettings, SkySettings, SphereCut, Spotlight, VolumeLayer,
+    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox,
+    CutShape, EnvironmentLight, FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY,
+    MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
+    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS,
+    MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET, MAX_POINTS, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, MIN_EXPOSURE,
+    OutlineCut, OutputSettings, PhongShading, ReconstructionKernel, RenderModeSettings, SKY_DIRECTIONS,
+    SamplingSettings, SavedEntry, ScatteringSettings, Settings, ShadowSettings, SkySettings, SphereCut,
+    Spotlight, VolumeLayer,
 };
 use chiaroscuro_files::sanitised_line;
 

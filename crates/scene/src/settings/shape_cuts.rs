@@ -1,7 +1,7 @@
 //! Cuts by shapes: outlines drawn in the picture, spheres and connected components, each of which hides a part of the
 //! volume, keeps it alone, or restores it. They are stored as they were made, and no voxel is changed.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{DefaultHasher, Hash, Hasher as _};
 
 use serde::{Deserialize, Serialize};
 
@@ -162,9 +162,7 @@ impl CutShape {
                 let camera = view.into_iter().chain(place).chain([scale, camera.distance, perspective]);
                 Box::new([0.0, *aspect].into_iter().chain(camera).chain(points.iter().flatten().copied()))
             }
-            Self::Sphere(SphereCut { center, radius }) => {
-                Box::new([1.0, *radius].into_iter().chain(*center))
-            }
+            Self::Sphere(SphereCut { center, radius }) => Box::new([1.0, *radius].into_iter().chain(*center)),
             Self::Component(ComponentCut { seed, values }) => {
                 Box::new([2.0, values.low, values.high].into_iter().chain(*seed))
             }

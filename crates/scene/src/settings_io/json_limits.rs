@@ -9,9 +9,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, IgnoredAny, MapAccess
 use serde_json::{Map, Number, Value};
 
 use super::preset_error::PresetError;
-use crate::{
-    MAX_LIGHTS, MAX_NAME_CHARS, MAX_POINTS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES, MAX_SHAPE_CUTS,
-};
+use crate::{MAX_LIGHTS, MAX_NAME_CHARS, MAX_POINTS, MAX_SAVED_BYTES, MAX_SAVED_ENTRIES, MAX_SHAPE_CUTS};
 use chiaroscuro_files::{MAX_LOOK_BYTES, sanitised};
 
 // A transfer function of MAX_POINTS points takes nearly a mebibyte with one item per line, and the saved views and

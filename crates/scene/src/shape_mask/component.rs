@@ -42,7 +42,8 @@ impl ComponentCut {
         // Values beyond the shown range have the opacity of its ends.
         let all = volume.ranges().all;
         let low = if low == 0 { all.low.min(shown.low) } else { shown.value_at(density(low)) };
-        let high = if high == DENSITY_STEPS { all.high.max(shown.high) } else { shown.value_at(density(high)) };
+        let high =
+            if high == DENSITY_STEPS { all.high.max(shown.high) } else { shown.value_at(density(high)) };
         Self { seed, values: ValueRange::new(low, high) }
     }
 }

@@ -13,6 +13,9 @@ const TABLE_CELLS: f64 = 512.0;
 /// Margin of the table around the outline, as a share of its longer side.
 const TABLE_MARGIN: f64 = 0.05;
 
+/// Smallest margin, in picture heights: half a voxel of a volume of 50 voxels that fills the picture.
+const MIN_TABLE_MARGIN: f64 = 0.01;
+
 /// Signed distances in the plane of a picture from an outline, and the projection of voxels into it.
 pub(super) struct OutlineDistance {
     /// Transform from index space to the camera's axes: right, up, and backwards from the eye.
@@ -29,6 +32,8 @@ pub(super) struct OutlineDistance {
 /// Table of signed distances from an outline, in picture heights and positive inside.
 struct DistanceTable {
     low: DVec2,
+    /// Smallest distance of the table's border from the outline.
+    margin: f64,
     cell: f64,
     size: [usize; 2],
     distances: Vec<f32>,
@@ -40,10 +45,8 @@ impl OutlineDistance {
         let OutlineCut { camera, aspect, points } = outline;
         let scene_from_view = camera.scene_from_view();
         let view_from_scene = scene_from_view.transpose();
-        let view_from_scene = DAffine3 {
-            matrix3: view_from_scene,
-            translation: -(view_from_scene * camera.position()),
-        };
+        let view_from_scene =
+            DAffine3 { matrix3: view_from_scene, translation: -(view_from_scene * camera.position()) };
         // From the middle of the picture, y upwards.
         let corner = |&[x, y]: &[f64; 2]| DVec2::new((x - 0.5) * aspect, 0.5 - y);
         Self {
@@ -74,7 +77,7 @@ impl DistanceTable {
         let low = corners.iter().copied().reduce(DVec2::min).unwrap_or_default();
         let high = corners.iter().copied().reduce(DVec2::max).unwrap_or_default();
         let longer = (high - low).max_element().max(1e-6);
-        let margin = TABLE_MARGIN * longer;
+        let margin = TABLE_MARGIN * longer + MIN_TABLE_MARGIN;
         let low = low - margin;
         let cell = (longer + 2.0 * margin) / TABLE_CELLS;
         let size = ((high + margin - low) / cell).ceil().to_array().map(|cells| cells as usize + 1);
@@ -87,15 +90,16 @@ impl DistanceTable {
                 signed_distance(&edges, point) as f32
             })
             .collect();
-        Self { low, cell, size, distances }
+        Self { low, margin, cell, size, distances }
     }
 
-    /// Returns the interpolated distance at a point, negative outside the table.
+    /// Returns the interpolated distance at a point; outside the table the negative one of its border.
     fn distance(&self, point: DVec2) -> f64 {
         let at = (point - self.low) / self.cell;
         let last = DVec2::new((self.size[0] - 1) as f64, (self.size[1] - 1) as f64);
         if !(at.cmpge(DVec2::ZERO).all() && at.cmplt(last).all()) {
-            return f64::NEG_INFINITY;
+            // Of the outline, which lies inside the table by its margin.
+            return -(point - point.clamp(self.low, self.low + last * self.cell)).length() - self.margin;
         }
         let low = at.floor();
         let share = at - low;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::corrections::PatientTable;
 use super::provenance::VolumeProvenance;
 use super::{Volume, VolumeError};
-use crate::{ValueMetadata, VoxelMask};
 use crate::load_context::{FileContents, ResolvedPortion};
+use crate::{ValueMetadata, VoxelMask};
 
 /// Difference of the content id of a volume whose table is hidden: the letters of "table".
 const WITHOUT_TABLE: u64 = 0x0074_6162_6c65;

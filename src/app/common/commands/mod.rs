@@ -7,9 +7,8 @@ use std::path::PathBuf;
 use super::reveal::SettingPlace;
 use super::searchable_settings::SEARCHABLE_SETTINGS;
 use chiaroscuro_scene::{
-    CutShapeKind,
-    COLOR_MAPS, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset, RenderMode,
-    SceneAxis, Settings, StandardView,
+    COLOR_MAPS, CutShapeKind, DIGIT_KEYS, LightSettings, LightingRig, ObjectRotation, PRESETS, Preset,
+    RenderMode, SceneAxis, Settings, StandardView,
 };
 use chiaroscuro_volume::{ChoiceAspect, Downsampling, KindName, VolumeChoice};
 

@@ -57,9 +57,10 @@ pub(crate) const ESCAPE_ENDS: &str = "Esc ends cutting";
 /// Name and effect of the command that begins cutting by a kind of shape.
 pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
     match kind {
-        CutShapeKind::Outline => {
-            control_text("Cut by outline", "Hides what lies behind a line that you draw around it in the picture")
-        }
+        CutShapeKind::Outline => control_text(
+            "Cut by outline",
+            "Hides what lies behind a line that you draw around it in the picture",
+        ),
         CutShapeKind::Sphere => {
             control_text("Cut by sphere", "Hides a ball around the place that you click in the picture")
         }

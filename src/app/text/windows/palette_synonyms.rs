@@ -76,7 +76,8 @@ pub(crate) const NO_DEPTH_OF_FIELD: PaletteSynonyms = synonyms_with_note(
 );
 pub(crate) const OBJECTS: PaletteSynonyms =
     synonyms("remove object holder island islands largest connected component isolate part eraser");
-pub(crate) const SCISSORS: PaletteSynonyms = synonyms("scissors lasso polygon outline freehand cut sculpt mask");
+pub(crate) const SCISSORS: PaletteSynonyms =
+    synonyms("scissors lasso polygon outline freehand cut sculpt mask");
 pub(crate) const NO_SEGMENTATION: PaletteSynonyms = synonyms_with_note(
     "segmentation segment segments labels label region growing",
     "There is no segmentation; label maps of other programs can be opened",

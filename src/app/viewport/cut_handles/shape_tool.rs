@@ -74,8 +74,8 @@ impl ShapeCutTool {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
         // Other buttons pan the view and change the window meanwhile.
-        let is_primary = !response.dragged_by(PointerButton::Middle)
-            && !response.dragged_by(PointerButton::Secondary);
+        let is_primary =
+            !response.dragged_by(PointerButton::Middle) && !response.dragged_by(PointerButton::Secondary);
         match kind {
             CutShapeKind::Outline => {
                 self.draw_outline(ui, response, settings, volume);
@@ -156,7 +156,7 @@ impl ShapeCutTool {
         }
     }
 
-    fn pick_component(&mut self, response: &Response, settings: &mut Settings, volume: &Volume) {
+    fn pick_component(&self, response: &Response, settings: &mut Settings, volume: &Volume) {
         if response.clicked()
             && let Some(at) = response.interact_pointer_pos()
             && let Some(found) = light_probe::probe_at(volume, settings, response.rect, at)

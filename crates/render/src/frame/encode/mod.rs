@@ -37,10 +37,10 @@ impl RenderJob<'_> {
                 volume.upload(context, slices.clone());
                 Ok(())
             }
-            RenderStep::Presence(slices) => {
+            RenderStep::Presence(texels) => {
                 self.report.step_counts.volume += 1;
                 if let Some(presence) = &volume.presence {
-                    presence.upload(context, &volume.volume, slices.clone());
+                    presence.upload(context, &volume.volume, texels);
                 }
                 Ok(())
             }

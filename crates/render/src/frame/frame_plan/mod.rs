@@ -11,7 +11,7 @@ use std::time::Instant;
 pub(super) use self::light_inputs::light_inputs;
 use self::planner::FramePlanner;
 use self::steps::{pyramid_steps, upload_steps};
-use super::loaded_volume::{LoadedVolume, ReusedTextures};
+use super::loaded_volume::LoadedVolume;
 use super::render_job::RenderJob;
 use super::report::RenderReport;
 use super::step::{FrameProduct, RenderStep};
@@ -19,7 +19,7 @@ use crate::output::render_target::TargetShape;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
 use crate::volume::density_pyramid::needs_density_pyramid;
-use crate::volume::presence::PresenceTexture;
+use crate::volume::reused_textures::{ReusedTextures, changed_box};
 use crate::{GpuError, RenderOptions, Renderer};
 use chiaroscuro_scene::{PixelFormat, mask_from_shapes};
 use chiaroscuro_volume::Dataset;
@@ -132,24 +132,28 @@ impl Renderer {
         let known = other.filter(|known| {
             known.key().content_id == keys.volume.content_id && known.product.has_voxel_type_of(dataset)
         });
-        let reused = known.as_ref().map_or_else(ReusedTextures::default, |known| {
-            ReusedTextures::from_known(known, &keys.volume)
-        });
         let is_same_mask = known.as_ref().is_some_and(|known| known.key().mask == keys.volume.mask);
-        let known = known.map(|known| known.product.dataset);
-        let mask = match &known {
+        let known_dataset = known.as_ref().map(|known| known.product.dataset.clone());
+        let reused = known
+            .map_or_else(ReusedTextures::default, |known| LoadedVolume::into_reused(known, &keys.volume));
+        let mask = match &known_dataset {
             Some(known) if is_same_mask => known.volume().mask().cloned(),
             _ => mask_from_shapes(dataset.volume(), request.settings.cuts.enabled_shapes()).map(Arc::new),
         };
-        let known = known.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
+        let known =
+            known_dataset.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);
         let dataset = known.as_ref().unwrap_or(dataset).with_density_mappings(keys.volume.density_mappings());
-        let dataset = dataset.with_mask(mask);
-        let (has_presence, has_density) = (reused.presence.is_some(), reused.density.is_some());
+        let dataset = dataset.with_mask(mask.as_ref());
+        let has_density = reused.density.is_some();
+        let volume = dataset.volume();
+        let changed = match &reused.presence {
+            None => Some(volume.dims().map(|n| 0..n)),
+            Some((_, before)) => changed_box(volume, before.as_deref(), volume.mask().map(AsRef::as_ref)),
+        };
         let (context, settings) = (&self.tools.context, &request.settings);
         let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, reused)?;
-        if !has_presence {
-            let slices = fresh.volume.presence.iter().flat_map(PresenceTexture::steps);
-            steps.extend(slices.map(RenderStep::Presence));
+        if let Some((presence, changed)) = fresh.volume.presence.as_ref().zip(changed) {
+            steps.extend(presence.steps(&changed).map(RenderStep::Presence));
         }
         if !has_density {
             steps.extend(upload_steps(&fresh.volume));

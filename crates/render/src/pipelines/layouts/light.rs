@@ -1,7 +1,7 @@
 //! Bind-group layouts of the shaders for light volumes.
 
 use super::sky::{BLOCK_SAMPLER, CELLS};
-use super::{CLAMPED, EYE, GRID, LIGHTS, PYRAMID, PYRAMID_TEXTURE, ShaderLayouts, TABLE, VOLUME};
+use super::{EYE, LIGHTS, PYRAMID, ShaderLayouts, TABLE, VOLUME};
 use crate::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::pipelines::uniforms;
 
@@ -122,7 +122,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 CELLS,
                 BindingSlot::storage_texture(3, "opacity", TextureShape::D3, StorageFormat::Storage),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED],
+            PYRAMID,
         ],
     ),
     (

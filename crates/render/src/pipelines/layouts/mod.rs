@@ -315,6 +315,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
         ]],
     ),
     ("volume/downsample.wgsl", &[RESAMPLE]),
+    ("volume/prefilter.wgsl", &[RESAMPLE]),
     (
         "volume/gradients.wgsl",
         &[&[
@@ -344,10 +345,6 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
             PRESENCE_LEVEL,
             BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
         ]],
-    ),
-    (
-        "volume/prefilter.wgsl",
-        &[&[RESAMPLE[0], RESAMPLE[1], RESAMPLE[2], RESAMPLE[3], PRESENCE_LEVEL, RESAMPLE[4]]],
     ),
 ];
 

@@ -1,7 +1,7 @@
 //! Bind-group layouts of the shaders for scattered light.
 
 use super::sky::{BLOCK_SAMPLER, CELLS, SWEEP, TILES};
-use super::{CLAMPED, GRID, PYRAMID_TEXTURE, ShaderLayouts, TABLE, TABLE_BYTES};
+use super::{PYRAMID, ShaderLayouts, TABLE, TABLE_BYTES};
 use crate::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::pipelines::uniforms;
 
@@ -65,7 +65,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage(6, "scattering", 16, BufferAccess::ReadWrite),
                 BindingSlot::storage_texture(7, "medium", TextureShape::D3, StorageFormat::Target),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED],
+            PYRAMID,
         ],
     ),
     (

@@ -1,6 +1,6 @@
 //! Bind-group layouts of the shaders for sky visibility.
 
-use super::{CLAMPED, GRID, PYRAMID_TEXTURE, ShaderLayouts, TABLE};
+use super::{PYRAMID, ShaderLayouts, TABLE};
 use crate::pipelines::binding::{BindingSlot, BufferAccess, StorageFormat, TextureShape};
 use crate::pipelines::uniforms;
 
@@ -46,7 +46,7 @@ pub(super) const LAYOUTS: ShaderLayouts = &[
                 CELLS,
                 BindingSlot::storage_texture(3, "extinction", TextureShape::D3, StorageFormat::Storage),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED],
+            PYRAMID,
         ],
     ),
     (

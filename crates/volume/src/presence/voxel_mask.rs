@@ -30,6 +30,11 @@ impl VoxelMask {
         self.hidden[voxel]
     }
 
+    /// Returns the hidden shares of all voxels, x fastest, from 0 to 255.
+    pub fn hidden_shares(&self) -> &[u8] {
+        &self.hidden
+    }
+
     /// Returns the visible share of the voxel at an index, x fastest, from 0 to 1.
     pub fn visible_share(&self, voxel: usize) -> f32 {
         1.0 - f32::from(self.hidden[voxel]) / SHARE_STEPS

@@ -1,11 +1,16 @@
 //! Presence of voxels: 0 where they are missing or hidden by a mask, 1 elsewhere, and the cells where some are left.
 
+mod voxel_mask;
+
+pub use voxel_mask::VoxelMask;
+
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::Volume;
 use super::cells::{BRICK_EDGE, CELL_EDGE};
-use super::{Volume, VoxelMask};
 
 /// Number of cells along the edge of a brick.
 const CELLS_PER_BRICK_EDGE: usize = BRICK_EDGE / CELL_EDGE;
@@ -33,6 +38,12 @@ impl Volume {
         self.mask().map_or(1.0, |mask| mask.visible_share(voxel))
     }
 
+    /// Returns true if all voxels in a range of indices are known to be present as a whole.
+    fn is_present(&self, voxels: Range<usize>) -> bool {
+        self.missing().is_none()
+            && self.mask().is_none_or(|mask| mask.hidden_shares()[voxels].iter().all(|&share| share == 0))
+    }
+
     /// Returns the minimum of `number` over all voxels that are missing or hidden, at least in part; `u8::MAX` if there
     /// are none.
     pub fn min_over_absent(&self, number: impl Fn([usize; 3]) -> u8 + Sync) -> u8 {
@@ -42,6 +53,9 @@ impl Volume {
         let [nx, ny, nz] = self.dims();
         let least_of_row = |row: usize| {
             let (y, z) = (row % ny, row / ny);
+            if self.is_present(row * nx..(row + 1) * nx) {
+                return u8::MAX;
+            }
             let absent = (0..nx).filter(|x| self.presence(x + nx * row) < 1.0);
             absent.map(|x| number([x, y, z])).min().unwrap_or(u8::MAX)
         };
@@ -65,7 +79,19 @@ impl Volume {
             };
             (0..8).any(|corner| is_there(place(corner)))
         };
-        let mut cells: Vec<bool> = (0..width * height * depth).into_par_iter().map(holds).collect();
+        // Most rows of cells are present as a whole.
+        let row_of_cells = |row: usize| {
+            let [y, z] = [row % height, row / height].map(|c| CELL_EDGE * c);
+            let is_whole = width * CELL_EDGE == nx && y + CELL_EDGE <= ny && z + CELL_EDGE <= nz;
+            let rows = (z..z + CELL_EDGE).flat_map(|z| (y..y + CELL_EDGE).map(move |y| y + ny * z));
+            let is_present =
+                is_whole && rows.into_iter().all(|row| self.is_present(row * nx..(row + 1) * nx));
+            (0..width).map(move |x| is_present || holds(x + width * row))
+        };
+        let mut cells: Vec<bool> = (0..height * depth)
+            .into_par_iter()
+            .flat_map_iter(|row| row_of_cells(row).collect::<Vec<_>>())
+            .collect();
         for (stride, count) in [(1, width), (width, height), (width * height, depth)] {
             let beside = |at: usize| {
                 let place = at / stride % count;
