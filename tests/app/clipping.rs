@@ -1,7 +1,8 @@
 //! Tests of the crop box and clip plane dragged in the picture, and of the slices beside it.
 
 use chiaroscuro::app::App;
-use eframe::egui::{self, Modifiers, vec2};
+use chiaroscuro_scene::{CutAction, CutShape, ShapeCut};
+use eframe::egui::{self, Event, Modifiers, PointerButton, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
@@ -100,4 +101,73 @@ fn slices_and_picture_share_a_cursor() {
     harness.run_steps(3);
     assert!(harness.query_by_label("24, 24, 18").is_none(), "the cursor went where the picture was clicked");
     assert_eq!(harness.state().settings().camera, camera);
+}
+
+#[test]
+fn parts_are_cut_away_in_the_picture() {
+    let mut harness = window_without_overlays();
+    let (whole, _) = picture(&mut harness);
+    let camera = harness.state().settings().camera.clone();
+    let (rect, _) = harness.state().viewport_rect().unwrap();
+    let key = |pressed| Event::Key {
+        key: egui::Key::Q,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    harness.hover_at(rect.center());
+    harness.event(key(true));
+    harness.step();
+    // A square around the middle, of a quarter of the height.
+    let edge = 0.25 * rect.height();
+    let corner = rect.center() - Vec2::splat(0.5 * edge);
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.hover_at(corner);
+    harness.step();
+    harness.event(button(corner, true));
+    harness.step();
+    for (x, y) in [(0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+        harness.hover_at(corner + edge * vec2(x, y));
+        harness.step();
+    }
+    harness.event(button(corner + vec2(0.0, edge), false));
+    harness.step();
+    harness.event(key(false));
+    harness.run_steps(2);
+    let settings = harness.state().settings();
+    assert_eq!(settings.camera, camera, "the drag did not turn the view");
+    let [cut] = &settings.cuts.shapes[..] else { panic!("{:?}", settings.cuts) };
+    let CutShape::Outline(outline) = &cut.shape else { panic!("{cut:?}") };
+    assert_eq!((cut.action, outline.camera == camera), (CutAction::Hide, true));
+    let heights = outline.points.iter().map(|[_, y]| y);
+    assert!(heights.clone().all(|y| (0.37..0.63).contains(y)), "{outline:?}");
+    wait_until_idle(&mut harness);
+    let (cut_picture, _) = picture(&mut harness);
+    assert!(cut_picture != whole);
+
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert!(harness.state().settings().cuts.shapes.is_empty());
+    wait_until_idle(&mut harness);
+    harness.run_steps(20);
+    assert!(picture(&mut harness).0 == whole, "undone");
+
+    // A click with Q hides the part that is clicked: all of the chair.
+    let at = rect.center() + vec2(0.0, 0.05 * rect.height());
+    harness.hover_at(at);
+    harness.event(key(true));
+    harness.step();
+    click_at(&mut harness, at, 1);
+    harness.event(key(false));
+    harness.run_steps(2);
+    let shapes = &harness.state().settings().cuts.shapes;
+    assert!(matches!(&shapes[..], [ShapeCut { shape: CutShape::Component(_), .. }]), "{shapes:?}");
+    wait_until_idle(&mut harness);
+    harness.get_by_label_contains("No part of the volume is visible: it is ");
 }

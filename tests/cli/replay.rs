@@ -186,3 +186,23 @@ fn volumes_outside_the_pictures_folder_are_opened_only_when_the_user_says_so() {
     let said = folder.run_failing("x_8x8x8_uint8.raw --volume x_8x8x8_uint8.raw", 2);
     assert!(said.contains("is a volume itself"), "{said}");
 }
+
+#[test]
+fn cuts_by_shapes_are_made_again() {
+    let folder = ProgramFolder::new();
+    let camera = r#"{"projection":"perspective","azimuth_deg":30,"elevation_deg":20,"roll_deg":0,"target":[0,0,0],"distance":5,"fov_y_deg":30}"#;
+    let outline = format!(
+        r#"{{"shape":{{"outline":{{"camera":{camera},"aspect":1.5,"points":[[0.4,0.3],[0.6,0.3],[0.5,0.7]]}}}}}}"#
+    );
+    let sphere = r#"{"action":"restore","shape":{"sphere":{"center":[0.1,0,0.2],"radius":0.3}}}"#;
+    let part = r#"{"on":false,"action":"keep","shape":{"component":{"seed":[0,0,0],"values":[50,255]}}}"#;
+    folder.write("look.json", format!(r#"{{"cuts":{{"shapes":[{outline},{sphere},{part}]}}}}"#));
+    folder.run_successfully("render builtin:chair:24 -o whole.png --size 64x48");
+    folder.run_successfully(
+        "render builtin:chair:24 -o cut.png --size 64x48 --preset look.json --report cut.json",
+    );
+    assert!(folder.read("whole.png") != folder.read("cut.png"));
+    let shapes = &folder.json("cut.json")["settings"]["cuts"]["shapes"];
+    assert_eq!(shapes.as_array().map(Vec::len), Some(3), "{shapes}");
+    assert!(folder.run_successfully("replay cut.png --check").contains("identical"));
+}

@@ -63,7 +63,9 @@ impl App {
             AppCommand::ToggleCrop => self.layout.show_section(ctx, CUTS, self.editor.toggle_crop()),
             AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),
-            AppCommand::CutByShape(kind) => self.picture.shape_cuts.toggle(kind),
+            AppCommand::CutByShape(kind) => {
+                self.layout.show_section(ctx, CUTS, self.picture.shape_cuts.toggle(kind));
+            }
             AppCommand::RemoveShapeCuts => self.editor.document.settings.cuts.shapes.clear(),
             AppCommand::ToggleFloor => self.layout.show_section(ctx, FLOOR, self.editor.toggle_floor()),
             AppCommand::ToggleTable => self.layout.show_section(ctx, DATA, self.editor.toggle_table()),

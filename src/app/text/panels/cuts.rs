@@ -48,7 +48,7 @@ pub(crate) const SHAPE: ControlText =
     control_text("Cut", "Cut by a shape; without the tick, what it hides is visible again");
 pub(crate) const REMOVE_SHAPE: ControlText = control_text("×", "Removes the cut");
 pub(crate) const REMOVE_SHAPES: ControlText =
-    control_text("Remove all cuts by shapes", "Shows all that cuts by shapes hide");
+    control_text("Show cut parts again", "Removes all cuts by shapes");
 /// Tooltip of the button that changes the effect of a cut.
 pub(crate) const ACTION_TIP: &str = "What happens to the part inside; a click takes the next effect";
 /// Hint on the end of cutting.

@@ -9,7 +9,7 @@ pub(crate) const DIVIDER: &str = "Divider";
 
 /// Message over a picture in which nothing is visible.
 pub(crate) const NOTHING_VISIBLE: &str =
-    "No part of the volume is visible: it is transparent, too small, or outside the picture";
+    "No part of the volume is visible: it is transparent, cut away, too small, or outside the picture";
 pub(crate) const SHOW_SOMETHING: ControlText = control_text(
     "Show something",
     "Sets the robust range, and a transfer function for eye and light that shows the twentieth of the voxels with the \

@@ -4,10 +4,11 @@
 pub(crate) const KEYS_AND_MOUSE: &str = "Keys and mouse";
 
 /// Mouse actions in the picture and in the editor, each with its effect.
-pub(crate) const MOUSE: [(&str, &str); 22] = [
+pub(crate) const MOUSE: [(&str, &str); 23] = [
     ("Drag the picture", "Orbit"),
     ("Double click on the volume", "Orbit about that point"),
     ("Hold L and drag", "Turn the selected light"),
+    ("Hold Q and draw", "Hide what is inside; with Shift, all else"),
     ("Arrow keys, or with Shift", "Turn it by 1°, or by 10°"),
     ("Ctrl+Shift+1 … 9, Ctrl+1 … 9", "Save a view, return to it"),
     ("Shift-drag or middle drag", "Pan"),

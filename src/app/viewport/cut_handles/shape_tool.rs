@@ -48,10 +48,11 @@ pub(crate) struct ShapeCutTool {
 }
 
 impl ShapeCutTool {
-    /// Chooses a kind of shape, or ends cutting if it is chosen already.
-    pub(crate) fn toggle(&mut self, kind: CutShapeKind) {
+    /// Chooses a kind of shape, or ends cutting if it is chosen already. Returns true if a kind is chosen.
+    pub(crate) fn toggle(&mut self, kind: CutShapeKind) -> bool {
         self.chosen = (self.chosen != Some(kind)).then_some(kind);
         self.corners.clear();
+        self.chosen.is_some()
     }
 
     /// Applies the mouse to the cuts of a look. Returns true if nothing else may use it.
