@@ -1,6 +1,7 @@
 //! Tests of volumes that are shown with the open one as layers.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro_scene::{LayerVisibility, LookRecord};
@@ -9,7 +10,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::volume_choice::write_npy;
-use crate::harness::{SCENE, adjusted_window, click, picture, wait_until, wait_until_idle, window};
+use crate::harness::{
+    DroppedFile, SCENE, adjusted_window, click, picture, wait_until, wait_until_idle, window,
+};
 
 fn window_of(source: &Path, session: Option<&Path>) -> Harness<'static, App> {
     let (source, session) = (Some(source.to_owned()), session.map(Path::to_owned));
@@ -174,4 +177,38 @@ fn corrections_of_a_session_apply_to_its_layers() {
     click(&mut harness, "Hidden");
     wait_until_read(&mut harness);
     assert!(picture(&mut harness) != corrected, "the layer was there");
+}
+
+#[test]
+fn a_dropped_volume_in_the_same_place_asks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    write_npy(&path("first.npy"), "16, 16, 16", 4096, |at| (at % 16 * 15) as u8);
+    write_npy(&path("second.npy"), "16, 16, 16", 4096, |at| (at / 256 * 15) as u8);
+    write_npy(&path("other.npy"), "8, 16, 16", 2048, |at| (at % 16 * 15) as u8);
+    let mut harness = window_of(&path("first.npy"), None);
+    wait_until_read(&mut harness);
+    let drop_file = |harness: &mut Harness<'_, App>, name: &str| {
+        harness.input_mut().dropped_files.push(Arc::new(DroppedFile(path(name))));
+        harness.run_steps(2);
+        wait_until_read(harness);
+        harness.run_steps(3);
+    };
+    let question = "lies in the same place as";
+    let is_asked =
+        |harness: &Harness<'_, App>| harness.query_all_by_label_contains(question).next().is_some();
+    drop_file(&mut harness, "second.npy");
+    assert!(is_asked(&harness));
+    click(&mut harness, "Show both");
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().settings().layers.count(), 2);
+    assert!(!is_asked(&harness));
+    // Alone it replaces both, and a volume of another grid is opened without a question.
+    drop_file(&mut harness, "second.npy");
+    assert!(is_asked(&harness));
+    click(&mut harness, "Open it alone");
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().settings().layers.count(), 1);
+    drop_file(&mut harness, "other.npy");
+    assert!(!is_asked(&harness));
 }

@@ -8,6 +8,7 @@ mod look_files;
 mod opened;
 mod other_files;
 mod plan;
+mod second_volume;
 mod similarity;
 mod volumes;
 
@@ -17,6 +18,7 @@ use eframe::egui;
 
 use self::file_tasks::{FileTasks, ReadPurpose};
 use self::plan::PendingLook;
+use self::second_volume::SecondVolumeQuestion;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::text;
 use crate::app::windows::large_volume::{LargeVolumeAnswer, LargeVolumeDialog};
@@ -64,6 +66,8 @@ pub(crate) struct OpeningState {
     large_volume: LargeVolumeDialog,
     /// Question before a look opens its volume.
     untrusted_path: UntrustedPathDialog,
+    /// Question whether a dropped volume is shown over the open one.
+    second_volume: SecondVolumeQuestion,
     /// True once a volume has replaced the one before, until [`Self::take_opened`].
     has_opened: bool,
 }
@@ -80,6 +84,7 @@ impl OpeningState {
             raw: RawDialog::default(),
             large_volume: LargeVolumeDialog::default(),
             untrusted_path: UntrustedPathDialog::default(),
+            second_volume: SecondVolumeQuestion::default(),
             has_opened: false,
         }
     }
@@ -113,6 +118,7 @@ impl VolumeOpener<'_> {
         self.state.file_tasks.drop_purpose(ReadPurpose::Session);
         self.state.raw.close();
         self.state.large_volume.close();
+        self.state.second_volume.close();
         let known = RememberedFileSettings {
             up: self.editor.memory.up_of(source),
             corrections: self.editor.memory.corrections_of(source),
@@ -128,7 +134,7 @@ impl VolumeOpener<'_> {
     pub(crate) fn take_outcome(&mut self) {
         match self.state.loader.take_outcome() {
             None => {}
-            Some(LoadOutcome::Opened(opened)) => self.show_opened_with_session(*opened),
+            Some(LoadOutcome::Opened(opened)) => self.show_or_ask(opened),
             Some(LoadOutcome::Uploaded { renderer, dataset }) => {
                 self.editor.viewport.set_scene(*renderer, dataset);
             }
@@ -155,6 +161,7 @@ impl VolumeOpener<'_> {
         if let Some(raw_description) = self.state.raw.ui(self.ctx) {
             self.open_raw(&raw_description);
         }
+        self.show_second_volume_question();
         match self.state.large_volume.ui(self.ctx) {
             None => {}
             Some(LargeVolumeAnswer::Cancel) => self.state.requests.pending_look = None,

@@ -104,6 +104,19 @@ pub(crate) fn first_of_dropped(count: usize, first: &Path) -> String {
     format!("{count} files were dropped: the first, {}, is opened", sanitised(&name, 60))
 }
 
+/// Title of the question about a dropped volume.
+pub(crate) const SECOND_VOLUME: &str = "Two volumes";
+pub(crate) const SHOW_BOTH: &str = "Show both";
+pub(crate) const OPEN_ALONE: &str = "Open it alone";
+
+/// Question about a dropped volume that lies where the open one does.
+pub(crate) fn lies_over(name: &str, open: &str) -> String {
+    let (name, open) = (sanitised(name, 60), sanitised(open, 60));
+    format!(
+        "{name} lies in the same place as {open}. Both can be shown in one picture, each with its own curve."
+    )
+}
+
 /// Message when the open volume does not lie in a folder.
 pub(crate) const NO_FOLDER: &str = "The open volume is not in a folder";
 
