@@ -22,6 +22,7 @@ fn all_shapes() -> Vec<ShapeCut> {
         camera: Camera { azimuth_deg: 70.0, elevation_deg: 20.0, ..Camera::default() },
         aspect: 1.5,
         points: vec![[0.4, 0.2], [0.55, 0.3], [0.5, 0.7], [0.42, 0.6]],
+        ..OutlineCut::default()
     };
     vec![
         cut(CutAction::Hide, CutShape::Outline(outline)),

@@ -169,7 +169,8 @@ fn sanitise_clipping(cuts: &mut Clipping) {
     clamp_number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
     shapes.truncate(MAX_SHAPE_CUTS);
     shapes.retain_mut(|cut| match &mut cut.shape {
-        CutShape::Outline(OutlineCut { camera, aspect, points }) => {
+        CutShape::Outline(OutlineCut { camera, aspect, points, depth: _, surface }) => {
+            *surface = surface.filter(|values| values.low.is_finite() && values.high.is_finite());
             sanitise_camera(camera, &Camera::default());
             clamp_number(aspect, MIN_OUTLINE_ASPECT, 1.0 / MIN_OUTLINE_ASPECT, 1.0);
             points.truncate(MAX_OUTLINE_POINTS);

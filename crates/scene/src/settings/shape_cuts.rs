@@ -95,6 +95,21 @@ pub struct OutlineCut {
     pub aspect: f64,
     /// Corners, as fractions of the picture's width and height from its top left corner.
     pub points: Vec<[f64; 2]>,
+    /// Depth to which the outline cuts.
+    pub depth: CutDepth,
+    /// Values of the surface that was seen inside the outline, in data units; `None` if none was.
+    pub surface: Option<ValueRange>,
+}
+
+/// Depth to which an outline cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CutDepth {
+    /// Through the whole volume.
+    #[default]
+    Through,
+    /// Through the first surface alone: along each ray, the values of the surface up to the first gap.
+    Front,
 }
 
 /// Sphere in the scene.
@@ -154,13 +169,21 @@ impl CutShape {
     /// Returns all numbers of the shape, after one that tells its kind.
     fn numbers(&self) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
-            Self::Outline(OutlineCut { camera, aspect, points }) => {
+            Self::Outline(OutlineCut { camera, aspect, points, depth, surface }) => {
+                let front = surface.filter(|_| *depth == CutDepth::Front);
+                let front = front.into_iter().flat_map(|values| [values.low, values.high]);
                 let view = camera.scene_from_view().to_cols_array();
                 let place = camera.position().to_array();
                 let scale = camera.half_height_at_target(*aspect);
                 let perspective = f64::from(u8::from(camera.projection == Projection::Perspective));
                 let camera = view.into_iter().chain(place).chain([scale, camera.distance, perspective]);
-                Box::new([0.0, *aspect].into_iter().chain(camera).chain(points.iter().flatten().copied()))
+                Box::new(
+                    [0.0, *aspect]
+                        .into_iter()
+                        .chain(camera)
+                        .chain(front)
+                        .chain(points.iter().flatten().copied()),
+                )
             }
             Self::Sphere(SphereCut { center, radius }) => Box::new([1.0, *radius].into_iter().chain(*center)),
             Self::Component(ComponentCut { seed, values }) => {
@@ -193,6 +216,7 @@ mod tests {
                 camera: Camera { azimuth_deg, ..Camera::default() },
                 aspect: 1.0,
                 points: vec![[0.0; 2], [1.0, 0.0], [0.0, 1.0]],
+                ..OutlineCut::default()
             }),
             ..ShapeCut::default()
         };

@@ -1,5 +1,6 @@
 //! Connected components of voxels around a seed, with the faint skin around them.
 
+use super::HALF_HIDDEN;
 use crate::{ComponentCut, Settings};
 use chiaroscuro_volume::{ValueRange, Volume};
 use glam::DVec3;
@@ -11,9 +12,6 @@ const SEED_REACH: i64 = 3;
 /// Number of layers of voxels around a component that belong to it: values fall off over the width of a kernel, and
 /// what is left of them would be seen as a shell.
 const SKIN_VOXELS: usize = 2;
-
-/// Share above which a voxel counts as hidden already.
-const HALF_HIDDEN: u8 = 127;
 
 /// Share of the opacity of the picked value down to which values belong to a component.
 const MIN_OPACITY_SHARE: f64 = 0.5;

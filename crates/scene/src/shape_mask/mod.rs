@@ -1,18 +1,23 @@
 //! Mask of the voxels that cuts by shapes hide: one shape after another, each with an edge as wide as a voxel.
 
 mod component;
+mod front_depth;
 mod outline;
 
 use rayon::prelude::*;
 
 use self::component::component_voxels;
+use self::front_depth::FrontDepth;
 use self::outline::OutlineDistance;
-use crate::{CutAction, CutShape, ShapeCut, SphereCut};
+use crate::{CutAction, CutDepth, CutShape, ShapeCut, SphereCut};
 use chiaroscuro_volume::{Volume, VoxelMask, math::SceneSpace};
 use glam::DVec3;
 
 /// Number of voxels of a row for which one distance may stand.
 const RUN_VOXELS: usize = 16;
+
+/// Share above which a voxel counts as hidden already.
+const HALF_HIDDEN: u8 = 127;
 
 /// Hidden share of a voxel that is not visible at all.
 const HIDDEN: u8 = 255;
@@ -39,13 +44,26 @@ fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &Cu
     match shape {
         CutShape::Outline(outline) => {
             let distance = OutlineDistance::new(outline, &scene);
-            apply_distance(hidden, action, (scene.dims, change), |index| distance.voxels_inside(index));
+            let front = match (outline.depth, outline.surface) {
+                (CutDepth::Front, Some(values)) => Some(FrontDepth::new(&distance, volume, hidden, values)),
+                _ => None,
+            };
+            let limit = front.as_ref().map(|front| {
+                |index: DVec3| {
+                    let (place, depth) = distance.place_and_depth(index);
+                    front.distance_before_end(place, depth) / edge
+                }
+            });
+            let limit = limit.as_ref().map(|limit| limit as &(dyn Fn(DVec3) -> f64 + Sync));
+            let rows = RowChanges { dims: scene.dims, max_change: change };
+            apply_distance(hidden, action, rows, |index| distance.voxels_inside(index), limit);
         }
         CutShape::Sphere(SphereCut { center, radius }) => {
             let center = DVec3::from(*center);
-            apply_distance(hidden, action, (scene.dims, change), |index| {
-                (radius - scene.scene_from_index.transform_point3(index).distance(center)) / edge
-            });
+            let inside =
+                |index| (radius - scene.scene_from_index.transform_point3(index).distance(center)) / edge;
+            let rows = RowChanges { dims: scene.dims, max_change: change };
+            apply_distance(hidden, action, rows, inside, None);
         }
         CutShape::Component(component) => {
             if let Some(inside) = component_voxels(volume, hidden, component) {
@@ -57,13 +75,23 @@ fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &Cu
     }
 }
 
-/// Applies an action to all voxels of a grid, with the signed distance in voxels by which each lies inside a shape. It
-/// changes by `max_change` at most from one voxel of a row to the next.
+/// Rows of a grid, along which distances change slowly.
+#[derive(Debug, Clone, Copy)]
+struct RowChanges {
+    /// Number of voxels along x, y, z.
+    dims: [usize; 3],
+    /// Largest change of a distance from one voxel of a row to the next.
+    max_change: f64,
+}
+
+/// Applies an action to all voxels of a grid, with the signed distance in voxels by which each lies inside a shape, and
+/// inside a limit that may jump.
 fn apply_distance(
     hidden: &mut [u8],
     action: CutAction,
-    ([nx, ny, _], max_change): ([usize; 3], f64),
+    RowChanges { dims: [nx, ny, _], max_change }: RowChanges,
     voxels_inside: impl Fn(DVec3) -> f64 + Sync,
+    limit: Option<&(dyn Fn(DVec3) -> f64 + Sync)>,
 ) {
     hidden.par_chunks_mut(nx).enumerate().for_each(|(row, hidden)| {
         let (y, z) = ((row % ny) as f64, (row / ny) as f64);
@@ -72,10 +100,15 @@ fn apply_distance(
             let first = (run * RUN_VOXELS) as f64;
             // Far from the edge all voxels of a run are alike.
             let middle = inside(first + 0.5 * (hidden.len() - 1) as f64);
-            let is_alike = middle.abs() > max_change * RUN_VOXELS as f64 + 1.0;
+            let is_far = middle.abs() > max_change * RUN_VOXELS as f64 + 1.0;
+            let is_alike = is_far && (middle < 0.0 || limit.is_none());
             for (x, hidden) in hidden.iter_mut().enumerate() {
                 // A voxel whose centre lies on the edge is hidden by half.
-                let distance = if is_alike { middle } else { inside(first + x as f64) };
+                let distance = match limit {
+                    _ if is_alike => middle,
+                    None => inside(first + x as f64),
+                    Some(limit) => inside(first + x as f64).min(limit(DVec3::new(first + x as f64, y, z))),
+                };
                 let share = (distance + 0.5).clamp(0.0, 1.0);
                 *hidden = applied(action, *hidden, (share * f64::from(HIDDEN) + 0.5) as u8);
             }
@@ -123,7 +156,7 @@ mod tests {
     /// Square outline of half of the picture's height, as seen through a camera.
     fn square(camera: Camera) -> CutShape {
         let points = vec![[0.375, 0.25], [0.625, 0.25], [0.625, 0.75], [0.375, 0.75]];
-        CutShape::Outline(OutlineCut { camera, aspect: 2.0, points })
+        CutShape::Outline(OutlineCut { camera, aspect: 2.0, points, ..OutlineCut::default() })
     }
 
     #[test]
@@ -185,6 +218,26 @@ mod tests {
         outline.points.extend([[0.45, 0.25], [0.45, 0.5]]);
         let distance = OutlineDistance::new(&outline, &volume(|_| 0).scene());
         assert!(distance.voxels_inside(DVec3::splat(7.5)) > 1.0);
+    }
+
+    #[test]
+    fn the_front_alone_is_cut() {
+        // Two walls across the line of sight, along y.
+        let volume = volume(|[_, y, _]| if matches!(y, 3..=5 | 10..=12) { 200 } else { 0 });
+        for (azimuth_deg, hidden) in [(-90.0, 4), (90.0, 11)] {
+            let camera = Camera { azimuth_deg, elevation_deg: 0.0, ..Camera::default() };
+            let CutShape::Outline(outline) = square(camera) else { panic!("an outline") };
+            let surface = Some(ValueRange::new(100.0, 255.0));
+            let mask_of = |depth| {
+                let outline = OutlineCut { depth, surface, ..outline.clone() };
+                mask_from_shapes(&volume, &[cut(CutAction::Hide, CutShape::Outline(outline))]).unwrap()
+            };
+            let walls = |mask: &VoxelMask| [4, 11].map(|y| hidden_at(mask, [8, y, 8]));
+            assert_eq!(walls(&mask_of(CutDepth::Through)), [255, 255]);
+            let front = mask_of(CutDepth::Front);
+            assert_eq!(walls(&front), [4, 11].map(|y| if y == hidden { 255 } else { 0 }), "{azimuth_deg}");
+            assert_eq!(hidden_at(&front, [8, hidden, 0]), 0, "beside the outline");
+        }
     }
 
     #[test]

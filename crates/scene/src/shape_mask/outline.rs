@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::voxel_edge;
 use crate::{OutlineCut, Projection};
-use chiaroscuro_volume::math::SceneSpace;
+use chiaroscuro_volume::math::{Aabb, SceneSpace};
 use glam::{DAffine3, DVec2, DVec3};
 
 /// Number of cells along the longer side of the table of distances: one per pixel or two of a picture.
@@ -16,10 +16,17 @@ const TABLE_MARGIN: f64 = 0.05;
 /// Smallest margin, in picture heights: half a voxel of a volume of 50 voxels that fills the picture.
 const MIN_TABLE_MARGIN: f64 = 0.01;
 
+/// Smallest depth in front of a perspective eye, in scene units.
+const MIN_DEPTH: f64 = 1e-9;
+
 /// Signed distances in the plane of a picture from an outline, and the projection of voxels into it.
 pub(super) struct OutlineDistance {
     /// Transform from index space to the camera's axes: right, up, and backwards from the eye.
     view_from_index: DAffine3,
+    /// Transform from the camera's axes to index space.
+    index_from_view: DAffine3,
+    /// Number of voxels along x, y, z.
+    dims: [usize; 3],
     /// Distance of the target from the eye for perspective, in scene units; `None` for parallel rays.
     target_distance: Option<f64>,
     /// Height of the picture at the target, in scene units.
@@ -42,15 +49,18 @@ struct DistanceTable {
 impl OutlineDistance {
     /// Measures the distances from an outline for the voxels of a scene.
     pub(super) fn new(outline: &OutlineCut, scene: &SceneSpace) -> Self {
-        let OutlineCut { camera, aspect, points } = outline;
+        let OutlineCut { camera, aspect, points, depth: _, surface: _ } = outline;
         let scene_from_view = camera.scene_from_view();
         let view_from_scene = scene_from_view.transpose();
         let view_from_scene =
             DAffine3 { matrix3: view_from_scene, translation: -(view_from_scene * camera.position()) };
         // From the middle of the picture, y upwards.
         let corner = |&[x, y]: &[f64; 2]| DVec2::new((x - 0.5) * aspect, 0.5 - y);
+        let view_from_index = view_from_scene * scene.scene_from_index;
         Self {
-            view_from_index: view_from_scene * scene.scene_from_index,
+            view_from_index,
+            index_from_view: view_from_index.inverse(),
+            dims: scene.dims,
             target_distance: (camera.projection == Projection::Perspective).then_some(camera.distance),
             height_at_target: 2.0 * camera.half_height_at_target(*aspect),
             edge: voxel_edge(scene),
@@ -61,13 +71,47 @@ impl OutlineDistance {
     /// Returns the distance, in voxels, by which a point of index space lies inside the outline; negative outside.
     pub(super) fn voxels_inside(&self, index: DVec3) -> f64 {
         let view = self.view_from_index.transform_point3(index);
-        // Height of the picture at the depth of the point.
-        let height = match self.target_distance {
-            None => self.height_at_target,
-            Some(_) if view.z > -1e-9 => return f64::NEG_INFINITY,
-            Some(distance) => self.height_at_target * -view.z / distance,
-        };
+        if self.target_distance.is_some() && view.z > -MIN_DEPTH {
+            return f64::NEG_INFINITY;
+        }
+        let height = self.height_at(-view.z);
         self.table.distance(view.truncate() / height) * height / self.edge
+    }
+
+    /// Returns the height of the picture at a depth along the viewing axis, in scene units.
+    fn height_at(&self, depth: f64) -> f64 {
+        self.target_distance
+            .map_or(self.height_at_target, |distance| self.height_at_target * depth / distance)
+    }
+
+    /// Returns the place of a point of index space in the picture, from its middle in picture heights, and the depth.
+    pub(super) fn place_and_depth(&self, index: DVec3) -> (DVec2, f64) {
+        let view = self.view_from_index.transform_point3(index);
+        (view.truncate() / self.height_at((-view.z).max(MIN_DEPTH)), -view.z)
+    }
+
+    /// Returns the point of index space at a place of the picture and a depth, inverse to [`Self::place_and_depth`].
+    pub(super) fn index_at(&self, place: DVec2, depth: f64) -> DVec3 {
+        self.index_from_view.transform_point3((place * self.height_at(depth)).extend(-depth))
+    }
+
+    /// Returns the smallest and the largest depth of the volume, in front of the eye for perspective.
+    pub(super) fn depth_range(&self) -> [f64; 2] {
+        let corners = Aabb::of_grid(self.dims, 0.0).corners();
+        let depths = corners.map(|corner| -self.view_from_index.transform_point3(corner).z);
+        let [near, far] =
+            [depths.into_iter().fold(f64::MAX, f64::min), depths.into_iter().fold(f64::MIN, f64::max)];
+        if self.target_distance.is_some() { [near.max(MIN_DEPTH), far] } else { [near, far] }
+    }
+
+    /// Returns the corners of a box around the outline in the picture, from its middle in picture heights.
+    pub(super) fn bounds(&self) -> [DVec2; 2] {
+        [self.table.low, self.table.low + self.table.extent()]
+    }
+
+    /// Returns the edge of a voxel, in scene units.
+    pub(super) fn edge(&self) -> f64 {
+        self.edge
     }
 }
 
@@ -91,6 +135,11 @@ impl DistanceTable {
             })
             .collect();
         Self { low, margin, cell, size, distances }
+    }
+
+    /// Returns the size of the table, in picture heights.
+    fn extent(&self) -> DVec2 {
+        DVec2::new((self.size[0] - 1) as f64, (self.size[1] - 1) as f64) * self.cell
     }
 
     /// Returns the interpolated distance at a point; outside the table the negative one of its border.

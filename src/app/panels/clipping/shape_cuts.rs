@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use super::super::controls::{row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
 use crate::app::text;
-use chiaroscuro_scene::{CutAction, CutShapeKind, MAX_SHAPE_CUTS, ShapeCut};
+use chiaroscuro_scene::{CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, OutlineCut, ShapeCut};
 
 /// Shows the buttons, and a row for each cut in the order in which they are applied.
 pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, commands: &mut Vec<AppCommand>) {
@@ -49,6 +49,15 @@ fn cut_row(ui: &mut Ui, cut: &mut ShapeCut) -> bool {
         if ui.button(text::cuts::action_name(cut.action)).on_hover_text(text::cuts::ACTION_TIP).clicked() {
             let at = CutAction::ALL.iter().position(|action| *action == cut.action).unwrap_or_default();
             cut.action = CutAction::ALL[(at + 1) % CutAction::ALL.len()];
+        }
+        if let CutShape::Outline(OutlineCut { depth, surface: Some(_), .. }) = &mut cut.shape {
+            let (words, other) = match *depth {
+                CutDepth::Through => (text::cuts::THROUGH, CutDepth::Front),
+                CutDepth::Front => (text::cuts::FRONT, CutDepth::Through),
+            };
+            if ui.button(words).on_hover_text(text::cuts::DEPTH_TIP).clicked() {
+                *depth = other;
+            }
         }
         let removes = text::cuts::REMOVE_SHAPE;
         ui.button(removes.name).on_hover_text(removes.tooltip).clicked()

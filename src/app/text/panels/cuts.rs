@@ -51,6 +51,11 @@ pub(crate) const REMOVE_SHAPES: ControlText =
     control_text("Show cut parts again", "Removes all cuts by shapes");
 /// Tooltip of the button that changes the effect of a cut.
 pub(crate) const ACTION_TIP: &str = "What happens to the part inside; a click takes the next effect";
+/// Depths of an outline, and the tooltip of the button that changes between them.
+pub(crate) const THROUGH: &str = "through";
+pub(crate) const FRONT: &str = "front";
+pub(crate) const DEPTH_TIP: &str =
+    "Whether the outline cuts through everything, or only the surface that was seen first";
 /// Hint on the end of cutting.
 pub(crate) const ESCAPE_ENDS: &str = "Esc ends cutting";
 

@@ -13,7 +13,7 @@ use chiaroscuro_scene::{
     Camera, ComponentCut, CutAction, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS, OutlineCut,
     Settings, ShapeCut, SphereCut,
 };
-use chiaroscuro_volume::Volume;
+use chiaroscuro_volume::{ValueRange, Volume};
 
 /// Smallest distance between two corners of an outline, in points.
 const MIN_CORNER_DISTANCE: f32 = 3.0;
@@ -26,6 +26,9 @@ const RADIUS_PER_NOTCH: f64 = 1.15;
 
 /// Smallest and largest radius of a sphere, in scene units: from a voxel of a large volume to all of it.
 const RADIUS_RANGE: [f64; 2] = [0.002, 2.0];
+
+/// Number of corners of an outline at which a surface is looked for.
+const MAX_SURFACE_PROBES: usize = 16;
 
 /// Number of corners of the painted circle of a sphere.
 const CIRCLE_CORNERS: usize = 64;
@@ -123,7 +126,8 @@ impl ShapeCutTool {
             let extent = Rect::from_points(&corners).size();
             if !is_cancelled && corners.len() >= 3 && extent.max_elem() >= MIN_OUTLINE_EXTENT {
                 let action = if self.is_reversed { CutAction::Keep } else { CutAction::Hide };
-                let outline = outline_cut(&corners, response.rect, &settings.camera);
+                let mut outline = outline_cut(&corners, response.rect, &settings.camera);
+                outline.surface = surface_inside(&corners, response.rect, settings, volume);
                 Self::add_cut(settings, action, CutShape::Outline(outline));
             }
         }
@@ -201,7 +205,22 @@ fn outline_cut(corners: &[Pos2], picture: Rect, camera: &Camera) -> OutlineCut {
         [f64::from(share.x), f64::from(share.y)]
     });
     let aspect = f64::from(picture.width()) / f64::from(picture.height()).max(1.0);
-    OutlineCut { camera: camera.clone(), aspect, points: points.collect() }
+    OutlineCut { camera: camera.clone(), aspect, points: points.collect(), ..OutlineCut::default() }
+}
+
+/// Returns the values of the surface that is seen inside an outline: in its middle, or at the first corner that shows
+/// one.
+fn surface_inside(
+    corners: &[Pos2],
+    picture: Rect,
+    settings: &Settings,
+    volume: &Volume,
+) -> Option<ValueRange> {
+    let middle = Rect::from_points(corners).center();
+    let step = corners.len().div_ceil(MAX_SURFACE_PROBES);
+    let mut places = std::iter::once(middle).chain(corners.iter().copied().step_by(step));
+    let found = places.find_map(|at| light_probe::probe_at(volume, settings, picture, at))?;
+    Some(ComponentCut::from_picked(settings, volume, found.point, found.value).values)
 }
 
 /// Returns the circle of a sphere that is seen through a camera, in points.
