@@ -17,6 +17,9 @@ const STEP_EDGES: f64 = 0.5;
 /// over the width of a kernel.
 const GAP_EDGES: f64 = 2.0;
 
+/// Number of rays to either side whose depths are filtered together.
+const FILTER_RAYS: usize = 5;
+
 /// Depths at which the first run of values of a range ends, for rays through the picture plane.
 pub(super) struct FrontDepth {
     low: DVec2,
@@ -63,7 +66,27 @@ impl FrontDepth {
             last_met.map_or(0.0, |met| (near + met as f64 * step + GAP_EDGES * outline.edge()) as f32)
         };
         let depths = (0..size[0] * size[1]).into_par_iter().map(depth).collect();
-        Self { low, cell, size, depths }
+        Self { low, cell, size, depths }.filtered(median).filtered(mean)
+    }
+
+    /// Replaces each depth by one of those around it, without rays that meet nothing: single rays that slip through a
+    /// gap would leave needles.
+    fn filtered(self, filter: impl Fn(&mut [f32]) -> f32 + Sync) -> Self {
+        let [width, height] = self.size;
+        let depth = |at: usize| {
+            if self.depths[at] == 0.0 {
+                return 0.0;
+            }
+            let around =
+                |at: usize, count: usize| at.saturating_sub(FILTER_RAYS)..(at + FILTER_RAYS + 1).min(count);
+            let rows = around(at / width, height);
+            let columns = around(at % width, width);
+            let near = rows.flat_map(|y| columns.clone().map(move |x| x + width * y));
+            let mut met: Vec<f32> = near.map(|at| self.depths[at]).filter(|&depth| depth > 0.0).collect();
+            filter(&mut met)
+        };
+        let depths = (0..width * height).into_par_iter().map(depth).collect();
+        Self { depths, ..self }
     }
 
     /// Returns the distance, in scene units, by which a point at a depth lies before the end of the first surface;
@@ -77,4 +100,15 @@ impl FrontDepth {
             end => f64::from(end) - depth,
         }
     }
+}
+
+/// Returns the median of depths, at least one.
+fn median(depths: &mut [f32]) -> f32 {
+    let middle = depths.len() / 2;
+    *depths.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+/// Returns the mean of depths, at least one.
+fn mean(depths: &mut [f32]) -> f32 {
+    depths.iter().sum::<f32>() / depths.len() as f32
 }

@@ -4,7 +4,7 @@ use eframe::egui::Ui;
 
 use super::super::controls::{row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
-use crate::app::text;
+use crate::app::text::{self, ControlText};
 use chiaroscuro_scene::{CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, OutlineCut, ShapeCut};
 
 /// Shows the buttons, and a row for each cut in the order in which they are applied.
@@ -42,10 +42,10 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, commands: &mut Vec<App
 
 /// Shows one cut: its switch, its effect, and a button that removes it. Returns true if that was clicked.
 fn cut_row(ui: &mut Ui, cut: &mut ShapeCut) -> bool {
-    let named = text::cuts::SHAPE;
-    row(ui, named, |ui| {
-        let name = text::cuts::shape_name(cut.shape.kind());
-        ui.checkbox(&mut cut.on, name).on_hover_text(named.tooltip);
+    let name = text::cuts::shape_name(cut.shape.kind());
+    row(ui, ControlText { name, tooltip: text::cuts::SHAPE_TIP }, |ui| {
+        let switch = ui.name_inputs(name, |ui| ui.checkbox(&mut cut.on, ""));
+        switch.on_hover_text(text::cuts::SHAPE_TIP);
         if ui.button(text::cuts::action_name(cut.action)).on_hover_text(text::cuts::ACTION_TIP).clicked() {
             let at = CutAction::ALL.iter().position(|action| *action == cut.action).unwrap_or_default();
             cut.action = CutAction::ALL[(at + 1) % CutAction::ALL.len()];

@@ -43,9 +43,8 @@ pub(crate) const BY_SHAPE: ControlText = control_text(
     "By shape",
     "Cuts parts away in the picture; hold Q to draw around a part, or to click one, at any time",
 );
-/// List of cuts by shapes.
-pub(crate) const SHAPE: ControlText =
-    control_text("Cut", "Cut by a shape; without the tick, what it hides is visible again");
+/// Tooltip of a cut in the list of cuts by shapes.
+pub(crate) const SHAPE_TIP: &str = "Cut by a shape; without the tick, what it hides is visible again";
 pub(crate) const REMOVE_SHAPE: ControlText = control_text("×", "Removes the cut");
 pub(crate) const REMOVE_SHAPES: ControlText =
     control_text("Show cut parts again", "Removes all cuts by shapes");
