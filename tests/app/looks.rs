@@ -176,3 +176,16 @@ fn looks_of_a_ct_are_offered_over_its_picture() {
     assert!(harness.query_by_label("Muscle and skin").is_none());
     wait_until_idle(&mut harness);
 }
+
+/// The table under a body is hidden by one click over the picture, where there is room for the button.
+#[test]
+fn the_table_is_hidden_over_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = WindowOptions { source: Some(write_ct(folder.path())), ..WindowOptions::default() };
+    let mut harness = adjusted_window(options, vec2(1300.0, 900.0));
+    for is_hidden in [true, false] {
+        click(&mut harness, "Without table");
+        wait_until_idle(&mut harness);
+        assert_eq!(harness.state().settings().volume.hidden_table.is_some(), is_hidden);
+    }
+}

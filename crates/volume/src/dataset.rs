@@ -83,12 +83,14 @@ impl DatasetField {
 
     /// Corrects the opened volume; immediate if voxel values are unaffected.
     fn corrected(&self, by: &Corrections) -> Result<Self, VolumeError> {
-        let volume = self.volume.corrected(by)?;
-        if !volume.shares_voxels(&self.volume) {
-            return Ok(Self { origin: self.origin.clone(), ..Self::new(volume) });
+        // The next picture hides voxels again, where they are then.
+        let whole = self.with_mask(None);
+        let volume = whole.volume.corrected(by)?;
+        if !volume.shares_voxels(&whole.volume) {
+            return Ok(Self { origin: whole.origin, ..Self::new(volume) });
         }
-        let volume = Arc::new(volume.with_density_mapping(self.volume.density_mapping()));
-        Ok(Self { volume, ..self.clone() })
+        let volume = Arc::new(volume.with_density_mapping(whole.volume.density_mapping()));
+        Ok(Self { volume, ..whole })
     }
 
     /// Returns the volume of the field: its voxels with grid and provenance.

@@ -3,8 +3,8 @@
 
 use chiaroscuro_reference::{cubic_b_spline, tent};
 use chiaroscuro_scene::{
-    ClassificationOrder, ControlPoint, OpacityInterpolation, ReconstructionKernel, RenderEngine,
-    TransferFunction,
+    Camera, ClassificationOrder, ControlPoint, CutAction, CutShape, OpacityInterpolation, OutlineCut,
+    Projection, ReconstructionKernel, RenderEngine, ShapeCut, TransferFunction,
 };
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
@@ -17,6 +17,7 @@ use crate::thresholds::{CHORD_OPACITY, EDGE_PROFILE, LOBES};
 with_both_engines! {
     a_constant_volume_ends_at_its_faces
     holes_are_empty
+    hidden_slabs_are_empty
     lobes_of_either_sign_look_alike
 }
 
@@ -134,6 +135,38 @@ fn holes_are_empty(engine: RenderEngine) {
         let expected = 1.0 - (-per_voxel * (EDGE_VOXELS - 8) as f64).exp();
         let found = f64::from(picture.linear[32 * 64 + 32][3]);
         assert!((found - expected).abs() <= CHORD_OPACITY, "{kernel:?}: {found} not {expected}");
+    }
+}
+
+/// A slab that an outline hides is empty: drawn from the side, with edges between voxels.
+fn hidden_slabs_are_empty(engine: RenderEngine) {
+    let per_voxel = 0.04;
+    let loaded = constant_volume(0);
+    let scene = loaded.volume().scene();
+    // The camera looks along x; y is across.
+    let side = Camera {
+        azimuth_deg: 0.0,
+        elevation_deg: 0.0,
+        projection: Projection::Orthographic,
+        ..Camera::default()
+    };
+    let place = |y: f64, z: f64| {
+        let point = scene.scene_from_index.transform_point3(DVec3::new(12.0, y, z));
+        let (x, y, _) = side.pixel_from_scene(point, 1.0, 1.0).expect("in front of the camera");
+        [x, y]
+    };
+    let points = vec![place(7.5, -9.0), place(15.5, -9.0), place(15.5, 33.0), place(7.5, 33.0)];
+    let outline = OutlineCut { camera: side.clone(), aspect: 1.0, points, ..OutlineCut::default() };
+    for (action, left) in [(CutAction::Hide, EDGE_VOXELS - 8), (CutAction::Keep, 8)] {
+        let mut settings = base(engine, per_voxel).with_transfer(falling_extinction(per_voxel));
+        settings.sampling.slab = 0.5;
+        let shape = CutShape::Outline(outline.clone());
+        settings.cuts.shapes = vec![ShapeCut { on: true, action, shape }];
+        let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
+        // The camera looks along y.
+        let expected = 1.0 - (-per_voxel * left as f64).exp();
+        let found = f64::from(picture.linear[32 * 64 + 32][3]);
+        assert!((found - expected).abs() <= CHORD_OPACITY, "{action:?}: {found} not {expected}");
     }
 }
 

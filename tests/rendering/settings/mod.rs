@@ -9,5 +9,6 @@ mod near_field;
 mod phantom;
 mod render_modes;
 mod shadow_algorithms;
+mod shape_cuts;
 mod stretched_kernels;
 mod surface_sides;

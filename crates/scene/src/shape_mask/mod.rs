@@ -28,6 +28,8 @@ pub fn mask_from_shapes<'a>(
     volume: &Volume,
     cuts: impl IntoIterator<Item = &'a ShapeCut>,
 ) -> Option<VoxelMask> {
+    let mut cuts = cuts.into_iter().peekable();
+    cuts.peek()?;
     let mut hidden = vec![0; volume.voxel_count()];
     for ShapeCut { on: _, action, shape } in cuts {
         apply_shape(volume, &mut hidden, *action, shape);

@@ -117,7 +117,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::{BrickBounds, Samples};
+    use crate::{BrickBounds, Corrections, Dataset, Flips, Samples};
 
     #[test]
     fn voxels_are_absent_where_missing_or_hidden() {
@@ -148,6 +148,27 @@ mod tests {
         assert_eq!(row(masks[0]), [false; 4]);
         assert_eq!(row(masks[1]), [false, true, true, true]);
         assert_eq!(row(masks[2]), [true, false, false, false]);
+    }
+
+    #[test]
+    fn corrections_show_all_voxels_until_they_are_hidden_again() {
+        let dims = [32, 8, 8];
+        let samples = Samples::U8((0..2048).map(|at| at as u8).collect());
+        let dataset = Dataset::new(Volume::with_spacing("t", dims, DVec3::ONE, samples).unwrap());
+        let shares = (0..2048).map(|at| if at % 32 < 20 { 255 } else { 0 }).collect();
+        let mask = VoxelMask::from_hidden_shares(dims, shares).map(Arc::new);
+        let masked = dataset.with_mask(mask.as_ref());
+        let occupancy = |dataset: &Dataset| dataset.bricks().occupancy(|_, _| true);
+        assert_eq!(occupancy(&masked), [false, false, true, true]);
+        for by in [
+            Corrections { spacing: Some([2.0; 3]), ..Corrections::NONE },
+            Corrections { flip: Flips { x: true, ..Flips::default() }, ..Corrections::NONE },
+        ] {
+            let corrected = masked.corrected(&by).unwrap();
+            assert!(corrected.volume().mask().is_none());
+            assert_eq!(occupancy(&corrected), [true; 4]);
+        }
+        assert_eq!(occupancy(&masked.with_mask(None)), [true; 4]);
     }
 
     #[test]

@@ -25,6 +25,12 @@ pub(crate) const CT_LOOKS: &str = "CT:";
 pub(crate) const CLOSE_CT_LOOKS: &str = "Close this row; presets stay in the editor";
 pub(crate) const CLOSE_CT_LOOKS_SIGN: &str = "×";
 
+/// Button of the row that hides the table under the body.
+pub(crate) const HIDE_TABLE: ControlText = control_text(
+    "Without table",
+    "Hides the table under the body, with its shadow; a second click shows it again",
+);
+
 /// Caption of the difference image of two looks.
 pub(crate) fn difference(left: &str, right: &str) -> String {
     format!("{left} − {right}, × 8")

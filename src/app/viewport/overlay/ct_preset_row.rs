@@ -1,5 +1,5 @@
-//! Row of CT presets at the bottom of the picture, one click each; shown for every CT volume until the user closes
-//! it.
+//! Row of CT presets at the bottom of the picture, one click each, with a button that hides the table under the body;
+//! shown for every CT volume until the user closes it.
 
 use std::path::PathBuf;
 
@@ -54,6 +54,10 @@ impl CtPresetRow {
         // Buttons have padding around their titles.
         let titles: f32 = presets.iter().map(|preset| width_of(preset.title) + 2.0 * padding).sum();
         let width = width_of(text::picture::CT_LOOKS) + titles + width_of(text::picture::CLOSE_CT_LOOKS_SIGN);
+        // Narrow pictures have the presets alone.
+        let table = width_of(text::picture::HIDE_TABLE.name) + 2.0 * padding;
+        let has_table = picture.width() >= width + table - GAP + 4.0 * MARGIN;
+        let width = if has_table { width + table } else { width };
         let size = vec2(width - GAP + 2.0 * MARGIN, HEIGHT);
         if picture.width() < size.x + 2.0 * MARGIN || picture.height() < 8.0 * HEIGHT {
             return;
@@ -67,20 +71,20 @@ impl CtPresetRow {
         ui.spacing_mut().item_spacing.x = GAP;
         ui.label(RichText::new(text::picture::CT_LOOKS).color(theme::PICTURE_TEXT));
         for preset in presets {
-            // The preset in use is filled.
-            let is_used = self.active_preset.is_in_use(&preset);
-            let (ink, fill) =
-                if is_used { (theme::OUTLINE, theme::ACCENT) } else { (theme::ACCENT, Color32::TRANSPARENT) };
-            let title = RichText::new(preset.title).color(ink);
-            let button = ui.add(egui::Button::new(title).fill(fill).stroke(Stroke::NONE).corner_radius(5.0));
-            button
-                .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_used, preset.title));
+            let button = switch_button(&mut ui, preset.title, self.active_preset.is_in_use(&preset));
             // The description is parsed from the preset's text, hence only when the tooltip opens.
             let button = button.on_hover_ui(|ui| {
                 ui.label(preset.description());
             });
             if button.clicked() {
                 commands.push(AppCommand::UsePreset(preset));
+            }
+        }
+        if has_table {
+            let named = text::picture::HIDE_TABLE;
+            let button = switch_button(&mut ui, named.name, settings.volume.hidden_table.is_some());
+            if button.on_hover_text(named.tooltip).clicked() {
+                commands.push(AppCommand::ToggleTable);
             }
         }
         let close = egui::Button::new(RichText::new(text::picture::CLOSE_CT_LOOKS_SIGN).color(theme::GUIDE));
@@ -92,4 +96,14 @@ impl CtPresetRow {
             self.closed_for = Some(volume.source.clone());
         }
     }
+}
+
+/// Button that is filled while what it does is in use.
+fn switch_button(ui: &mut Ui, title: &str, is_used: bool) -> egui::Response {
+    let (ink, fill) =
+        if is_used { (theme::OUTLINE, theme::ACCENT) } else { (theme::ACCENT, Color32::TRANSPARENT) };
+    let words = RichText::new(title).color(ink);
+    let button = ui.add(egui::Button::new(words).fill(fill).stroke(Stroke::NONE).corner_radius(5.0));
+    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_used, title));
+    button
 }
