@@ -66,7 +66,7 @@ pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
             "Hides what lies behind a line that you draw around it in the picture",
         ),
         CutShapeKind::Sphere => {
-            control_text("Cut by sphere", "Hides a ball around the place that you click in the picture")
+            control_text("Cut by ball", "Hides a ball around the place that you click in the picture")
         }
         CutShapeKind::Component => {
             control_text("Cut a part", "Hides the part that you click, with all that is connected with it")
@@ -78,7 +78,7 @@ pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
 pub(crate) fn shape_name(kind: CutShapeKind) -> &'static str {
     match kind {
         CutShapeKind::Outline => "Outline",
-        CutShapeKind::Sphere => "Sphere",
+        CutShapeKind::Sphere => "Ball",
         CutShapeKind::Component => "Part",
     }
 }
@@ -87,8 +87,8 @@ pub(crate) fn shape_name(kind: CutShapeKind) -> &'static str {
 pub(crate) fn action_name(action: CutAction) -> &'static str {
     match action {
         CutAction::Hide => "hidden",
-        CutAction::Keep => "kept alone",
-        CutAction::Restore => "shown again",
+        CutAction::Keep => "kept",
+        CutAction::Restore => "shown",
     }
 }
 
