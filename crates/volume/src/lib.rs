@@ -38,7 +38,6 @@ pub use load_context::{
     VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing, memory_budget_bytes,
     quoted, spacing_ratio_error,
 };
-pub use presence::VoxelMask;
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
 };
@@ -46,6 +45,7 @@ pub use values::fill_value::find_fill_value;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{FiniteRange, Samples, VoxelType};
+pub use values::voxel_mask::VoxelMask;
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MAX_FIELDS, MissingVoxels, Orientation,

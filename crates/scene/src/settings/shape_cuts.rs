@@ -53,12 +53,12 @@ impl CutAction {
 /// Kind of shape, for menus and names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum CutShapeKind {
-    /// [`CutShape::Outline`].
+    /// Outline drawn in the picture.
     #[default]
     Outline,
-    /// [`CutShape::Sphere`].
+    /// Sphere in the scene.
     Sphere,
-    /// [`CutShape::Component`].
+    /// Connected component of voxels.
     Component,
 }
 

@@ -4,3 +4,4 @@ pub(super) mod fill_value;
 pub(super) mod range;
 pub(super) mod robust;
 pub(super) mod samples;
+pub(super) mod voxel_mask;

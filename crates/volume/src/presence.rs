@@ -1,16 +1,12 @@
 //! Presence of voxels: 0 where they are missing or hidden by a mask, 1 elsewhere, and the cells where some are left.
 
-mod voxel_mask;
-
-pub use voxel_mask::VoxelMask;
-
 use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::Volume;
 use super::cells::{BRICK_EDGE, CELL_EDGE};
+use super::{Volume, VoxelMask};
 
 /// Number of cells along the edge of a brick.
 const CELLS_PER_BRICK_EDGE: usize = BRICK_EDGE / CELL_EDGE;
