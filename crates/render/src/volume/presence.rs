@@ -26,8 +26,7 @@ const SNORM_STEPS: f32 = 127.0;
 /// Number of texels of level 0 per upload step: some 20 ms, and 16 MiB of temporary memory.
 const STEP_TEXELS: usize = 1 << 20;
 
-/// Number of slices of level 0 up to which those of the coarsest level depend on, on either side: texel c of level 2 is
-/// made of texels 4c − 3 … 4c + 6, its differences reach one texel of level 2 further, and the blur one of level 0.
+/// Reach of a texel of the coarsest level, in texels of level 0 on either side: texel c of level 2 is made of texels 4c − 3 … 4c + 6, its differences reach one texel of level 2 further, and the blur one of level 0.
 const COARSEST_REACH: usize = 12;
 
 /// Presence texture of a volume with missing or hidden voxels.

@@ -1,6 +1,6 @@
 //! Connected components of voxels around a seed, with the faint skin around them.
 
-use super::HALF_HIDDEN;
+use super::is_visible;
 use crate::{ComponentCut, Settings};
 use chiaroscuro_volume::{ValueRange, Volume};
 use glam::DVec3;
@@ -57,15 +57,14 @@ struct Candidates<'a> {
 pub(super) fn component_voxels(volume: &Volume, hidden: &[u8], cut: &ComponentCut) -> Option<Vec<bool>> {
     let ComponentCut { seed, values } = cut;
     let samples = volume.samples();
-    let is_present = |voxel: usize| {
-        hidden[voxel] <= HALF_HIDDEN && !volume.missing().is_some_and(|missing| missing.contains(voxel))
-    };
     let has_value = |voxel: usize| {
         let value = samples.value(voxel);
         value >= values.low && value <= values.high
     };
-    let is_candidate: Vec<bool> =
-        (0..hidden.len()).into_par_iter().map(|voxel| has_value(voxel) && is_present(voxel)).collect();
+    let is_candidate: Vec<bool> = (0..hidden.len())
+        .into_par_iter()
+        .map(|voxel| has_value(voxel) && is_visible(volume, hidden, voxel))
+        .collect();
     let candidates = Candidates { dims: volume.dims(), is_candidate: &is_candidate };
     let index = volume.scene().index_from_scene.transform_point3((*seed).into()).round();
     let first = candidates.nearest(index.to_array().map(|at| at as i64))?;

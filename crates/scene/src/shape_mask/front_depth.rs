@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::HALF_HIDDEN;
+use super::is_visible;
 use super::outline::OutlineDistance;
 use chiaroscuro_volume::{ValueRange, Volume};
 use glam::{DVec2, DVec3};
@@ -25,7 +25,7 @@ pub(super) struct FrontDepth {
     low: DVec2,
     cell: f64,
     size: [usize; 2],
-    /// Depth along the viewing axis in scene units; 0 where a ray meets no such value.
+    /// Depth along the viewing axis in scene units, of either sign for parallel rays; NaN where a ray meets no such value.
     depths: Vec<f32>,
 }
 
@@ -44,9 +44,7 @@ impl FrontDepth {
             let [nx, ny, _] = volume.dims();
             let voxel = place.x as usize + nx * (place.y as usize + ny * place.z as usize);
             let value = volume.samples().value(voxel);
-            hidden[voxel] <= HALF_HIDDEN
-                && (values.low..=values.high).contains(&value)
-                && !volume.missing().is_some_and(|missing| missing.contains(voxel))
+            (values.low..=values.high).contains(&value) && is_visible(volume, hidden, voxel)
         };
         let [near, far] = outline.depth_range();
         let step = STEP_EDGES * outline.edge();
@@ -63,7 +61,7 @@ impl FrontDepth {
                     break;
                 }
             }
-            last_met.map_or(0.0, |met| (near + met as f64 * step + GAP_EDGES * outline.edge()) as f32)
+            last_met.map_or(f32::NAN, |met| (near + met as f64 * step + GAP_EDGES * outline.edge()) as f32)
         };
         let depths = (0..size[0] * size[1]).into_par_iter().map(depth).collect();
         Self { low, cell, size, depths }.filtered(median).filtered(mean)
@@ -74,15 +72,15 @@ impl FrontDepth {
     fn filtered(self, filter: impl Fn(&mut [f32]) -> f32 + Sync) -> Self {
         let [width, height] = self.size;
         let depth = |at: usize| {
-            if self.depths[at] == 0.0 {
-                return 0.0;
+            if self.depths[at].is_nan() {
+                return f32::NAN;
             }
             let around =
                 |at: usize, count: usize| at.saturating_sub(FILTER_RAYS)..(at + FILTER_RAYS + 1).min(count);
             let rows = around(at / width, height);
             let columns = around(at % width, width);
             let near = rows.flat_map(|y| columns.clone().map(move |x| x + width * y));
-            let mut met: Vec<f32> = near.map(|at| self.depths[at]).filter(|&depth| depth > 0.0).collect();
+            let mut met: Vec<f32> = near.map(|at| self.depths[at]).filter(|depth| !depth.is_nan()).collect();
             filter(&mut met)
         };
         let depths = (0..width * height).into_par_iter().map(depth).collect();
@@ -96,7 +94,7 @@ impl FrontDepth {
         let last = DVec2::new((self.size[0] - 1) as f64, (self.size[1] - 1) as f64);
         let [x, y] = at.clamp(DVec2::ZERO, last).to_array().map(|at| at as usize);
         match self.depths[x + self.size[0] * y] {
-            0.0 => f64::NEG_INFINITY,
+            end if end.is_nan() => f64::NEG_INFINITY,
             end => f64::from(end) - depth,
         }
     }

@@ -127,6 +127,11 @@ fn applied(action: CutAction, hidden: u8, inside: u8) -> u8 {
     }
 }
 
+/// Returns true if a voxel is neither missing nor hidden so far by more than half.
+fn is_visible(volume: &Volume, hidden: &[u8], voxel: usize) -> bool {
+    hidden[voxel] <= HALF_HIDDEN && !volume.missing().is_some_and(|missing| missing.contains(voxel))
+}
+
 /// Returns the edge of a cube of a voxel's size, in scene units.
 fn voxel_edge(scene: &SceneSpace) -> f64 {
     scene.scene_from_index.matrix3.determinant().abs().cbrt()
@@ -226,8 +231,13 @@ mod tests {
     fn the_front_alone_is_cut() {
         // Two walls across the line of sight, along y.
         let volume = volume(|[_, y, _]| if matches!(y, 3..=5 | 10..=12) { 200 } else { 0 });
-        for (azimuth_deg, hidden) in [(-90.0, 4), (90.0, 11)] {
-            let camera = Camera { azimuth_deg, elevation_deg: 0.0, ..Camera::default() };
+        // Parallel rays also see what lies beside the eye or behind it.
+        let near = Camera { projection: Projection::Orthographic, distance: 0.1, ..Camera::default() };
+        for (camera, azimuth_deg, hidden) in
+            [(Camera::default(), -90.0, 4), (Camera::default(), 90.0, 11), (near, 90.0, 11)]
+        {
+            let fov_y_deg = 2.0 * (1.4 / camera.distance).atan().to_degrees();
+            let camera = Camera { azimuth_deg, elevation_deg: 0.0, fov_y_deg, ..camera };
             let CutShape::Outline(outline) = square(camera) else { panic!("an outline") };
             let surface = Some(ValueRange::new(100.0, 255.0));
             let mask_of = |depth| {

@@ -147,7 +147,7 @@ impl DistanceTable {
         let at = (point - self.low) / self.cell;
         let last = DVec2::new((self.size[0] - 1) as f64, (self.size[1] - 1) as f64);
         if !(at.cmpge(DVec2::ZERO).all() && at.cmplt(last).all()) {
-            // Of the outline, which lies inside the table by its margin.
+            // The outline is further away than the border of the table, by the margin.
             return -(point - point.clamp(self.low, self.low + last * self.cell)).length() - self.margin;
         }
         let low = at.floor();

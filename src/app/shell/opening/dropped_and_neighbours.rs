@@ -35,7 +35,7 @@ impl VolumeOpener<'_> {
             return;
         }
         self.open(first);
-        self.state.second_volume.expect(first);
+        self.state.second_volume.note_dropped(first);
         if paths.len() > 1 {
             self.editor.messages.note(text::opening::first_of_dropped(paths.len(), first));
         }

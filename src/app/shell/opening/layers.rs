@@ -173,7 +173,7 @@ impl VolumeOpener<'_> {
         if !has_looks {
             document.settings.layers.truncate(kept);
         }
-        // What the user has changed stays.
+        // Changes by the user are kept.
         document.settings.take_layers(&first, &document.defaults);
         document.defaults = first;
         document.selected_layer = kept.min(dataset.fields().len() - 1);

@@ -24,7 +24,7 @@ pub(super) struct SecondVolumeQuestion {
 
 impl SecondVolumeQuestion {
     /// Notes that a file was dropped, so that the question may be asked when it has been read.
-    pub(super) fn expect(&mut self, path: &Path) {
+    pub(super) fn note_dropped(&mut self, path: &Path) {
         self.dropped = Some(path.to_owned());
     }
 

@@ -170,7 +170,9 @@ impl PictureInputs<'_> {
         let Document { settings, volume, selected_light, .. } = &mut *self.document;
         let Some(volume) = volume else { return };
         let (tools, commands) = (&mut *self.tools, &mut *self.commands);
-        tools.shape_cuts.paint(ui, area, &settings.camera);
+        if is_one_view {
+            tools.shape_cuts.paint(ui, area, &settings.camera);
+        }
         // A comparison has captions at the top and at the bottom.
         let body = volume.is_anatomical.then(|| self.viewport.compare.area_without_labels(ui, area));
         let chips = tools

@@ -144,7 +144,7 @@ impl ShapeCutTool {
         self.center = pointer.map(|at| match self.center {
             Some((known, center)) if known == at => (at, center),
             _ => {
-                // What is hidden can be restored where it was.
+                // Hidden matter is probed, too, so that it can be restored.
                 let all = volume.with_mask(None);
                 let volume = if self.is_reversed { &all } else { volume };
                 let found = light_probe::probe_at(volume, settings, response.rect, at);
