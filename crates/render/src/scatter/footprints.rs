@@ -135,7 +135,6 @@ impl FootprintPhases {
             1,
             &[
                 bind_buffer("bound_grid", &grid),
-                bind_view("pyramid_texture", PyramidLevels::Finest.choose(gpu.volume.pyramid_views())),
                 bind_view("presence_texture", gpu.presence(PyramidLevels::Finest)),
                 bind_view("tint_pyramid", gpu.placeholder),
                 bind_buffer("bound_scatter", &slab),

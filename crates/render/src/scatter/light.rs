@@ -171,7 +171,6 @@ impl LightScatterer {
                 1,
                 &[
                     bind_buffer("bound_grid", &grid),
-                    bind_view("pyramid_texture", levels.choose(gpu.volume.pyramid_views())),
                     bind_view("presence_texture", gpu.presence(levels)),
                     sampler("clamped", &gpu.volume.clamped),
                     bind_buffer("bound_scatter", &slab),

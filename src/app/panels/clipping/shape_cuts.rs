@@ -21,7 +21,7 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, commands: &mut Vec<App
     });
     let mut removed = None;
     for (at, cut) in cuts.iter_mut().enumerate() {
-        ui.push_id(("shape cut", at), |ui| {
+        ui.push_id(("shape-cut", at), |ui| {
             if cut_row(ui, cut) {
                 removed = Some(at);
             }

@@ -228,7 +228,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage(5, "splats", 4, BufferAccess::ReadWrite),
                 VOXELS,
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE, TINT_PYRAMID],
+            &[GRID, CLAMPED, SCATTER, FOOTPRINT_TABLE, RAYS, PRESENCE_TEXTURE, TINT_PYRAMID],
             LIGHTS_AND_AMBIENT,
             &[BindingSlot::uniform::<uniforms::FootprintPhaseUniform>(0, "bound_phase")],
         ],
@@ -244,7 +244,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 BindingSlot::storage_texture(4, "ring", TextureShape::D2Array, StorageFormat::Ring),
                 BindingSlot::storage(5, "deposits", 16, BufferAccess::ReadWrite),
             ],
-            &[GRID, PYRAMID_TEXTURE, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
+            &[GRID, CLAMPED, SCATTER, SHEETS, PRESENCE_TEXTURE],
         ],
     ),
     (
