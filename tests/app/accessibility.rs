@@ -7,9 +7,11 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::harness::{click, turn_wheel, wait_until, window};
 
-/// Creates a window with all sections expanded, tall enough that nothing is scrolled out of view.
-pub(crate) fn expanded_window(width: f32) -> Harness<'static, App> {
-    let mut harness = window();
+/// Width of a window with all sections expanded, in points.
+pub(crate) const EXPANDED_WIDTH: f32 = 700.0;
+
+/// Expands all sections of a window, and makes it tall enough that nothing is scrolled out of view.
+pub(crate) fn expand_sections(mut harness: Harness<'static, App>) -> Harness<'static, App> {
     // Zoomed out: in a picture that high, less has to be rendered.
     let (picture, _) = harness.state().viewport_rect().expect("a picture");
     harness.hover_at(picture.center());
@@ -19,7 +21,7 @@ pub(crate) fn expanded_window(width: f32) -> Harness<'static, App> {
     harness.remove_cursor();
     // Pictures of such a high window exceed the texture size that egui assumes to be safe.
     harness.input_mut().max_texture_side = Some(8192);
-    harness.set_size(Vec2::new(width, 3700.0));
+    harness.set_size(Vec2::new(EXPANDED_WIDTH, 3700.0));
     harness.run_steps(3);
     for section in ["Sky and scattering", "Shading", "Clipping", "Floor", "Camera", "Compare", "Data"] {
         click(&mut harness, section);
@@ -54,7 +56,7 @@ fn open_menu(harness: &mut Harness<'_, App>, name: &str) {
 
 #[test]
 fn every_widget_has_a_name() {
-    let mut harness = expanded_window(700.0);
+    let mut harness = expand_sections(window());
     check_names(&harness, "the panels");
     for on in ["Crop box", "Clip plane", "Floor under the volume", "Compare two looks", "Spotlight"] {
         if harness.query_by_label(on).is_some() {

@@ -40,18 +40,43 @@ pub(crate) fn first_look_window() -> Harness<'static, App> {
 /// Creates a window of some size, in points. Unless the options adjust the first look, the balance is not kept, so
 /// that settings change only when the test changes them.
 pub(crate) fn adjusted_window(options: WindowOptions, size: Vec2) -> Harness<'static, App> {
-    paced_window_with(options, size, FRAME_S)
+    paced_window_with(options, size, FRAME_S, PIXELS_PER_POINT)
+}
+
+/// Creates the usual test window with a pixel for each point, as snapshots have.
+pub(crate) fn sharp_window() -> Harness<'static, App> {
+    let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
+    sharp_window_with(options, Vec2::new(760.0, 1140.0))
+}
+
+/// Creates a window as [`adjusted_window`] does, with a pixel for each point.
+pub(crate) fn sharp_window_with(options: WindowOptions, size: Vec2) -> Harness<'static, App> {
+    paced_window_with(options, size, FRAME_S, 1.0)
 }
 
 /// Creates a window of some size whose frames take 0.3 s of simulated time.
 pub(crate) fn slow_window(size: Vec2) -> Harness<'static, App> {
-    paced_window_with(WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() }, size, 0.3)
+    paced_window_with(
+        WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() },
+        size,
+        0.3,
+        PIXELS_PER_POINT,
+    )
 }
 
 /// Duration of a frame in simulated time, in seconds.
 const FRAME_S: f32 = 0.1;
 
-fn paced_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+/// Pixels per point of test windows: few tests are about pixels, and a quarter of them is drawn in a quarter of the
+/// time.
+const PIXELS_PER_POINT: f32 = 0.5;
+
+fn paced_window_with(
+    mut options: WindowOptions,
+    size: Vec2,
+    frame_s: f32,
+    pixels_per_point: f32,
+) -> Harness<'static, App> {
     options.adjust.get_or_insert_with(|| {
         Box::new(|settings| {
             // Soft light takes several times as long, and few tests are about it.
@@ -61,25 +86,32 @@ fn paced_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Ha
             settings
         })
     });
-    let mut harness = automatic_window_with(options, size, frame_s);
+    let mut harness = automatic_window_with(options, size, frame_s, pixels_per_point);
     wait_until_idle(&mut harness);
     harness
 }
 
 /// Creates a window with the automatic steps of a first look enabled, before its picture is finished.
 pub(crate) fn automatic_window(options: WindowOptions) -> Harness<'static, App> {
-    automatic_window_with(options, Vec2::new(760.0, 1140.0), FRAME_S)
+    automatic_window_with(options, Vec2::new(760.0, 1140.0), FRAME_S, PIXELS_PER_POINT)
 }
 
-fn automatic_window_with(mut options: WindowOptions, size: Vec2, frame_s: f32) -> Harness<'static, App> {
+fn automatic_window_with(
+    mut options: WindowOptions,
+    size: Vec2,
+    frame_s: f32,
+    pixels_per_point: f32,
+) -> Harness<'static, App> {
     // Simulated time runs ahead of the search.
     options.light_search_limit_s.get_or_insert(f64::INFINITY);
+    options.compiles_on_demand = true;
     let mut setup = wgpu_setup();
     // Uses the first adapter like the tests of the renderer, software included.
     setup.power_preference = wgpu::PowerPreference::None;
     Harness::builder()
         .with_size(size)
         .with_step_dt(frame_s)
+        .with_pixels_per_point(pixels_per_point)
         .wgpu_setup(setup.into())
         .build_eframe(|cc| App::new(cc, options).expect("a window"))
 }
@@ -201,7 +233,7 @@ pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
     wait_until(harness, "a note stays", |app| app.is_idle() && !app.shows_note());
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let image = harness.render().expect("a picture of the window");
-    let (x, y) = (rect.min.x.round() as u32, rect.min.y.round() as u32);
+    let [x, y] = [rect.min.x, rect.min.y].map(|at| (at * harness.ctx.pixels_per_point()).round() as u32);
     let mut bytes = Vec::new();
     for row in 0..size[1] {
         for column in 0..size[0] {

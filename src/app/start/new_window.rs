@@ -51,6 +51,7 @@ impl App {
             trust_paths,
             adjust,
             light_search_limit_s,
+            compiles_on_demand,
             storage,
         } = options;
         let memory = PersistentState::new(storage.as_deref(), &cc.egui_ctx);
@@ -65,6 +66,7 @@ impl App {
         app.opening.requests.session_is_due = session.is_some();
         app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
+        app.opening.loader.compiles_on_demand = compiles_on_demand;
         app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;
         app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());

@@ -23,6 +23,9 @@ pub struct WindowOptions {
     pub adjust: Option<SettingsAdjustment>,
     /// Longest time from the first picture to the movement of its lights, in seconds; `None` for two seconds.
     pub light_search_limit_s: Option<f64>,
+    /// True if pipelines that a volume's first pictures do not use are compiled only when they are needed, for windows
+    /// that are open for seconds.
+    pub compiles_on_demand: bool,
     /// Storage folder for the state that outlives a run; see [`super::main_loop::storage_folder`].
     pub storage: Option<PathBuf>,
 }

@@ -164,7 +164,7 @@ fn corrections_of_a_session_apply_to_its_layers() {
     };
     let text = std::fs::read_to_string(&session).expect("saved");
     let mut record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    record["volume"]["flip"] = serde_json::json!([true, false, false]);
+    record["volume"]["flip"] = serde_json::json!([false, true, false]);
     std::fs::write(&session, record.to_string()).expect("written");
     let mut harness = window_of(Path::new(SCENE), Some(&session));
     wait_until_read(&mut harness);

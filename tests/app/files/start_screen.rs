@@ -8,7 +8,7 @@ use eframe::egui::{self, Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::{DroppedFile, SCENE, adjusted_window, click, wait_until};
+use crate::harness::{DroppedFile, SCENE, click, sharp_window_with, wait_until};
 
 /// Creates a window of a usual size without a file argument; `storage` is its folder for state.
 pub(crate) fn start_window(storage: Option<&std::path::Path>) -> Harness<'static, App> {
@@ -22,7 +22,7 @@ pub(crate) fn start_window(storage: Option<&std::path::Path>) -> Harness<'static
         adjust: Some(Box::new(adjust)),
         ..WindowOptions::default()
     };
-    let mut harness = adjusted_window(options, Vec2::new(1100.0, 760.0));
+    let mut harness = sharp_window_with(options, Vec2::new(1100.0, 760.0));
     harness.run_steps(10);
     harness
 }
@@ -76,9 +76,9 @@ fn a_card_opens_its_scene_with_its_settings() {
 #[test]
 fn a_file_argument_skips_the_screen_and_a_missing_one_leads_to_it() {
     let options = |source: &str| WindowOptions { source: Some(source.into()), ..WindowOptions::default() };
-    let harness = adjusted_window(options(SCENE), Vec2::new(1100.0, 760.0));
+    let harness = sharp_window_with(options(SCENE), Vec2::new(1100.0, 760.0));
     assert!(is_open(harness.state(), "chair"));
-    let mut harness = adjusted_window(options("/no/such/volume.nrrd"), Vec2::new(1100.0, 760.0));
+    let mut harness = sharp_window_with(options("/no/such/volume.nrrd"), Vec2::new(1100.0, 760.0));
     harness.run_steps(3);
     assert!(harness.state().shows_start() && harness.state().errors().len() == 1);
     assert!(harness.query_by_label_contains("there is no such file").is_some(), "with the reason");
@@ -124,7 +124,7 @@ fn recent_files_are_listed_and_open() {
 #[test]
 fn the_screen_can_be_seen_again_and_left() {
     let options = WindowOptions { source: Some(SCENE.into()), ..WindowOptions::default() };
-    let mut harness = adjusted_window(options, Vec2::new(1100.0, 760.0));
+    let mut harness = sharp_window_with(options, Vec2::new(1100.0, 760.0));
     let before = harness.state().settings().clone();
     let show_start = |harness: &mut Harness<'_, App>| {
         click(harness, "File");

@@ -8,7 +8,7 @@ use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{DroppedFile, adjusted_window, click, wait_until, wait_until_idle};
+use crate::harness::{DroppedFile, click, sharp_window_with, wait_until, wait_until_idle};
 
 /// Writes a NumPy array of bytes; `value` maps positions in the file to values.
 pub(crate) fn write_npy(path: &Path, shape: &str, count: usize, value: impl Fn(usize) -> u8) {
@@ -33,7 +33,7 @@ fn write_time_steps(folder: &Path) -> PathBuf {
 fn window_of(source: &Path, session: Option<&Path>) -> Harness<'static, App> {
     let session = session.map(Path::to_owned);
     let options = WindowOptions { source: Some(source.to_owned()), session, ..WindowOptions::default() };
-    let mut harness = adjusted_window(options, Vec2::new(760.0, 1500.0));
+    let mut harness = sharp_window_with(options, Vec2::new(760.0, 1500.0));
     click(&mut harness, "Data");
     harness.run_steps(8);
     harness

@@ -298,10 +298,14 @@ fn views_from_the_sides_show_all_of_the_object() {
 fn small_and_large_windows_have_a_picture_and_all_panels() {
     let mut harness = window();
     harness.key_press_modifiers(Modifiers::SHIFT, Key::V);
-    // The last is a screen of 3840 × 2160 pixels at scale 2.
-    for (size, scale) in
-        [([640.0, 400.0], 1.0), ([1280.0, 800.0], 1.0), ([3840.0, 2160.0], 1.0), ([1920.0, 1080.0], 2.0)]
-    {
+    // The last two are a screen of 1920 × 1080 pixels at scales 1 and 2.
+    for (size, scale) in [
+        ([640.0, 400.0], 0.5),
+        ([1280.0, 800.0], 0.5),
+        ([3840.0, 2160.0], 0.5),
+        ([1920.0, 1080.0], 1.0),
+        ([960.0, 540.0], 2.0),
+    ] {
         harness.input_mut().max_texture_side = Some(8192);
         harness.set_pixels_per_point(scale);
         harness.set_size(size.into());

@@ -6,7 +6,7 @@ use eframe::egui::{Event, Key, Modifiers, Rect, Role, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::accessibility::expanded_window;
+use crate::accessibility::expand_sections;
 use crate::harness::{SCENE, adjusted_window, drag, slow_window, wait_until_idle};
 
 /// Creates a window whose first look is changed.
@@ -152,7 +152,7 @@ fn steps_of_the_history_have_names() {
 /// Tooltips state the measured cost of soft light at other resolutions before one is chosen.
 #[test]
 fn tips_say_what_other_resolutions_of_soft_light_take() {
-    let mut harness = expanded_window(700.0);
+    let mut harness = expand_sections(crate::harness::window());
     let mut tips = Vec::new();
     for on in ["White", "Bounces"] {
         match on {

@@ -13,10 +13,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::{RgbaImage, imageops};
 
-use crate::accessibility::expanded_window;
+use crate::accessibility::expand_sections;
 use crate::files::raw_import::{drop_and_analyse, write_scan};
 use crate::files::start_screen::start_window;
-use crate::harness::{wait_until_idle, window};
+use crate::harness::{sharp_window, wait_until_idle};
 use crate::thresholds::{MAX_CHANNEL_STEPS, MAX_DIFFERENT_PIXELS};
 
 fn folder() -> PathBuf {
@@ -110,7 +110,7 @@ fn check_changed_words_detected(window: &RgbaImage, area: Rect, words: &[(String
 
 #[test]
 fn panels_and_editor() {
-    let mut harness = expanded_window(700.0);
+    let mut harness = expand_sections(sharp_window());
     wait_until_idle(&mut harness);
     let mut failures = Vec::new();
     for (theme, suffix) in THEMES {
@@ -131,7 +131,7 @@ fn panels_and_editor() {
 
 #[test]
 fn windows_over_the_picture() {
-    let mut harness = window();
+    let mut harness = sharp_window();
     harness.set_size(eframe::egui::vec2(1100.0, 760.0));
     harness.run_steps(4);
     wait_until_idle(&mut harness);
@@ -182,7 +182,7 @@ fn start_screen() {
 
 #[test]
 fn import_of_raw_voxels() {
-    let mut harness = window();
+    let mut harness = sharp_window();
     harness.set_size(eframe::egui::vec2(1100.0, 760.0));
     harness.run_steps(4);
     wait_until_idle(&mut harness);

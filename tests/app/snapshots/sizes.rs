@@ -9,8 +9,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use image::RgbaImage;
 
 use super::{THEMES, check, in_theme};
-use crate::accessibility::expanded_window;
-use crate::harness::{SCENE, adjusted_window, wait_until_idle};
+use crate::accessibility::{EXPANDED_WIDTH, expand_sections};
+use crate::harness::{SCENE, sharp_window, sharp_window_with, wait_until_idle};
 
 /// Factor by which translations are longer than English.
 const TRANSLATION_LENGTH_FACTOR: f32 = 1.4;
@@ -27,7 +27,7 @@ fn window_of(change: fn(&mut Settings), size: Vec2) -> Harness<'static, App> {
         change(&mut settings);
         settings
     });
-    adjusted_window(
+    sharp_window_with(
         WindowOptions { source: Some(SCENE.into()), adjust: Some(adjust), ..WindowOptions::default() },
         size,
     )
@@ -92,7 +92,7 @@ fn windows_of_three_sizes() {
 /// Letters as wide as those of longer languages are not cut off in the side panel.
 #[test]
 fn wide_letters_are_not_cut_off() {
-    let mut harness = expanded_window(700.0);
+    let mut harness = expand_sections(sharp_window());
     enlarge_letters(&mut harness);
     let mut beyond = Vec::new();
     for role in [
@@ -104,7 +104,8 @@ fn wide_letters_are_not_cut_off() {
         Role::SpinButton,
         Role::TextInput,
     ] {
-        let cut = harness.query_all_by_role(role).filter(|node| node.rect().right() > 700.0 - MARGIN);
+        let cut =
+            harness.query_all_by_role(role).filter(|node| node.rect().right() > EXPANDED_WIDTH - MARGIN);
         beyond.extend(cut.map(|node| (node.accesskit_node().label(), node.rect())));
     }
     assert!(beyond.is_empty(), "{beyond:#?}");
