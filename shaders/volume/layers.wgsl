@@ -7,6 +7,17 @@
 #import "common/srgb.wgsl"
 #import "volume/material.wgsl"
 
+const MAX_MATERIALS = 8u;
+
+// Material by value and change: a region of densities and of their changes per voxel, each with the positions at which
+// its weight begins to rise, is 1, begins to fall, and is 0.
+struct MaterialUniform {
+    densities: vec4f,
+    changes: vec4f,
+    // Colour × opacity or extinction, and opacity or extinction, as tables have it.
+    matter: vec4f,
+}
+
 struct LayerUniform {
     // LAYER_ADD, LAYER_TINT, LAYER_GATE or LAYER_NONE; LAYER_RED plus the number of a channel of colour.
     blend: u32,
@@ -16,6 +27,12 @@ struct LayerUniform {
     opacity_unit: f32,
     // Change of density per voxel from which on opacity is that of the curve; 0 leaves all opacities.
     edges: f32,
+    // Number of materials that take the place of the table.
+    material_count: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+    materials: array<MaterialUniform, MAX_MATERIALS>,
 }
 
 struct LayersUniform {
@@ -31,6 +48,9 @@ struct LayersUniform {
 
 @group(0) @binding(6) var<uniform> bound_layers: LayersUniform;
 var<private> layers: LayersUniform;
+
+// Length of densities below which integrals are not subtracted: rounding of f32 is then a thousandth of their difference.
+const MIN_INTEGRATED_DENSITIES = 1e-4;
 
 const LAYER_ADD = 0u;
 const LAYER_TINT = 1u;
@@ -57,6 +77,39 @@ fn texel_of_matter(matter: vec4f) -> vec4f {
     return vec4f(share, matter.rgb * (share / max(matter.a, 1e-20)));
 }
 
+// Integral of a ramp from 0 to 1 over two positions.
+fn ramp_integral(ends: vec2f, at: f32) -> f32 {
+    let within = clamp(at, ends.x, ends.y) - ends.x;
+    return 0.5 * within * within / (ends.y - ends.x) + max(at - ends.y, 0.0);
+}
+
+// Mean weight of a region's densities from `low` to `high`.
+fn mean_weight(ends: vec4f, low: f32, high: f32) -> f32 {
+    let mid = 0.5 * (low + high);
+    // Differences of integrals would be rounded away.
+    if (high - low < MIN_INTEGRATED_DENSITIES) {
+        return region_weight(ends, mid);
+    }
+    let rise = ramp_integral(ends.xy, high) - ramp_integral(ends.xy, low);
+    return (rise - ramp_integral(ends.zw, high) + ramp_integral(ends.zw, low)) / (high - low);
+}
+
+fn region_weight(ends: vec4f, at: f32) -> f32 {
+    let ramps = clamp((vec2f(at) - ends.xz) / (ends.yw - ends.xz), vec2f(0.0), vec2f(1.0));
+    return ramps.x - ramps.y;
+}
+
+// Sum of the matter of a layer's materials, for densities from `low` to `high` and their change.
+fn matter_of_materials(i: u32, low: f32, high: f32, change: f32) -> vec4f {
+    var sum = vec4f(0.0);
+    for (var at = 0u; at < layers.layers[i].material_count; at += 1u) {
+        let material = layers.layers[i].materials[at];
+        let weight = mean_weight(material.densities, low, high) * region_weight(material.changes, change);
+        sum += matter_of_mean(weight * material.matter);
+    }
+    return sum;
+}
+
 // Matter of a layer around a voxel: colour × extinction, and extinction.
 fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
     let layer = layers.layers[i];
@@ -64,7 +117,13 @@ fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
     // Within the values around the voxel, by which empty bricks are known.
     let low = max(found.own[i] - half_width, found.lowest[i]);
     let high = min(found.own[i] + half_width, found.highest[i]);
-    let matter = matter_of_mean(layer_mean(i, low, high)) * select(0.0, 1.0, found.is_present[i]);
+    let is_present = select(0.0, 1.0, found.is_present[i]);
+    var matter = vec4f(0.0);
+    if (layer.material_count == 0u) {
+        matter = is_present * matter_of_mean(layer_mean(i, low, high));
+    } else {
+        matter = is_present * matter_of_materials(i, low, high, found.slope[i]);
+    }
     if (layer.edges > 0.0) {
         return matter * smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
     }

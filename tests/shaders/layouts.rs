@@ -391,7 +391,21 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             }),
         ),
         ("volume/composed_voxels.wgsl", layout!(LayersUniform { count, largest, voxel, pad0, layers })),
-        ("volume/composed_voxels.wgsl", layout!(LayerUniform { blend, is_label, opacity_unit, edges })),
+        (
+            "volume/composed_voxels.wgsl",
+            layout!(LayerUniform {
+                blend,
+                is_label,
+                opacity_unit,
+                edges,
+                material_count,
+                pad0,
+                pad1,
+                pad2,
+                materials
+            }),
+        ),
+        ("volume/composed_voxels.wgsl", layout!(MaterialUniform { densities, changes, matter })),
         ("volume/prefilter.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
         ("volume/downsample.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
         ("volume/gradients.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),

@@ -32,13 +32,23 @@ impl OutlineInputs {
 
 /// Returns true if two layers have the same outline, on which light, densities and edges have no influence.
 fn has_same_outline(a: &VolumeLayer, b: &VolumeLayer) -> bool {
-    let VolumeLayer { range, labels, transfer, visibility, blend, lighting: _, opacity_unit: _, edges: _ } =
-        a;
+    let VolumeLayer {
+        range,
+        labels,
+        transfer,
+        lighting: _,
+        opacity_unit: _,
+        visibility,
+        blend,
+        edges: _,
+        materials,
+    } = a;
     *range == b.range
         && *labels == b.labels
         && *transfer == b.transfer
         && *visibility == b.visibility
         && *blend == b.blend
+        && *materials == b.materials
 }
 
 /// Outline of the object with the search for it.

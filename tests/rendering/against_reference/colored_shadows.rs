@@ -4,7 +4,7 @@ use chiaroscuro_reference::{Reference, ReferenceOptions, merge_color_channels};
 use chiaroscuro_render::{AttenuationData, RenderOptions, Renderer, WorkOptions, plan::RenderRequest};
 use chiaroscuro_scene::{
     ClassificationOrder, ControlPoint, FloorSettings, LightGeometry, LightSettings, LightShape, LightStorage,
-    LightVolumePrecision, NearFieldRay, RenderEngine, Settings, ShadowAlgorithm,
+    LightVolumePrecision, MaterialBox, NearFieldRay, RenderEngine, Settings, ShadowAlgorithm,
 };
 use glam::DVec3;
 
@@ -40,13 +40,18 @@ const NO_REPLACEMENT: (&str, &str) = ("\u{0}", "");
 fn differences(settings: &Settings, (from, to): (&str, &str)) -> Vec<String> {
     let loaded = Dataset::new(scenes::creature(N, DVec3::new(1.0, 1.0, 1.3)));
     let mut renderer = damaged_renderer(from, to);
+    let drawn = settings.resolved_for_dataset(&loaded);
     let references = [0, 1, 2].map(|color| {
         let options = ReferenceOptions {
             color: Some(color),
             rounding: Some(round_to_f16),
             ..ReferenceOptions::default()
         };
-        Reference::new(loaded.volume(), settings, options)
+        if settings.is_layered() {
+            Reference::with_layers(&loaded, &drawn, options)
+        } else {
+            Reference::new(loaded.volume(), settings, options)
+        }
     });
     let found = render(&mut renderer, &loaded, settings, SIZE);
     let attenuations = references.each_ref().map(Reference::attenuations);
@@ -84,7 +89,7 @@ fn light_volume(
     renderer.draw(loaded, settings, [8, 8], &everything).expect("light volumes are filled");
     let request = RenderRequest {
         volume: loaded.id(),
-        settings: settings.clone(),
+        settings: settings.resolved_for_dataset(loaded).into_owned(),
         size: [8, 8],
         preview_resolution: None,
     };
@@ -119,6 +124,19 @@ fn with_a_lighting_curve_of_its_own_and_cuts() {
     settings.cuts.crop.on = true;
     settings.cuts.crop.high = [0.8, 1.0, 0.9];
     check("own curve", &settings);
+}
+
+#[test]
+fn of_materials_by_value_and_change() {
+    let mut settings = look();
+    let material =
+        |values, changes, color| MaterialBox { values, changes, color, softness: 0.4, opacity: 0.6 };
+    settings.layer_mut().materials = vec![
+        material([30.0, 140.0], [0.0, 20.0], [0.9, 0.2, 0.1]),
+        material([60.0, 300.0], [10.0, 400.0], [0.2, 0.4, 0.9]),
+    ];
+    settings.layer_mut().lighting.scale = 0.6;
+    check("materials", &settings);
 }
 
 #[test]

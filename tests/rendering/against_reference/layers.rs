@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
 use chiaroscuro_scene::{
-    DensityRange, LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, Settings, VolumeLayer,
+    DensityRange, LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, MaterialBox,
+    Settings, VolumeLayer,
 };
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
@@ -184,5 +185,55 @@ fn mistakes_in_layers_are_noticed() {
         ("layer_tables[layer].integrals[low]", "layer_tables[0].integrals[low]"),
     ] {
         assert!(differs(from, to), "{to}");
+    }
+}
+
+/// Materials at borders and between them, narrow and wide, that overlap.
+fn materials() -> Vec<MaterialBox> {
+    let material =
+        |values, changes, softness, color, opacity| MaterialBox { values, changes, softness, color, opacity };
+    vec![
+        material([20.0, 90.0], [0.0, 12.0], 0.5, [0.9, 0.3, 0.1], 0.3),
+        material([60.0, 220.0], [10.0, 400.0], 0.2, [0.2, 0.5, 0.9], 0.8),
+        material([150.0, 151.0], [0.0, 60.0], 0.0, [0.1, 0.9, 0.3], 0.9),
+        material([180.0, 400.0], [0.0, 30.0], 1.0, [0.9, 0.9, 0.8], 0.5),
+    ]
+}
+
+#[test]
+fn materials_by_value_and_change() {
+    let mut settings = look(&[]);
+    settings.layer_mut().materials = materials();
+    check("materials of one field", &dataset_of(&[]), &settings);
+    settings.layer_mut().lighting.scale = 0.4;
+    check("fainter shadows of materials", &dataset_of(&[]), &settings);
+    let mut shell = materials()[1];
+    (shell.values, shell.changes) = ([0.2, 0.9], [0.03, 0.3]);
+    let second = VolumeLayer { materials: vec![shell], edges: 0.02, ..second() };
+    check("materials of the second field", &dataset_of(&[ball()]), &look(&[second]));
+}
+
+#[test]
+fn mistakes_in_materials_are_noticed() {
+    let mut settings = look(&[]);
+    settings.layer_mut().materials = materials();
+    let dataset = dataset_of(&[]);
+    let drawn = settings.resolved_for_dataset(&dataset);
+    let reference = Reference::with_layers(&dataset, &drawn, options());
+    for (from, to) in [
+        ("* region_weight(material.changes, change)", ""),
+        ("region_weight(material.changes, change)", "region_weight(material.changes, 0.9 * change)"),
+        (
+            "mean_weight(material.densities, low, high)",
+            "region_weight(material.densities, 0.5 * (low + high))",
+        ),
+        ("(rise - ramp_integral(ends.zw, high)", "(rise - 0.9 * ramp_integral(ends.zw, high)"),
+        (
+            "sum += matter_of_mean(weight * material.matter)",
+            "sum = max(sum, matter_of_mean(weight * material.matter))",
+        ),
+        ("layers.layers[i].materials[at]", "layers.layers[i].materials[at / 2u * 2u]"),
+    ] {
+        assert!(differs_with(&dataset, &settings, &reference, (from, to)), "{to}");
     }
 }

@@ -2,6 +2,7 @@
 
 use super::classified::unassociated;
 use super::integrated_table::IntegratedTable;
+use super::material_regions::{MaterialRegion, material_regions};
 use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer, linear_from_srgb};
 use chiaroscuro_volume::{Dataset, Volume, math::SceneSpace};
 
@@ -13,6 +14,8 @@ struct LayeredField<'a> {
     /// Table over densities, of opacities if there is a length to which they refer.
     table: IntegratedTable,
     opacity_length: Option<f64>,
+    /// Materials that take the place of the table.
+    materials: Vec<MaterialRegion>,
     scene: SceneSpace,
 }
 
@@ -32,6 +35,14 @@ impl LayeredField<'_> {
         -(-matter[3] * self.layer.opacity_unit.scene_units(&self.scene)).exp_m1()
     }
 
+    /// Returns the matter whose opacity over a voxel, or extinction, is a mean.
+    fn matter_of_mean(&self, mean: [f64; 4]) -> [f64; 4] {
+        let Some(length) = self.opacity_length else { return mean };
+        let opacity = mean[3].clamp(1e-12, 1.0 - 1e-6);
+        let extinction = -(-opacity).ln_1p() / length;
+        mean.map(|number| number.max(0.0) * extinction / opacity)
+    }
+
     /// Returns colour times extinction, and extinction, of a voxel: the mean over the densities in it.
     fn matter(&self, place: [i64; 3]) -> [f64; 4] {
         let Some(own) = self.density(place) else { return [0.0; 4] };
@@ -46,12 +57,13 @@ impl LayeredField<'_> {
         let highest = pairs.iter().flatten().copied().fold(own, f64::max);
         let width = if self.volume.shown_labels().is_some() { 0.0 } else { slope };
         let (low, high) = ((own - 0.5 * width).max(lowest), (own + 0.5 * width).min(highest));
-        let mut matter = self.table.mean_between(low, high);
-        if let Some(length) = self.opacity_length {
-            let opacity = matter[3].clamp(1e-12, 1.0 - 1e-6);
-            let extinction = -(-opacity).ln_1p() / length;
-            matter = matter.map(|number| number.max(0.0) * extinction / opacity);
-        }
+        let matter = if self.materials.is_empty() {
+            self.matter_of_mean(self.table.mean_between(low, high))
+        } else {
+            let parts =
+                self.materials.iter().map(|region| self.matter_of_mean(region.mean(low, high, slope)));
+            parts.fold([0.0; 4], |sum, part| std::array::from_fn(|i| sum[i] + part[i]))
+        };
         let edges = self.layer.edges;
         if edges <= 0.0 {
             return matter;
@@ -109,6 +121,7 @@ fn layered_fields<'a>(
                     true,
                 ),
                 opacity_length,
+                materials: material_regions(layer, volume, &bake, opacity_length),
                 scene: dataset.volume().scene(),
             }
         })

@@ -3,6 +3,7 @@
 pub(crate) mod classified;
 pub(crate) mod integrated_table;
 pub(crate) mod layers;
+mod material_regions;
 pub(crate) mod pyramid;
 
 use glam::DVec3;

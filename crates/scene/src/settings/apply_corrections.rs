@@ -1,7 +1,7 @@
 //! Adapting a look to corrections of its volume: lengths and data values in the settings are converted, so that the
 //! image keeps showing the same part of the object.
 
-use crate::{DensityRange, LabelTable, OpacityLength, Settings, VolumeLayer};
+use crate::{DensityRange, LabelTable, MaterialBox, OpacityLength, Settings, VolumeLayer};
 use chiaroscuro_volume::{Corrections, DataKind, ValueRange, ValueScale, Volume};
 
 /// Significant digits of a converted length, so that converting there and back gives the original number.
@@ -75,6 +75,11 @@ impl VolumeLayer {
                 function.points.reverse();
             }
             function.sort();
+        }
+        for MaterialBox { values, changes, .. } in &mut self.materials {
+            *values = values.map(moved);
+            values.sort_by(f64::total_cmp);
+            *changes = changes.map(|change| (moved(change) - moved(0.0)).abs());
         }
         if let DensityRange::Typed(ValueRange { low, high }) = self.range {
             self.range = DensityRange::Typed(ValueRange::new(moved(low), moved(high))).sanitised();

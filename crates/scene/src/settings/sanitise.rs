@@ -5,11 +5,11 @@ use crate::{
     AreaLightSampling, Background, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox,
     CutShape, EnvironmentLight, FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY,
     MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
-    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MIN_BLOCKS, MAX_NAME_CHARS,
-    MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET, MAX_POINTS, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, MIN_EXPOSURE,
-    OutlineCut, OutputSettings, PhongShading, ReconstructionKernel, RenderModeSettings, SKY_DIRECTIONS,
-    SamplingSettings, SavedEntry, ScatteringSettings, Settings, ShadowSettings, SkySettings, SphereCut,
-    Spotlight, VolumeLayer,
+    MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MATERIAL_BOXES,
+    MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET, MAX_POINTS, MAX_SHAPE_CUTS,
+    MIN_CROP_EXTENT, MIN_EXPOSURE, MaterialBox, OutlineCut, OutputSettings, PhongShading,
+    ReconstructionKernel, RenderModeSettings, SKY_DIRECTIONS, SamplingSettings, SavedEntry,
+    ScatteringSettings, Settings, ShadowSettings, SkySettings, SphereCut, Spotlight, VolumeLayer,
 };
 use chiaroscuro_files::sanitised_line;
 
@@ -132,8 +132,17 @@ fn sanitise_mode(mode: &mut RenderModeSettings) {
 }
 
 fn sanitise_layer(layer: &mut VolumeLayer) {
-    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility: _, blend: _, edges } =
-        layer;
+    let VolumeLayer {
+        range,
+        labels,
+        transfer,
+        lighting,
+        opacity_unit,
+        visibility: _,
+        blend: _,
+        edges,
+        materials,
+    } = layer;
     let LightingTransfer { linked: _, scale, curve } = lighting;
     for function in [transfer, curve] {
         function.points.retain(|point| point.value.is_finite());
@@ -148,6 +157,15 @@ fn sanitise_layer(layer: &mut VolumeLayer) {
     labels.sanitise();
     clamp_number(scale, 0.0, 1e3, 1.0);
     clamp_number(edges, 0.0, 1.0, 0.0);
+    materials.truncate(MAX_MATERIAL_BOXES);
+    materials.retain_mut(|MaterialBox { values, changes, softness, color, opacity }| {
+        values.sort_by(f64::total_cmp);
+        changes.sort_by(f64::total_cmp);
+        clamp_number(softness, 0.0, 1.0, MaterialBox::default().softness);
+        clamp_color(color);
+        clamp_number(opacity, 0.0, 1.0, 0.0);
+        values.iter().chain(changes.iter()).all(|end| end.is_finite())
+    });
     let length = opacity_unit.number();
     if !(length.is_finite() && length > 0.0) {
         *opacity_unit = VolumeLayer::default().opacity_unit;

@@ -166,6 +166,10 @@ pub fn apply_relative(
                 point.value = range.value_at(point.value);
             }
         }
+        for material in layer.materials.iter_mut().filter(|_| has("/materials")) {
+            material.values = material.values.map(|value| range.value_at(value));
+            material.changes = material.changes.map(|change| range.span() * change);
+        }
     }
     Ok(AppliedSettings { settings: applied, warnings })
 }

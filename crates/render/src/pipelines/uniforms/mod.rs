@@ -6,10 +6,12 @@
     expect(missing_docs, reason = "each field is documented where the shader declares it")
 )]
 
+mod layers;
 mod light;
 mod scattered_light;
 mod sky;
 
+pub use self::layers::{LayerUniform, LayersUniform, MaterialUniform};
 pub use self::light::{
     AverageUniform, BlockNormalsUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform,
 };
@@ -25,7 +27,6 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec2, DVec3};
 
 use crate::plan::SheetFrame as Frame;
-use chiaroscuro_volume::MAX_FIELDS;
 use chiaroscuro_volume::math::{ClipRegion, SceneSpace};
 
 fn vec3(v: DVec3) -> [f32; 3] {
@@ -147,27 +148,6 @@ pub struct PyramidLevelUniform {
     pub spacing: f32,
     pub pad0: u32,
     pub pad1: u32,
-}
-
-/// Parameters of a layer, as declared in `volume/layers.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct LayerUniform {
-    pub blend: u32,
-    pub is_label: u32,
-    pub opacity_unit: f32,
-    pub edges: f32,
-}
-
-/// Parameters of all layers, as declared in `volume/layers.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct LayersUniform {
-    pub count: u32,
-    pub largest: f32,
-    pub voxel: f32,
-    pub pad0: u32,
-    pub layers: [LayerUniform; MAX_FIELDS],
 }
 
 /// Parameters of a slab of the scattering engine, as declared in `scatter/slab.wgsl`.

@@ -162,6 +162,7 @@ impl EyeKey {
             visibility: _,
             blend: _,
             edges: _,
+            materials: _,
         } = layers.first();
         let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };

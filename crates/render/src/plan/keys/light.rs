@@ -133,6 +133,7 @@ impl LightKey {
             visibility: _,
             blend: _,
             edges: _,
+            materials: _,
         } = layers.first();
         let light = lights.get(index)?.resolve(camera);
         let wanted = shadows.algorithm.has_volume() && light.needs_volume();

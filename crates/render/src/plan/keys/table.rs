@@ -2,8 +2,8 @@
 
 use crate::plan::{RenderRequest, VolumeKey};
 use chiaroscuro_scene::{
-    ColorMixing, Easing, LabelMaterial, LayerBlend, LightingTransfer, OpacityInterpolation, OpacityLength,
-    Settings, TransferFunction, VolumeLayer,
+    ColorMixing, Easing, LabelMaterial, LayerBlend, LightingTransfer, MaterialBox, OpacityInterpolation,
+    OpacityLength, Settings, TransferFunction, VolumeLayer,
 };
 
 /// Inputs of both lookup tables.
@@ -28,6 +28,7 @@ pub struct EyeTableKey(Vec<EyeLayerKey>);
 #[derive(Debug, Clone, PartialEq)]
 struct EyeLayerKey {
     looks: EyeTableLooks,
+    material_colors: Vec<[f32; 3]>,
     unit: OpacityLength,
     composition: CompositionKey,
 }
@@ -38,6 +39,8 @@ struct CompositionKey {
     has_matter: bool,
     blend: LayerBlend,
     edges: f64,
+    /// Materials without their colours.
+    materials: Vec<MaterialBox>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -107,15 +110,22 @@ impl EyeLayerKey {
             EyeTableLooks::Labels(layer.labels.materials())
         };
         let composition = CompositionKey::new(index, layer, layer.is_seen());
-        Self { looks, unit: layer.opacity_unit, composition }
+        let material_colors = used_materials(layer).map(|material| material.color).collect();
+        Self { looks, material_colors, unit: layer.opacity_unit, composition }
     }
+}
+
+/// Materials by which a layer is drawn.
+fn used_materials(layer: &VolumeLayer) -> impl Iterator<Item = &MaterialBox> {
+    layer.materials.iter().filter(|_| layer.has_materials())
 }
 
 impl CompositionKey {
     fn new(index: usize, layer: &VolumeLayer, has_matter: bool) -> Self {
         // There is nothing before the first layer.
         let blend = if index == 0 { LayerBlend::Add } else { layer.blend };
-        Self { has_matter, blend, edges: layer.edges }
+        let materials = used_materials(layer).map(|material| MaterialBox { color: [0.0; 3], ..*material });
+        Self { has_matter, blend, edges: layer.edges, materials: materials.collect() }
     }
 }
 
@@ -167,6 +177,7 @@ impl TransmissionColors {
         }
         let LightingTransfer { linked, scale: _, curve } = &layer.lighting;
         let curve = if *linked { &layer.transfer } else { curve };
-        Self::Values(curve.points.iter().map(|point| point.color).collect(), curve.mixing)
+        let materials = used_materials(layer).map(|material| material.color);
+        Self::Values(curve.points.iter().map(|point| point.color).chain(materials).collect(), curve.mixing)
     }
 }

@@ -120,7 +120,7 @@ impl VolumeLayer {
 
     /// Returns true if opacity depends on more than the value, so that voxels are classified first.
     fn depends_on_gradients(&self) -> bool {
-        self.edges > 0.0
+        self.edges > 0.0 || self.has_materials()
     }
 
     /// Returns the layer as it is drawn for a field: labels are replaced by a transfer function over their classes.
@@ -234,6 +234,7 @@ impl Settings {
         } else {
             drawn.layers.truncate(1);
             drawn.layer_mut().edges = 0.0;
+            drawn.layer_mut().materials.clear();
         }
         if drawn.is_layered() {
             drawn.sampling.classification = drawn.classification();
@@ -242,6 +243,7 @@ impl Settings {
         }
         for (layer, field) in drawn.layers.iter_mut().zip(fields.iter()) {
             layer.resolve_labels(field.volume());
+            layer.resolve_materials(field.volume());
         }
         Cow::Owned(drawn)
     }

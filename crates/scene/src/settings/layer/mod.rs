@@ -7,10 +7,12 @@ pub(crate) mod composition;
 pub(crate) mod density_range;
 pub(crate) mod label_table;
 pub(crate) mod length;
+pub(crate) mod material_box;
 
 use serde::{Deserialize, Serialize};
 
 use self::composition::{LayerBlend, LayerVisibility};
+use self::material_box::MaterialBox;
 use crate::{DensityRange, LabelTable, OpacityLength, Settings, TransferFunction};
 use chiaroscuro_volume::MAX_FIELDS;
 
@@ -39,6 +41,9 @@ pub struct VolumeLayer {
     /// Change of density per voxel from which on opacity is that of the curve, 0 … 1: it fades to nothing at half of
     /// it, so that edges are left. 0 leaves all opacities.
     pub edges: f64,
+    /// Materials by value and change, at most [`crate::MAX_MATERIAL_BOXES`]. If there are any, and no labels, they take the
+    /// place of the transfer functions.
+    pub materials: Vec<MaterialBox>,
 }
 
 impl Default for VolumeLayer {
@@ -52,6 +57,7 @@ impl Default for VolumeLayer {
             visibility: LayerVisibility::Shown,
             blend: LayerBlend::Add,
             edges: 0.0,
+            materials: Vec::new(),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Absorption by homogeneous material in closed form: Beer–Lambert, and the opacity of chords.
 
+mod materials;
+
 use chiaroscuro_render::{RenderedPicture, plan::light_views};
 use chiaroscuro_scene::{
     Camera, DepositMode, LightGeometry, RenderEngine, ReverseKernel, ShadowAlgorithm, SlabMode,

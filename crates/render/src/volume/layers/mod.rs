@@ -1,5 +1,8 @@
 //! Baked layers: the transfer functions of all layers, for the eye or for light, and the cells where they have matter.
 
+mod material_tables;
+
+use self::material_tables::MaterialTable;
 use super::GpuVolume;
 use super::field_texture::FieldTexture;
 use crate::pipelines::uniforms::{LayerUniform, LayersUniform};
@@ -12,6 +15,8 @@ use chiaroscuro_volume::{BrickBounds, CellOccupancy, MAX_FIELDS, ValueRange, Vol
 pub(crate) struct BakedLayers {
     /// Tables, never empty.
     tables: Vec<BakedTransfer>,
+    /// Materials of each layer that take the place of its table.
+    materials: Vec<Vec<MaterialTable>>,
     /// Parameters of layers, if voxels are composed of them.
     parameters: Option<Box<LayersUniform>>,
     /// True if the layers that count are those that tint, instead of those with matter.
@@ -30,7 +35,7 @@ impl BakedLayers {
         let scene = &volume.scene;
         let Some(texture) = volume.fields.as_ref().filter(|_| settings.is_layered()) else {
             let table = bake(settings.layer(), volume.volume.table_range(), scene);
-            return Self { tables: vec![table], parameters: None, are_tints: false };
+            return Self { tables: vec![table], materials: Vec::new(), parameters: None, are_tints: false };
         };
         let mut baked = Self::from_fields(texture, settings, scene, has_effect, bake);
         let largest = baked.max_extinction();
@@ -46,6 +51,7 @@ impl BakedLayers {
         if let Some(parameters) = &mut self.parameters {
             parameters.voxel = 0.0;
         }
+        self.update_materials();
         self
     }
 
@@ -84,20 +90,41 @@ impl BakedLayers {
             if has_effect(layer) { bake(layer, range, scene) } else { BakedTransfer::linear_ramp(0.0) }
         };
         let tables = fields().map(|(layer, field)| table(layer, field.volume().table_range())).collect();
-        let empty = LayerUniform { blend: 0, is_label: 0, opacity_unit: 1.0, edges: 0.0 };
-        let mut layers = [empty; MAX_FIELDS];
+        let materials = fields().map(|(layer, field)| {
+            let range = field.volume().table_range();
+            let used = layer.materials.iter().filter(|_| layer.has_materials() && has_effect(layer));
+            let bake = |layer: &VolumeLayer| bake(layer, range, scene);
+            used.map(|material| MaterialTable::new(material, layer, range, bake)).collect()
+        });
+        let materials = materials.collect();
+        let mut layers = [LayerUniform::default(); MAX_FIELDS];
         for (uniform, (layer, field)) in layers.iter_mut().zip(fields()) {
             *uniform = LayerUniform {
                 blend: if has_effect(layer) { blend_number(layer.blend) } else { NO_EFFECT },
                 is_label: u32::from(field.volume().shown_labels().is_some()),
                 opacity_unit: layer.opacity_unit_in_scene(scene) as f32,
                 edges: layer.edges as f32,
+                ..LayerUniform::default()
             };
         }
         let count = fields().count() as u32;
         let parameters =
             LayersUniform { count, largest: 0.0, voxel: scene.mean_edge() as f32, pad0: 0, layers };
-        Self { tables, parameters: Some(Box::new(parameters)), are_tints: false }
+        let mut baked = Self { tables, materials, parameters: Some(Box::new(parameters)), are_tints: false };
+        baked.update_materials();
+        baked
+    }
+
+    /// Writes the materials into the parameters, with the opacities or extinctions that the tables have.
+    fn update_materials(&mut self) {
+        let length = self.opacity_length();
+        let Some(parameters) = &mut self.parameters else { return };
+        for (layer, materials) in parameters.layers.iter_mut().zip(&self.materials) {
+            layer.material_count = materials.len() as u32;
+            for (uniform, material) in layer.materials.iter_mut().zip(materials) {
+                *uniform = material.uniform(length);
+            }
+        }
     }
 
     /// Returns true if the layers are those that tint.
@@ -107,8 +134,13 @@ impl BakedLayers {
 
     /// Returns the tables for one colour of light.
     pub(crate) fn for_light_color(&self, color: usize) -> Self {
-        let tables = self.tables.iter().map(|table| table.for_light_color(color)).collect();
-        Self { tables, ..self.clone() }
+        let mut of_color = self.clone();
+        of_color.tables = self.tables.iter().map(|table| table.for_light_color(color)).collect();
+        for material in of_color.materials.iter_mut().flatten() {
+            *material = material.for_light_color(color);
+        }
+        of_color.update_materials();
+        of_color
     }
 
     /// Returns the parameters of layers, if voxels are composed of them.
@@ -139,7 +171,11 @@ impl BakedLayers {
 
     /// Returns the maximum extinction of any densities, per scene unit.
     pub(crate) fn max_extinction(&self) -> f32 {
-        self.with_matter().map(|(_, table)| table.max_extinction()).sum()
+        let of_layer = |(at, table): (usize, &BakedTransfer)| match self.materials.get(at) {
+            Some(materials) if !materials.is_empty() => materials.iter().map(MaterialTable::extinction).sum(),
+            _ => table.max_extinction(),
+        };
+        self.with_matter().map(of_layer).sum()
     }
 
     /// Returns true if the lowest densities have extinction.

@@ -1,0 +1,197 @@
+//! Materials by value and change: regions of the plane of values and of their changes, each with its own colour and
+//! opacity (two-dimensional transfer functions: Kniss, Kindlmann and Hansen, 2002).
+
+use serde::{Deserialize, Serialize};
+
+use super::VolumeLayer;
+use crate::{ControlPoint, OpacityInterpolation, TransferFunction};
+use chiaroscuro_volume::{ValueRange, Volume};
+
+/// Largest number of materials of a layer.
+pub const MAX_MATERIAL_BOXES: usize = 8;
+
+/// Region of values and of their changes from voxel to voxel that is drawn as one material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MaterialBox {
+    /// Lowest and highest value, in data units.
+    pub values: [f64; 2],
+    /// Least and largest change of the value over a voxel, in data units: the length of the gradient in units of
+    /// voxels.
+    pub changes: [f64; 2],
+    /// Share of the region's extent over which it fades at each end, 0 … 1, half of it outside.
+    pub softness: f64,
+    /// Colour as sRGB, 0 … 1.
+    pub color: [f32; 3],
+    /// Opacity per opacity unit, 0 … 1.
+    pub opacity: f64,
+}
+
+impl Default for MaterialBox {
+    fn default() -> Self {
+        Self { values: [0.0; 2], changes: [0.0; 2], softness: 0.25, color: [1.0; 3], opacity: 0.5 }
+    }
+}
+
+/// Interval with linear ends: its weight rises over the first pair of positions from 0 to 1, and falls over the second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftInterval {
+    /// Positions at which the weight begins to rise, and is 1.
+    pub rise: [f64; 2],
+    /// Positions at which the weight begins to fall, and is 0.
+    pub fall: [f64; 2],
+}
+
+/// Least length of an end, in densities: two entries of a table, so that no table misses a narrow interval.
+const MIN_END: f64 = 2.0 / (crate::LUT_SIZE - 1) as f64;
+
+/// Distance by which ends that do not fade lie beyond 0 and 1, as densities do.
+const BEYOND: f64 = 0.25;
+
+impl SoftInterval {
+    /// Creates an interval of densities, or of their changes. It does not fade where it includes all that is below 0 or
+    /// above 1.
+    fn new([low, high]: [f64; 2], softness: f64) -> Self {
+        let half = 0.5 * (softness * (high - low)).max(MIN_END);
+        let rise = if low <= 0.0 { [-2.0 * BEYOND, -BEYOND] } else { [low - half, low + half] };
+        let fall = if high >= 1.0 { [1.0 + BEYOND, 1.0 + 2.0 * BEYOND] } else { [high - half, high + half] };
+        Self { rise, fall }
+    }
+
+    /// Returns the weight of a position, 0 … 1.
+    pub fn weight(&self, at: f64) -> f64 {
+        let ramp = |[from, to]: [f64; 2]| ((at - from) / (to - from)).clamp(0.0, 1.0);
+        ramp(self.rise) - ramp(self.fall)
+    }
+
+    /// Returns the positions at which the slope of the weight changes, in ascending order unless the ends overlap.
+    pub fn corners(&self) -> [f64; 4] {
+        [self.rise[0], self.rise[1], self.fall[0], self.fall[1]]
+    }
+}
+
+impl MaterialBox {
+    /// Returns the intervals of densities and of their changes over a voxel, for a range of values that is mapped to
+    /// densities.
+    pub fn intervals(&self, range: ValueRange) -> [SoftInterval; 2] {
+        let span = range.span().max(f64::MIN_POSITIVE);
+        let densities = self.values.map(|value| (value - range.low) / span);
+        [
+            SoftInterval::new(densities, self.softness),
+            SoftInterval::new(self.changes.map(|n| n / span), self.softness),
+        ]
+    }
+
+    /// Returns a transfer function that has the colour and the opacity of the material at all values.
+    pub fn constant_transfer(&self) -> TransferFunction {
+        let points = vec![ControlPoint::new(0.0, self.color, self.opacity)];
+        TransferFunction { points, ..TransferFunction::default() }
+    }
+}
+
+/// Returns the optical depth of an opacity.
+fn depth(opacity: f64) -> f64 {
+    -(-opacity.clamp(0.0, crate::MAX_OPACITY)).ln_1p()
+}
+
+/// Returns the transfer function of materials at any change: at every value the sum of their extinctions, so that it has
+/// matter wherever they have, in the mean of their colours.
+pub(crate) fn transfer_at_any_change(materials: &[MaterialBox], range: ValueRange) -> TransferFunction {
+    let intervals: Vec<SoftInterval> =
+        materials.iter().map(|material| material.intervals(range)[0]).collect();
+    let mut corners: Vec<f64> = intervals.iter().flat_map(SoftInterval::corners).collect();
+    corners.retain(|corner| (0.0..=1.0).contains(corner));
+    corners.extend([0.0, 1.0]);
+    corners.sort_by(f64::total_cmp);
+    corners.dedup();
+    let point = |at: f64| {
+        let mut sum = 0.0;
+        let mut color = [0.0_f64; 3];
+        let mut weights = 0.0;
+        for (material, interval) in materials.iter().zip(&intervals) {
+            let extinction = depth(material.opacity) * interval.weight(at);
+            // Where there is no matter, colours are those of materials that begin there.
+            let weight = extinction + 1e-6 * f64::from(u8::from(interval.corners().contains(&at)));
+            sum += extinction;
+            weights += weight;
+            (0..3).for_each(|c| color[c] += weight * f64::from(material.color[c]));
+        }
+        let color = color.map(|c| if weights > 0.0 { (c / weights) as f32 } else { 1.0 });
+        ControlPoint::new(range.value_at(at), color, -(-sum).exp_m1())
+    };
+    TransferFunction {
+        points: corners.into_iter().map(point).collect(),
+        interpolation: OpacityInterpolation::Extinction,
+        ..TransferFunction::default()
+    }
+}
+
+impl VolumeLayer {
+    /// Returns true if the layer is drawn by its materials: labels come first.
+    pub fn has_materials(&self) -> bool {
+        !self.materials.is_empty() && self.labels.is_empty()
+    }
+
+    /// Replaces the curves of a layer that is drawn by its materials by the function that has matter wherever these
+    /// have, for a field.
+    pub(super) fn resolve_materials(&mut self, field: &Volume) {
+        if self.has_materials() {
+            self.transfer = transfer_at_any_change(&self.materials, field.table_range());
+            self.lighting.linked = true;
+        } else {
+            self.materials.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MaterialBox, transfer_at_any_change};
+    use chiaroscuro_volume::ValueRange;
+
+    const RANGE: ValueRange = ValueRange::new(-100.0, 300.0);
+
+    fn material(values: [f64; 2], opacity: f64) -> MaterialBox {
+        MaterialBox { values, changes: [0.0, 1e3], opacity, ..MaterialBox::default() }
+    }
+
+    #[test]
+    fn ends_fade_by_half_outside_and_open_ends_do_not() {
+        let [values, changes] =
+            MaterialBox { softness: 0.5, changes: [40.0, 1e3], ..material([0.0, 200.0], 0.5) }
+                .intervals(RANGE);
+        let near =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        for (value, weight) in
+            [(-50.0, 0.0), (0.0, 0.5), (50.0, 1.0), (100.0, 1.0), (175.0, 0.75), (260.0, 0.0)]
+        {
+            near(values.weight((value - RANGE.low) / RANGE.span()), weight);
+        }
+        assert_eq!(changes.weight(10.0), 1.0, "any large change");
+        assert_eq!(changes.weight(0.0), 0.0);
+        let [all, still] =
+            MaterialBox { changes: [0.0, 20.0], ..material([-1e3, 1e3], 0.5) }.intervals(RANGE);
+        assert_eq!(
+            [all.weight(0.0), all.weight(1.0), still.weight(0.0), still.weight(0.1)],
+            [1.0, 1.0, 1.0, 0.0]
+        );
+    }
+
+    #[test]
+    fn the_function_of_all_changes_is_the_sum_of_extinctions() {
+        let materials =
+            [material([0.0, 100.0], 0.6), material([50.0, 50.0], 0.9), material([80.0, 500.0], 0.3)];
+        let function = transfer_at_any_change(&materials, RANGE);
+        for step in 0..400 {
+            let value = RANGE.value_at(f64::from(step) / 399.0);
+            let sum: f64 = materials
+                .iter()
+                .map(|m| {
+                    m.intervals(RANGE)[0].weight((value - RANGE.low) / RANGE.span()) * -(1.0 - m.opacity).ln()
+                })
+                .sum();
+            let found = function.sample(value).depth;
+            assert!((found - sum).abs() < 1e-9, "{value}: {found} {sum}");
+        }
+    }
+}
