@@ -155,6 +155,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (row(text::transfer::TITLE, text::transfer::LEVEL), text::synonyms::LEVEL),
     (row(text::transfer::TITLE, text::transfer::WINDOW), text::synonyms::WINDOW),
     (row(text::transfer::TITLE, text::transfer::FREEHAND), text::synonyms::FREEHAND),
+    (row(text::transfer::TITLE, text::materials::USE_MATERIALS), text::synonyms::MATERIALS),
     (row(text::transfer::TITLE, text::transfer::LOG_HISTOGRAM), text::synonyms::LOG_HISTOGRAM),
 ];
 

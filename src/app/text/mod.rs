@@ -8,6 +8,7 @@
 pub(super) mod common;
 pub(super) mod dock;
 pub(super) mod history;
+pub(super) mod materials;
 mod panels;
 pub(super) mod saved_views;
 mod shell;

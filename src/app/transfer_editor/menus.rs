@@ -116,14 +116,15 @@ pub(super) fn curve_fields(ui: &mut Ui, function: &mut TransferFunction, range: 
     }
 }
 
-/// Menu of changes to the curve's shape. `shown`: values that the plot shows.
+/// Menu of changes to the curve's shape; returns true if materials are to take its place. `shown`: values that the plot
+/// shows.
 pub(super) fn shape_menu(
     ui: &mut Ui,
     function: &mut TransferFunction,
     volume: &VolumeFacts,
     shown: ShownValues,
-) {
-    overlay_windows::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
+) -> bool {
+    let menu = overlay_windows::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
         let clicked =
             |ui: &mut Ui, named: ControlText| ui.button(named.name).on_hover_text(named.tooltip).clicked();
         if clicked(ui, text::transfer::FIT) {
@@ -135,7 +136,11 @@ pub(super) fn shape_menu(
         if clicked(ui, text::transfer::BOX) {
             add_box(function, shown);
         }
+        ui.separator();
+        clicked(ui, text::materials::USE_MATERIALS)
     });
+    highlight_if_searched(ui, text::materials::USE_MATERIALS, &menu.response);
+    menu.inner == Some(true)
 }
 
 /// Stretches the points over the values that occur: without 2 % of the voxels at the low end, since most volumes have

@@ -8,6 +8,7 @@ mod freehand;
 mod label_table;
 mod layer_tabs;
 mod link_button;
+mod materials;
 mod menus;
 mod plot;
 mod point_fields;
@@ -20,6 +21,7 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 
 use self::backdrop::{HistogramBars, PlotBackdrop};
 use self::freehand::FreehandDrawing;
+use self::materials::MaterialEditor;
 use self::plot::PlotAxes;
 use self::preset_menu::PresetMenu;
 use self::selection::{PointSelection, PointShift};
@@ -60,6 +62,7 @@ pub(super) struct TransferEditor {
     backdrop: PlotBackdrop,
     freehand: FreehandDrawing,
     presets: PresetMenu,
+    materials: MaterialEditor,
 }
 
 impl TransferEditor {
@@ -76,6 +79,7 @@ impl TransferEditor {
             axis_span: AxisSpan::default(),
             freehand: FreehandDrawing::default(),
             presets: PresetMenu::default(),
+            materials: MaterialEditor::default(),
         }
     }
 }
@@ -107,6 +111,9 @@ impl TransferEditor {
         }
         if volume.is_shown_by_label(settings) {
             return label_table::show(ui, settings, volume, commands);
+        }
+        if settings.layer_at(volume.layer).has_materials() {
+            return self.materials.show(ui, settings.layer_at_mut(volume.layer), volume, marked);
         }
         if settings.layer_at(volume.layer).lighting.linked {
             self.curve = EditedCurve::Eye;
@@ -192,11 +199,17 @@ impl TransferEditor {
         ui.separator();
         // With coloured shadows, light that passes material takes its hue.
         let has_colors = self.curve == EditedCurve::Eye || settings.has_colored_shadows();
-        let function = self.edited_curve(settings, volume.layer);
+        let layer = settings.layer_at_mut(volume.layer);
+        let (function, materials) = match self.curve {
+            EditedCurve::Eye => (&mut layer.transfer, &mut layer.materials),
+            EditedCurve::Light => (&mut layer.lighting.curve, &mut layer.materials),
+        };
         let selected = self.selection.retained_indices(function.points.len());
         if selected.is_empty() {
             menus::curve_fields(ui, function, span);
-            menus::shape_menu(ui, function, volume, self.zoom.visible_range(span));
+            if menus::shape_menu(ui, function, volume, self.zoom.visible_range(span)) {
+                materials.push(materials::material_of_curve(function, volume.range));
+            }
             let draw = text::transfer::FREEHAND;
             let draws = ui.toggle_value(&mut self.freehand.is_active, draw.name).on_hover_text(draw.tooltip);
             menus::highlight_if_searched(ui, draw, &draws);
@@ -274,7 +287,7 @@ impl TransferEditor {
         painter.add(self.backdrop.shape(axes, ui.pixels_per_point(), bars, &layer.transfer));
         plot::paint_eye_curve(&painter, axes, &layer.transfer, self.curve == EditedCurve::Eye);
         plot::paint_light_curve(&painter, axes, layer, self.curve == EditedCurve::Light);
-        plot::paint_axis_labels(&painter, axes);
+        plot::paint_axis_labels(&painter, axes, text::transfer::OPACITY_ONE);
     }
 
     fn add_point(&mut self, response: &Response, axes: &PlotAxes, function: &mut TransferFunction) {

@@ -130,7 +130,7 @@ pub(super) fn paint_light_curve(painter: &Painter, axes: &PlotAxes, layer: &Volu
 }
 
 /// Paints the labels at the ends of the axes.
-pub(super) fn paint_axis_labels(painter: &Painter, axes: &PlotAxes) {
+pub(super) fn paint_axis_labels(painter: &Painter, axes: &PlotAxes, upper: &str) {
     let ink = axes.ink.eye.gamma_multiply(0.75);
     let plot = axes.plot;
     let write = |at: Pos2, align: Align2, text: String| {
@@ -138,11 +138,11 @@ pub(super) fn paint_axis_labels(painter: &Painter, axes: &PlotAxes) {
     };
     write(plot.left_bottom(), Align2::LEFT_BOTTOM, format_value(axes.range.low, axes.range));
     write(plot.right_bottom(), Align2::RIGHT_BOTTOM, format_value(axes.range.high, axes.range));
-    write(plot.left_top(), Align2::LEFT_TOP, text::transfer::OPACITY_ONE.to_owned());
+    write(plot.left_top(), Align2::LEFT_TOP, upper.to_owned());
 }
 
 /// Formats a value with as many digits as the range needs.
-fn format_value(value: f64, range: ValueRange) -> String {
+pub(super) fn format_value(value: f64, range: ValueRange) -> String {
     let decimals = range_decimals(range);
     format!("{value:.decimals$}")
 }
@@ -169,10 +169,15 @@ pub(super) fn paint_readout(ui: &Ui, axes: &PlotAxes, response: &Response, funct
     painter.vline(at.x, egui::Rangef::new(axes.plot.min.y, axes.plot.max.y), line);
     let opacity = function.opacity_at(value);
     let words = text::transfer::pointer_readout(&format_value(value, axes.range), opacity);
+    paint_readout_text(ui, axes, at, words);
+}
+
+/// Paints what is at the pointer beside it, on the side with more room.
+pub(super) fn paint_readout_text(ui: &Ui, axes: &PlotAxes, at: Pos2, words: String) {
     let right = at.x < axes.area.center().x;
     let (align, dx) = if right { (Align2::LEFT_TOP, 6.0) } else { (Align2::RIGHT_TOP, -6.0) };
     let place = pos2(at.x + dx, axes.plot.min.y + 14.0);
-    paint_text_on_ground(&painter, axes, (place, align), words, axes.ink.eye);
+    paint_text_on_ground(&ui.painter_at(axes.area), axes, (place, align), words, axes.ink.eye);
 }
 
 /// Paints text on a ground of its own, legible over curves and fills of any colour.

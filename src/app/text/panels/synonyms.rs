@@ -129,4 +129,6 @@ pub(crate) const CURVE_OPACITY: &str = "transparent opaque alpha transfer functi
 pub(crate) const LEVEL: &str = "window level width centre contrast brightness wl";
 pub(crate) const WINDOW: &str = "window level width centre contrast brightness wl";
 pub(crate) const FREEHAND: &str = "freehand pencil stroke sketch curve";
+pub(crate) const MATERIALS: &str =
+    "two-dimensional transfer function 2d gradient magnitude histogram boxes borders segment materials";
 pub(crate) const LOG_HISTOGRAM: &str = "histogram logarithmic rare values transfer function";

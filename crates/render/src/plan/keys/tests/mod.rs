@@ -1,5 +1,6 @@
 //! Tests of the keys that each setting changes.
 
+mod layers;
 mod lights;
 
 use serde_json::Value;
@@ -136,6 +137,7 @@ fn every_setting_causes_what_the_design_says() {
         ("visibility", "casts_shadows", ChangeEffect::Bounces),
         ("blend", "gate", ChangeEffect::Nothing), // There is no layer before the first.
         ("edges", "0.1", ChangeEffect::AllLights),
+        ("materials", r#"[{"values": [0, 9], "changes": [0, 9]}]"#, ChangeEffect::AllLights),
         // Volumes of light stay, but a projection without light needs none.
         ("mode.kind", "maximum", ChangeEffect::Eye),
         ("mode.kind", "mean", ChangeEffect::Eye),
@@ -314,20 +316,6 @@ fn options_that_only_display_reads_change_the_display_alone() {
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Antialiasing);
     let options = RenderOptions::from(WorkOptions { timed: true, light_parts: 3, ..WorkOptions::default() });
     assert_eq!(effect(&keys(&request()), &FrameKeys::new(&request(), &options)), ChangeEffect::Nothing);
-}
-
-#[test]
-fn an_unlinked_lighting_curve_frees_the_eye() {
-    let mut before = request();
-    before.settings.layer_mut().lighting.linked = false;
-    before.settings.sky.mode = SkyMode::Off;
-    assert_eq!(effect_of(&before, "transfer.points.1.opacity", "0.4"), ChangeEffect::Eye);
-    // Shadow rays use the lighting curve in the eye pass itself.
-    before.settings.shadows.algorithm = chiaroscuro_scene::ShadowAlgorithm::Direct;
-    assert_eq!(effect_of(&before, "lighting.scale", "0.4"), ChangeEffect::Eye);
-    // Sky light has a volume, regardless of the shadow algorithm of lights.
-    before.settings.sky.mode = SkyMode::White;
-    assert_eq!(effect_of(&before, "lighting.scale", "0.4"), ChangeEffect::Sky);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Histogram of the densities of a volume.
 
+pub(crate) mod changes;
+
 use super::cancellation::CancelToken;
 use super::{MissingVoxels, Volume};
 
