@@ -21,11 +21,13 @@ pub(crate) fn add_label_table(
     samples: &Samples,
     hints: &mut ValueMetadata,
 ) {
-    if !all_integers(samples) {
-        return;
-    }
-    let labels = read_label_table(context, endings);
-    if !labels.is_empty() {
+    add_labels(read_label_table(context, endings), samples, hints);
+}
+
+/// Adds the labels that a file states, and marks the volume as a label map; only where there are labels, and all
+/// values are integers.
+pub(crate) fn add_labels(labels: FileLabelTable, samples: &Samples, hints: &mut ValueMetadata) {
+    if !labels.is_empty() && all_integers(samples) {
         hints.labels = labels;
         hints.meaning = ValueMeaning::Labels;
     }

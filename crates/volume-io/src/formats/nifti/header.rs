@@ -17,9 +17,17 @@ const NIFTI1_HEADER_BYTES: usize = 348;
 const NIFTI2_HEADER_BYTES: usize = 540;
 
 /// Size of the extender that follows a header in a single file: four bytes that tell if extensions follow.
-const EXTENDER_BYTES: u64 = 4;
+pub(super) const EXTENDER_BYTES: u64 = 4;
 
 impl NiftiVersion {
+    /// Returns the size of a header in bytes.
+    pub(super) fn header_bytes(self) -> u64 {
+        match self {
+            Self::Nifti2 => NIFTI2_HEADER_BYTES as u64,
+            Self::Nifti1 | Self::Analyze => NIFTI1_HEADER_BYTES as u64,
+        }
+    }
+
     /// Detects the header format from the first bytes of a file; `None` if they are no header.
     pub(super) fn detect(bytes: &[u8]) -> Option<Self> {
         let has = |at: usize, mark: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(mark));
@@ -130,8 +138,7 @@ impl NiftiHeader {
                 "correct the header",
             ));
         }
-        let size =
-            if form == NiftiVersion::Nifti2 { NIFTI2_HEADER_BYTES } else { NIFTI1_HEADER_BYTES } as u64;
+        let size = form.header_bytes();
         // Some programs leave `vox_offset` at 0.
         let least = if header.has_data { size } else { 0 };
         let data_start = if offset < least as f64 { size + EXTENDER_BYTES } else { offset as u64 };

@@ -4,6 +4,7 @@
 //! Foundation. World space is right-anterior-superior.
 
 mod dimensions;
+mod extensions;
 mod geometry;
 mod header;
 mod hints;
@@ -25,6 +26,7 @@ use super::{LoadControl, LoadError, LoadOptions, label_tables};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{FileDimension, GridExtent, LoadContext, Volume};
 use dimensions::NiftiGrid;
+use extensions::ExtensionLabels;
 use header::{NiftiHeader, NiftiVersion};
 use number_type::NiftiNumberType;
 
@@ -40,6 +42,13 @@ pub(super) const READER: FormatReader = FormatReader {
 
 /// Loads a `NIfTI` or Analyze volume from a single file, or from a pair of which either file may be named.
 fn load(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
+    let VolumeSource { path, control, .. } = source;
+    let context = LoadContext { operation: "read the NIfTI volume", path };
+    load_parts(source)?.into_volume(context, control)
+}
+
+/// Reads the parts of such a volume without assembling them.
+fn load_parts(source: VolumeSource<'_>) -> Result<VolumeParts, LoadError> {
     let VolumeSource { path, input, start, options, control } = source;
     let context = LoadContext { operation: "read the NIfTI volume", path };
     let Some(form) = NiftiVersion::detect(start.bytes()) else {
@@ -69,7 +78,7 @@ fn read(
     mut content: FileContent,
     options: &LoadOptions,
     control: &LoadControl,
-) -> Result<Volume, LoadError> {
+) -> Result<VolumeParts, LoadError> {
     let number_type = NiftiNumberType::from_header(context, header)?;
     let grid = NiftiGrid::parse(context, header)?;
     let frame = context.resolve_choice(&options.choice, FileDimension::Frame, grid.offers(header))?;
@@ -112,6 +121,7 @@ fn read(
         _ => (byte_offset(0), byte_offset(grid.components - 1)),
     };
     content.check_length(context, "dim", last, bytes)?;
+    let extension = ExtensionLabels::read(&mut content, header, control).map_err(failed)?;
     let voxels = if is_magnitude {
         let places = (0..grid.components).map(byte_offset);
         vector_magnitudes::read_magnitudes(&mut content, &stored, places, header.scale(), extent, control)
@@ -129,12 +139,14 @@ fn read(
 
     let mut placement = geometry::placement(header, dims);
     placement.remarks.extend(number_type.remark(part).map(str::to_owned));
+    placement.remarks.extend(extension.remark);
     let mut hints = hints::hints_from_header(header);
     if components == 1 {
+        label_tables::add_labels(extension.labels, voxels.stored_numbers(), &mut hints);
         label_tables::add_label_table(context, ENDINGS, voxels.stored_numbers(), &mut hints);
     }
     let name = sanitised(&name_without_extension(context.path, ENDINGS), 120);
-    VolumeParts { name, extent, placement, voxels, hints }.into_volume(context, control)
+    Ok(VolumeParts { name, extent, placement, voxels, hints })
 }
 
 /// Returns the slope and intercept to apply to the values shown. Colours are not scaled (`nifti1.h`, "data scaling").

@@ -1,5 +1,6 @@
 //! Tests of `NIfTI` and Analyze files, end to end: accepted and refused files.
 
+mod extensions;
 mod geometry;
 mod hints;
 mod pairs;
