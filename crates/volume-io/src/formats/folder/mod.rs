@@ -1,5 +1,5 @@
-//! Folders that are opened as a whole: slices of one volume, one file each. DICOM slices may lie in nested folders,
-//! as on media and in archive exports.
+//! Folders that are opened as a whole: slices of one volume, one file each, or masks of one segmentation. DICOM
+//! slices may lie in nested folders, as on media and in archive exports.
 
 mod files;
 
@@ -9,14 +9,15 @@ use std::path::{Path, PathBuf};
 
 use super::pictures::slices;
 use super::unsupported::unsupported_folder;
-use super::{LoadControl, LoadError, LoadOptions, dicom};
-use chiaroscuro_volume::{LoadContext, Volume};
+use super::{LoadControl, LoadError, LoadOptions, dicom, nifti};
+use chiaroscuro_volume::{LoadContext, LoadErrorKind, Volume};
 use files::{NestedFiles, list_files, list_nested_files};
 
 /// Extensions of pictures that are volumes of their own.
 const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 
-/// Loads the volume whose slices lie in a folder, restricted to [`LoadOptions::only_files`] where it is given.
+/// Loads the volume whose slices or masks lie in a folder, restricted to [`LoadOptions::only_files`] where it is
+/// given.
 pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let context = LoadContext { operation: "open the folder", path };
     if let Some(format) = unsupported_folder(path) {
@@ -39,16 +40,40 @@ pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) ->
     if let Some(volume) = dicom::load_folder(path, &all, nested.remarks(), options, control)? {
         return Ok(volume);
     }
+    let masks = nifti::mask_files(&files);
+    let mut mask_error = None;
+    // Pictures may be previews of the masks, but not more of them than masks.
+    if masks.len() > 1 && masks.len() > files.iter().filter(|path| is_picture(path)).count() {
+        match nifti::load_masks(context, &masks, options, control) {
+            Err(error) if matches!(error.kind(), LoadErrorKind::BadInput | LoadErrorKind::Io) => {
+                mask_error = Some(error);
+            }
+            loaded => return loaded,
+        }
+    }
     if let Some(volume) = slices::load(context, &files, options, control)? {
         return Ok(volume);
+    }
+    if let Some(error) = mask_error {
+        return Err(error);
     }
     let within =
         if count > 0 { format!(" or of the {count} files in its subfolders") } else { String::new() };
     Err(context.bad_input_error(
         "files",
         format!("none of its {} files{within} is a slice in a supported format", files.len()),
-        "open a single file",
+        if nifti::mask_files(&all).len() > 1 {
+            "open a single file, or the subfolder that holds the masks of one segmentation"
+        } else {
+            "open a single file"
+        },
     ))
+}
+
+/// Returns true if a file has the extension of a picture.
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_some_and(|ending| PICTURES.contains(&ending.as_str()))
 }
 
 /// Returns true if a folder mainly contains pictures, so that a few DICOM files in nested folders are ignored.
@@ -57,11 +82,7 @@ fn is_picture_folder(
     nested: &NestedFiles,
     control: &LoadControl,
 ) -> Result<bool, LoadError> {
-    let is_picture = |path: &&PathBuf| {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        ending.is_some_and(|ending| PICTURES.contains(&ending.as_str()))
-    };
-    let pictures = files.iter().filter(is_picture).count();
+    let pictures = files.iter().filter(|path| is_picture(path)).count();
     Ok(pictures > 0 && !nested.files.is_empty() && dicom::count_pictures(&nested.files, control)? <= pictures)
 }
 

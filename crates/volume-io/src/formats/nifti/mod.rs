@@ -8,6 +8,7 @@ mod extensions;
 mod geometry;
 mod header;
 mod hints;
+mod masks;
 mod number_type;
 mod pair;
 #[cfg(test)]
@@ -28,6 +29,7 @@ use chiaroscuro_volume::{FileDimension, GridExtent, LoadContext, Volume};
 use dimensions::NiftiGrid;
 use extensions::ExtensionLabels;
 use header::{NiftiHeader, NiftiVersion};
+pub(super) use masks::{load_masks, mask_files};
 use number_type::NiftiNumberType;
 
 /// File name endings, longest first, so that the longest match is cut from a name.

@@ -3,6 +3,7 @@
 mod extensions;
 mod geometry;
 mod hints;
+mod masks;
 mod pairs;
 mod refused;
 mod series;
