@@ -76,6 +76,7 @@ fn shared_structs_have_the_same_fields_in_the_same_places() {
 fn every_shared_struct_is_compared() {
     let files = [
         include_str!("../../crates/render/src/pipelines/uniforms/mod.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/layers.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/light.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/scattered_light.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/sky.rs"),

@@ -66,7 +66,9 @@ impl App {
         app.opening.requests.session_is_due = session.is_some();
         app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
-        app.opening.loader.compiles_on_demand = compiles_on_demand;
+        if compiles_on_demand {
+            app.opening.loader.compile_on_demand();
+        }
         app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;
         app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());

@@ -164,7 +164,7 @@ impl TransferEditor {
         } else {
             self.add_point(&response, &axes, function);
             self.selection.rubber_band(ui, &response, &axes, function);
-            self.select_by_keys(ui, &response, function.points.len());
+            self.selection.select_by_keys(ui, &response, function.points.len());
             let limits = point_limits(volume.ranges, span);
             self.edit_points(ui, &axes, function, name, limits, response.contains_pointer());
         }
@@ -261,18 +261,6 @@ impl TransferEditor {
         menus::color_map_menu(ui, function, commands);
         self.presets.show(ui, settings, volume, commands);
         self.zoom.show_reset_button(ui);
-    }
-
-    /// With the pointer over the plot, Ctrl+A selects all points, and Escape clears the selection.
-    fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
-        if !response.contains_pointer() || ui.ctx().text_edit_focused() {
-            return;
-        }
-        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::A)) {
-            self.selection.select_all(count);
-        } else if ui.input(|input| input.key_pressed(Key::Escape)) {
-            self.selection.clear();
-        }
     }
 
     fn paint(&mut self, ui: &Ui, axes: &PlotAxes, settings: &Settings, volume: &VolumeFacts) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use eframe::egui::{Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
+use eframe::egui::{Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Stroke, Ui};
 
 use super::plot::PlotAxes;
 use super::theme;
@@ -29,6 +29,18 @@ pub(super) struct PointShift {
 }
 
 impl PointSelection {
+    /// With the pointer over the plot, Ctrl+A selects all points, and Escape clears the selection.
+    pub(super) fn select_by_keys(&mut self, ui: &Ui, response: &Response, count: usize) {
+        if !response.contains_pointer() || ui.ctx().text_edit_focused() {
+            return;
+        }
+        if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::A)) {
+            self.select_all(count);
+        } else if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.clear();
+        }
+    }
+
     /// Selects one point and no other.
     pub(super) fn select_only(&mut self, index: usize) {
         self.points = [index].into();
@@ -42,7 +54,7 @@ impl PointSelection {
     }
 
     /// Selects all of `count` points.
-    pub(super) fn select_all(&mut self, count: usize) {
+    fn select_all(&mut self, count: usize) {
         self.points = (0..count).collect();
         self.wants_focus = true;
     }

@@ -109,8 +109,6 @@ pub(crate) struct Loader {
     options: LoadOptions,
     running: JobSlot<LoadOutcome, LoadInputs>,
     warm_up: PipelineWarmUp,
-    /// True if [`Self::warm_up_rest`] compiles nothing.
-    pub(crate) compiles_on_demand: bool,
 }
 
 /// Names of the phases, for the status bar; a load reports the index of its phase as its progress.
@@ -136,14 +134,7 @@ impl Loader {
         );
         let mut warm_up = PipelineWarmUp::default();
         warm_up.start(&shaders, ShaderLibrary::warm_up, ctx)?;
-        Ok(Self {
-            context,
-            shaders,
-            options,
-            running: JobSlot::default(),
-            warm_up,
-            compiles_on_demand: false,
-        })
+        Ok(Self { context, shaders, options, running: JobSlot::default(), warm_up })
     }
 
     /// Returns the shader pipelines of the device that renders pictures.
@@ -153,12 +144,12 @@ impl Loader {
 
     /// Compiles pipelines that may be needed later, once; to be called when the window is idle.
     pub(crate) fn warm_up_rest(&mut self, ctx: &egui::Context) {
-        if !self.compiles_on_demand
-            && self.warm_up.job_count() < 2
-            && let Err(err) = self.warm_up.start(&self.shaders, ShaderLibrary::warm_up_optional, ctx)
-        {
-            log::warn!("pipelines cannot be created ahead of time: {err}");
-        }
+        self.warm_up.start_rest(&self.shaders, ctx);
+    }
+
+    /// Leaves pipelines that may be needed later until they are.
+    pub(crate) fn compile_on_demand(&mut self) {
+        self.warm_up.is_complete = true;
     }
 
     /// Starts to open a file or a built-in volume, with the corrections and the up axis that are remembered for it.

@@ -13,12 +13,18 @@ use chiaroscuro_volume::CancelToken;
 #[derive(Debug, Default)]
 pub(super) struct PipelineWarmUp {
     jobs: Vec<JobHandle<()>>,
+    /// True if nothing more is to be compiled in advance.
+    pub is_complete: bool,
 }
 
 impl PipelineWarmUp {
-    /// Number of jobs that were started.
-    pub(super) fn job_count(&self) -> usize {
-        self.jobs.len()
+    /// Starts the job that compiles pipelines which the first pictures do not use, once.
+    pub(super) fn start_rest(&mut self, shaders: &ShaderLibrary, ctx: &egui::Context) {
+        if !std::mem::replace(&mut self.is_complete, true)
+            && let Err(err) = self.start(shaders, ShaderLibrary::warm_up_optional, ctx)
+        {
+            log::warn!("pipelines cannot be created ahead of time: {err}");
+        }
     }
 
     /// Starts a job that compiles pipelines by calling `what`.

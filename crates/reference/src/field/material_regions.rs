@@ -3,11 +3,18 @@
 use chiaroscuro_scene::{BakedTransfer, LUT_SIZE, MaterialBox, VolumeLayer};
 use chiaroscuro_volume::Volume;
 
+/// Interval that fades at its limits over a length.
+#[derive(Clone, Copy)]
+struct FadingInterval {
+    from: f64,
+    to: f64,
+    fade: f64,
+}
+
 /// Material with its region of densities and of their changes over a voxel.
 pub(super) struct MaterialRegion {
-    densities: [f64; 2],
-    changes: [f64; 2],
-    softness: f64,
+    densities: FadingInterval,
+    changes: FadingInterval,
     /// Colour times opacity or extinction, and opacity or extinction.
     matter: [f64; 4],
 }
@@ -25,38 +32,37 @@ pub(super) fn material_regions(
         let table = bake(&constant, volume);
         let table = opacity_length.map_or(table.clone(), |length| table.with_opacities(length));
         let [r, g, b, amount] = table.sample(0.5);
-        MaterialRegion {
-            densities: material.values.map(|value| (value - range.low) / range.span()),
-            changes: material.changes.map(|change| change / range.span()),
-            softness: material.softness,
-            matter: [r * amount, g * amount, b * amount, amount],
-        }
+        let least = 2.0 / (LUT_SIZE - 1) as f64;
+        let [from, to] = material.values.map(|value| (value - range.low) / range.span());
+        let extent = to.clamp(0.0, 1.0) - from.clamp(0.0, 1.0);
+        let densities = FadingInterval { from, to, fade: least.max(material.softness * extent) };
+        let [from, to] = material.changes.map(|change| change / range.span());
+        let extent = if to < 1.0 { to - from.max(0.0) } else { from };
+        let changes = FadingInterval { from, to, fade: least.max(material.softness * extent) };
+        MaterialRegion { densities, changes, matter: [r * amount, g * amount, b * amount, amount] }
     };
     layer.materials.iter().filter(|_| layer.has_materials()).map(region).collect()
 }
 
-/// Returns the length of a region's ends, at least two entries of a table.
-fn end_length([low, high]: [f64; 2], softness: f64) -> f64 {
-    f64::max(softness * (high - low), 2.0 / (LUT_SIZE - 1) as f64)
-}
-
-/// Returns the weight of a region: ½ at its limits, between which it rises and falls linearly; limits beyond 0 and 1
-/// exclude nothing.
-fn weight(region: [f64; 2], softness: f64, at: f64) -> f64 {
-    let [low, high] = region;
-    let length = end_length(region, softness);
-    let above = if low <= 0.0 { 1.0 } else { ((at - low) / length + 0.5).clamp(0.0, 1.0) };
-    let below = if high >= 1.0 { 1.0 } else { ((high - at) / length + 0.5).clamp(0.0, 1.0) };
-    above + below - 1.0
+impl FadingInterval {
+    /// Returns the weight at a position: ½ at the limits, between which it rises and falls linearly; limits beyond 0
+    /// and 1 exclude nothing.
+    fn weight(&self, at: f64) -> f64 {
+        let Self { from, to, fade } = *self;
+        let above = if from <= 0.0 { 1.0 } else { ((at - from) / fade + 0.5).clamp(0.0, 1.0) };
+        let below = if to >= 1.0 { 1.0 } else { ((to - at) / fade + 0.5).clamp(0.0, 1.0) };
+        above + below - 1.0
+    }
 }
 
 impl MaterialRegion {
     /// Returns the mean matter for densities from `low` to `high` and their change.
     pub(super) fn mean(&self, low: f64, high: f64, change: f64) -> [f64; 4] {
-        let at = |density: f64| weight(self.densities, self.softness, density);
-        let half = 0.5 * end_length(self.densities, self.softness);
+        let FadingInterval { from, to, fade } = self.densities;
+        let at = |density: f64| self.densities.weight(density);
+        let half = 0.5 * fade;
         let mut places = vec![low, high];
-        for limit in self.densities {
+        for limit in [from, to] {
             places
                 .extend([limit - half, limit + half].into_iter().filter(|place| (low..high).contains(place)));
         }
@@ -69,7 +75,7 @@ impl MaterialRegion {
         } else {
             at(low)
         };
-        let share = mean * weight(self.changes, self.softness, change);
+        let share = mean * self.changes.weight(change);
         self.matter.map(|number| number * share)
     }
 }

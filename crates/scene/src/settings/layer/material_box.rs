@@ -19,7 +19,8 @@ pub struct MaterialBox {
     /// Least and largest change of the value over a voxel, in data units: the length of the gradient in units of
     /// voxels.
     pub changes: [f64; 2],
-    /// Share of the region's extent over which it fades at each end, 0 … 1, half of it outside.
+    /// Share of the region's extent over which it fades at each end, 0 … 1, half of it outside. A region of all large
+    /// changes has no extent: it fades over that share of its smallest one.
     pub softness: f64,
     /// Colour as sRGB, 0 … 1.
     pub color: [f32; 3],
@@ -51,8 +52,8 @@ const BEYOND: f64 = 0.25;
 impl SoftInterval {
     /// Creates an interval of densities, or of their changes. It does not fade where it includes all that is below 0 or
     /// above 1.
-    fn new([low, high]: [f64; 2], softness: f64) -> Self {
-        let half = 0.5 * (softness * (high - low)).max(MIN_END);
+    fn new([low, high]: [f64; 2], fade: f64) -> Self {
+        let half = 0.5 * fade.max(MIN_END);
         let rise = if low <= 0.0 { [-2.0 * BEYOND, -BEYOND] } else { [low - half, low + half] };
         let fall = if high >= 1.0 { [1.0 + BEYOND, 1.0 + 2.0 * BEYOND] } else { [high - half, high + half] };
         Self { rise, fall }
@@ -76,9 +77,12 @@ impl MaterialBox {
     pub fn intervals(&self, range: ValueRange) -> [SoftInterval; 2] {
         let span = range.span().max(f64::MIN_POSITIVE);
         let densities = self.values.map(|value| (value - range.low) / span);
+        let changes = self.changes.map(|change| change / span);
+        let shown = |[low, high]: [f64; 2]| high.min(1.0) - low.max(0.0);
+        let extent = if changes[1] >= 1.0 { changes[0] } else { shown(changes) };
         [
-            SoftInterval::new(densities, self.softness),
-            SoftInterval::new(self.changes.map(|n| n / span), self.softness),
+            SoftInterval::new(densities, self.softness * shown(densities)),
+            SoftInterval::new(changes, self.softness * extent),
         ]
     }
 

@@ -22,6 +22,8 @@ macro_rules! layout {
     }};
 }
 
+mod volume;
+
 /// All mirrored structs, each with a shader in which it appears.
 pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
     let frame = layout!(SheetFrameUniform {
@@ -64,7 +66,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
         area_near,
         pad1,
     });
-    vec![
+    let mut all = vec![
         ("eye/eye_pass.wgsl", frame.clone()),
         ("light/march.wgsl", frame.clone()),
         ("light/backproject.wgsl", frame),
@@ -390,24 +392,7 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 floor_exposure
             }),
         ),
-        ("volume/composed_voxels.wgsl", layout!(LayersUniform { count, largest, voxel, pad0, layers })),
-        (
-            "volume/composed_voxels.wgsl",
-            layout!(LayerUniform {
-                blend,
-                is_label,
-                opacity_unit,
-                edges,
-                material_count,
-                pad0,
-                pad1,
-                pad2,
-                materials
-            }),
-        ),
-        ("volume/composed_voxels.wgsl", layout!(MaterialUniform { densities, changes, matter })),
-        ("volume/prefilter.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
-        ("volume/downsample.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
-        ("volume/gradients.wgsl", layout!(PyramidLevelUniform { bricks, spacing, pad0, pad1 })),
-    ]
+    ];
+    all.extend(volume::mirrored_structs());
+    all
 }
