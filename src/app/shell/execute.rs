@@ -66,6 +66,7 @@ impl App {
             AppCommand::CutByShape(kind) => {
                 self.layout.show_section(ctx, CUTS, self.picture.shape_cuts.toggle(kind));
             }
+            AppCommand::PickMaterials => self.picture.material_picker.toggle(),
             AppCommand::RemoveShapeCuts => self.editor.document.settings.cuts.shapes.clear(),
             AppCommand::ToggleFloor => self.layout.show_section(ctx, FLOOR, self.editor.toggle_floor()),
             AppCommand::ToggleTable => self.layout.show_section(ctx, DATA, self.editor.toggle_table()),

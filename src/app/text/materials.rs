@@ -13,6 +13,21 @@ pub(crate) const USE_MATERIALS: ControlText = control_text(
 );
 pub(crate) const USE_CURVE: ControlText =
     control_text("Curve", "Removes all materials and shows the curve again, as it was");
+pub(crate) const PICK: ControlText = control_text(
+    "Pick materials",
+    "Makes materials of the parts that are clicked in the picture, parted by value and change",
+);
+pub(crate) const ESCAPE_ENDS: &str = "Escape ends";
+
+/// Hint while parts are clicked, after a number of clicks.
+pub(crate) fn pick_hint(clicks: usize) -> &'static str {
+    match clicks {
+        0 => "Click a part; cuts show what lies inside",
+        1 => "Click another part, which gets a colour of its own",
+        _ => "Click a further part, or change the boxes below",
+    }
+}
+
 pub(crate) const ADD: ControlText =
     control_text("+ Material", "Adds a material; a drag over an empty part of the plane draws one");
 pub(crate) const REMOVE: ControlText =

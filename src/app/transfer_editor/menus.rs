@@ -123,6 +123,7 @@ pub(super) fn shape_menu(
     function: &mut TransferFunction,
     volume: &VolumeFacts,
     shown: ShownValues,
+    commands: &mut Vec<AppCommand>,
 ) -> bool {
     let menu = overlay_windows::scrolling_menu(ui, text::transfer::SHAPE, |ui| {
         let clicked =
@@ -137,6 +138,10 @@ pub(super) fn shape_menu(
             add_box(function, shown);
         }
         ui.separator();
+        // Clicks in the picture are on the first layer.
+        if volume.layer == 0 && clicked(ui, text::materials::PICK) {
+            commands.push(AppCommand::PickMaterials);
+        }
         clicked(ui, text::materials::USE_MATERIALS)
     });
     highlight_if_searched(ui, text::materials::USE_MATERIALS, &menu.response);

@@ -113,7 +113,7 @@ impl TransferEditor {
             return label_table::show(ui, settings, volume, commands);
         }
         if settings.layer_at(volume.layer).has_materials() {
-            return self.materials.show(ui, settings.layer_at_mut(volume.layer), volume, marked);
+            return self.materials.show(ui, settings.layer_at_mut(volume.layer), volume, marked, commands);
         }
         if settings.layer_at(volume.layer).lighting.linked {
             self.curve = EditedCurve::Eye;
@@ -129,7 +129,7 @@ impl TransferEditor {
         let is_wide = ui.available_width() >= WIDE_LAYOUT_WIDTH * letters;
         let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
         ui.horizontal(|ui| {
-            let is_whole = self.curve_tools(ui, settings, volume, span);
+            let is_whole = self.curve_tools(ui, settings, volume, span, commands);
             if is_wide {
                 ui.with_layout(from_the_right, |ui| {
                     self.plot_tools(ui, settings, volume, commands);
@@ -181,6 +181,7 @@ impl TransferEditor {
         settings: &mut Settings,
         volume: &VolumeFacts,
         span: ValueRange,
+        commands: &mut Vec<AppCommand>,
     ) -> bool {
         let before = self.curve;
         let eye = ui.selectable_value(&mut self.curve, EditedCurve::Eye, text::transfer::EYE.name);
@@ -207,7 +208,7 @@ impl TransferEditor {
         let selected = self.selection.retained_indices(function.points.len());
         if selected.is_empty() {
             menus::curve_fields(ui, function, span);
-            if menus::shape_menu(ui, function, volume, self.zoom.visible_range(span)) {
+            if menus::shape_menu(ui, function, volume, self.zoom.visible_range(span), commands) {
                 materials.push(materials::material_of_curve(function, volume.range));
             }
             let draw = text::transfer::FREEHAND;

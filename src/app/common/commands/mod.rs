@@ -122,6 +122,8 @@ pub(crate) enum AppCommand {
     ToggleProbe,
     /// Begin or end cutting by shapes of a kind in the picture.
     CutByShape(CutShapeKind),
+    /// Begin or end making materials from clicks in the picture.
+    PickMaterials,
     /// Show all that cuts by shapes hide, by removing them.
     RemoveShapeCuts,
     /// Show the palette that finds commands by name.
@@ -251,6 +253,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::CutByShape(CutShapeKind::Sphere),
         AppCommand::CutByShape(CutShapeKind::Component),
         AppCommand::RemoveShapeCuts,
+        AppCommand::PickMaterials,
         AppCommand::ToggleFloor,
         AppCommand::ToggleTable,
         AppCommand::AddLight,

@@ -77,6 +77,7 @@ impl AppCommand {
             Self::TogglePlane => text::commands::TOGGLE_PLANE,
             Self::FacePlane => text::commands::FACE_PLANE,
             Self::CutByShape(kind) => text::cuts::cut_by_shape(*kind).name,
+            Self::PickMaterials => text::materials::PICK.name,
             Self::RemoveShapeCuts => text::cuts::REMOVE_SHAPES.name,
             Self::ToggleFloor => text::commands::TOGGLE_FLOOR,
             Self::ToggleTable => text::commands::TOGGLE_TABLE,

@@ -101,7 +101,8 @@ impl PictureInputs<'_> {
         let dataset = viewport.dataset();
         if is_one_view
             && let Some(dataset) = &dataset
-            && tools.shape_cuts.handle_mouse(ui, response, &mut document.settings, dataset.volume())
+            && (tools.shape_cuts.handle_mouse(ui, response, &mut document.settings, dataset.volume())
+                || tools.material_picker.handle_mouse(ui, response, &mut document.settings, dataset.volume()))
         {
             return;
         }
@@ -172,6 +173,7 @@ impl PictureInputs<'_> {
         let (tools, commands) = (&mut *self.tools, &mut *self.commands);
         if is_one_view {
             tools.shape_cuts.paint(ui, area, &settings.camera);
+            tools.material_picker.paint(ui, area, &settings.camera);
         }
         // A comparison has captions at the top and at the bottom.
         let body = volume.is_anatomical.then(|| self.viewport.compare.area_without_labels(ui, area));

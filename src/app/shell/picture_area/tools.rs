@@ -7,6 +7,7 @@ use crate::app::viewport::cut_handles::shape_tool::ShapeCutTool;
 use crate::app::viewport::first_use_hints::FirstUseHints;
 use crate::app::viewport::light_handles::LightHandles;
 use crate::app::viewport::light_probe::LightProbe;
+use crate::app::viewport::light_probe::material_picker::MaterialPicker;
 use crate::app::viewport::mouse_navigation::OrbitDrag;
 use crate::app::viewport::overlay::ViewportOverlay;
 use crate::app::viewport::overlay::ct_preset_row::CtPresetRow;
@@ -23,6 +24,8 @@ pub(crate) struct PictureTools {
     pub cut_handles: CutHandles,
     /// Tool that cuts by shapes.
     pub shape_cuts: ShapeCutTool,
+    /// Tool that makes materials from clicks.
+    pub material_picker: MaterialPicker,
     /// Overlay of light chips, bounding box, scale bar and orientation cube.
     pub overlay: ViewportOverlay,
     /// Preview of the marks that would be drawn over an exported picture.

@@ -12,27 +12,16 @@ use self::histogram::HistogramCache;
 use self::plane::MaterialPlane;
 use super::plot::{self, PlotAxes};
 use super::zoom::ShownValues;
+use crate::app::common::commands::AppCommand;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::panels::controls::color_button;
 use crate::app::text::{self, ControlText};
-use chiaroscuro_scene::{MAX_MATERIAL_BOXES, MaterialBox, TransferFunction, VolumeLayer};
+use chiaroscuro_scene::{MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox, TransferFunction, VolumeLayer};
 use chiaroscuro_volume::ValueRange;
 
 /// Share of the largest opacity of a curve from which on its values are a material's.
 const CURVE_SHARE: f64 = 0.1;
-
-/// Colours of materials that are added, told apart by those who see few colours (Okabe and Ito, 2008).
-const COLORS: [[f32; 3]; MAX_MATERIAL_BOXES] = [
-    [0.90, 0.62, 0.0],
-    [0.34, 0.71, 0.91],
-    [0.0, 0.62, 0.45],
-    [0.80, 0.47, 0.65],
-    [0.94, 0.89, 0.26],
-    [0.84, 0.37, 0.0],
-    [0.0, 0.45, 0.70],
-    [0.95, 0.95, 0.95],
-];
 
 /// Returns a material of a curve's visible values at any change, in their colour: the picture is much the same.
 pub(super) fn material_of_curve(curve: &TransferFunction, range: ValueRange) -> MaterialBox {
@@ -72,10 +61,11 @@ impl MaterialEditor {
         layer: &mut VolumeLayer,
         volume: &VolumeFacts,
         marked: Option<f64>,
+        commands: &mut Vec<AppCommand>,
     ) {
         self.histogram.update(ui.ctx(), volume);
         self.selected = self.selected.min(layer.materials.len().saturating_sub(1));
-        ui.horizontal_wrapped(|ui| self.tools(ui, layer, volume));
+        ui.horizontal_wrapped(|ui| self.tools(ui, layer, volume, commands));
         let size = ui.available_size().max(Vec2::splat(20.0));
         let (area, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, text::materials::PLANE));
@@ -97,7 +87,13 @@ impl MaterialEditor {
     }
 
     /// Shows the buttons that add, select and remove materials, and the fields of the selected one.
-    fn tools(&mut self, ui: &mut Ui, layer: &mut VolumeLayer, volume: &VolumeFacts) {
+    fn tools(
+        &mut self,
+        ui: &mut Ui,
+        layer: &mut VolumeLayer,
+        volume: &VolumeFacts,
+        commands: &mut Vec<AppCommand>,
+    ) {
         let named = |ui: &mut Ui, is_enabled: bool, named: ControlText| {
             ui.add_enabled(is_enabled, Button::new(named.name)).on_hover_text(named.tooltip).clicked()
         };
@@ -126,6 +122,10 @@ impl MaterialEditor {
                 ..fresh(layer)
             });
             self.selected = layer.materials.len() - 1;
+        }
+        // Clicks in the picture are on the first layer.
+        if volume.layer == 0 && named(ui, true, text::materials::PICK) {
+            commands.push(AppCommand::PickMaterials);
         }
         let Some(material) = layer.materials.get_mut(self.selected) else { return };
         color_button(ui, text::materials::COLOR, &mut material.color);
@@ -188,7 +188,7 @@ impl MaterialEditor {
 /// Material to be added to a layer, in the first colour that none has.
 fn fresh(layer: &VolumeLayer) -> MaterialBox {
     let is_free = |color: &&[f32; 3]| layer.materials.iter().all(|material| material.color != **color);
-    let color = COLORS.iter().find(is_free).copied().unwrap_or(COLORS[0]);
+    let color = MATERIAL_COLORS.iter().find(is_free).copied().unwrap_or(MATERIAL_COLORS[0]);
     MaterialBox { color, ..MaterialBox::default() }
 }
 

@@ -2,6 +2,7 @@
 //! and the distance between two points.
 
 mod diagnosis;
+pub(crate) mod material_picker;
 mod tag;
 
 use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};

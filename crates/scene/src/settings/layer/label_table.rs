@@ -221,7 +221,7 @@ impl Settings {
     /// voxels are classified before they are spread. Keys do not change.
     pub fn resolved_for(&self, volume: &Volume) -> Cow<'_, Self> {
         if self.layer().labels.is_empty() {
-            return self.resolved_mode();
+            return self.resolved_mode_and_materials(volume);
         }
         let Some(labels) = volume.labels() else { return Cow::Borrowed(self) };
         let mut drawn = self.clone();

@@ -1,14 +1,28 @@
 //! Materials by value and change: regions of the plane of values and of their changes, each with its own colour and
 //! opacity (two-dimensional transfer functions: Kniss, Kindlmann and Hansen, 2002).
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::VolumeLayer;
-use crate::{ControlPoint, OpacityInterpolation, TransferFunction};
+use crate::{ControlPoint, OpacityInterpolation, Settings, TransferFunction};
 use chiaroscuro_volume::{ValueRange, Volume};
 
 /// Largest number of materials of a layer.
 pub const MAX_MATERIAL_BOXES: usize = 8;
+
+/// Colours of materials that are added, told apart by those who see few colours (Okabe and Ito, 2008).
+pub const MATERIAL_COLORS: [[f32; 3]; MAX_MATERIAL_BOXES] = [
+    [0.90, 0.62, 0.0],
+    [0.34, 0.71, 0.91],
+    [0.0, 0.62, 0.45],
+    [0.80, 0.47, 0.65],
+    [0.94, 0.89, 0.26],
+    [0.84, 0.37, 0.0],
+    [0.0, 0.45, 0.70],
+    [0.95, 0.95, 0.95],
+];
 
 /// Region of values and of their changes from voxel to voxel that is drawn as one material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -140,11 +154,24 @@ impl VolumeLayer {
     /// have, for a field.
     pub(super) fn resolve_materials(&mut self, field: &Volume) {
         if self.has_materials() {
-            self.transfer = transfer_at_any_change(&self.materials, field.table_range());
+            let range = self.shown_range(&field.ranges(), None);
+            self.transfer = transfer_at_any_change(&self.materials, range);
             self.lighting.linked = true;
         } else {
             self.materials.clear();
         }
+    }
+}
+
+impl Settings {
+    /// Returns the settings of their [mode](Self::resolved_mode), with the transfer function of materials at any change
+    /// if a volume is drawn by materials.
+    pub(super) fn resolved_mode_and_materials(&self, volume: &Volume) -> Cow<'_, Self> {
+        let mut drawn = self.resolved_mode();
+        if drawn.shows_matter() && drawn.layer().has_materials() {
+            drawn.to_mut().layer_mut().resolve_materials(volume);
+        }
+        drawn
     }
 }
 
