@@ -4,6 +4,7 @@ mod bars;
 mod environment_map;
 mod labels;
 mod layout;
+mod materials;
 mod menus;
 mod presets;
 mod render_modes;

@@ -171,7 +171,7 @@ impl MaterialEditor {
     }
 
     /// Removes the selected material by the keyboard, with the pointer over the plane.
-    fn edit_by_keys(&mut self, ui: &Ui, response: &Response, layer: &mut VolumeLayer) {
+    fn edit_by_keys(&self, ui: &Ui, response: &Response, layer: &mut VolumeLayer) {
         let is_typing = ui.ctx().text_edit_focused() || ui.memory(egui::Memory::focused).is_some();
         let removes =
             |input: &egui::InputState| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace);

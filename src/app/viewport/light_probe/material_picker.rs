@@ -8,7 +8,7 @@ use crate::app::common::{overlay_windows, theme};
 use crate::app::text;
 use crate::app::viewport::overlay::outlined_text::paint_outlined_text;
 use crate::app::viewport::view_projection::ViewProjection;
-use chiaroscuro_scene::{Camera, MAX_MATERIAL_BOXES, MaterialBox, PickedMaterial, Settings};
+use chiaroscuro_scene::{Camera, MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox, PickedMaterial, Settings};
 use chiaroscuro_volume::Volume;
 
 /// Radius of the mark at a place that was clicked, in points.
@@ -54,10 +54,16 @@ impl MaterialPicker {
                 self.picked.clear();
             }
             self.picked.push(found);
-            let materials: Vec<PickedMaterial> = self.picked.iter().map(|(material, _)| *material).collect();
-            self.made =
-                PickedMaterial::parted(&materials, settings.layer().shown_range(&volume.ranges(), None));
-            settings.layer_mut().materials.clone_from(&self.made);
+            // One alone would hide the others, which are still to be clicked.
+            if self.picked.len() > 1 {
+                let materials: Vec<PickedMaterial> =
+                    self.picked.iter().map(|(material, _)| *material).collect();
+                let range = settings.layer().shown_range(&volume.ranges(), None);
+                self.made = PickedMaterial::parted(&materials, range);
+                settings.layer_mut().materials.clone_from(&self.made);
+            } else {
+                self.made.clone_from(&settings.layer().materials);
+            }
         }
         true
     }
@@ -69,14 +75,9 @@ impl MaterialPicker {
         }
         let painter = ui.painter_at(picture);
         let projection = ViewProjection { camera: camera.clone(), picture };
-        for ((_, place), material) in self.picked.iter().zip(&self.made) {
+        for ((_, place), color) in self.picked.iter().zip(MATERIAL_COLORS) {
             if let Some(at) = projection.project(*place) {
-                painter.circle(
-                    at,
-                    MARK_RADIUS,
-                    theme::color(material.color),
-                    Stroke::new(1.5, Color32::BLACK),
-                );
+                painter.circle(at, MARK_RADIUS, theme::color(color), Stroke::new(1.5, Color32::BLACK));
             }
         }
         let at = picture.center_bottom() - vec2(0.0, 14.0);
@@ -91,14 +92,19 @@ impl MaterialPicker {
     }
 }
 
-/// Returns the material behind the surface at a point of the window, with the place of the surface.
+/// Returns the material behind the surface at a point of the window, with the place of the surface; where no material
+/// is seen, behind that which the curve would show.
 fn picked_at(
     volume: &Volume,
     settings: &Settings,
     picture: Rect,
     at: Pos2,
 ) -> Option<(PickedMaterial, DVec3)> {
-    let found = probe_at(volume, settings, picture, at)?;
+    let found = probe_at(volume, settings, picture, at).or_else(|| {
+        let mut by_curve = settings.clone();
+        by_curve.layer_mut().materials.clear();
+        probe_at(volume, &by_curve, picture, at)
+    })?;
     let offset = at - picture.min;
     let [x, y, width, height] = [offset.x, offset.y, picture.width(), picture.height()].map(f64::from);
     let (_, direction) = settings.camera.ray_through(x, y, width, height);
