@@ -25,7 +25,8 @@ struct LayerUniform {
     is_label: u32,
     // Length to which opacities of tints and gates refer, in scene units.
     opacity_unit: f32,
-    // Change of density per voxel from which on opacity is that of the curve; 0 leaves all opacities.
+    // Change of density per voxel from which on opacity is that of the curve; 0 leaves all opacities. Of labels, any
+    // other leaves the voxels beside another label.
     edges: f32,
     // Number of materials that take the place of the table.
     material_count: u32,
@@ -124,8 +125,11 @@ fn layer_matter(i: u32, found: FieldNeighbourhood) -> vec4f {
     } else {
         matter = is_present * matter_of_materials(i, low, high, found.slope[i]);
     }
+    // Numbers of labels differ by anything: beside another label is an outline.
+    let is_outline = select(0.0, 1.0, found.highest[i] > found.lowest[i]);
     if (layer.edges > 0.0) {
-        return matter * smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
+        let is_edge = smoothstep(0.5 * layer.edges, layer.edges, found.slope[i]);
+        return matter * select(is_edge, is_outline, layer.is_label == 1u);
     }
     return matter;
 }
@@ -165,7 +169,8 @@ fn voxel_tint(voxel: vec3i) -> vec4f {
             continue;
         }
         var matter = layer_matter(i, found);
-        if (layers.layers[i].is_label == 1u && matter.a <= 0.0) {
+        let is_without = layer_mean(i, found.own[i], found.own[i]).a <= 0.0 || !found.is_present[i];
+        if (layers.layers[i].is_label == 1u && is_without) {
             matter = densest_beside(i, voxel);
         }
         let opacity = layer_opacity(i, matter);

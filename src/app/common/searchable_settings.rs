@@ -132,6 +132,7 @@ pub(crate) const SEARCHABLE_SETTINGS: &[(SettingPlace, &str)] = &[
     (row(sections::COMPARE, text::comparison::DIFFERENCE), text::synonyms::DIFFERENCE),
     (row(sections::DATA, text::data::ALL_LAYERS), text::synonyms::LAYERS),
     (row(sections::DATA, text::data::LAYER_EDGES), text::synonyms::EDGES),
+    (row(sections::DATA, text::data::LAYER_OUTLINES), text::synonyms::OUTLINES),
     (row(sections::DATA, text::data::TREAT_AS), text::synonyms::KIND_OF_DATA),
     (row(sections::DATA, text::data::RANGE), text::synonyms::RANGE),
     (row(sections::DATA, text::data::SUBSAMPLE), text::synonyms::MEMORY),

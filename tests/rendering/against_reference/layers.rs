@@ -161,8 +161,33 @@ fn edges_are_left_of_one_field_and_of_several() {
     let mut settings = look(&[]);
     settings.layer_mut().edges = 0.08;
     check("edges of one field", &dataset_of(&[]), &settings);
+    for blend in [LayerBlend::Tint, LayerBlend::Gate, LayerBlend::Add] {
+        let (volume, layer) = labelled(blend);
+        let outlines = look(&[VolumeLayer { edges: 1.0, ..layer }]);
+        check(&format!("outlines of labels, {blend:?}"), &dataset_of(&[volume]), &outlines);
+        let is_tint = outlines.layer_composition() == LayerComposition::Tinted;
+        assert_eq!(is_tint, blend == LayerBlend::Tint, "a scan stays as sharp as it is");
+    }
     let layer = VolumeLayer { edges: 0.05, ..second() };
     check("edges of the second field", &dataset_of(&[ball()]), &look(&[layer]));
+}
+
+#[test]
+fn mistakes_in_outlines_are_noticed() {
+    let (volume, layer) = labelled(LayerBlend::Tint);
+    let (dataset, settings) = (dataset_of(&[volume]), look(&[VolumeLayer { edges: 1.0, ..layer }]));
+    let drawn = settings.resolved_for_dataset(&dataset);
+    let reference = Reference::with_layers(&dataset, &drawn, options());
+    for (from, to) in [
+        ("found.highest[i] > found.lowest[i]", "found.highest[i] > found.own[i]"),
+        ("select(is_edge, is_outline, layer.is_label == 1u)", "is_edge"),
+        (
+            "let is_without = layer_mean(i, found.own[i], found.own[i]).a <= 0.0",
+            "let is_without = matter.a <= 0.0",
+        ),
+    ] {
+        assert!(differs_with(&dataset, &settings, &reference, (from, to)), "{to}");
+    }
 }
 
 #[test]

@@ -68,6 +68,10 @@ impl LayeredField<'_> {
         if edges <= 0.0 {
             return matter;
         }
+        if self.volume.shown_labels().is_some() {
+            let is_outline = pairs.iter().flatten().any(|other| *other != own);
+            return if is_outline { matter } else { [0.0; 4] };
+        }
         let t = ((slope / edges - 0.5) / 0.5).clamp(0.0, 1.0);
         matter.map(|number| number * t * t * (3.0 - 2.0 * t))
     }
@@ -147,7 +151,9 @@ pub(crate) fn tint_voxels(
                 return tint;
             }
             let mut matter = field.matter(place);
-            if field.volume.shown_labels().is_some() && matter[3] <= 0.0 {
+            let is_without =
+                field.density(place).is_none_or(|own| field.table.mean_between(own, own)[3] <= 0.0);
+            if field.volume.shown_labels().is_some() && is_without {
                 // Labels tint one voxel further, since their surfaces lie between voxels.
                 let steps = [0, 1, 2].into_iter().flat_map(|axis| [(axis, -1), (axis, 1)]);
                 matter = steps.fold([0.0; 4], |densest: [f64; 4], (axis, step)| {

@@ -40,6 +40,11 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFa
     if layer.labels.is_empty() {
         let edges = NumberRow::new(text::data::LAYER_EDGES, 0.0..=MAX_EDGES);
         edges.show(ui, &mut layer.edges, first_look.layer_at(selected.layer).edges);
+    } else if selected.layer > 0 {
+        let mut has_outlines = layer.edges > 0.0;
+        if switch_row(ui, text::data::LAYER_OUTLINES, &mut has_outlines).changed() {
+            layer.edges = if has_outlines { 1.0 } else { 0.0 };
+        }
     }
     row(ui, text::data::ALL_LAYERS, |ui| {
         if ui.button(text::data::ADD_LAYER).on_hover_text(text::commands::ADD_LAYER).clicked() {

@@ -40,6 +40,10 @@ pub(crate) const LAYER_EDGES: ControlText = control_text(
     "Change of density per voxel at which material has the opacity of the curve. Where density changes less, it fades, \
      which leaves borders between materials; 0 shows everything",
 );
+pub(crate) const LAYER_OUTLINES: ControlText = control_text(
+    "Outlines only",
+    "Leaves the borders of labels, and the scan shows its own colours inside of them",
+);
 pub(crate) const LAYER_BLEND: ControlText =
     control_text("Layer does", "Effect of the layer on those before it");
 pub(crate) const LAYER_STRENGTH: ControlText =

@@ -182,7 +182,13 @@ impl Settings {
     pub fn layer_composition(&self) -> LayerComposition {
         let further = || self.layers.iter().skip(1).filter(|layer| layer.has_effect_on_others());
         let first = self.layer();
-        if self.layers.iter().any(|layer| layer.casts_shadows() && layer.depends_on_gradients()) {
+        // Tints are of voxels in any case.
+        let by_gradients = |(at, layer): (usize, &VolumeLayer)| {
+            layer.casts_shadows()
+                && layer.depends_on_gradients()
+                && (at == 0 || !layer.blend.changes_color_alone())
+        };
+        if self.layers.iter().enumerate().any(by_gradients) {
             LayerComposition::Composed
         } else if further().next().is_none() {
             LayerComposition::First

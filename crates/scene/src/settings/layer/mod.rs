@@ -40,7 +40,8 @@ pub struct VolumeLayer {
     /// Effect on the layers before it; the first layer always adds its matter.
     pub blend: LayerBlend,
     /// Change of density per voxel from which on opacity is that of the curve, 0 … 1: it fades to nothing at half of
-    /// it, so that edges are left. 0 leaves all opacities.
+    /// it, so that edges are left. 0 leaves all opacities. Of labels, any other leaves their outlines: voxels beside
+    /// another label.
     pub edges: f64,
     /// Materials by value and change, at most [`crate::MAX_MATERIAL_BOXES`]. If there are any, and no labels, they take the
     /// place of the transfer functions.
