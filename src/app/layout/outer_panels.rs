@@ -16,6 +16,7 @@ use crate::app::shell::picture_area::PictureTools;
 use crate::app::shell::tool_windows::ToolWindows;
 use crate::app::shell::{menu, status};
 use crate::app::transfer_editor::TransferEditor;
+use crate::app::transfer_editor::plot::PlotMarks;
 use crate::app::viewport::RendererStatus;
 use crate::app::{panels, text};
 use chiaroscuro_render::WindowPainter;
@@ -119,9 +120,12 @@ impl OuterPanels {
         let OuterPanelInputs { editor, picture, layout, commands, .. } = inputs;
         let Document { settings, volume, selected_layer, .. } = &mut editor.document;
         let Some(volume) = volume else { return };
-        // The label table has a default height of its own.
-        let (name, height) = if volume.of_layer(*selected_layer).is_shown_by_label(settings) {
+        // The label table and the plane of materials have default heights of their own.
+        let of_layer = volume.of_layer(*selected_layer);
+        let (name, height) = if of_layer.is_shown_by_label(settings) {
             ("labels", theme::LABEL_TABLE_HEIGHT)
+        } else if settings.layer_at(of_layer.layer).has_materials() {
+            ("materials", theme::LABEL_TABLE_HEIGHT)
         } else {
             ("transfer", theme::EDITOR_HEIGHT)
         };
@@ -130,7 +134,8 @@ impl OuterPanels {
         let panel = panel.size_range(90.0..=420.0);
         panel.show_collapsible(ui, &mut layout.transfer, |ui| {
             let value = picture.light_probe.value().or_else(|| settings.shown_isovalue());
-            self.editor.ui(ui, settings, (volume, selected_layer), value, commands);
+            let marks = PlotMarks { value, hovered: picture.material_picker.hovered() };
+            self.editor.ui(ui, settings, (volume, selected_layer), marks, commands);
         });
     }
 

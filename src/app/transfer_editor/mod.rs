@@ -10,7 +10,7 @@ mod layer_tabs;
 mod link_button;
 mod materials;
 mod menus;
-mod plot;
+pub(super) mod plot;
 mod point_fields;
 mod preset_menu;
 mod preset_thumbnails;
@@ -22,7 +22,7 @@ use eframe::egui::{self, Key, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo}
 use self::backdrop::{HistogramBars, PlotBackdrop};
 use self::freehand::FreehandDrawing;
 use self::materials::MaterialEditor;
-use self::plot::PlotAxes;
+use self::plot::{PlotAxes, PlotMarks};
 use self::preset_menu::PresetMenu;
 use self::selection::{PointSelection, PointShift};
 use self::zoom::{AxisSpan, PlotZoom, point_limits};
@@ -91,19 +91,19 @@ const KEY_STEP: [f64; 2] = [1.0 / 256.0, 0.01];
 const WIDE_LAYOUT_WIDTH: f32 = 1100.0;
 
 impl TransferEditor {
-    /// Shows the editor of the selected layer in the whole of `ui`. `volume`: facts about the first volume; `marked`:
-    /// value of it that the probe or a surface marks, if any.
+    /// Shows the editor of the selected layer in the whole of `ui`. `volume`: facts about the first volume; `marks`:
+    /// what the picture marks of it.
     pub(super) fn ui(
         &mut self,
         ui: &mut Ui,
         settings: &mut Settings,
         (volume, selected_layer): (&VolumeFacts, &mut usize),
-        marked: Option<f64>,
+        marks: PlotMarks,
         commands: &mut Vec<AppCommand>,
     ) {
         layer_tabs::show(ui, settings, volume, selected_layer);
         let volume = volume.of_layer(*selected_layer);
-        let marked = marked.filter(|_| volume.layer == 0);
+        let marks = if volume.layer == 0 { marks } else { PlotMarks::default() };
         if std::mem::replace(&mut self.layer, volume.layer) != volume.layer {
             self.selection.clear();
             self.zoom = PlotZoom::default();
@@ -113,7 +113,7 @@ impl TransferEditor {
             return label_table::show(ui, settings, volume, commands);
         }
         if settings.layer_at(volume.layer).has_materials() {
-            return self.materials.show(ui, settings.layer_at_mut(volume.layer), volume, marked, commands);
+            return self.materials.show(ui, settings.layer_at_mut(volume.layer), volume, marks, commands);
         }
         if settings.layer_at(volume.layer).lighting.linked {
             self.curve = EditedCurve::Eye;
@@ -170,7 +170,7 @@ impl TransferEditor {
         }
         self.last_curve = self.edited_curve(settings, volume.layer).clone();
         plot::paint_readout(ui, &axes, &response, &settings.layer_at(volume.layer).transfer);
-        plot::paint_value_mark(ui, &axes, marked);
+        plot::paint_value_mark(ui, &axes, marks.value);
     }
 
     /// Shows the tools that edit the curve or the selected points; returns true if no point is selected. `span`:

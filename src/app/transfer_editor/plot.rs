@@ -16,6 +16,15 @@ const SAMPLE_STEP: f32 = 2.0;
 /// Margin around the plot, in points, so that control points at its borders can be grabbed.
 const MARGIN: Vec2 = Vec2::new(8.0, 7.0);
 
+/// Values of the first volume that are marked elsewhere in the window.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct PlotMarks {
+    /// Value that the probe reads, or at which a surface lies.
+    pub value: Option<f64>,
+    /// Value under the pointer in the picture, and its change over a voxel.
+    pub hovered: Option<[f64; 2]>,
+}
+
 /// Mapping from value and opacity to positions in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlotAxes {

@@ -10,7 +10,7 @@ use eframe::egui::{self, Button, DragValue, Key, Response, RichText, Role, Sense
 use self::drag::BoxDrag;
 use self::histogram::HistogramCache;
 use self::plane::MaterialPlane;
-use super::plot::{self, PlotAxes};
+use super::plot::{self, PlotAxes, PlotMarks};
 use super::zoom::ShownValues;
 use crate::app::common::commands::AppCommand;
 use crate::app::common::theme;
@@ -53,14 +53,13 @@ pub(super) struct MaterialEditor {
 }
 
 impl MaterialEditor {
-    /// Shows the editor of a layer's materials in the whole of `ui`. `marked`: value that the probe or a surface marks,
-    /// if any.
+    /// Shows the editor of a layer's materials in the whole of `ui`. `marks`: what the picture marks.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         layer: &mut VolumeLayer,
         volume: &VolumeFacts,
-        marked: Option<f64>,
+        marks: PlotMarks,
         commands: &mut Vec<AppCommand>,
     ) {
         self.histogram.update(ui.ctx(), volume);
@@ -78,7 +77,10 @@ impl MaterialEditor {
         let painter = ui.painter_at(area);
         let format = |value: f64| plot::format_value(value, axes.range);
         plot::paint_axis_labels(&painter, &axes, &text::materials::largest_change(&format(plane.largest)));
-        plot::paint_value_mark(ui, &axes, marked);
+        plot::paint_value_mark(ui, &axes, marks.value);
+        if let Some(place) = marks.hovered {
+            plane.paint_place(ui, place);
+        }
         if let Some(at) = response.hover_pos() {
             let [value, change] = plane.place_at(at);
             let words = text::materials::readout(&format(value), &format(change));

@@ -14,6 +14,9 @@ const FILL: f64 = 150.0;
 /// Least opacity of the fill, so that faint materials have a colour, in 255ths.
 const MIN_FILL: f64 = 40.0;
 
+/// Radius of the dot for what is under the pointer in the picture, in points.
+const DOT_RADIUS: f32 = 4.5;
+
 /// Plane whose horizontal axis has values, and whose vertical one has their changes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MaterialPlane {
@@ -77,6 +80,12 @@ impl MaterialPlane {
                 end
             }
         })
+    }
+
+    /// Paints a dot at a value and a change: of what is under the pointer in the picture.
+    pub(super) fn paint_place(&self, ui: &Ui, [value, change]: [f64; 2]) {
+        let at = self.position(value, change);
+        ui.painter_at(self.axes.area).circle(at, DOT_RADIUS, theme::ACCENT, Stroke::new(1.5, theme::OUTLINE));
     }
 
     /// Paints the ground with the histogram, and the materials over it.

@@ -22,12 +22,14 @@ pub(crate) struct MaterialPicker {
     picked: Vec<(PickedMaterial, DVec3)>,
     /// Materials of the layer that were made of them.
     made: Vec<MaterialBox>,
+    /// Pointer in the picture while a layer is drawn by materials, with the value and the change under it.
+    hovered: Option<(Pos2, Option<[f64; 2]>)>,
 }
 
 impl MaterialPicker {
     /// Begins picking, or ends it.
     pub(crate) fn toggle(&mut self) {
-        *self = Self { is_active: !self.is_active, ..Self::default() };
+        *self = Self { is_active: !self.is_active, hovered: self.hovered, ..Self::default() };
     }
 
     /// Applies a click to the materials of a look. Returns true if nothing else may use it.
@@ -38,6 +40,7 @@ impl MaterialPicker {
         settings: &mut Settings,
         volume: &Volume,
     ) -> bool {
+        self.update_hovered(response, settings, volume);
         if self.is_active && overlay_windows::escape_for_picture(ui.ctx()) {
             self.is_active = false;
         }
@@ -66,6 +69,23 @@ impl MaterialPicker {
             }
         }
         true
+    }
+
+    /// Returns the value under the pointer in the picture, and its change over a voxel, while materials are edited.
+    pub(crate) fn hovered(&self) -> Option<[f64; 2]> {
+        self.hovered.and_then(|(_, found)| found)
+    }
+
+    fn update_hovered(&mut self, response: &Response, settings: &Settings, volume: &Volume) {
+        let pointer =
+            response.hover_pos().filter(|_| settings.layer().has_materials() && !response.dragged());
+        self.hovered = pointer.map(|at| match self.hovered {
+            Some((known, found)) if known == at => (at, found),
+            _ => {
+                let found = probe_at(volume, settings, response.rect, at);
+                (at, found.map(|found| [found.value, PickedMaterial::change_at(volume, found.index)]))
+            }
+        });
     }
 
     /// Paints the places that were clicked, and a hint.

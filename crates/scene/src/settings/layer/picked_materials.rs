@@ -85,6 +85,11 @@ impl PickedMaterial {
         Some(Self { mean, deviation, change: USUAL_CHANGE * changes[changes.len() / 2] })
     }
 
+    /// Returns the change of the value over the voxel at a place in index space.
+    pub fn change_at(volume: &Volume, index: DVec3) -> f64 {
+        change(volume, index.round().as_ivec3())
+    }
+
     /// Returns materials that part those that were picked, at most [`MAX_MATERIAL_BOXES`], in the order of picking:
     /// between two of different values the limit lies where both are as likely, and borders that pass through the
     /// values of a third are left out by their changes. Materials of the same values are parted by their changes.
