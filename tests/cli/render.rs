@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::checks::{assert_has_keys, assert_shows_something, keys, pixels};
 use crate::program::ProgramFolder;
-use crate::volumes::{gzipped, small_ball};
+use crate::volumes::{gzipped, header, small_ball};
 
 #[test]
 fn a_picture_and_its_report_are_written() {
@@ -305,4 +305,22 @@ fn a_picture_that_shows_nothing_is_not_written_without_a_word() {
     assert_eq!(is_visible_and_warned(&folder, away), (false, true));
     let sphere = "builtin:sphere:16 --size 64x48";
     assert_eq!(is_visible_and_warned(&folder, sphere), (true, false));
+}
+
+#[test]
+fn all_channels_of_a_file_are_shown_together() {
+    let folder = ProgramFolder::new();
+    let lines =
+        "type: uint8\ndimension: 4\nsizes: 2 8 8 8\nkinds: vector domain domain domain\nencoding: raw";
+    let values = (0..1024).map(|at: usize| if at % 2 == at / 16 % 2 { 200 } else { 10 });
+    folder.write("two.nrrd", [header(lines).into_bytes(), values.collect()].concat());
+    let options = "--size 32x24 --set layers.0.opacity_unit.voxels=4";
+    folder.run_successfully(&format!("render two.nrrd --component 0 -o one.png {options}"));
+    let both = format!("render two.nrrd --component 0 --all-channels -o both.png --report r.json {options}");
+    folder.run_successfully(&both);
+    assert_eq!(folder.json("r.json")["settings"]["layers"].as_array().map(Vec::len), Some(2));
+    assert!(pixels(&folder.path("one.png")) != pixels(&folder.path("both.png")));
+    assert!(folder.run_successfully("replay both.png --check").contains("identical"));
+    let said = folder.run_failing("render builtin:sphere:16 --all-channels -o no.png --size 32x24", 2);
+    assert!(said.contains("has a single channel"), "{said}");
 }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::open_with_size_warning;
 use crate::cli::CliError;
 use chiaroscuro_scene::{Settings, set_value};
-use chiaroscuro_volume::{Dataset, VolumeChoice};
+use chiaroscuro_volume::{Dataset, FileContents, FileDimension, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::LoadOptions;
 
 /// Volume to be shown as a layer: `FILE[:key=value,…]`.
@@ -71,6 +71,32 @@ impl LayerArg {
 /// Opens the volumes of layers, and adds them to a dataset.
 pub(super) fn with_layers(dataset: Dataset, layers: &[LayerArg]) -> Result<Dataset, CliError> {
     layers.iter().try_fold(dataset, |dataset, layer| add_layer(&dataset, &layer.source, &layer.choice))
+}
+
+/// Adds the channels of a file that are not shown to a dataset, or the components of its voxels, as far as there is room.
+pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Dataset, CliError> {
+    let choices = other_channels(dataset.volume().contents());
+    if choices.is_empty() {
+        let why = format!("--all-channels: {} has a single channel; leave this option out", source.display());
+        return Err(CliError::Usage(why));
+    }
+    let room = MAX_FIELDS.saturating_sub(dataset.fields().len());
+    let (first, rest) = (dataset.clone(), choices.iter().take(room));
+    rest.clone().try_fold(first, |dataset, choice| add_layer(&dataset, source, choice))
+}
+
+/// Returns the choices of the channels that are not shown, or else of the components.
+fn other_channels(held: &FileContents) -> Vec<VolumeChoice> {
+    let shown = held.choice();
+    if let Some(channels) = held.alternatives_in(FileDimension::Channel) {
+        let others = channels.offers.iter().enumerate().filter(|(at, _)| *at != channels.selected);
+        return others
+            .map(|(_, offer)| shown.clone().with_selected(FileDimension::Channel, &offer.key))
+            .collect();
+    }
+    let Some(components) = held.components else { return Vec::new() };
+    let others = (0..components.count).filter(|at| Some(*at) != components.selected);
+    others.map(|at| VolumeChoice { component: Some(at), ..shown.clone() }).collect()
 }
 
 /// Opens a volume, and adds it to a dataset.

@@ -19,7 +19,7 @@ pub(super) use self::decompression_warning::{
     control_with_size_warning, open_for_overview, open_with_size_warning,
 };
 pub(super) use self::layers::add_layer;
-use self::layers::{LayerArg, with_layers};
+use self::layers::{LayerArg, with_all_channels, with_layers};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};
@@ -91,6 +91,9 @@ pub(super) struct LookArgs {
     /// Set a single setting by its path, for instance shadows.strength=0.5; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
+    /// Show up to four channels or components of the file together
+    #[arg(long)]
+    all_channels: bool,
     /// Further volume to show with the first, with options such as :channel=1 or :blend=tint (add, tint, gate); may be
     /// repeated
     #[arg(long = "layer", value_name = "FILE[:KEY=VALUE,...]")]
@@ -148,7 +151,7 @@ impl SceneArgs {
     pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
         let (volume, context) = self.look.load.open(&self.file, None, times)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
-        Ok((self.look.with_layers(dataset)?, context))
+        Ok((self.look.with_layers(&self.file, dataset)?, context))
     }
 
     /// Path or built-in name of the volume.
@@ -186,11 +189,12 @@ impl LookArgs {
         context: &GpuContext,
     ) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
-        self.with_layers(dataset_with_warning(self.corrected(source, volume)?))
+        self.with_layers(source, dataset_with_warning(self.corrected(source, volume)?))
     }
 
-    /// Adds the volumes of further layers.
-    fn with_layers(&self, dataset: Dataset) -> Result<Dataset, CliError> {
+    /// Adds the other channels of a file, if they are wanted, and the volumes of further layers.
+    fn with_layers(&self, source: &Path, dataset: Dataset) -> Result<Dataset, CliError> {
+        let dataset = if self.all_channels { with_all_channels(source, &dataset)? } else { dataset };
         with_layers(dataset, &self.layers)
     }
 
@@ -296,7 +300,9 @@ impl LookArgs {
             settings.apply_environment_map(surroundings);
             named.add(|part| ["lights", "shadows.balance"].contains(&part));
         }
-        for (layer, index) in self.layers.iter().zip(1..) {
+        // Channels of the file come before other layers.
+        let first = loaded.fields().len().saturating_sub(self.layers.len());
+        for (layer, index) in self.layers.iter().zip(first..) {
             settings = layer.apply_to(settings, index)?;
         }
         let mut settings = self.apply_single_settings(settings, warn)?;
