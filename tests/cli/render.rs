@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::checks::{assert_has_keys, assert_shows_something, keys, pixels};
 use crate::program::ProgramFolder;
-use crate::volumes::{gzipped, header, small_ball};
+use crate::volumes::{gzipped, small_ball};
 
 #[test]
 fn a_picture_and_its_report_are_written() {
@@ -313,7 +313,10 @@ fn all_channels_of_a_file_are_shown_together() {
     let lines =
         "type: uint8\ndimension: 4\nsizes: 2 8 8 8\nkinds: vector domain domain domain\nencoding: raw";
     let values = (0..1024).map(|at: usize| if at % 2 == at / 16 % 2 { 200 } else { 10 });
-    folder.write("two.nrrd", [header(lines).into_bytes(), values.collect()].concat());
+    folder.write(
+        "two.nrrd",
+        [format!("NRRD0004\n{lines}\nspacings: nan 1 1 1\n\n").into_bytes(), values.collect()].concat(),
+    );
     let options = "--size 32x24 --set layers.0.opacity_unit.voxels=4";
     folder.run_successfully(&format!("render two.nrrd --component 0 -o one.png {options}"));
     let both = format!("render two.nrrd --component 0 --all-channels -o both.png --report r.json {options}");
