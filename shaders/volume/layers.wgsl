@@ -104,7 +104,8 @@ fn region_weight(ends: vec4f, at: f32) -> f32 {
 fn matter_of_materials(i: u32, low: f32, high: f32, change: f32) -> vec4f {
     var sum = vec4f(0.0);
     for (var at = 0u; at < layers.layers[i].material_count; at += 1u) {
-        let material = layers.layers[i].materials[at];
+        // Not from the copy, in which they would take drivers seconds to compile.
+        let material = bound_layers.layers[i].materials[at];
         let weight = mean_weight(material.densities, low, high) * region_weight(material.changes, change);
         sum += matter_of_mean(weight * material.matter);
     }
