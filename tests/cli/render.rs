@@ -312,7 +312,8 @@ fn all_channels_of_a_file_are_shown_together() {
     let folder = ProgramFolder::new();
     let lines =
         "type: uint8\ndimension: 4\nsizes: 2 8 8 8\nkinds: vector domain domain domain\nencoding: raw";
-    let values = (0..1024).map(|at: usize| if at % 2 == at / 16 % 2 { 200 } else { 10 });
+    // Rises along x, and along y.
+    let values = (0..1024).map(|at: usize| ([at / 2, at / 16][at % 2] % 8 * (30 - at / 128)) as u8);
     folder.write(
         "two.nrrd",
         [format!("NRRD0004\n{lines}\nspacings: nan 1 1 1\n\n").into_bytes(), values.collect()].concat(),

@@ -17,8 +17,8 @@ fn uniforms_read_late(source: &str) -> Vec<String> {
     let declared = code.split("var<uniform> ").skip(1).filter_map(|rest| rest.split(':').next());
     // An array with a varying index cannot be copied.
     let reads = |name: &str| {
-        let arrays =
-            [".lights[i]", ".rays[i]", ".rays[id.z]", ".directions[i]"].map(|of| format!("{name}{of}"));
+        let arrays = [".lights[i]", ".rays[i]", ".rays[id.z]", ".directions[i]", ".layers[i].materials[at]"]
+            .map(|of| format!("{name}{of}"));
         arrays.iter().fold(code.clone(), |code, of| code.replace(of, "")).matches(name).count()
     };
     let is_late = |name: &&str| {
