@@ -38,7 +38,7 @@ pub use self::settings::layer::length::OpacityLength;
 pub use self::settings::layer::material_box::{
     MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox, SoftInterval,
 };
-pub use self::settings::layer::picked_materials::PickedMaterial;
+pub use self::settings::layer::material_sample::MaterialSample;
 pub use self::settings::layer::{LayerCountError, LightingTransfer, VolumeLayer, VolumeLayers};
 pub use self::settings::light::area_light::{
     LightArea, LightShape, MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SIZE,

@@ -15,9 +15,9 @@ pub(crate) const USE_CURVE: ControlText =
     control_text("Curve", "Removes all materials and shows the curve again, as it was");
 pub(crate) const PICK: ControlText = control_text(
     "Pick materials",
-    "Makes materials of the parts that are clicked in the picture, parted by value and change",
+    "Makes materials of the parts that are clicked in the picture, separated by value and change",
 );
-pub(crate) const ESCAPE_ENDS: &str = "Escape ends";
+pub(crate) const ESCAPE_ENDS: &str = "Esc ends picking";
 
 /// Hint while parts are clicked, after a number of clicks.
 pub(crate) fn pick_hint(clicks: usize) -> &'static str {

@@ -60,7 +60,7 @@ impl BoxDrag {
         let axes = [(self.start.values, &mut material.values), (self.start.changes, &mut material.changes)];
         for (axis, (start, ends)) in axes.into_iter().enumerate() {
             let new = moved(start, self.moves[axis], axis);
-            // What is moved as a whole keeps its size.
+            // A box that is moved as a whole keeps its size.
             let new = if is_whole { plane.shifted_within(axis, new) } else { new };
             *ends = plane.opened_at_borders(axis, new);
             ends.sort_by(f64::total_cmp);

@@ -1,35 +1,20 @@
 //! Cache of the histogram of values and of their changes, counted on a thread, and its picture.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 
 use crate::app::common::volume_facts::VolumeFacts;
-use crate::app::worker::jobs::{JobKind, JobSlot};
-use chiaroscuro_volume::{ChangeHistogram, DensityMapping, Volume};
-
-/// Volume and mapping of its values to densities, which the histogram is of.
-#[derive(Debug, Clone)]
-struct HistogramInputs {
-    volume: Arc<Volume>,
-    shown: DensityMapping,
-}
-
-impl HistogramInputs {
-    fn new(volume: &VolumeFacts) -> Self {
-        Self { volume: Arc::clone(&volume.volume), shown: volume.shown }
-    }
-
-    fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.volume, &other.volume) && self.shown == other.shown
-    }
-}
+use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
+use chiaroscuro_volume::{ChangeHistogram, Volume};
 
 /// Histogram of a volume, with the texture that shows it.
 #[derive(Default)]
 pub(super) struct HistogramCache {
-    counting: JobSlot<Option<ChangeHistogram>, HistogramInputs>,
-    known: Option<(HistogramInputs, ChangeHistogram)>,
+    counting: JobSlot<Option<ChangeHistogram>, Weak<Volume>>,
+    /// Volume that was counted last, which is another one for another range of values, and its histogram; `None` if it
+    /// could not be counted. A closed volume is not held.
+    known: Option<(Weak<Volume>, Option<ChangeHistogram>)>,
     texture: Option<TextureHandle>,
 }
 
@@ -40,37 +25,39 @@ impl std::fmt::Debug for HistogramCache {
 }
 
 impl HistogramCache {
-    /// Takes a histogram that was counted, and begins to count that of a volume unless it is known. An earlier one is
-    /// shown meanwhile if it is of the same volume.
+    /// Takes a histogram that was counted, and begins to count that of a volume unless it is known.
     pub(super) fn update(&mut self, ctx: &egui::Context, volume: &VolumeFacts) {
-        let wanted = HistogramInputs::new(volume);
-        if let Some((inputs, Ok(Some(histogram)))) = self.counting.take_ended() {
-            self.texture = Some(ctx.load_texture("changes", picture(&histogram), TextureOptions::LINEAR));
-            self.known = Some((inputs, histogram));
+        let wanted = Arc::downgrade(&volume.volume);
+        if let Some((of, counted)) = self.counting.take_ended() {
+            let histogram = counted.ok().flatten();
+            let picture = histogram.as_ref().map(picture);
+            self.texture =
+                picture.map(|picture| ctx.load_texture("changes", picture, TextureOptions::LINEAR));
+            self.known = Some((of, histogram));
         }
-        if self.known.as_ref().is_some_and(|(known, _)| !Arc::ptr_eq(&known.volume, &wanted.volume)) {
-            self.known = None;
-        }
-        let is_known = self.known.as_ref().is_some_and(|(known, _)| known.is_same(&wanted));
-        if is_known || self.counting.inputs().is_some_and(|inputs| inputs.is_same(&wanted)) {
+        self.known = self.known.take().filter(|(known, _)| known.ptr_eq(&wanted));
+        if self.known.is_some() || self.counting.inputs().is_some_and(|of| of.ptr_eq(&wanted)) {
             return;
         }
-        let of = Arc::clone(&wanted.volume);
-        let count =
-            move |job: &crate::app::worker::jobs::JobControl| ChangeHistogram::from_volume(&of, job.token());
+        let of = Arc::clone(&volume.volume);
+        let count = move |job: &JobControl| ChangeHistogram::from_volume(&of, job.token());
         if let Err(err) = self.counting.start(JobKind::Histogram, ctx, wanted, count) {
             log::warn!("changes of values cannot be counted: {err}");
         }
     }
 
+    fn histogram(&self) -> Option<&ChangeHistogram> {
+        self.known.as_ref()?.1.as_ref()
+    }
+
     /// Returns the largest change of the axis, as a share of the range of values.
     pub(super) fn largest_change(&self) -> f64 {
-        self.known.as_ref().map_or(ASSUMED_LARGEST, |(_, histogram)| histogram.largest)
+        self.histogram().map_or(ASSUMED_LARGEST, |histogram| histogram.largest)
     }
 
     /// Returns the picture of the histogram, if it was counted.
     pub(super) fn texture(&self) -> Option<&TextureHandle> {
-        self.texture.as_ref().filter(|_| self.known.is_some())
+        self.texture.as_ref().filter(|_| self.histogram().is_some())
     }
 }
 

@@ -8,7 +8,7 @@ use crate::app::common::{overlay_windows, theme};
 use crate::app::text;
 use crate::app::viewport::overlay::outlined_text::paint_outlined_text;
 use crate::app::viewport::view_projection::ViewProjection;
-use chiaroscuro_scene::{Camera, MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox, PickedMaterial, Settings};
+use chiaroscuro_scene::{Camera, MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox, MaterialSample, Settings};
 use chiaroscuro_volume::Volume;
 
 /// Radius of the mark at a place that was clicked, in points.
@@ -19,7 +19,9 @@ const MARK_RADIUS: f32 = 5.0;
 pub(crate) struct MaterialPicker {
     is_active: bool,
     /// Materials at the places, with these in scene space.
-    picked: Vec<(PickedMaterial, DVec3)>,
+    picked: Vec<(MaterialSample, DVec3)>,
+    /// Content identifier of the volume in which they were picked.
+    content_id: u64,
     /// Materials of the layer that were made of them.
     made: Vec<MaterialBox>,
     /// Pointer in the picture while a layer is drawn by materials, with the value and the change under it.
@@ -52,17 +54,20 @@ impl MaterialPicker {
         }
         let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return false };
         if let Some(found) = picked_at(volume, settings, response.rect, at) {
-            // After an undo or another change, a click begins anew.
-            if self.made != settings.layer().materials || self.picked.len() >= MAX_MATERIAL_BOXES {
+            // In another volume, and after an undo or another change, a click begins anew.
+            let is_continued =
+                self.content_id == volume.content_id() && self.made == settings.layer().materials;
+            if !is_continued || self.picked.len() >= MAX_MATERIAL_BOXES {
+                self.content_id = volume.content_id();
                 self.picked.clear();
             }
             self.picked.push(found);
             // One alone would hide the others, which are still to be clicked.
             if self.picked.len() > 1 {
-                let materials: Vec<PickedMaterial> =
+                let materials: Vec<MaterialSample> =
                     self.picked.iter().map(|(material, _)| *material).collect();
                 let range = settings.layer().shown_range(&volume.ranges(), None);
-                self.made = PickedMaterial::parted(&materials, range);
+                self.made = MaterialSample::separating_boxes(&materials, range);
                 settings.layer_mut().materials.clone_from(&self.made);
             } else {
                 self.made.clone_from(&settings.layer().materials);
@@ -83,7 +88,7 @@ impl MaterialPicker {
             Some((known, found)) if known == at => (at, found),
             _ => {
                 let found = probe_at(volume, settings, response.rect, at);
-                (at, found.map(|found| [found.value, PickedMaterial::change_at(volume, found.index)]))
+                (at, found.map(|found| [found.value, MaterialSample::change_at(volume, found.index)]))
             }
         });
     }
@@ -119,7 +124,7 @@ fn picked_at(
     settings: &Settings,
     picture: Rect,
     at: Pos2,
-) -> Option<(PickedMaterial, DVec3)> {
+) -> Option<(MaterialSample, DVec3)> {
     let found = probe_at(volume, settings, picture, at).or_else(|| {
         let mut by_curve = settings.clone();
         by_curve.layer_mut().materials.clear();
@@ -129,5 +134,5 @@ fn picked_at(
     let [x, y, width, height] = [offset.x, offset.y, picture.width(), picture.height()].map(f64::from);
     let (_, direction) = settings.camera.ray_through(x, y, width, height);
     let into = volume.scene().index_from_scene.transform_vector3(direction);
-    Some((PickedMaterial::measure(volume, found.index, into)?, found.point))
+    Some((MaterialSample::measure(volume, found.index, into)?, found.point))
 }

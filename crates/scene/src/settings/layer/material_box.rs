@@ -128,7 +128,7 @@ pub(crate) fn transfer_at_any_change(materials: &[MaterialBox], range: ValueRang
         let mut weights = 0.0;
         for (material, interval) in materials.iter().zip(&intervals) {
             let extinction = depth(material.opacity) * interval.weight(at);
-            // Where there is no matter, colours are those of materials that begin there.
+            // Ends without matter have the colours of the materials that begin or end there.
             let weight = extinction + 1e-6 * f64::from(u8::from(interval.corners().contains(&at)));
             sum += extinction;
             weights += weight;

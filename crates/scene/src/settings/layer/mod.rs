@@ -8,7 +8,7 @@ pub(crate) mod density_range;
 pub(crate) mod label_table;
 pub(crate) mod length;
 pub(crate) mod material_box;
-pub(crate) mod picked_materials;
+pub(crate) mod material_sample;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,16 +1,16 @@
-//! Materials that part places which were picked in the picture.
+//! Samples of materials that were picked in the picture, and the boxes that separate them.
 
 use glam::{DVec3, IVec3};
 
 use super::material_box::{MATERIAL_COLORS, MAX_MATERIAL_BOXES, MaterialBox};
 use chiaroscuro_volume::{ValueRange, Volume};
 
-/// Number of voxels behind a picked place among which the calmest is taken: the surface itself is a mixture with what
+/// Number of voxels behind a picked place among which that with the least change is taken: the surface itself is a mixture with what
 /// lies before it, over two or three voxels of most scans.
 const REACH: usize = 8;
 
-/// Factor by which changes rise from the calmest voxel to the next border, and by which they fall from the border that
-/// was picked.
+/// Factor by which changes rise from the voxel with the least change to the next border, and by which they fall from
+/// the border that was picked.
 const BORDER_FACTOR: f64 = 2.0;
 
 /// Half of the edge of the cube in which values are measured, in voxels.
@@ -35,9 +35,9 @@ const OPACITY: f64 = 0.8;
 /// Softness of materials that were picked: neighbours meet at their limits.
 const SOFTNESS: f64 = 0.1;
 
-/// Material at a place that was picked: its values, and their changes over a voxel, in data units.
+/// Statistics of a material at a picked place: its values, and their changes over a voxel, in data units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PickedMaterial {
+pub struct MaterialSample {
     /// Mean of the values.
     pub mean: f64,
     /// Standard deviation of the values.
@@ -46,35 +46,34 @@ pub struct PickedMaterial {
     pub change: f64,
 }
 
-impl PickedMaterial {
+impl MaterialSample {
     /// Measures the material behind a place, along a direction into the volume, both in index space; `None` outside.
     pub fn measure(volume: &Volume, index: DVec3, direction: DVec3) -> Option<Self> {
         let step = direction / direction.abs().max_element().max(f64::MIN_POSITIVE);
         let along = (0..=REACH).map(|at| (index + at as f64 * step).round().as_ivec3());
-        let mut calmest: Option<(f64, IVec3)> = None;
+        let mut least_changing: Option<(f64, IVec3)> = None;
         let mut largest = 0.0_f64;
         for place in along.filter(|place| value(volume, *place).is_some()) {
             let change = change(volume, place);
             largest = largest.max(change);
-            match calmest {
+            match least_changing {
                 Some((least, _)) if change > BORDER_FACTOR * least && largest > BORDER_FACTOR * least => {
                     break;
                 }
                 Some((least, _)) if change >= least => {}
-                _ => calmest = Some((change, place)),
+                _ => least_changing = Some((change, place)),
             }
         }
-        let (_, middle) = calmest?;
+        let (_, middle) = least_changing?;
         let edge = -MEASURED_HALF_EDGE..=MEASURED_HALF_EDGE;
         let cube = edge.clone().flat_map(|z| {
             let edge = edge.clone();
             edge.clone().flat_map(move |y| edge.clone().map(move |x| IVec3::new(x, y, z)))
         });
-        let places: Vec<(f64, IVec3)> =
+        let mut near: Vec<(f64, IVec3)> =
             cube.filter_map(|by| Some((value(volume, middle + by)?, middle + by))).collect();
-        // Around the calmest voxel may be others: those nearest to its value are the material.
+        // The cube may reach into other materials: voxels with the nearest values belong to this one.
         let own = value(volume, middle)?;
-        let mut near = places;
         near.sort_by(|(a, _), (b, _)| (a - own).abs().total_cmp(&(b - own).abs()));
         near.truncate(near.len().div_ceil(2));
         let count = near.len() as f64;
@@ -90,10 +89,11 @@ impl PickedMaterial {
         change(volume, index.round().as_ivec3())
     }
 
-    /// Returns materials that part those that were picked, at most [`MAX_MATERIAL_BOXES`], in the order of picking:
-    /// between two of different values the limit lies where both are as likely, and borders that pass through the
-    /// values of a third are left out by their changes. Materials of the same values are parted by their changes.
-    pub fn parted(picked: &[Self], range: ValueRange) -> Vec<MaterialBox> {
+    /// Returns boxes that separate samples, at most [`MAX_MATERIAL_BOXES`], in the order of the
+    /// samples: between two of different values the limit lies where both are as likely, and borders that pass through
+    /// the values of a third are left out by their changes. Materials of the same values are separated by their
+    /// changes.
+    pub fn separating_boxes(picked: &[Self], range: ValueRange) -> Vec<MaterialBox> {
         let picked = &picked[..picked.len().min(MAX_MATERIAL_BOXES)];
         let part = |(at, own): (usize, &Self)| {
             let others =
@@ -113,7 +113,7 @@ impl PickedMaterial {
             let far =
                 |neighbour: Option<&Self>| neighbour.map_or(0.0, |other| (limit(other) - own.mean).abs());
             let low = below.map_or(own.mean - half_width.max(far(above)), limit);
-            // What is brighter than all that was picked belongs to the brightest.
+            // Values above those of all samples belong to the material with the highest values.
             let high = match (above, below) {
                 (Some(above), _) => limit(above),
                 (None, Some(_)) => range.high.max(own.mean + half_width),
@@ -130,6 +130,8 @@ impl PickedMaterial {
                 let end = usize::from(own.change <= other.change);
                 changes[end] = if end == 1 { changes[1].min(limit) } else { changes[0].max(limit) };
             }
+            // Limits from several neighbours may cross.
+            changes.sort_by(f64::total_cmp);
             let color = MATERIAL_COLORS[at];
             MaterialBox { values: [low, high], changes, softness: SOFTNESS, color, opacity: OPACITY }
         };
@@ -141,13 +143,18 @@ impl PickedMaterial {
     }
 }
 
-/// Returns the value of a voxel; `None` outside of the grid and where it is missing.
+/// Returns the value of a voxel; `None` outside of the grid, and where it is missing or hidden by more than half.
 fn value(volume: &Volume, place: IVec3) -> Option<f64> {
     let dims = volume.dims().map(|n| n as i32);
     let place = place.to_array();
     let is_inside = (0..3).all(|axis| (0..dims[axis]).contains(&place[axis]));
+    if !is_inside {
+        return None;
+    }
     let [x, y, z] = place.map(|at| at as usize);
-    is_inside.then(|| volume.value(x, y, z)).filter(|value| value.is_finite())
+    let [nx, ny, _] = volume.dims();
+    // Padding is finite, and no material.
+    (volume.presence(x + nx * (y + ny * z)) >= 0.5).then(|| volume.value(x, y, z))
 }
 
 /// Returns the change of the value over a voxel: the length of its gradient, by differences of its neighbours.
@@ -181,18 +188,18 @@ mod tests {
     fn materials_are_measured_behind_their_surfaces() {
         let volume = layers();
         for (x, mean) in [(11.0, 400.0), (20.0, 400.0), (29.5, 900.0), (2.0, 0.0)] {
-            let found = PickedMaterial::measure(&volume, DVec3::new(x, 8.0, 8.0), DVec3::X).unwrap();
+            let found = MaterialSample::measure(&volume, DVec3::new(x, 8.0, 8.0), DVec3::X).unwrap();
             assert!((found.mean - mean).abs() < 8.0, "{x}: {found:?}");
             assert!(found.deviation < 8.0 && found.change < 20.0, "{x}: {found:?}");
         }
-        assert_eq!(PickedMaterial::measure(&volume, DVec3::splat(90.0), DVec3::X), None);
+        assert_eq!(MaterialSample::measure(&volume, DVec3::splat(90.0), DVec3::X), None);
     }
 
     #[test]
     fn two_materials_meet_between_and_borders_belong_to_neither() {
         let volume = layers();
-        let pick = |x: f64| PickedMaterial::measure(&volume, DVec3::new(x, 8.0, 8.0), DVec3::X).unwrap();
-        let [inner, outer] = PickedMaterial::parted(&[pick(30.0), pick(12.0)], RANGE)[..] else {
+        let pick = |x: f64| MaterialSample::measure(&volume, DVec3::new(x, 8.0, 8.0), DVec3::X).unwrap();
+        let [inner, outer] = MaterialSample::separating_boxes(&[pick(30.0), pick(12.0)], RANGE)[..] else {
             panic!("two")
         };
         assert!(
@@ -206,13 +213,13 @@ mod tests {
     }
 
     #[test]
-    fn the_same_values_are_parted_by_their_changes() {
-        let material = |mean, change| PickedMaterial { mean, deviation: 10.0, change };
-        let found = PickedMaterial::parted(&[material(500.0, 4.0), material(505.0, 60.0)], RANGE);
+    fn the_same_values_are_separated_by_their_changes() {
+        let material = |mean, change| MaterialSample { mean, deviation: 10.0, change };
+        let found = MaterialSample::separating_boxes(&[material(500.0, 4.0), material(505.0, 60.0)], RANGE);
         assert_eq!(found[0].changes, [0.0, 32.0]);
         assert_eq!(found[1].changes, [32.0, 1000.0]);
         assert!(found[0].values[1] > 500.0 && found[1].values[0] < 500.0);
-        let alone = PickedMaterial::parted(&[material(500.0, 4.0)], RANGE);
+        let alone = MaterialSample::separating_boxes(&[material(500.0, 4.0)], RANGE);
         assert_eq!((alone[0].values, alone[0].changes), ([470.0, 530.0], [0.0, 1000.0]));
     }
 }
