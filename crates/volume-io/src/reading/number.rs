@@ -201,7 +201,7 @@ impl VoxelEncoding {
     /// Reads all voxels of a grid.
     fn read_all(
         &self,
-        reader: &mut impl Read,
+        reader: &mut dyn Read,
         extent: GridExtent,
         control: &LoadControl,
     ) -> Result<Samples, ReadFault> {
@@ -248,7 +248,7 @@ impl VoxelEncoding {
 
     fn read_voxels<T>(
         &self,
-        reader: &mut impl Read,
+        reader: &mut dyn Read,
         layout: &VoxelLayout,
         control: &LoadControl,
         voxel_of: impl Fn(&[u8]) -> T,

@@ -1,7 +1,8 @@
 //! Decoding of bytes into typed voxels, block by block.
 //!
 //! Only the voxels themselves and one block are in memory at a time. Allocation is fallible: a header that lies about
-//! its size causes an error, not an abort.
+//! its size causes an error, not an abort. Readers are `dyn`: for each kind of reader apart, these functions would be
+//! compiled some forty times, and a call for each block costs nothing.
 
 use std::io::{self, Read};
 
@@ -169,7 +170,7 @@ pub(super) use read_as;
 
 /// Reads all binary voxels of a grid; bytes after them are not touched.
 pub(crate) fn read_binary(
-    reader: &mut impl Read,
+    reader: &mut dyn Read,
     layout: &VoxelLayout,
     control: &LoadControl,
 ) -> Result<Samples, ReadFault> {
@@ -186,7 +187,7 @@ pub(crate) fn is_corruption(error: &io::Error) -> bool {
 
 /// Fills `block` until it is full or the reader ends; returns the number of bytes read.
 pub(crate) fn read_until_full(
-    reader: &mut impl Read,
+    reader: &mut dyn Read,
     block: &mut [u8],
     control: &LoadControl,
 ) -> Result<usize, ReadFault> {
@@ -209,11 +210,7 @@ pub(crate) fn read_until_full(
 }
 
 /// Reads and discards up to `count` bytes; returns how many there were.
-pub(crate) fn skip_bytes(
-    reader: &mut impl Read,
-    count: u64,
-    control: &LoadControl,
-) -> Result<u64, ReadFault> {
+pub(crate) fn skip_bytes(reader: &mut dyn Read, count: u64, control: &LoadControl) -> Result<u64, ReadFault> {
     let mut block = vec![0; BLOCK_BYTES.min(usize::try_from(count).unwrap_or(BLOCK_BYTES))];
     let mut skipped = 0;
     while skipped < count {
@@ -228,7 +225,7 @@ pub(crate) fn skip_bytes(
 }
 
 fn read_blocks<T: DecodeSample>(
-    reader: &mut impl Read,
+    reader: &mut dyn Read,
     layout: &VoxelLayout,
     control: &LoadControl,
 ) -> Result<Vec<T>, ReadFault> {
@@ -243,7 +240,7 @@ fn read_blocks<T: DecodeSample>(
 
 /// Reads voxels until `block` is full; returns their number of bytes in the file.
 pub(super) fn read_block<T: DecodeSample>(
-    reader: &mut impl Read,
+    reader: &mut dyn Read,
     block: &mut [T],
     endian: Endian,
     control: &LoadControl,
