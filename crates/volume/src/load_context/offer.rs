@@ -46,6 +46,8 @@ pub struct VolumeOffer {
     pub name: String,
     /// Voxels along x, y, z, if known.
     pub dims: Option<[u64; 3]>,
+    /// Colour that the file gives a channel: red, green and blue in sRGB.
+    pub color: Option<[u8; 3]>,
 }
 
 impl VolumeOffer {
@@ -55,6 +57,7 @@ impl VolumeOffer {
             key: number.to_string(),
             name: chiaroscuro_files::sanitised(name.trim(), 80),
             dims: Some(dims),
+            color: None,
         }
     }
 }

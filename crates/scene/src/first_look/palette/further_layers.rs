@@ -4,8 +4,8 @@ use crate::{
     ControlPoint, DensityRange, LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer,
 };
 use chiaroscuro_volume::{
-    DataKind, Dataset, DatasetField, DefaultComponent, Modality, ValueRange, Volume, VoxelComponents,
-    VoxelType,
+    DataKind, Dataset, DatasetField, DefaultComponent, FileDimension, Modality, ValueRange, Volume,
+    VoxelComponents, VoxelType,
 };
 
 use super::DomainPalette;
@@ -30,6 +30,12 @@ const HOT: DomainPalette =
 /// Share of the voxels below the value at which a measurement over a scan begins to be seen.
 const SEEN_MEASUREMENT_SHARE: f64 = 0.97;
 
+/// Smallest value of the brightest channel of a colour that is seen on black: a fifth of the light of white.
+const DARKEST_CHANNEL: u8 = 124;
+
+/// Smallest difference in one channel between colours that are told apart at a glance: a quarter of the range.
+const LEAST_COLOR_DIFFERENCE: u8 = 64;
+
 /// Relation of further volumes to the first one, which decides their colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum FieldRelation {
@@ -53,7 +59,7 @@ pub fn add_layers(settings: &mut Settings, dataset: &Dataset) {
     }
     let (relation, count) = (FieldRelation::detect(dataset), settings.layers.count());
     if relation == FieldRelation::Channels && count == 1 && dataset.fields().len() > 1 {
-        colorize(&mut settings.layer_mut().transfer, &CHANNELS[0]);
+        color_channel(&mut settings.layer_mut().transfer, dataset, 0);
     }
     for (index, field) in dataset.fields().iter().enumerate().skip(count) {
         settings.layers.push(further_layer(dataset, index, field, relation));
@@ -92,9 +98,37 @@ fn further_layer(
     } else if relation == FieldRelation::Measurements {
         show_measurement(&mut layer, field);
     } else {
-        colorize(&mut layer.transfer, &CHANNELS[index % CHANNELS.len()]);
+        color_channel(&mut layer.transfer, dataset, index);
     }
     layer
+}
+
+/// Gives a curve the colour of a channel: that of the file where it tells all fields apart, else one of our own.
+fn color_channel(transfer: &mut TransferFunction, dataset: &Dataset, index: usize) {
+    let recorded = recorded_colors(dataset);
+    if let Some(&[red, green, blue]) = recorded.as_ref().and_then(|colors| colors.get(index)) {
+        let color = [red, green, blue].map(|channel| f32::from(channel) / 255.0);
+        transfer.points.iter_mut().for_each(|point| point.color = color);
+    } else {
+        colorize(transfer, &CHANNELS[index % CHANNELS.len()]);
+    }
+}
+
+/// Returns the colours that the files give their channels, if all fields have one that can be seen and told from the
+/// others.
+fn recorded_colors(dataset: &Dataset) -> Option<Vec<[u8; 3]>> {
+    let color = |field: &DatasetField| {
+        let contents = field.volume().contents();
+        let channels = contents.alternatives_in(FileDimension::Channel)?;
+        channels.offers.get(channels.selected)?.color
+    };
+    let colors: Vec<[u8; 3]> = dataset.fields().iter().map(color).collect::<Option<_>>()?;
+    let is_seen = |color: &[u8; 3]| color.iter().any(|&channel| channel >= DARKEST_CHANNEL);
+    let differs = |a: &[u8; 3], b: &[u8; 3]| {
+        std::iter::zip(a, b).any(|(&a, &b)| a.abs_diff(b) >= LEAST_COLOR_DIFFERENCE)
+    };
+    let is_apart = (0..colors.len()).all(|at| colors[..at].iter().all(|other| differs(other, &colors[at])));
+    (is_apart && colors.iter().all(is_seen)).then_some(colors)
 }
 
 impl FieldRelation {

@@ -42,7 +42,7 @@ impl FitsImage {
             ("", 0) => "PRIMARY".to_owned(),
             (name, _) => sanitised(name, 80),
         };
-        VolumeOffer { key: self.number.to_string(), name, dims: Some(self.layout.dims) }
+        VolumeOffer { key: self.number.to_string(), name, dims: Some(self.layout.dims), color: None }
     }
 }
 

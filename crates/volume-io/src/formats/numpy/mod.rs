@@ -160,7 +160,7 @@ fn load_archive(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     }
     let offers = arrays.iter().map(|array| {
         let key = array.key();
-        VolumeOffer { name: key.clone(), key, dims: Some(array.grid.dims) }
+        VolumeOffer { name: key.clone(), key, dims: Some(array.grid.dims), color: None }
     });
     let offers: Vec<VolumeOffer> = offers.collect();
     let is_scalar = |at: usize| arrays[at].grid.components == 1 && arrays[at].grid.outer.is_empty();

@@ -8,6 +8,8 @@ pub(crate) struct ChannelsAndTimes {
     pub(crate) dims: [u64; 3],
     pub(crate) channels: usize,
     pub(crate) channel_names: Vec<String>,
+    /// Colours of the channels in sRGB, as far as the file has them.
+    pub(crate) channel_colors: Vec<Option<[u8; 3]>>,
     pub(crate) frames: usize,
     /// Names of the time steps; empty where the file has none.
     pub(crate) frame_names: Vec<String>,
@@ -33,11 +35,14 @@ impl ChannelsAndTimes {
         // A time series of one slice is a volume only with time as its depth.
         let is_time_depth = slices == 1 && self.frames > 1 && choice.frame.is_none();
         let dims = [width, height, if is_time_depth { self.frames as u64 } else { slices }];
-        let offers = |count: usize, names: &[String]| {
+        let offers = |count: usize, names: &[String]| -> Vec<VolumeOffer> {
             let name = |at: usize| names.get(at).map_or("", String::as_str);
             (0..count).map(|at| VolumeOffer::with_number(at, name(at), dims)).collect()
         };
-        let channels = offers(self.channels, &self.channel_names);
+        let mut channels = offers(self.channels, &self.channel_names);
+        for (channel, color) in channels.iter_mut().zip(&self.channel_colors) {
+            channel.color = *color;
+        }
         let channel = context.resolve_choice(choice, FileDimension::Channel, channels)?;
         let frame = if is_time_depth {
             0

@@ -204,6 +204,7 @@ fn offers(series: &[SliceSeries], size_of: impl Fn(usize) -> Option<[u64; 2]>) -
         key: at.to_string(),
         name: sanitised(&series.group.name, 80),
         dims: if is_long { None } else { dims(series) },
+        color: None,
     };
     series.iter().enumerate().map(offer).collect()
 }

@@ -178,6 +178,7 @@ impl SliceRecording {
             dims: self.dims(),
             channels: self.channels.len(),
             channel_names: labels(&self.channels),
+            channel_colors: Vec::new(),
             frames: self.times.len(),
             frame_names: labels(&self.times),
         };

@@ -61,6 +61,7 @@ pub(super) fn stack_of_pages(
         dims: [first.width, first.height, pages.len() as u64],
         channels: if is_channels { first.samples } else { 1 },
         channel_names: Vec::new(),
+        channel_colors: Vec::new(),
         frames: 1,
         frame_names: Vec::new(),
     };

@@ -9,7 +9,7 @@ use super::super::messages::HELP;
 use super::super::stack::{TiffSlice, TiffStack};
 use super::super::undescribed::UsablePages;
 use super::contiguous::contiguous_pages;
-use super::imagej_names::ImagejMetadata;
+use super::imagej_channels::ImagejMetadata;
 use super::spacing::placement_from_resolution;
 use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
 use crate::reading::input::stem;
@@ -82,8 +82,15 @@ pub(crate) fn stack(
         (1, pages.len(), 1)
     };
     let dims = [first.width, first.height, slices as u64];
-    let channel_names = ImagejMetadata::read(tiff).channel_names(channels, pages.len());
-    let steps = ChannelsAndTimes { dims, channels, channel_names, frames, frame_names: Vec::new() };
+    let metadata = ImagejMetadata::read(tiff);
+    let steps = ChannelsAndTimes {
+        dims,
+        channels,
+        channel_names: metadata.channel_names(channels, pages.len()),
+        channel_colors: metadata.channel_colors(channels),
+        frames,
+        frame_names: Vec::new(),
+    };
     let chosen = steps.choose(context, choice)?;
     let mut placement = placement_from_resolution(tiff, said.text("unit"), said.number("spacing"));
     placement.remarks.splice(0..0, remarks);

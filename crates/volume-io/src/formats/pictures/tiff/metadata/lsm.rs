@@ -8,7 +8,7 @@ use super::super::file::page::{SampleMeaning, tag};
 use super::super::messages::HELP;
 use super::super::stack::{TiffSlice, TiffStack};
 use super::super::undescribed::UsablePages;
-use super::lsm_names::channel_names;
+use super::lsm_channels::LsmChannels;
 use crate::Endian;
 use crate::formats::pictures::channels_and_times::ChannelsAndTimes;
 use crate::reading::input::stem;
@@ -18,7 +18,7 @@ use chiaroscuro_volume::{LoadContext, LoadError, Modality, ValueMetadata, Volume
 /// Magic numbers of the entry, versions 1.3 and later.
 const MAGIC: [u64; 2] = [0x0030_0494, 0x0040_0494];
 
-/// Number of bytes of the entry that are read, to the end of the offset of the channel names.
+/// Number of bytes of the entry that are read, to the end of the offset of the channels' block.
 const INFO_BYTES: u64 = 112;
 
 /// Contents of the LSM entry.
@@ -27,8 +27,7 @@ pub(crate) struct LsmInfo {
     frames: usize,
     /// Voxel size, in metres.
     spacing: [f64; 3],
-    /// Names of the channels; empty where the file has none.
-    channel_names: Vec<String>,
+    channels: LsmChannels,
 }
 
 impl LsmInfo {
@@ -44,7 +43,7 @@ impl LsmInfo {
             slices: number(16, 4)?.max(1) as usize,
             frames: number(24, 4)?.max(1) as usize,
             spacing: [length(40)?, length(48)?, length(56)?],
-            channel_names: channel_names(&mut tiff.bytes, number(108, 4).unwrap_or(0)),
+            channels: LsmChannels::read(&mut tiff.bytes, number(108, 4).unwrap_or(0)),
         })
     }
 
@@ -73,7 +72,8 @@ impl LsmInfo {
         let steps = ChannelsAndTimes {
             dims: [first.width, first.height, slices as u64],
             channels: if is_channels { first.samples } else { 1 },
-            channel_names: self.channel_names.clone(),
+            channel_names: self.channels.names.clone(),
+            channel_colors: self.channels.colors.clone(),
             frames,
             frame_names: Vec::new(),
         };

@@ -2,10 +2,10 @@
 
 mod contiguous;
 pub(super) mod imagej;
-pub(super) mod imagej_names;
+pub(super) mod imagej_channels;
 mod length_unit;
 pub(super) mod lsm;
-pub(super) mod lsm_names;
+pub(super) mod lsm_channels;
 pub(super) mod ome;
 pub(super) mod palette;
 pub(super) mod shaped;

@@ -4,7 +4,7 @@ use super::writer::{LITTLE, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen, load_with};
 use crate::formats::pictures::tiff::file::page::tag;
 use chiaroscuro_files::xml::slow_texts::slow_texts;
-use chiaroscuro_volume::{LoadErrorKind, Modality, Volume, VolumeChoice};
+use chiaroscuro_volume::{FileDimension, LoadErrorKind, Modality, Volume, VolumeChoice};
 
 fn page(value: u8) -> TiffLeaf {
     LITTLE.leaf([2, 1], 8, &[value, value])
@@ -60,8 +60,8 @@ fn pages_are_in_the_order_that_is_said() {
 fn sizes_channels_and_light_are_understood() {
     let pixels = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"2\" SizeT=\"1\" PhysicalSizeX=\"0.5\" \
                   PhysicalSizeY=\"500\" PhysicalSizeYUnit=\"nm\" PhysicalSizeZ=\"2\" PhysicalSizeZUnit=\"µm\"";
-    let channels =
-        "<Channel ID=\"c0\" Name=\"DAPI\" EmissionWavelength=\"460\"/><Channel ID=\"c1\" Name=\"GFP\"/>";
+    let channels = "<Channel ID=\"c0\" Name=\"DAPI\" EmissionWavelength=\"460\" Color=\"65535\"/>\
+                    <Channel ID=\"c1\" Name=\"GFP\" Color=\"-16711681\"/>";
     let bytes = file(&document(&image("cells", pixels, channels)), 4);
     assert_refused(load_bytes(&bytes), LoadErrorKind::BadInput, &["0 \"DAPI\" (2 x 1 x 2)", "1 \"GFP\""]);
     let volume = load_chosen(&bytes, VolumeChoice { channel: Some(1), ..VolumeChoice::default() }).unwrap();
@@ -69,6 +69,9 @@ fn sizes_channels_and_light_are_understood() {
     assert!((volume.spacing_mm() - glam::DVec3::new(0.5e-3, 0.5e-3, 2e-3)).length() < 1e-12);
     assert_eq!(volume.metadata().modality, Modality::LightMicroscopy);
     assert_eq!(volume.metadata().acquisition(), Some("GFP"));
+    let channels = volume.contents().alternatives_in(FileDimension::Channel).unwrap();
+    let colors: Vec<_> = channels.offers.iter().map(|channel| channel.color).collect();
+    assert_eq!(colors, [Some([0, 0, 255]), Some([255, 0, 255])]);
     let flat = "DimensionOrder=\"XYZCT\" SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"1\" PhysicalSizeY=\"1\"";
     let volume = load_bytes(&file(&document(&image("", flat, "")), 2)).unwrap();
     assert!(volume.has_unknown_scale() && volume.metadata().is_empty() && volume.name() == "stack");

@@ -4,8 +4,8 @@ use super::writer::{LITTLE, LONG, SHORT, TiffLeaf};
 use super::{assert_refused, load_bytes, load_chosen};
 use crate::Endian;
 use crate::formats::pictures::tiff::file::page::tag;
-use crate::formats::pictures::tiff::metadata::imagej_names::tests::entries;
-use crate::formats::pictures::tiff::metadata::lsm_names;
+use crate::formats::pictures::tiff::metadata::imagej_channels::tests::entries;
+use crate::formats::pictures::tiff::metadata::lsm_channels;
 use chiaroscuro_volume::{LoadErrorKind, Modality, Samples, Volume, VolumeChoice};
 
 fn page(value: u8) -> TiffLeaf {
@@ -195,7 +195,7 @@ fn laser_scanning_microscopes_say_their_sizes() {
     assert_eq!(volume.metadata().modality, Modality::LightMicroscopy);
     // Names of the channels are behind the pages, and the entry has their offset.
     info[108..112].copy_from_slice(&(file.len() as u32).to_le_bytes());
-    let named = [write(&info), lsm_names::tests::block(&[b"DAPI", b"Ch2-T1"])].concat();
+    let named = [write(&info), lsm_channels::tests::block(&[b"DAPI", b"Ch2-T1"])].concat();
     let words = ["0 \"DAPI\" (2 x 1 x 2)", "1 \"Ch2-T1\""];
     assert_refused(load_bytes(&named), LoadErrorKind::BadInput, &words);
     let truncated = &named[..file.len() + 10];

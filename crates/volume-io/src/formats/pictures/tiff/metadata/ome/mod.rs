@@ -206,6 +206,15 @@ fn channel_name(channel: Node<'_, '_>) -> String {
     said("Name").or_else(|| said("Fluor")).map(str::to_owned).or_else(wavelength).unwrap_or_default()
 }
 
+/// Colour of a channel: red, green, blue and opacity, a byte each, as one signed number. White is what programs write
+/// that know none.
+fn channel_color(channel: Node<'_, '_>) -> Option<[u8; 3]> {
+    // Some write it as an unsigned number.
+    let number = number::<i64>(channel, "Color")?;
+    let [red, green, blue, _] = u32::try_from(number & 0xffff_ffff).ok()?.to_be_bytes();
+    Some([red, green, blue])
+}
+
 fn stack_from_root(
     context: LoadContext<'_>,
     tiff: &TiffFile,
@@ -237,6 +246,7 @@ fn stack_from_root(
         dims: sizes.dims,
         channels: channels_there,
         channel_names: children(pixels, "Channel").map(channel_name).collect(),
+        channel_colors: children(pixels, "Channel").map(channel_color).collect(),
         frames,
         frame_names: Vec::new(),
     };

@@ -115,6 +115,7 @@ pub(crate) fn stack_of_shapes(
         dims: [page.width, page.height, slices as u64],
         channels: channels.saturating_mul(inside),
         channel_names: words.channel_names(size(axes.channels).saturating_mul(inside)),
+        channel_colors: Vec::new(),
         frames,
         frame_names: Vec::new(),
     };

@@ -1,4 +1,5 @@
-//! Channel names in the `ImageJ` metadata block: slice labels, and info lines about the image.
+//! Names and colours of channels in the `ImageJ` metadata block: slice labels, info lines about the image, and lookup
+//! tables.
 //!
 //! `ImageJ` has two entries of its own: 50838 with the lengths of the parts of 50839 (its classes `TiffEncoder` and
 //! `TiffDecoder`). Text is UTF-16 in the byte order of the file.
@@ -13,16 +14,19 @@ const MAX_BYTES: u64 = 16 << 20;
 /// Types of parts, as numbers of four letters.
 const INFO: u32 = u32::from_be_bytes(*b"info");
 const LABELS: u32 = u32::from_be_bytes(*b"labl");
+const LOOKUP_TABLES: u32 = u32::from_be_bytes(*b"luts");
 /// Magic number at the beginning of the list of types.
 const MAGIC: u32 = u32::from_be_bytes(*b"IJIJ");
 
-/// Texts of the `ImageJ` metadata block.
+/// Texts and colours of the `ImageJ` metadata block.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct ImagejMetadata {
     /// Label of each page, or, from other programs, of each channel.
     labels: Vec<String>,
     /// Info lines of the form `key = value`.
     info: String,
+    /// Colour in sRGB of the largest values of each channel.
+    colors: Vec<Option<[u8; 3]>>,
 }
 
 impl ImagejMetadata {
@@ -59,6 +63,7 @@ impl ImagejMetadata {
                 match kind {
                     LABELS => kept.labels.push(text(part, endian)),
                     INFO => kept.info = text(part, endian),
+                    LOOKUP_TABLES => kept.colors.push(last_color(part)),
                     _ => {}
                 }
             }
@@ -82,6 +87,11 @@ impl ImagejMetadata {
             |names: &[String]| names.len() == channels && names.iter().any(|name| *name != names[0]);
         let lists = [names, self.names_in_info(channels)];
         lists.into_iter().find(|names| says_something(names)).unwrap_or_default()
+    }
+
+    /// Colours of the channels, one for each; empty where the metadata have another number of them.
+    pub(super) fn channel_colors(&self, channels: usize) -> Vec<Option<[u8; 3]>> {
+        if self.colors.len() == channels { self.colors.clone() } else { Vec::new() }
     }
 
     /// Label of the first page of each channel, where all its pages have the same.
@@ -109,6 +119,15 @@ impl ImagejMetadata {
         names.sort_by_key(|&(number, _)| number);
         names.dedup_by_key(|&mut (number, _)| number);
         if names.len() == channels { names.into_iter().map(|(_, name)| name).collect() } else { Vec::new() }
+    }
+}
+
+/// Colour of the largest values in a lookup table: 256 bytes of red, then green, then blue.
+fn last_color(table: &[u8]) -> Option<[u8; 3]> {
+    let (colors, rest) = table.as_chunks::<256>();
+    match colors {
+        [red, green, blue] if rest.is_empty() => Some([red[255], green[255], blue[255]]),
+        _ => None,
     }
 }
 
@@ -152,11 +171,14 @@ pub(crate) mod tests {
             text.encode_utf16().flat_map(unit).collect()
         };
         let mut header = number(MAGIC, endian).to_vec();
+        let table: Vec<u8> = (0..768).map(|at| if at < 512 { (at % 256) as u8 } else { 7 }).collect();
         let mut parts = Vec::new();
         for (kind, texts) in [(INFO, &[info][..]), (LABELS, labels)] {
             header.extend([number(kind, endian), number(texts.len() as u32, endian)].concat());
             parts.extend(texts.iter().map(|part| text(part)));
         }
+        header.extend([number(LOOKUP_TABLES, endian), number(1, endian)].concat());
+        parts.push(table);
         let counts = [&header].into_iter().chain(&parts).map(|part| part.len() as u64).collect();
         (counts, [&header[..], &parts.concat()].concat())
     }
@@ -187,6 +209,15 @@ pub(crate) mod tests {
                     Channel Name = x\nnothing";
         assert_eq!(names(info, &[], 2, 4), ["DAPI", "GFP"]);
         assert!(names(info, &[], 3, 6).is_empty());
+    }
+
+    #[test]
+    fn lookup_tables_end_with_the_color_of_a_channel() {
+        let (counts, content) = entries("", &[], Endian::Big);
+        let metadata = ImagejMetadata::parse(&counts, &content, Endian::Big).unwrap();
+        assert_eq!(metadata.channel_colors(1), [Some([255, 255, 7])]);
+        assert!(metadata.channel_colors(2).is_empty());
+        assert_eq!(last_color(&[0; 767]), None);
     }
 
     #[test]

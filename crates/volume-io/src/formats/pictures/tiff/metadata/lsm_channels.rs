@@ -1,4 +1,4 @@
-//! Channel names of LSM files, in the block of channel colours and names outside of the metadata entry.
+//! Names and colours of the channels of LSM files, in a block outside of the metadata entry.
 
 use super::super::file::bytes::{TiffBytes, decode_integer};
 use crate::Endian;
@@ -9,19 +9,41 @@ const MAX_BYTES: u64 = 64 << 10;
 /// Length of the block's head: six numbers of 32 bits.
 const HEAD_BYTES: usize = 24;
 
-/// Reads the names of the channels from the block at offset `at`; empty where there is none, or it is broken.
-pub(super) fn channel_names(bytes: &mut TiffBytes, at: u64) -> Vec<String> {
-    let left = bytes.len().saturating_sub(at);
-    let mut head = [0; HEAD_BYTES];
-    if at == 0 || bytes.read(at, &mut head).is_err() {
-        return Vec::new();
+/// Channels of an LSM file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct LsmChannels {
+    /// Names in the order of the channels; empty where the file has none.
+    pub(super) names: Vec<String>,
+    /// Colours in sRGB, likewise.
+    pub(super) colors: Vec<Option<[u8; 3]>>,
+}
+
+impl LsmChannels {
+    /// Reads the block at offset `at`; empty where there is none, or it is broken.
+    pub(super) fn read(bytes: &mut TiffBytes, at: u64) -> Self {
+        let left = bytes.len().saturating_sub(at);
+        let mut head = [0; HEAD_BYTES];
+        if at == 0 || bytes.read(at, &mut head).is_err() {
+            return Self::default();
+        }
+        let size = number(&head, 0).unwrap_or(0).min(left).min(MAX_BYTES);
+        let mut block = vec![0; size as usize];
+        if bytes.read(at, &mut block).is_err() {
+            return Self::default();
+        }
+        Self {
+            names: parse_names(&block).unwrap_or_default(),
+            colors: parse_colors(&block).unwrap_or_default(),
+        }
     }
-    let size = number(&head, 0).unwrap_or(0).min(left).min(MAX_BYTES);
-    let mut block = vec![0; size as usize];
-    if bytes.read(at, &mut block).is_err() {
-        return Vec::new();
-    }
-    parse_names(&block).unwrap_or_default()
+}
+
+/// Parses the colours of the block: red, green, blue and a zero byte each.
+fn parse_colors(block: &[u8]) -> Option<Vec<Option<[u8; 3]>>> {
+    let (count, at) = (number(block, 4)?, usize::try_from(number(block, 12)?).ok()?);
+    let colors = block.get(at.max(HEAD_BYTES)..)?.as_chunks::<4>().0;
+    let count = usize::try_from(count).ok()?;
+    Some(colors.iter().take(count).map(|&[red, green, blue, _]| Some([red, green, blue])).collect())
 }
 
 /// Parses the block: its length, the number of colours, the number of names, and the offsets of both in it. Each name
@@ -54,7 +76,7 @@ pub(crate) mod tests {
 
     /// Encodes a block with a colour and a name for each channel.
     pub(crate) fn block(names: &[&[u8]]) -> Vec<u8> {
-        let colors = vec![255; 4 * names.len()];
+        let colors: Vec<u8> = (0..names.len() as u8).flat_map(|at| [at, 2 * at, 3 * at, 0]).collect();
         let texts: Vec<u8> = names
             .iter()
             .flat_map(|name| [&(name.len() as u32 + 1).to_le_bytes()[..], name, &[0]].concat())
@@ -69,6 +91,16 @@ pub(crate) mod tests {
     fn each_name_follows_its_length() {
         let names = parse_names(&block(&[b"DAPI", b"", b"Ch2-T1", b"\xb5m"]));
         assert_eq!(names.unwrap(), ["DAPI", "", "Ch2-T1", "µm"]);
+    }
+
+    #[test]
+    fn colors_lie_before_the_names() {
+        let colors = parse_colors(&block(&[b"DAPI", b"GFP"])).unwrap();
+        assert_eq!(colors, [Some([0, 0, 0]), Some([1, 2, 3])]);
+        for end in 0..40 {
+            let some = parse_colors(&block(&[b"DAPI", b"GFP"])[..end]).unwrap_or_default();
+            assert!(some.len() <= 2 && some.iter().zip(&colors).all(|(a, b)| a == b));
+        }
     }
 
     #[test]
