@@ -254,6 +254,13 @@ impl App {
         HeldFilesGuard
     }
 
+    /// Returns the names of the volumes that are open, in the order of their layers.
+    pub fn volume_names(&self) -> Vec<&str> {
+        let Some(open) = &self.editor.document.volume else { return Vec::new() };
+        let further = open.further.iter().map(|volume| volume.facts.name.as_str());
+        std::iter::once(open.name.as_str()).chain(further).collect()
+    }
+
     /// Path of the file that is being read.
     pub fn file_being_read(&self) -> Option<&Path> {
         self.opening.file_tasks.path()

@@ -2,9 +2,20 @@
 
 use super::Document;
 use crate::app::common::light_keys;
-use chiaroscuro_scene::{COLOR_MAPS, Camera, LightSettings, LightingRig, Settings, StandardView};
+use chiaroscuro_scene::{
+    COLOR_MAPS, Camera, LightSettings, LightingRig, Settings, StandardView, VolumeLayer,
+};
 
 impl Document {
+    /// Gives layers from an index on the looks that they had before; their blend stays, and so do layers without one.
+    pub(crate) fn apply_layer_looks(&mut self, from: usize, looks: &[Option<VolumeLayer>]) {
+        for (layer, look) in self.settings.layers.iter_mut().skip(from).zip(looks) {
+            if let Some(look) = look {
+                *layer = VolumeLayer { blend: layer.blend, ..look.clone() };
+            }
+        }
+    }
+
     /// Shows the layer that was added last no longer; the first one stays.
     pub(crate) fn remove_last_layer(&mut self) {
         let count = self.settings.layers.count();

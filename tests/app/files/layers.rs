@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use chiaroscuro::app::{App, WindowOptions};
-use chiaroscuro_scene::{LayerVisibility, LookRecord};
+use chiaroscuro_scene::{LayerBlend, LayerVisibility, LookRecord};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -211,4 +211,53 @@ fn a_dropped_volume_in_the_same_place_asks() {
     assert_eq!(harness.state().settings().layers.count(), 1);
     drop_file(&mut harness, "other.npy");
     assert!(!is_asked(&harness));
+}
+
+/// Writes a volume of 16-bit numbers, with voxels of a size in mm and its first corner at the origin of the body's space.
+fn write_scan(path: &Path, edge: usize, spacing_mm: f64, value: impl Fn([usize; 3]) -> i16) {
+    let s = spacing_mm;
+    let mut bytes = format!(
+        "NRRD0004\ntype: int16\ndimension: 3\nsizes: {edge} {edge} {edge}\nspace: right-anterior-superior\n\
+         space directions: ({s},0,0) (0,{s},0) (0,0,{s})\nspace origin: (0,0,0)\nendian: little\nencoding: raw\n\n"
+    )
+    .into_bytes();
+    for at in 0..edge.pow(3) {
+        bytes.extend(value([at % edge, at / edge % edge, at / edge / edge]).to_le_bytes());
+    }
+    std::fs::write(path, bytes).expect("written");
+}
+
+#[test]
+fn coarse_scans_and_labels_become_layers_over_a_finer_scan() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [scan, coarse, labels] =
+        ["scan.nrrd", "coarse.nrrd", "labels.nrrd"].map(|name| folder.path().join(name));
+    let ball = |[x, y, z]: [usize; 3], edge: usize| {
+        let from_center = |c: usize| (c as f64 / (edge - 1) as f64 - 0.5).powi(2);
+        let radius = (from_center(x) + from_center(y) + from_center(z)).sqrt();
+        (1000.0 * (1.0 - 2.0 * radius)).max(0.0) as i16 + (x * 7 + y * 5 + z * 3) as i16 % 11
+    };
+    write_scan(&scan, 24, 1.0, |at| ball(at, 24));
+    write_scan(&coarse, 12, 2.0, |at| ball(at, 12));
+    write_scan(&labels, 24, 1.0, |at| ball(at, 24) / 400);
+    let mut harness = window_of(&coarse, None);
+    wait_until_idle(&mut harness);
+    // A look that was changed goes along.
+    assert!(harness.state().settings().layer().lighting.linked);
+    click(&mut harness, "Same opacity for light and eye");
+    harness.run_steps(3);
+    let look = harness.state().settings().layer().lighting.clone();
+    add(&mut harness, &scan.to_string_lossy());
+    wait_until(&mut harness, "both are shown", |app| app.settings().layers.count() == 2);
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().volume_names(), ["scan", "coarse"]);
+    assert_eq!(harness.state().settings().layer_at(1).lighting, look);
+    // Labels that were opened first tint the scan.
+    let mut harness = window_of(&labels, None);
+    wait_until_idle(&mut harness);
+    add(&mut harness, &scan.to_string_lossy());
+    wait_until(&mut harness, "both are shown", |app| app.settings().layers.count() == 2);
+    wait_until_read(&mut harness);
+    assert_eq!(harness.state().volume_names(), ["scan", "labels"]);
+    assert_eq!(harness.state().settings().layer_at(1).blend, LayerBlend::Tint);
 }

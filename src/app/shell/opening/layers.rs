@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use super::VolumeOpener;
+use super::base_volume::is_better_base;
 use super::file_tasks::ReadPurpose;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
-use chiaroscuro_scene::{LookRecord, Settings, VolumeLocation, first_look};
+use chiaroscuro_scene::{LookRecord, Settings, VolumeLayer, VolumeLocation, first_look};
 use chiaroscuro_volume::{ChoiceAspect, Dataset, LoadControl, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Volume that is to be shown as a layer.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct LayerFile {
     /// Path of the file, or name of a built-in volume.
     path: PathBuf,
@@ -19,15 +20,24 @@ pub(super) struct LayerFile {
     choice: VolumeChoice,
     /// Content ID that a record has for the volume, in hexadecimal digits.
     recorded_id: Option<String>,
+    /// Look of the volume, without its blend; `None` for the automatic one.
+    pub(super) look: Option<VolumeLayer>,
 }
 
 /// Layers that further volumes replace.
 #[derive(Debug, Clone, Copy)]
-struct LayerReplacement {
+pub(super) struct LayerReplacement {
     /// Number of volumes that stay, from the first on.
     kept: usize,
     /// True if the settings have looks for those that are added.
     has_looks: bool,
+    /// True if the open volume is shown over the one that is added where that is better.
+    may_be_base: bool,
+}
+
+impl LayerReplacement {
+    /// Replaces all layers but the first.
+    pub(super) const BELOW_ALL: Self = Self { kept: 1, has_looks: false, may_be_base: false };
 }
 
 /// Dataset with further fields, as far as they could be opened.
@@ -39,11 +49,15 @@ struct DatasetWithLayers {
     failure: Option<String>,
     /// True if a volume is not the one that a record names.
     is_other: bool,
+    /// File over which the dataset is better shown.
+    base: Option<PathBuf>,
+    /// Looks of the volumes that were added, where they have their own.
+    looks: Vec<Option<VolumeLayer>>,
 }
 
 impl LayerFile {
-    fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
-        Self { path: path.into(), choice, recorded_id: None }
+    pub(super) fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
+        Self { path: path.into(), choice, recorded_id: None, look: None }
     }
 }
 
@@ -53,13 +67,18 @@ fn with_layers(
     first: Settings,
     sources: &[LayerFile],
     options: &LoadOptions,
+    may_be_base: bool,
 ) -> DatasetWithLayers {
-    let mut added = DatasetWithLayers { dataset, first, failure: None, is_other: false };
-    for LayerFile { path, choice, recorded_id } in sources {
+    let looks = sources.iter().map(|source| source.look.clone()).collect();
+    let mut added = DatasetWithLayers { dataset, first, failure: None, is_other: false, base: None, looks };
+    for LayerFile { path, choice, recorded_id, .. } in sources {
         let choice = choice.clone().with_first_as_fallback();
         let options = LoadOptions { choice, ..options.clone() };
         let volume = open(path, &options, &LoadControl::default()).map_err(|err| err.to_string());
         let with_field = volume.and_then(|volume| {
+            if may_be_base && is_better_base(&volume, added.dataset.volume()) {
+                added.base = Some(path.clone());
+            }
             let id = format!("{:016x}", volume.opened_id());
             added.is_other |= recorded_id.as_ref().is_some_and(|recorded| *recorded != id);
             added.dataset.with_field(&volume, path).map_err(|err| text::messages::layer_refused(path, err))
@@ -81,7 +100,8 @@ impl VolumeOpener<'_> {
     pub(crate) fn add_layer(&mut self, path: &Path) {
         let kept = self.editor.document.settings.layers.count();
         let file = LayerFile::new(path, VolumeChoice::default());
-        self.add_layers(vec![file], LayerReplacement { kept, has_looks: false });
+        let may_be_base = self.can_become_layers();
+        self.add_layers(vec![file], LayerReplacement { kept, has_looks: false, may_be_base });
     }
 
     /// Shows all channels, arrays or components of the open file, as far as there is room: those that are not shown
@@ -91,7 +111,7 @@ impl VolumeOpener<'_> {
         let Some(all) = Alternatives::new(&volume.held, aspect) else { return };
         let others = (0..all.count()).filter(|&at| at != all.current()).take(MAX_FIELDS - 1);
         let sources = others.map(|at| LayerFile::new(&volume.source, all.choice(at))).collect();
-        self.add_layers(sources, LayerReplacement { kept: 1, has_looks: false });
+        self.add_layers(sources, LayerReplacement::BELOW_ALL);
     }
 
     /// Opens the further volumes that a record names, unless they are shown.
@@ -129,14 +149,14 @@ impl VolumeOpener<'_> {
                 }
             };
             let recorded_id = Some(volume.content_id.clone());
-            sources.push(LayerFile { path, choice: volume.choice.clone(), recorded_id });
+            sources.push(LayerFile { recorded_id, ..LayerFile::new(path, volume.choice.clone()) });
         }
-        self.add_layers(sources, LayerReplacement { kept: 1, has_looks: true });
+        self.add_layers(sources, LayerReplacement { has_looks: true, ..LayerReplacement::BELOW_ALL });
     }
 
     /// Reads volumes on a thread, and shows them with those that stay.
-    fn add_layers(&mut self, sources: Vec<LayerFile>, replaced: LayerReplacement) {
-        let kept = replaced.kept;
+    pub(super) fn add_layers(&mut self, sources: Vec<LayerFile>, replaced: LayerReplacement) {
+        let LayerReplacement { kept, may_be_base, .. } = replaced;
         let Some(shown) = self.editor.viewport.dataset() else {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);
         };
@@ -146,8 +166,9 @@ impl VolumeOpener<'_> {
         let (opened_id, options) = (shown.volume().opened_id(), self.state.loader.options().clone());
         let mut first = self.editor.document.defaults.clone();
         first.layers.truncate(kept);
-        let read = move |_: &Path| Ok(with_layers(known, first, &sources, &options));
+        let read = move |_: &Path| Ok(with_layers(known, first, &sources, &options, may_be_base));
         self.read_file(ReadPurpose::Layer, &path, read, move |opener, read| match read {
+            Ok(DatasetWithLayers { base: Some(base), failure: None, .. }) => opener.open_below(&base),
             Ok(added) => opener.show_layers(added, replaced, opened_id),
             Err(why) => why.report(text::messages::LAYER_NOT_ADDED, &mut opener.editor.messages),
         });
@@ -155,9 +176,9 @@ impl VolumeOpener<'_> {
 
     /// Shows a dataset with further fields, unless another volume was opened meanwhile.
     fn show_layers(&mut self, added: DatasetWithLayers, replaced: LayerReplacement, opened_id: u64) {
-        let LayerReplacement { kept, has_looks } = replaced;
+        let LayerReplacement { kept, has_looks, .. } = replaced;
         let shown = self.editor.viewport.dataset();
-        let DatasetWithLayers { dataset, first, failure, is_other } = added;
+        let DatasetWithLayers { dataset, first, failure, is_other, looks, .. } = added;
         let messages = &mut self.editor.messages;
         if let Some(why) = failure {
             messages.error(text::messages::LAYER_NOT_ADDED, why);
@@ -176,6 +197,7 @@ impl VolumeOpener<'_> {
         // Changes by the user are kept.
         document.settings.take_layers(&first, &document.defaults);
         document.defaults = first;
+        document.apply_layer_looks(kept, &looks);
         document.selected_layer = kept.min(dataset.fields().len() - 1);
         if let Some(facts) = &mut document.volume {
             facts.update(&dataset);

@@ -1,6 +1,7 @@
 //! Opening of volumes and looks: precedence between requests, and the settings with which a volume is shown.
 
 mod alternatives;
+mod base_volume;
 mod dropped_and_neighbours;
 pub(crate) mod file_tasks;
 mod layers;
@@ -17,6 +18,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 
 use self::file_tasks::{FileTasks, ReadPurpose};
+use self::layers::LayerFile;
 use self::plan::PendingLook;
 use self::second_volume::SecondVolumeQuestion;
 use crate::app::shell::look_editor::LookEditor;
@@ -46,6 +48,8 @@ pub(crate) struct OpenRequests {
     pub session_is_due: bool,
     /// True if volumes named by looks from outside are opened without asking the user.
     pub trusts_paths: bool,
+    /// Volumes that are shown as layers over the next volume.
+    layers_over: Vec<LayerFile>,
 }
 
 /// State of opening volumes and looks.
@@ -119,6 +123,7 @@ impl VolumeOpener<'_> {
         self.state.raw.close();
         self.state.large_volume.close();
         self.state.second_volume.close();
+        self.state.requests.layers_over.clear();
         let known = RememberedFileSettings {
             up: self.editor.memory.up_of(source),
             corrections: self.editor.memory.corrections_of(source),

@@ -80,6 +80,7 @@ impl VolumeOpener<'_> {
         if let Some(record) = applied {
             self.add_recorded_layers(&record);
         }
+        self.add_layers_over();
     }
 
     /// Replaces the messages by notes about a volume; `original_dims` are its dimensions if it was averaged.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 
 use super::VolumeOpener;
+use super::base_volume::is_better_base;
 use crate::app::common::overlay_windows;
 use crate::app::text;
 use crate::app::worker::loader::OpenedVolume;
@@ -75,7 +76,12 @@ impl VolumeOpener<'_> {
         let open = self.editor.document.volume_name();
         let Some(both) = self.state.second_volume.ui(self.ctx, open) else { return };
         let Some(opened) = self.state.second_volume.waiting.take() else { return };
-        if both {
+        let is_base = self.editor.viewport.dataset().is_some_and(|shown| {
+            is_better_base(opened.dataset.volume(), shown.volume()) && self.can_become_layers()
+        });
+        if both && is_base {
+            self.show_below(*opened);
+        } else if both {
             self.add_layer(&opened.source);
         } else {
             self.show_opened_with_session(*opened);
@@ -89,14 +95,21 @@ fn lies_over(volume: &Volume, open: &Volume) -> bool {
     if !(volume.is_anatomical() && open.is_anatomical()) {
         return volume.dims() == open.dims();
     }
-    let [a, b] = [volume, open].map(|volume| {
-        let map = volume.world_from_index();
-        let corners = Aabb::of_grid(volume.dims(), 0.0).corners();
-        Aabb::from_points(corners.map(|corner| map.transform_point3(corner)))
-    });
-    let size = |bounds: &Aabb| (bounds.max - bounds.min).max(glam::DVec3::ZERO).element_product();
-    let common = Aabb { min: a.min.max(b.min), max: a.max.min(b.max) };
-    size(&common) >= COMMON_SHARE * size(&a).min(size(&b))
+    let [a, b] = [volume, open].map(world_box);
+    let size = |bounds: &Aabb| (bounds.max - bounds.min).element_product();
+    common_volume(&a, &b) >= COMMON_SHARE * size(&a).min(size(&b))
+}
+
+/// Bounding box of a volume's voxel centres in its own world space.
+pub(super) fn world_box(volume: &Volume) -> Aabb {
+    let map = volume.world_from_index();
+    let corners = Aabb::of_grid(volume.dims(), 0.0).corners();
+    Aabb::from_points(corners.map(|corner| map.transform_point3(corner)))
+}
+
+/// Size of what two boxes have in common.
+pub(super) fn common_volume(a: &Aabb, b: &Aabb) -> f64 {
+    (a.max.min(b.max) - a.min.max(b.min)).max(glam::DVec3::ZERO).element_product()
 }
 
 #[cfg(test)]

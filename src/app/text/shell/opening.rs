@@ -117,6 +117,12 @@ pub(crate) fn lies_over(name: &str, open: &str) -> String {
     )
 }
 
+/// Note that a volume is shown below those that were open before it.
+pub(crate) fn shown_below(name: &str) -> String {
+    let name = sanitised(name, 60);
+    format!("{name} is the first layer: the others are shown over it, on its grid")
+}
+
 /// Message when the open volume does not lie in a folder.
 pub(crate) const NO_FOLDER: &str = "The open volume is not in a folder";
 
