@@ -81,7 +81,7 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         volume: request.volume,
         trust_paths: request.trust_paths,
         adjust: None,
-        compiles_on_demand: false,
+        pipelines: None,
         storage: app::storage_folder(),
         light_search_limit_s: None,
     };

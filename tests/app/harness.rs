@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
-use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer};
+use chiaroscuro_render::{RenderOptions, RenderedPicture, Renderer, pooled_library};
 use chiaroscuro_scene::{ImageSpec, LightSimplification, LookRecord, Settings, SkyMode};
 use chiaroscuro_volume::{Dataset, LoadControl, ValueRanges};
 use chiaroscuro_volume_io::{LoadOptions, open};
@@ -104,7 +104,7 @@ fn automatic_window_with(
 ) -> Harness<'static, App> {
     // Simulated time runs ahead of the search.
     options.light_search_limit_s.get_or_insert(f64::INFINITY);
-    options.compiles_on_demand = true;
+    options.pipelines = Some(pooled_library().expect("an adapter"));
     let mut setup = wgpu_setup();
     // Uses the first adapter like the tests of the renderer, software included.
     setup.power_preference = wgpu::PowerPreference::None;
@@ -258,11 +258,11 @@ pub(crate) fn render_with(
     renderer.render(&dataset, settings, size, options).expect("a picture")
 }
 
-/// Volume of the window, and a renderer on another device.
+/// Volume of the window, and another renderer.
 pub(crate) fn second_renderer() -> (Dataset, Renderer) {
     let volume = open(SCENE, &LoadOptions::default(), &LoadControl::new()).expect("a built-in volume");
-    let context = GpuContext::headless().expect("an adapter");
-    (Dataset::new(volume), Renderer::new(&context).expect("a renderer"))
+    let shaders = pooled_library().expect("an adapter");
+    (Dataset::new(volume), Renderer::with_shaders(&shaders.context().clone(), shaders).expect("a renderer"))
 }
 
 pub(crate) fn click(harness: &mut Harness<'_, App>, label: &str) {

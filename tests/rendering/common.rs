@@ -1,12 +1,31 @@
 //! Shared helpers of the rendering tests: a device and ways to render.
 
-use chiaroscuro_render::{GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary, WorkOptions};
+use chiaroscuro_render::{
+    GpuContext, RenderOptions, RenderedPicture, Renderer, ShaderLibrary, WorkOptions, pooled_library,
+};
 use chiaroscuro_scene::Settings;
 pub(crate) use chiaroscuro_volume::Dataset;
 
-/// Opens a device, or fails the test: a check that did not run must be seen.
+/// Returns a device with its pipelines, or fails the test: a check that did not run must be seen.
+pub(crate) fn shaders() -> ShaderLibrary {
+    pooled_library().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
+}
+
+/// Returns the device of the test.
 pub(crate) fn context() -> GpuContext {
-    GpuContext::headless().unwrap_or_else(|err| panic!("the rendering tests need a graphics adapter: {err}"))
+    shaders().context().clone()
+}
+
+/// Creates a renderer with the pipelines of other tests.
+pub(crate) fn new_renderer() -> Renderer {
+    let shaders = shaders();
+    Renderer::with_shaders(&shaders.context().clone(), shaders).expect("a renderer")
+}
+
+/// Creates a renderer that stores light and pictures in 32 bits.
+pub(crate) fn full_precision_renderer() -> Renderer {
+    let shaders = shaders().with_full_precision();
+    Renderer::with_shaders(&shaders.context().clone(), shaders).expect("a renderer")
 }
 
 /// Renders a picture with default options.
@@ -39,7 +58,6 @@ pub(crate) fn full_attenuation(
 
 /// Creates a renderer whose shaders have `from` replaced by `to`.
 pub(crate) fn damaged_renderer(from: &str, to: &str) -> Renderer {
-    let context = context();
-    let shaders = ShaderLibrary::with_mutation(&context, from, to);
-    Renderer::with_shaders(&context, shaders).expect("a renderer")
+    let shaders = shaders().with_mutation(from, to);
+    Renderer::with_shaders(&shaders.context().clone(), shaders).expect("a renderer")
 }

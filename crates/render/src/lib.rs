@@ -66,6 +66,8 @@ pub use output::window_painter::{WindowPainter, WindowPicture};
 #[cfg(feature = "testing")]
 pub use pipelines::layouts::{ShaderBindings, shader_bindings};
 #[cfg(feature = "testing")]
+pub use pipelines::library_pool::pooled_library;
+#[cfg(feature = "testing")]
 pub use pipelines::preprocessor::shader_conditions;
 #[cfg(feature = "testing")]
 pub use pipelines::shader_files::SHADERS;

@@ -24,7 +24,7 @@ use crate::app::windows::recovery::RecoveryDialog;
 use crate::app::worker::jobs::Jobs;
 use crate::app::worker::loader::Loader;
 use crate::app::{App, text};
-use chiaroscuro_render::{GpuContext, WindowPainter};
+use chiaroscuro_render::{GpuContext, ShaderLibrary, WindowPainter};
 use chiaroscuro_scene::QualityPreset;
 use chiaroscuro_volume_io::LoadOptions;
 
@@ -51,14 +51,14 @@ impl App {
             trust_paths,
             adjust,
             light_search_limit_s,
-            compiles_on_demand,
+            pipelines,
             storage,
         } = options;
         let memory = PersistentState::new(storage.as_deref(), &cc.egui_ctx);
         if memory.needs_safe_start() {
             return Self::start_safely(cc, storage, memory, legacy);
         }
-        let mut app = Self::build(cc, load, storage, memory, legacy)?;
+        let mut app = Self::build(cc, load, storage, memory, legacy, pipelines)?;
         app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
         app.picture.first_run_hints = FirstUseHints { visible: app.editor.memory.is_first_use() };
         (app.windows.slices.open, app.windows.light_slice.open) = (app.layout.slices, app.layout.light_slice);
@@ -66,9 +66,6 @@ impl App {
         app.opening.requests.session_is_due = session.is_some();
         app.editor.document.session = session.map(SessionFile::from_command_line);
         app.opening.adjust_first_look = adjust;
-        if compiles_on_demand {
-            app.opening.loader.compile_on_demand();
-        }
         app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;
         app.opener(&cc.egui_ctx).open_first(source.as_deref(), volume.as_deref());
@@ -84,7 +81,7 @@ impl App {
         legacy: HandoverSlot,
     ) -> Result<Self, AppError> {
         memory.add_notice(text::persistence::SAFE_START.to_owned());
-        let mut app = Self::build(cc, LoadOptions::default(), None, memory, legacy)?;
+        let mut app = Self::build(cc, LoadOptions::default(), None, memory, legacy, None)?;
         app.device.storage = storage;
         app.dialogs.recovery = RecoveryDialog::from_runs(app.editor.memory.earlier_runs(), &cc.egui_ctx);
         app.opening.adjust_first_look = Some(Box::new(|mut settings| {
@@ -103,7 +100,7 @@ impl App {
         asks: bool,
     ) -> Result<Self, AppError> {
         carried.jobs.hand_to(&cc.egui_ctx);
-        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy)?;
+        let mut app = Self::build(cc, carried.load, carried.storage, carried.memory, legacy, None)?;
         app.editor.document = carried.document.restarted();
         app.opening.requests = carried.requests;
         app.device.handed_over_dataset = carried.dataset;
@@ -134,19 +131,24 @@ impl App {
         storage: Option<PathBuf>,
         memory: PersistentState,
         legacy: HandoverSlot,
+        pipelines: Option<ShaderLibrary>,
     ) -> Result<Self, AppError> {
         let paint = cc.wgpu_render_state.clone().ok_or(AppError::NoDevice)?;
         // The window's own device draws only the window: pictures are rendered on a second device.
         let painter = WindowPainter::new(&paint.device, &paint.queue, paint.target_format)?;
         let window_context = GpuContext::new(&paint.adapter, paint.device, paint.queue)?;
-        let context = window_context.second_device()?;
+        let loader = match pipelines {
+            Some(pipelines) => Loader::with_pipelines(pipelines, load),
+            None => Loader::new(window_context.second_device()?, load, storage.as_deref(), &cc.egui_ctx)?,
+        };
+        let context = loader.shaders().context();
         theme::apply(&cc.egui_ctx);
         cc.egui_ctx.add_plugin(InputPacing::default());
         let layout = WindowLayout::restore(cc.storage);
         layout.apply(&cc.egui_ctx);
         let viewport = Viewport::new(context.clone(), painter.clone(), &cc.egui_ctx)?;
         Ok(Self {
-            opening: OpeningState::new(Loader::new(context, load, storage.as_deref(), &cc.egui_ctx)?),
+            opening: OpeningState::new(loader),
             picture: Box::default(),
             windows: Box::default(),
             dialogs: AppDialogs::default(),

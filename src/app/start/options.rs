@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::app::shell::opening::SettingsAdjustment;
+use chiaroscuro_render::ShaderLibrary;
 use chiaroscuro_volume_io::LoadOptions;
 
 /// Options of the window, from the command line.
@@ -23,9 +24,9 @@ pub struct WindowOptions {
     pub adjust: Option<SettingsAdjustment>,
     /// Longest time from the first picture to the movement of its lights, in seconds; `None` for two seconds.
     pub light_search_limit_s: Option<f64>,
-    /// True if pipelines that a volume's first pictures do not use are compiled only when they are needed, for windows
-    /// that are open for seconds.
-    pub compiles_on_demand: bool,
+    /// Pipelines that another window may have compiled, with the device for the pictures. None are compiled before they
+    /// are needed then. `None` for a device and pipelines of its own.
+    pub pipelines: Option<ShaderLibrary>,
     /// Storage folder for the state that outlives a run; see [`super::main_loop::storage_folder`].
     pub storage: Option<PathBuf>,
 }

@@ -137,6 +137,14 @@ impl Loader {
         Ok(Self { context, shaders, options, running: JobSlot::default(), warm_up })
     }
 
+    /// Creates a loader for the device of a library of pipelines, which compiles none before they are needed.
+    pub(crate) fn with_pipelines(shaders: ShaderLibrary, options: LoadOptions) -> Self {
+        let mut warm_up = PipelineWarmUp::default();
+        warm_up.is_complete = true;
+        let context = shaders.context().clone();
+        Self { context, shaders, options, running: JobSlot::default(), warm_up }
+    }
+
     /// Returns the shader pipelines of the device that renders pictures.
     pub(crate) fn shaders(&self) -> &ShaderLibrary {
         &self.shaders
@@ -145,11 +153,6 @@ impl Loader {
     /// Compiles pipelines that may be needed later, once; to be called when the window is idle.
     pub(crate) fn warm_up_rest(&mut self, ctx: &egui::Context) {
         self.warm_up.start_rest(&self.shaders, ctx);
-    }
-
-    /// Leaves pipelines that may be needed later until they are.
-    pub(crate) fn compile_on_demand(&mut self) {
-        self.warm_up.is_complete = true;
     }
 
     /// Starts to open a file or a built-in volume, with the corrections and the up axis that are remembered for it.

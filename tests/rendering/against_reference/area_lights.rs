@@ -1,7 +1,6 @@
 //! Area lights against the reference: light volumes, near-field rays, and the floor below.
 
 use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions};
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
     LightGeometry, LightSettings, LightShape, LightStorage, LightVolumeResolution, NearFieldRay,
     RenderEngine, Settings, ShadowAlgorithm, Spotlight,
@@ -10,7 +9,7 @@ use glam::DVec3;
 
 use super::mutations::{assert_in_shader, differs_in_look};
 use super::{SIZE, check_volume};
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, new_renderer, render};
 use crate::compare::{ErrorLimit, channels_f32, channels_f64, compare};
 use crate::scenes;
 use crate::thresholds::{COMBINED_NORMALS, SAME_WEIGHTS};
@@ -89,7 +88,7 @@ fn in_one_volume_for_all() {
     settings.shadows.near_field = NearFieldRay::Off;
     settings.shading.specular = 0.0;
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |storage, area| {
         settings.shadows.storage = storage;
         settings.shadows.area.resolution = area;

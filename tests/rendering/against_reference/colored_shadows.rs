@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::mutations::assert_in_shader;
 use super::{SIZE, round_to_f16};
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, new_renderer, render};
 use crate::compare::{ErrorLimit, channels_f32, channels_f64, compare};
 use crate::scenes;
 use crate::thresholds::{BYTES, COMBINED_NORMALS, SAME_WEIGHTS};
@@ -180,7 +180,7 @@ fn under_a_light_that_has_a_size() {
 #[test]
 fn in_bytes() {
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut colors = |precision| {
         let mut settings = look();
         settings.shadows.precision = precision;
@@ -197,7 +197,7 @@ fn one_volume_for_all_lights_has_the_colours() {
     settings.shadows.near_field = NearFieldRay::Off;
     settings.shading.specular = 0.0;
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |storage| {
         settings.shadows.storage = storage;
         channels_f32(&render(&mut renderer, &loaded, &settings, SIZE).linear)
@@ -225,7 +225,7 @@ fn grey_matter_has_grey_shadows() {
         point.color = [0.7; 3];
     }
     let loaded = Dataset::new(scenes::creature(N, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |transmission| {
         settings.shadows.transmission = transmission;
         channels_f32(&render(&mut renderer, &loaded, &settings, SIZE).linear)

@@ -2,7 +2,7 @@
 //! paper's literal footprints.
 
 use super::{SIZE, check_against, round_to_f16};
-use crate::common::{Dataset, context, full_attenuation, render};
+use crate::common::{Dataset, context, full_attenuation, new_renderer, render};
 use crate::compare::{channels_f32, channels_f64, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::{BYTE_STEP, BYTES, LITERAL, SAME_WEIGHTS};
@@ -163,7 +163,7 @@ fn a_frame_in_a_narrow_picture() {
     let mut settings = scenes::look();
     settings.shadows.algorithm = ShadowAlgorithm::Off;
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let size = [48, 128];
     for projection in [Projection::Perspective, Projection::Orthographic] {
         settings.camera = Camera { projection, fit: FovReference::Frame, ..settings.camera };
@@ -238,7 +238,7 @@ fn check_literal(n: usize, kind: LightGeometry, position: [f64; 3]) {
     let options = ReferenceOptions { weights: ReferenceWeights::Footprint, ..ReferenceOptions::default() };
     let reference = Reference::new(loaded.volume(), &settings, options);
     let expected = reference.picture(SIZE, &reference.attenuations());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let found = render(&mut renderer, &loaded, &settings, SIZE);
     let what = format!("literal footprints, {kind:?}, {n}³");
     compare(&what, &channels_f32(&found.linear), &channels_f64(&expected), LITERAL)

@@ -1,14 +1,13 @@
 //! Label maps with a table of looks, against the reference.
 
 use chiaroscuro_reference::ReferenceFault;
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{ClassificationOrder, LabelLook, LabelTable, Settings};
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::mutations::differs_in_volume;
 use super::{SIZE, check_volume, round_to_f16};
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::compare::{channels_f32, compare};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
@@ -71,7 +70,7 @@ fn mistakes_at_crisp_edges_are_noticed() {
 /// Label numbers change no bit unless their order changes, which the table's look-ups round differently.
 #[test]
 fn numbers_of_labels_change_no_pixel() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |numbers: [u8; 5]| {
         render(&mut renderer, &Dataset::new(label_map(numbers)), &look(numbers), SIZE).linear
     };

@@ -2,11 +2,10 @@
 //! nothing, with the gradient of the kernel for normals.
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{LightGeometry, QualityPreset, Settings, SkyMode, SlabMode, first_look};
 use chiaroscuro_volume::synthetic::builtin;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::scenes;
 use crate::thresholds::{EXACT_OF_LIMIT, LIMITS_AGREE};
 
@@ -40,7 +39,7 @@ fn display_rmse(found: &[[f64; 4]], limit: &[[f64; 4]]) -> f64 {
 /// At a resolution at which details are a voxel wide, and light volumes far from the limit.
 #[test]
 fn exact_is_the_limit() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for name in ["chair", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(24)).expect("a built-in volume"));
         let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());

@@ -1,12 +1,11 @@
 //! Tests of the GPU against the independent f64 reference, and proof that the comparison detects mistakes.
 
 use chiaroscuro_reference::{Reference, ReferenceOptions, Rounding};
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{LightShape, Settings, ShadowAlgorithm};
 use chiaroscuro_volume::Volume;
 use glam::DVec3;
 
-use crate::common::{Dataset, context, full_attenuation, render};
+use crate::common::{Dataset, full_attenuation, new_renderer, render};
 use crate::compare::{channels_f32, channels_f64, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::SAME_WEIGHTS;
@@ -54,7 +53,7 @@ pub(crate) fn check_volume(name: &str, volume: Volume, settings: &Settings, roun
 
 /// Compares sheets, light volumes and picture of a dataset with a reference of it.
 fn check_with(name: &str, loaded: &Dataset, settings: &Settings, reference: &Reference<'_>) {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut failures = Vec::new();
     for light in (0..settings.lights.len()).filter(|&light| settings.lights[light].needs_volume()) {
         if !settings.shadows.algorithm.has_volume() {

@@ -2,11 +2,11 @@
 //! footprint itself.
 
 use super::check_against;
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, new_renderer, render};
 use crate::compare::{channels_f32, compare, to_f64};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
 use crate::thresholds::{ENGINES, ENGINES_BY_DEFAULT, FOOTPRINT, ORDER_OPACITY, POPPING, ROTATION_STEP};
-use chiaroscuro_render::{Renderer, SHADERS};
+use chiaroscuro_render::SHADERS;
 use chiaroscuro_scene::{
     Camera, ClassificationOrder, ControlPoint, DepositMode, GradientSource, LightGeometry, LightLock,
     LightSettings, LightVolumeResolution, OpacityInterpolation, OpacityLength, ReconstructionKernel,
@@ -87,7 +87,7 @@ fn visible_lowest_density() {
 #[test]
 fn both_engines_make_the_same_picture() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = scenes::look();
     // The scattering engine implements the paper only.
     use_paper_shadows(&mut settings);
@@ -115,7 +115,7 @@ fn both_engines_make_the_same_picture() {
 #[test]
 fn both_engines_make_nearly_the_same_picture_by_default() {
     let loaded = Dataset::new(builtin("cloud", Some(64)).expect("the cloud"));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
     scenes::use_hard_light(&mut settings, loaded.volume());
     settings.camera.distance = 2.6;
@@ -143,7 +143,7 @@ fn single_voxels_reproduce_the_footprint() {
     values[7 + n * (8 + n * 9)] = 255;
     let volume = Volume::with_spacing("impulse", [n; 3], DVec3::ONE, Samples::U8(values)).expect("a volume");
     let loaded = Dataset::new(volume);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     // Thin, and linear in density: alpha is 1 − e^−τ with τ proportional to the footprint.
     let per_voxel = 0.5;
     let mut worst = 0.0f64;
@@ -216,7 +216,7 @@ fn scattering_samples_no_density() {
 /// orientation changes.
 fn brightness_while_turning(order: SheetOrder) -> Vec<f64> {
     let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 11.0));
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     let mut settings = Settings {
         lights: vec![LightSettings {
@@ -267,7 +267,7 @@ fn volume_aligned_sheets_pop_and_image_aligned_ones_do_not() {
 fn every_order_has_the_opacity_of_the_chord() {
     let n = 24;
     let loaded = Dataset::new(scenes::block(n, |[x, y, z]| [x, y, z].iter().all(|c| (6..18).contains(c))));
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     for order in [SheetOrder::ImageAligned, SheetOrder::VolumeAligned, SheetOrder::EveryFootprint] {
         for azimuth_deg in [-90.0, 0.0, 180.0] {
             let mut settings = Settings { camera: axis_camera(azimuth_deg, 0.0), ..Settings::default() }

@@ -1,7 +1,6 @@
 //! Sky light against the reference: moments of sky visibility, and pictures under a sky.
 
 use chiaroscuro_reference::{Reference, ReferenceFault, ReferenceOptions, SkyVisibility};
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
     ClassificationOrder, ClipEffect, CropBox, LightStorage, LightVolumeResolution, LitSides, OpacityLength,
     RenderEngine, Settings, ShadowAlgorithm, SkyMode, SkySettings,
@@ -12,7 +11,7 @@ use glam::DVec3;
 use super::check_volume;
 use super::mutations::assert_in_shader;
 use super::presence::{two_lobes, waves};
-use crate::common::{context, damaged_renderer};
+use crate::common::{damaged_renderer, new_renderer};
 use crate::compare::{channels_f32, compare};
 use crate::scenes;
 use crate::thresholds::{SKY_MOMENTS, SKY_MOMENTS_AT_SURFACES};
@@ -66,7 +65,7 @@ fn gpu_layout(visibility: &SkyVisibility) -> Vec<f64> {
 }
 
 fn visibility_moments(volume: &Volume, settings: &Settings) -> Vec<f64> {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     channels_f32(
         &renderer.sky_visibility(&Dataset::new(volume.clone()), settings).expect("moments are read back"),
     )
@@ -212,7 +211,7 @@ fn combined_lights_keep_the_sky() {
     let mut settings = under_a_sky(scenes::look());
     settings.shading.specular = 0.0;
     settings.lights[0].intensity = 1e-6;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let dataset = Dataset::new(creature());
     let mut picture = |storage| {
         settings.shadows.storage = storage;

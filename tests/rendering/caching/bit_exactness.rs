@@ -10,7 +10,7 @@ use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use super::{SIZE, loaded, three_lights};
-use crate::common::{Dataset, context, full_attenuation, render};
+use crate::common::{Dataset, full_attenuation, new_renderer, render};
 use crate::scenes;
 use crate::thresholds::F16_STEP;
 
@@ -95,7 +95,7 @@ fn check_skipping(is_selected: impl Fn(usize, u32) -> bool) {
     let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.0, 1.3)));
     for (at, settings) in skipping_looks().iter().enumerate() {
         let picture = |options: &RenderOptions| {
-            let mut renderer = Renderer::new(&context()).expect("a renderer");
+            let mut renderer = new_renderer();
             renderer.render(&loaded, settings, [120, 90], options).expect("a picture")
         };
         let usual = picture(&RenderOptions::default());
@@ -121,11 +121,11 @@ fn check_skipping(is_selected: impl Fn(usize, u32) -> bool) {
 #[test]
 fn the_same_settings_give_the_same_bytes() {
     let (loaded, settings) = (loaded(), three_lights());
-    let picture = || render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let picture = || render(&mut new_renderer(), &loaded, &settings, SIZE);
     let first = picture();
     assert_eq!(first, picture());
     // Also after unrelated work on the same renderer.
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut other = settings.clone();
     other.lights[0].position = [0.0, 0.0, 1.0];
     other.layer_mut().transfer.points[2].opacity = 0.9;
@@ -144,8 +144,8 @@ fn previews_leave_nothing_behind_that_pictures_would_not_make() {
         (point.value, point.opacity) = (f64::from(at) / 2.0, if at == 1 { 0.0 } else { 0.3 });
     }
     settings.shadows.resolution = LightVolumeResolution::Quarter;
-    let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let fresh = render(&mut new_renderer(), &loaded, &settings, SIZE);
+    let mut renderer = new_renderer();
     let request = RenderRequest {
         volume: loaded.id(),
         settings: settings.clone(),
@@ -194,12 +194,12 @@ fn the_clear_margin_is_cleared_once() {
         }
         renderer.read_light().expect("light")
     };
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     // The haze is hidden, visible, and hidden again: often enough that textures are reused.
     let onsets = [[1.5; 4], [0.5; 4], [1.5; 4]];
     for (at, onset) in onsets.into_iter().flatten().enumerate() {
         let place = [(at as f64).cos(), (at as f64).sin(), 1.5];
-        let fresh = preview(&mut Renderer::new(&context()).expect("a renderer"), place, onset);
+        let fresh = preview(&mut new_renderer(), place, onset);
         assert!(fresh == preview(&mut renderer, place, onset), "preview {at} differs from a fresh one");
     }
 }

@@ -4,7 +4,7 @@ use chiaroscuro_render::{Renderer, plan::RenderRequest};
 use chiaroscuro_scene::{LightGeometry, NearFieldRay, Settings};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::scenes;
 use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 
@@ -43,7 +43,7 @@ fn orbiting_a_hundred_frames_rebuilds_no_light() {
 /// Orbits once around in a number of frames, and checks that no light volume is refilled.
 fn orbit(frames: u32) {
     let (loaded, mut settings) = (loaded(), three_lights());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     render(&mut renderer, &loaded, &settings, SIZE);
     assert_eq!(renderer.light_rebuilds(), [1, 1, 1]);
     for _ in 0..frames {
@@ -68,7 +68,7 @@ fn dragging_a_light_beside_a_fill_makes_nothing_anew() {
 
 fn dragging_makes_nothing_anew(mut settings: Settings) {
     let loaded = loaded();
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let drag = |renderer: &mut Renderer, settings: &mut Settings, at: u32| {
         // Back and forth, so that sheets and lists have had every size.
         let turn = glam::DQuat::from_rotation_z(0.1 * f64::from(at % 8));
@@ -77,22 +77,25 @@ fn dragging_makes_nothing_anew(mut settings: Settings) {
         settings.camera.orbit(3.6, 0.3);
         render(renderer, &loaded, settings, SIZE);
     };
-    for at in 0..24 {
-        drag(&mut renderer, &mut settings, at);
-    }
-    let (made, bytes) = (renderer.created_resources(), renderer.gpu_bytes());
-    assert!(made > 10, "the count must see what was made: {made}");
-    for at in 0..24 {
-        drag(&mut renderer, &mut settings, at);
-    }
-    assert_eq!(renderer.created_resources(), made, "buffers, bind groups and sheets");
-    assert_eq!(renderer.gpu_bytes(), bytes);
+    let mut drag_on = |renderer: &mut Renderer| {
+        (0..24).for_each(|at| drag(renderer, &mut settings, at));
+        (renderer.created_resources(), renderer.gpu_bytes())
+    };
+    let mut known = drag_on(&mut renderer);
+    assert!(known.0 > 10, "the count must see what was made: {}", known.0);
+    // Work is split by the time that it takes, and a busy machine may split it in a new way now and then. What makes
+    // buffers, bind groups or sheets with every light does so in each of these drags.
+    let is_settled = (0..6).any(|_| {
+        let before = std::mem::replace(&mut known, drag_on(&mut renderer));
+        known == before
+    });
+    assert!(is_settled, "a drag makes things anew: {known:?}");
 }
 
 #[test]
 fn live_controls_rebuild_no_light_and_change_the_picture() {
     let (loaded, settings) = (loaded(), three_lights());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let before = render(&mut renderer, &loaded, &settings, SIZE);
     type Change = fn(&mut Settings);
     let changes: [(&str, Change); 8] = [
@@ -123,7 +126,7 @@ fn live_controls_rebuild_no_light_and_change_the_picture() {
 fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
     let (loaded, mut settings) = (loaded(), three_lights());
     settings.shadows.near_field = NearFieldRay::Off;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let before = render(&mut renderer, &loaded, &settings, SIZE);
     let mut seen = vec![before.linear.clone()];
     for bias_voxels in [0.1, 1.5, 2.0, 0.7] {
@@ -142,7 +145,7 @@ fn a_light_bias_fills_more_once_and_is_live_from_then_on() {
 #[test]
 fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
     let (loaded, mut settings) = (loaded(), three_lights());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     render(&mut renderer, &loaded, &settings, SIZE);
     settings.lights[1].position = [-1.5, 1.7, 2.0];
     render(&mut renderer, &loaded, &settings, SIZE);
@@ -156,7 +159,7 @@ fn moving_one_of_three_lights_rebuilds_exactly_that_one() {
 #[test]
 fn a_lighting_transfer_edit_rebuilds_all() {
     let (loaded, mut settings) = (loaded(), three_lights());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     render(&mut renderer, &loaded, &settings, SIZE);
     settings.layer_mut().lighting.scale = 0.5;
     render(&mut renderer, &loaded, &settings, SIZE);
@@ -168,12 +171,12 @@ fn a_lighting_transfer_edit_rebuilds_all() {
 #[test]
 fn kept_light_volumes_are_really_kept_and_refilled_ones_really_refilled() {
     let (loaded, mut settings) = (loaded(), scenes::look());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     render(&mut renderer, &loaded, &settings, SIZE);
     settings.lights[0].color = [0.9, 0.7, 0.5];
     settings.shadows.gain = 1.3;
     let kept = render(&mut renderer, &loaded, &settings, SIZE);
-    let fresh = render(&mut Renderer::new(&context()).expect("a renderer"), &loaded, &settings, SIZE);
+    let fresh = render(&mut new_renderer(), &loaded, &settings, SIZE);
     let worst = kept.linear.iter().flatten().zip(fresh.linear.iter().flatten()).map(|(a, b)| (a - b).abs());
     assert!(worst.fold(0.0, f32::max) <= F16_STEP);
 

@@ -5,7 +5,7 @@ use chiaroscuro_scene::{LightVolumeResolution, OpacityLength, Settings, SkyMode,
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{context, damaged_renderer};
+use crate::common::{damaged_renderer, new_renderer};
 use crate::scenes;
 
 /// Volume with slanted rods that end at two faces of the grid, as vessels of a scan do.
@@ -49,7 +49,7 @@ fn needed_blocks_of_sky_visibility_are_the_same_among_all_blocks() {
         assert!((all.len() / 4..all.len() * 3 / 4).contains(&compared), "{compared} of {}", all.len());
         needed.iter().zip(&all).filter(|(some, all)| some.is_some_and(|some| some != **all)).count()
     };
-    assert_eq!(different(|| Renderer::new(&context()).expect("a renderer")), 0);
+    assert_eq!(different(|| new_renderer()), 0);
     // Rays that start beside the grid are then read where nothing follows them, where the light of earlier directions
     // remains.
     assert_ne!(different(|| damaged_renderer("1.0 + MAX_DISTANCE_OUTSIDE", "1.0")), 0);

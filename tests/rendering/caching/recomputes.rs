@@ -10,7 +10,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::Dataset;
 use glam::DVec3;
 
-use crate::common::context;
+use crate::common::{context, new_renderer};
 use crate::scenes;
 
 const SIZE: [u32; 2] = [24, 18];
@@ -354,7 +354,7 @@ fn a_picture_does_not_depend_on_the_one_before() {
     cut.cuts.plane.on = true;
     let dataset = Dataset::new(volume);
     let options = RenderOptions::default();
-    let mut one_after_the_other = Renderer::new(&context()).unwrap();
+    let mut one_after_the_other = new_renderer();
     let mut draw = |settings: &Settings| {
         one_after_the_other.render_display(&dataset, settings, [88, 66], &options).expect("a picture")
     };
@@ -366,7 +366,7 @@ fn a_picture_does_not_depend_on_the_one_before() {
     turned.camera.azimuth_deg += 70.0;
     draw(&turned);
     let again = draw(&whole);
-    let mut fresh = Renderer::new(&context()).unwrap();
+    let mut fresh = new_renderer();
     let alone = fresh.render_display(&dataset, &whole, [88, 66], &options).expect("a picture");
     assert!(before == alone && after == alone && again == alone);
 }

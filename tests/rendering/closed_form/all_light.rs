@@ -16,7 +16,7 @@ use chiaroscuro_volume_io::{LoadOptions, open};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::common::{Dataset, context};
+use crate::common::{Dataset, new_renderer};
 use crate::path_tracing::{RandomNumbers, TracedMaterial};
 use crate::scenes::{self, make_isotropic};
 use crate::thresholds::{ALL_LIGHT, ALL_LIGHT_DEFAULTS};
@@ -280,7 +280,7 @@ fn check_finest(name: &str, loaded: &Dataset, paths: u32, settings: &Settings) -
     let truth = trace_picture(loaded, settings, PICTURE_EDGE, paths);
     let mean: Vec<_> = truth.iter().map(|[a, b]| std::array::from_fn(|c| 0.5 * (a[c] + b[c]))).collect();
     let truth = [0, 1].map(|half| square_means(&truth.iter().map(|pixel| pixel[half]).collect::<Vec<_>>()));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let [ours, usual] =
         [finest_settings(settings), settings.clone()].map(|look| render_light(&mut renderer, loaded, &look));
     let map = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("all-light-{name}.png"));

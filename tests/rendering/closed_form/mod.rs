@@ -3,7 +3,7 @@
 use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{LightGeometry, OpacityLength, RenderEngine, Settings};
 
-use crate::common::context;
+use crate::common::full_precision_renderer;
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic, use_paper_shadows};
 
 mod absorption;
@@ -22,7 +22,7 @@ mod sky;
 mod sky_on_surfaces;
 
 pub(crate) fn renderer() -> Renderer {
-    Renderer::new(&context().with_full_precision()).expect("a renderer")
+    full_precision_renderer()
 }
 
 pub(crate) fn base(engine: RenderEngine, per_voxel: f64) -> Settings {

@@ -10,7 +10,7 @@ use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
 use crate::against_reference::mutations::assert_in_shader;
-use crate::common::{context, damaged_renderer, render};
+use crate::common::{damaged_renderer, new_renderer, render};
 use crate::scenes::{self, linear_extinction};
 use crate::thresholds::{FURNACE, HALF_SPACE, PICTURED_FURNACE, PICTURED_FURNACE_CONVERGED};
 
@@ -38,7 +38,7 @@ fn scattering_look(per_voxel: f64, (bounces, albedo, directions): (u32, f64, u32
 /// Scattered light in the red channel, by the reference and the GPU.
 fn scattered_light(volume: &Volume, settings: &Settings) -> [Vec<f64>; 2] {
     let reference = Reference::new(volume, settings, ReferenceOptions::default()).bounced_light();
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let light =
         renderer.scattered_light(&Dataset::new(volume.clone()), settings).expect("light is read back");
     let [red, _, _] = reference.light;
@@ -96,7 +96,7 @@ fn extremes(renderer: &mut Renderer, (loaded, settings): &(Dataset, Settings)) -
 /// However dense it is, and with few bounces: what later ones bring diffuses.
 #[test]
 fn dense_white_cubes_vanish_in_a_white_furnace() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut failures = Vec::new();
     for depth in [3.0, 8.0, 18.0, 40.0] {
         for (bounces, limit) in
@@ -134,7 +134,7 @@ fn mistakes_in_the_furnace_are_noticed() {
             "{shader}: {to:?} is not noticed: {least} to {most}"
         );
     }
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let (least, most) = extremes(&mut renderer, &white_cube(40.0, 1));
     assert!(least < 1.0 - PICTURED_FURNACE_CONVERGED, "one bounce alone is not noticed: {least} to {most}");
 }
@@ -211,7 +211,7 @@ fn bounced_light_is_linear_in_the_lights() {
 #[test]
 fn nothing_bounces_where_it_is_off() {
     let dataset = Dataset::new(scenes::noise(20, 7));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |scattering: ScatteringSettings| {
         let settings = Settings { scattering, ..scenes::look() };
         render(&mut renderer, &dataset, &settings, [64, 48]).linear

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::all_light::trace_picture;
 use crate::against_reference::mutations::assert_in_shader;
-use crate::common::{Dataset, context, damaged_renderer};
+use crate::common::{Dataset, damaged_renderer, new_renderer};
 use crate::scenes::{self, linear_extinction, make_isotropic};
 use crate::thresholds::{OUTSIDE_HARD, OUTSIDE_MEAN, OUTSIDE_SQUARES, OUTSIDE_TRACED};
 
@@ -144,7 +144,7 @@ fn drawn(renderer: &mut Renderer, settings: &Settings, figures: &OutsideFigures)
 
 #[test]
 fn pictures_are_those_of_another_renderer() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut failures = Vec::new();
     for figures in figures() {
         let settings = settings(&figures.scene);
@@ -222,7 +222,7 @@ fn mistakes_of_measure_are_noticed() {
         assert_in_shader(shader, from);
         differs(to, &mut damaged_renderer(from, to), &settings);
     }
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut wrong = settings.clone();
     wrong.scattering.bounces = 1;
     differs("one bounce alone", &mut renderer, &wrong);

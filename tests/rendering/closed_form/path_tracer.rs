@@ -1,7 +1,7 @@
 //! Brightness against a path tracer of single scattering in dense material: the visible point and its transmittance
 //! to the light are both sampled at random, without steps and without slabs.
 
-use chiaroscuro_render::{RenderOptions, Renderer, plan::picture_frame};
+use chiaroscuro_render::{RenderOptions, plan::picture_frame};
 use chiaroscuro_scene::{
     LightGeometry, OpacityLength, Projection, QualityPreset, Settings, ShadowAlgorithm, SkyMode,
     first_look::{self, FirstLookOptions},
@@ -9,7 +9,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{KindName, synthetic::builtin};
 use rayon::prelude::*;
 
-use crate::common::{Dataset, context};
+use crate::common::{Dataset, new_renderer};
 use crate::path_tracing::{RandomNumbers, TracedMaterial};
 use crate::scenes::{self, make_isotropic};
 use crate::thresholds::{TRACED_EXACT, TRACED_STANDARD};
@@ -57,7 +57,7 @@ fn traced_mean(loaded: &Dataset, settings: &Settings) -> (f64, f64) {
 /// The mean of pictures of box, sphere and cloud, white and dense, equals the path tracer's.
 #[test]
 fn pictures_are_as_bright_as_a_path_tracers() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for name in ["box", "sphere", "cloud"] {
         let loaded = Dataset::new(builtin(name, Some(64)).expect("a built-in volume"));
         // A ramp of opacities, also for the box, which is a mask.

@@ -1,12 +1,11 @@
 //! Sky visibility in scenes with a known solution, on the reference and on the GPU.
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{LightVolumeResolution, Settings, SkyMode, SkySettings};
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::context;
+use crate::common::new_renderer;
 use crate::scenes::{self, linear_extinction};
 use crate::thresholds::{SKY_VISIBILITY, SKY_VISIBILITY_AT_WALL};
 
@@ -60,7 +59,7 @@ fn visibility_moments(
             first: DVec3::from(openness.first_moment.each_ref().map(|values| values[index(voxel)])),
         })
         .collect();
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let moments = renderer.sky_visibility(&Dataset::new(volume), &settings).expect("moments are read back");
     let gpu = at
         .iter()

@@ -9,7 +9,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{context, damaged_renderer, render};
+use crate::common::{damaged_renderer, new_renderer, render};
 use crate::scenes::{self, axis_camera};
 use crate::thresholds::{
     BOX_UNDER_SKY, CONVEX_BODY_UNDER_SKY, GROOVE_UNDER_SKY, OPEN_PLATE_UNDER_SKY, SKY_AT_HALF_OF_FULL,
@@ -88,7 +88,7 @@ fn statistics(picture: &[f64], share: f64) -> [f64; 4] {
 
 /// Calls a check with pictures of a scene, for both curves and resolutions.
 fn for_all_looks(what: &str, scene: &Scene<'_>, mut check: impl FnMut(&str, &[f64])) {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for (name, curve) in opacity_curves() {
         for resolution in RESOLUTIONS {
             let picture = brightness(&mut renderer, scene, resolution, &curve);
@@ -236,7 +236,7 @@ fn resolutions_agree_on_a_ball_over_a_plane() {
     let ball = DVec3::new(27.5, 27.5, 22.0);
     let depth = |p: DVec3| (7.3 - p.z).max(10.0 - p.distance(ball));
     let scene = Scene { dims: [56, 56, 40], depth: &depth, view: [-55.0, 35.0] };
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for (name, curve) in opacity_curves() {
         let [half, full] = RESOLUTIONS
             .map(|resolution| statistics(&brightness(&mut renderer, &scene, resolution, &curve), 1.0)[0]);

@@ -18,7 +18,7 @@ use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::context;
+use crate::common::new_renderer;
 use crate::thresholds::DisplayLimit;
 
 /// Pixels along an edge of a picture: small volumes need no more.
@@ -77,10 +77,6 @@ fn draw_dataset(renderer: &mut Renderer, loaded: &Dataset, settings: &Settings) 
 
 fn draw(renderer: &mut Renderer, scene: &TestScene) -> DisplayPicture {
     draw_dataset(renderer, &scene.dataset(), &scene.settings)
-}
-
-fn new_renderer() -> Renderer {
-    Renderer::new(&context()).expect("a renderer")
 }
 
 /// Difference of two pictures in display values.

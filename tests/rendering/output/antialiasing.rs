@@ -12,7 +12,7 @@ use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
 use crate::against_reference::mutations::assert_in_shader;
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, new_renderer, render};
 use crate::compare::{channels_f32, channels_f64, compare};
 use crate::scenes;
 use crate::thresholds::{
@@ -97,7 +97,7 @@ fn edge_errors(renderer: &mut Renderer, degrees: f64, rays: u32) -> EdgeErrors {
 
 #[test]
 fn edges_are_one_pixel_wide_ramps_of_what_they_cover() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for degrees in [5.0, 33.0, 80.0] {
         let jagged = edge_errors(&mut renderer, degrees, 1);
         assert!(jagged.largest > 0.4 && jagged.levels <= 4, "{degrees}: {}", jagged.largest);
@@ -116,7 +116,7 @@ fn edges_are_one_pixel_wide_ramps_of_what_they_cover() {
 
 #[test]
 fn coverage_grows_along_each_row() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let (settings, loaded, shares) = half_space(12.0);
     let found = renderer.render(&loaded, &settings, SIZE, &with_rays(8)).expect("a picture").linear;
     let row = |j: usize| j * SIZE[0] as usize..(j + 1) * SIZE[0] as usize;
@@ -181,7 +181,7 @@ fn display_rms(a: &[u8], b: &[u8]) -> f64 {
 #[test]
 fn edges_are_those_of_many_samples() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut with_floor = scenes::look();
     with_floor.floor = FloorSettings { on: true, height: -0.9, ..FloorSettings::default() };
     for settings in [scenes::look(), with_floor] {
@@ -214,7 +214,7 @@ fn plate_grain(renderer: &mut Renderer, settings: &Settings, rays: u32) -> f64 {
 
 #[test]
 fn shifted_slabs_leave_less_grain() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = scenes::look();
     QualityPreset::Fast.apply(&mut settings);
     (settings.sampling.slabs, settings.sampling.slab) = (SlabMode::Even, 2.0);
@@ -239,7 +239,7 @@ fn shifted_slabs_leave_less_grain() {
 #[test]
 fn parts_are_the_whole_antialiased_picture() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = scenes::look();
     settings.floor = FloorSettings { on: true, height: -0.9, ..FloorSettings::default() };
     for depth in [PixelFormat::Eight, PixelFormat::Sixteen] {
@@ -268,7 +268,7 @@ fn parts_are_the_whole_antialiased_picture() {
 #[test]
 fn one_ray_is_the_picture_as_it_was_and_more_rays_reuse_it() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = scenes::look();
     let one = render(&mut renderer, &loaded, &settings, SIZE);
     let fills = renderer.light_rebuilds().to_vec();
@@ -284,7 +284,7 @@ fn one_ray_is_the_picture_as_it_was_and_more_rays_reuse_it() {
     assert_eq!((counts.eye, counts.antialiasing, counts.display), (0, 0, 1));
     settings.output.exposure = 1.0;
     assert_eq!(render(&mut renderer, &loaded, &settings, SIZE), one);
-    let mut fresh = Renderer::new(&context()).expect("a renderer");
+    let mut fresh = new_renderer();
     let again = fresh.render(&loaded, &settings, SIZE, &with_rays(4)).expect("a picture");
     assert_eq!(again, four, "the same bytes, whatever was drawn before");
     // Other numbers are served by the nearest, and the scattering engine by one ray.

@@ -1,10 +1,10 @@
 //! Dithering of two-colour backgrounds in 8 bits, so that they have no bands.
 
-use chiaroscuro_render::{PictureOptions, RenderOptions, Renderer};
+use chiaroscuro_render::{PictureOptions, RenderOptions};
 use chiaroscuro_scene::{Background, Settings};
 use glam::DVec3;
 
-use crate::common::{Dataset, context};
+use crate::common::{Dataset, new_renderer};
 use crate::scenes;
 use crate::thresholds::DITHERED;
 
@@ -15,7 +15,7 @@ fn background(top: f32, bottom: f32, transparent: bool) -> Vec<u8> {
     let mut settings: Settings = scenes::look();
     settings.layer_mut().transfer.points.iter_mut().for_each(|point| point.opacity = 0.0);
     settings.output.background = Background { top: [top; 3], bottom: [bottom; 3] };
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let options = RenderOptions::from(PictureOptions { transparent, ..PictureOptions::default() });
     let loaded = Dataset::new(scenes::creature(8, DVec3::ONE));
     let picture = renderer.render(&loaded, &settings, SIZE, &options).expect("a picture");

@@ -1,11 +1,11 @@
 //! Downsampled volumes look like the full-resolution ones.
 
-use chiaroscuro_render::{Renderer, downsample_to_fit, mean_luminance};
+use chiaroscuro_render::{downsample_to_fit, mean_luminance};
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::{Histogram, Volume};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, context, new_renderer, render};
 use crate::compare::{channels_f32, difference};
 use crate::scenes;
 use crate::thresholds::{AVERAGED, AVERAGED_MEAN};
@@ -26,7 +26,7 @@ fn averaged_voxels_look_like_those_that_they_stand_for() {
     let whole = scenes::creature(64, DVec3::new(1.0, 0.8, 1.6));
     let half = whole.clone().block_averaged([2; 3]).expect("a volume");
     assert_eq!(half.dims(), [32; 3]);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut picture = |volume: &Volume, settings: &Settings| {
         render(&mut renderer, &Dataset::new(volume.clone()), settings, SIZE)
     };

@@ -8,7 +8,7 @@ use chiaroscuro_scene::{
 };
 use glam::DVec3;
 
-use crate::common::{Dataset, context};
+use crate::common::{Dataset, new_renderer};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, HALF_STEP, MIN_ROUNDING, SAMPLED_BACKGROUND, TILES, TONE_MAP};
 
@@ -58,7 +58,7 @@ fn parts_are_the_whole_picture_at_every_depth() {
 /// Compares parts with the whole for the looks and depths that `is_selected` selects.
 fn check_parts(is_selected: impl Fn(&str, PixelFormat) -> bool) {
     let loaded = Dataset::new(scenes::creature(40, DVec3::new(1.0, 0.8, 1.6)));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut orthographic = look();
     orthographic.camera.projection = Projection::Orthographic;
     let mut direct = look();
@@ -92,7 +92,7 @@ fn check_parts(is_selected: impl Fn(&str, PixelFormat) -> bool) {
 #[test]
 fn parts_that_lie_elsewhere_are_noticed() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let image_spec = ImageSpec { depth: PixelFormat::Sixteen, ..ImageSpec::new(SIZE) };
     let whole = picture(&mut renderer, &loaded, &look(), &image_spec, (4096, 1 << 20));
     // One pixel further right is the smallest error that parts can have.
@@ -103,7 +103,7 @@ fn parts_that_lie_elsewhere_are_noticed() {
 #[test]
 fn samples_are_the_mean_of_a_finer_picture() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for samples in [2, 3] {
         for transparent in [false, true] {
             let image_spec =
@@ -138,7 +138,7 @@ fn means(finer: &[f32], n: usize) -> Vec<f32> {
 #[test]
 fn sixteen_bits_are_between_the_steps_of_eight() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let whole = (4096, 1 << 20);
     for transparent in [false, true] {
         let image_spec = ImageSpec { transparent, ..ImageSpec::new(SIZE) };
@@ -155,7 +155,7 @@ fn sixteen_bits_are_between_the_steps_of_eight() {
 #[test]
 fn linear_light_is_what_the_display_shows() {
     let loaded = Dataset::new(scenes::creature(40, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look();
     settings.output.tone_map = chiaroscuro_scene::ToneMap::Clip;
     settings.floor.on = false;

@@ -4,7 +4,7 @@ use chiaroscuro_render::{Renderer, ShaderLibrary};
 use chiaroscuro_scene::{ImageSpec, PixelFormat, Settings, ToneMap};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, new_renderer, render};
 use crate::compare::{ErrorLimit, ErrorMeasure, compare};
 use crate::scenes;
 use crate::thresholds::{EIGHT_BITS, TONE_MAP};
@@ -92,7 +92,7 @@ fn tone_maps_are_their_formulas() {
     for (tone_map, exposure) in
         [(ToneMap::Neutral, 1.0), (ToneMap::Clip, 1.0), (ToneMap::Neutral, 2.5), (ToneMap::Clip, 0.3)]
     {
-        let renderer = Renderer::new(&context()).expect("a renderer");
+        let renderer = new_renderer();
         check(renderer, tone_map, exposure).unwrap_or_else(|err| panic!("{err}"));
     }
 }
@@ -100,8 +100,7 @@ fn tone_maps_are_their_formulas() {
 /// Guards the comparison: it covers values before, at and far behind the shoulder.
 #[test]
 fn all_of_the_curve_is_compared() {
-    let (light, _) =
-        render_all_intensities(Renderer::new(&context()).expect("a renderer"), ToneMap::Neutral, 1.0);
+    let (light, _) = render_all_intensities(new_renderer(), ToneMap::Neutral, 1.0);
     let peaks: Vec<f32> = light
         .iter()
         .filter(|texel| texel[3] > 0.1)
@@ -139,7 +138,7 @@ fn other_tone_maps_are_noticed() {
 #[test]
 fn linear_pictures_have_the_exposure_and_light_has_not() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let linear = |renderer: &mut Renderer, settings: &Settings| -> Vec<f32> {
         let image_spec = ImageSpec { depth: PixelFormat::Linear, transparent: true, ..ImageSpec::new(SIZE) };
         renderer
@@ -166,7 +165,7 @@ fn linear_pictures_have_the_exposure_and_light_has_not() {
 #[test]
 fn the_background_is_not_exposed_and_the_floor_is() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look(1.0, ToneMap::Clip, 1.0);
     settings.floor.on = true;
     settings.camera.elevation_deg = 40.0;

@@ -9,7 +9,7 @@ use chiaroscuro_scene::{
 use glam::DVec3;
 
 use crate::against_reference::check_against;
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, new_renderer, render};
 use crate::compare::{channels_f32, channels_f64, compare};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic};
 use crate::thresholds::{CHORD_OPACITY, CUT_COMBINED, CUT_LIGHT, CUT_ORDERS, SAME_WEIGHTS, SUMMATION_ORDER};
@@ -94,7 +94,7 @@ fn the_comparison_notices_whole_slabs() {
         ..ReferenceOptions::default()
     };
     let reference = Reference::new(loaded.volume(), &settings, options);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let found = render(&mut renderer, &loaded, &settings, SIZE);
     let expected = reference.picture(SIZE, &reference.attenuations());
     assert!(
@@ -132,7 +132,7 @@ fn center_alpha_and_red(renderer: &mut Renderer, loaded: &Dataset, settings: &Se
 #[test]
 fn a_chord_is_as_opaque_as_what_remains_of_it() {
     let (loaded, mut settings) = block();
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     let mut opacity = |settings: &Settings| center_alpha_and_red(&mut renderer, &loaded, settings).0;
     let close = |found: f64, chord: f64| {
         let wanted = 1.0 - (-chord * 2.0_f64.ln() / 16.0).exp();
@@ -168,7 +168,7 @@ fn a_chord_is_as_opaque_as_what_remains_of_it() {
 #[test]
 fn effects_tell_eye_and_light_apart() {
     let (loaded, mut settings) = block();
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     settings.cuts.crop = CropBox { on: true, high: [1.0, 1.0, 0.5], ..CropBox::default() };
     let mut with = |effect: ClipEffect| {
         settings.cuts.crop.effect = effect;
@@ -193,7 +193,7 @@ fn cuts_of_nothing_change_no_bit() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = scenes::look();
     let shown = |settings: &Settings| {
-        let mut renderer = Renderer::new(&context()).expect("a renderer");
+        let mut renderer = new_renderer();
         render(&mut renderer, &loaded, settings, SIZE).linear
     };
     let before = shown(&settings);
@@ -221,7 +221,7 @@ fn cuts_of_nothing_change_no_bit() {
 fn the_light_is_kept_while_only_the_eye_is_concerned() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(ClipEffect::Hidden, ClipEffect::Hidden);
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut rebuilds = |settings: &Settings| {
         render(&mut renderer, &loaded, settings, SIZE);
         renderer.light_rebuilds()[0]
@@ -242,7 +242,7 @@ fn historical_orders_are_cut_too() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(ClipEffect::Removed, ClipEffect::Removed);
     settings.sampling.engine = RenderEngine::Scatter;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut alpha = |order: SheetOrder, cut: bool| {
         settings.sampling.order = order;
         (settings.cuts.crop.on, settings.cuts.plane.on) = (cut, cut);
@@ -262,7 +262,7 @@ fn combined_lights_know_the_faces() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
     let mut settings = look(ClipEffect::Removed, ClipEffect::Removed);
     settings.shading.specular = 0.0;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut shown = |storage: LightStorage, settings: &mut Settings| {
         settings.shadows.storage = storage;
         channels_f32(&render(&mut renderer, &loaded, settings, SIZE).linear)

@@ -1,6 +1,6 @@
 //! Combined lights: several lights in one volume of colours (P §4).
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::compare::{channels_f32, compare, difference};
 use crate::scenes::{self, make_isotropic};
 use crate::thresholds::{COMBINED, COMBINED_NORMALS};
@@ -37,7 +37,7 @@ fn look() -> Settings {
 #[test]
 fn combined_light_is_the_sum_of_the_lights() {
     let loaded = Dataset::new(scenes::creature(48, DVec3::new(1.0, 1.2, 1.5)));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look();
     let surfaces = |storage: LightStorage, even: bool, settings: &mut Settings| {
         settings.shadows.storage = storage;
@@ -71,7 +71,7 @@ fn combined_light_is_the_sum_of_the_lights() {
 #[test]
 fn a_combined_volume_is_kept_until_a_light_changes() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look();
     render(&mut renderer, &loaded, &settings, SIZE);
     let voxels = loaded.volume().voxel_count() as u64;

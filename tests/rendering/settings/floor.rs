@@ -10,7 +10,7 @@ use chiaroscuro_scene::{
 use glam::DVec3;
 
 use crate::against_reference::mutations::assert_in_shader;
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, full_precision_renderer, new_renderer, render};
 use crate::compare::{ErrorLimit, compare};
 use crate::scenes::{self, axis_camera, linear_extinction};
 use crate::thresholds::{
@@ -41,7 +41,7 @@ fn check_against(
     name: &str,
     limit: ErrorLimit,
 ) {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let loaded = Dataset::new(scenes::creature(40, spacing_mm));
     let [found, expected] = visible_floors(&mut renderer, size, &loaded, [settings, reference_settings]);
     assert!(expected.iter().sum::<f64>() > 10.0, "{name}: there is a floor to see");
@@ -208,7 +208,7 @@ fn it_is_dark_below_and_bright_beside_the_object() {
     settings.sky =
         SkySettings { mode: SkyMode::White, intensity: 0.8, directions: 64, ..SkySettings::default() };
     settings.camera.elevation_deg = 40.0;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     render(&mut renderer, &loaded, &settings, SIZE);
     let floor = renderer.read_floor().expect("a floor");
     let open = 0.8 * linear_from_srgb(f64::from(settings.floor.color[0]));
@@ -236,7 +236,7 @@ fn it_lies_below_whatever_is_up() {
 fn every_algorithm_and_engine_has_it() {
     let mut settings = with_floor(scenes::look());
     let loaded = Dataset::new(scenes::creature(24, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut shadows = Vec::new();
     for algorithm in [ShadowAlgorithm::Splat, ShadowAlgorithm::Raycast, ShadowAlgorithm::Direct] {
         settings.shadows.algorithm = algorithm;
@@ -275,7 +275,7 @@ fn what_a_block_lets_through_falls_on_the_floor() {
     settings.floor =
         FloorSettings { on: true, height: -3.0, color: [1.0; 3], radius: 50.0, ..FloorSettings::default() };
     let camera = settings.camera.clone();
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     // Aims at a point of the floor.
     settings.camera.target = [0.0, 0.0, -3.0];
     let picture = render(&mut renderer, &loaded, &settings, [65, 65]);
@@ -299,7 +299,7 @@ fn it_lies_behind_the_volume_and_before_the_background() {
     let mut settings = scenes::look();
     settings.output.background = Background { top: [0.2; 3], bottom: [0.2; 3] };
     settings.output.tone_map = ToneMap::Clip;
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let bare = render(&mut renderer, &loaded, &settings, SIZE);
     settings = with_floor(settings);
     let with = render(&mut renderer, &loaded, &settings, SIZE);

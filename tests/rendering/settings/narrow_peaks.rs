@@ -1,10 +1,10 @@
 //! Narrow peaks of transfer functions, which slabs by need must not skip.
 
-use chiaroscuro_render::{Renderer, mean_luminance};
+use chiaroscuro_render::mean_luminance;
 use chiaroscuro_scene::{Camera, ControlPoint, OpacityInterpolation, SlabMode, TransferFunction};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::compare::{channels_f32, compare, to_f64};
 use crate::scenes;
 use crate::thresholds::{PEAK, PEAK_MEAN};
@@ -13,7 +13,7 @@ use crate::thresholds::{PEAK, PEAK_MEAN};
 #[test]
 fn a_thin_shell_is_seen_whole() {
     let loaded = Dataset::new(scenes::ball(48, DVec3::splat(23.5), 16.0));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = scenes::look();
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
     settings.layer_mut().transfer = TransferFunction {

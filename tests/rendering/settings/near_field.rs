@@ -1,13 +1,12 @@
 //! Near-field rays: shadows from material within a few voxels are traced by a short ray.
 
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{
     Camera, LightGeometry, LightingTransfer, NearFieldRay, OpacityLength, Projection, ReconstructionKernel,
     Settings, ShadowAlgorithm, first_look,
 };
 use chiaroscuro_volume::synthetic::builtin;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, new_renderer, render};
 use crate::compare::to_f64;
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic};
 use crate::thresholds::{LIGHT_VOLUME_NEAR_A_FACE, NEAR_A_FACE, PREFILTERED_LIGHT};
@@ -39,7 +38,7 @@ fn light_below_a_face_has_the_physical_amount() {
     let n = 48;
     let face = 8;
     let loaded = Dataset::new(scenes::block(n, |v| v.iter().all(|c| (face..n - face).contains(c))));
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     let per_voxel = 0.7;
     let mut squares = [0.0_f64; 3];
     let depths: Vec<f64> = (0..10).map(|step| 0.25 * f64::from(step)).collect();
@@ -82,7 +81,7 @@ fn light_below_a_face_has_the_physical_amount() {
 #[test]
 fn a_prefiltered_light_pass_is_as_accurate_behind_near_field_rays() {
     let loaded = Dataset::new(builtin("chair", Some(64)).expect("the chair"));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = first_look::first_settings(loaded.volume(), loaded.histogram());
     settings.lights = vec![scenes::light(LightGeometry::Parallel, [-2.2, -1.2, 1.6])];
     let mut picture = |near, kernel, algorithm| {

@@ -9,7 +9,7 @@ use chiaroscuro_volume::{LoadControl, Volume};
 use chiaroscuro_volume_io::{LoadOptions, load};
 use glam::{DAffine3, DVec3};
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, render};
 use crate::compare::{channels_f32, compare};
 use crate::scenes;
 use crate::thresholds::PHANTOM;
@@ -58,7 +58,7 @@ fn picture(renderer: &mut Renderer, volume: Volume) -> Vec<f64> {
 
 #[test]
 fn a_head_looks_the_same_in_every_format_and_order_of_axes() {
-    let mut renderer = Renderer::new(&context().with_full_precision()).expect("a renderer");
+    let mut renderer = full_precision_renderer();
     let mut wrong = Vec::new();
     let mut count = 0;
     for lie in ORIENTATIONS {

@@ -8,7 +8,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, damaged_renderer, render};
+use crate::common::{Dataset, damaged_renderer, new_renderer, render};
 use crate::compare::{channels_f32, compare};
 use crate::scenes;
 use crate::thresholds::PROJECTION;
@@ -127,7 +127,7 @@ fn assert_plain(
 #[test]
 fn projections_are_those_of_a_plain_walk() {
     let loaded = Dataset::new(random_voxels());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for (kind, transfer) in PROJECTIONS.into_iter().flat_map(|kind| curves().map(|curve| (kind, curve))) {
         let mut settings = look(kind, &transfer);
         for projection in [Projection::Perspective, Projection::Orthographic] {
@@ -141,7 +141,7 @@ fn projections_are_those_of_a_plain_walk() {
 #[test]
 fn along_an_axis_rows_of_voxels_are_projected() {
     let loaded = Dataset::new(random_voxels());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for kind in PROJECTIONS {
         let mut settings = look(kind, &curves()[0]);
         settings.camera = Camera { distance: 3.0, ..scenes::axis_camera(0.0, 0.0) };
@@ -152,7 +152,7 @@ fn along_an_axis_rows_of_voxels_are_projected() {
 #[test]
 fn what_is_cut_away_or_missing_is_not_projected() {
     let cut = Dataset::new(random_voxels());
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     for kind in PROJECTIONS {
         let mut settings = look(kind, &curves()[0]);
         settings.cuts.crop.on = true;
@@ -185,7 +185,7 @@ fn skipping_changes_no_projection() {
     });
     let parted = Volume::with_spacing("parted", [32; 3], DVec3::ONE, Samples::U8(samples.collect()));
     let parted = parted.and_then(|volume| volume.with_padding(1.0)).expect("a volume with missing voxels");
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut shown = 0;
     for loaded in [scenes::creature(32, DVec3::ONE), parted].map(Dataset::new) {
         for (kind, transfer) in PROJECTIONS.into_iter().flat_map(|kind| curves().map(|curve| (kind, curve))) {
@@ -209,7 +209,7 @@ fn skipping_changes_no_projection() {
 #[test]
 fn lit_maxima_are_shaded() {
     let loaded = Dataset::new(scenes::ball(32, DVec3::splat(15.5), 10.0));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look(RenderMode::Maximum, &curves()[0]);
     settings.camera = scenes::axis_camera(0.0, 0.0);
     let right = settings.camera.scene_from_view() * DVec3::new(3.0, 0.0, 1.0);
@@ -227,7 +227,7 @@ fn lit_maxima_are_shaded() {
 #[test]
 fn surfaces_are_steps_of_the_curve() {
     let loaded = Dataset::new(scenes::creature(32, DVec3::ONE));
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut settings = look(RenderMode::Surface, &scenes::transfer());
     settings.mode.isovalue = Some(100.0);
     let surface = render(&mut renderer, &loaded, &settings, SIZE).linear;

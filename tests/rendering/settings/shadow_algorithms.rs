@@ -1,6 +1,6 @@
 //! Shadow edges of the paper's three algorithms (P §3.2): they differ in how often a shadow is blurred.
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, render};
 use crate::scenes::{
     self, axis_camera, linear_extinction, make_isotropic, use_earlier_first_look, use_hard_light,
     use_paper_shadows,
@@ -18,7 +18,7 @@ use chiaroscuro_volume::{Histogram, Samples, Volume};
 use glam::DVec3;
 
 fn renderer() -> Renderer {
-    Renderer::new(&context().with_full_precision()).expect("a renderer")
+    full_precision_renderer()
 }
 
 /// No. 2 for rays from every sample: an eye inside opaque, homogeneous material looks across the light and sees

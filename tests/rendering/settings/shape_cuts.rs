@@ -1,10 +1,9 @@
 //! Cuts by shapes one after another: what is kept between pictures changes none of them.
 
-use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{ClassificationOrder, CutAction, CutShape, Settings, ShapeCut, SphereCut};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, new_renderer, render};
 use crate::scenes;
 
 const SIZE: [u32; 2] = [64, 56];
@@ -29,20 +28,20 @@ fn steps() -> Vec<Vec<ShapeCut>> {
 }
 
 fn check(dataset: &Dataset, settings: &Settings) {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let whole = render(&mut renderer, dataset, settings, SIZE).display;
     for (number, shapes) in steps().into_iter().enumerate() {
         let is_whole = shapes.is_empty();
         let mut settings = settings.clone();
         settings.cuts.shapes = shapes;
         let kept = render(&mut renderer, dataset, &settings, SIZE).display;
-        let mut other = Renderer::new(&context()).expect("a renderer");
+        let mut other = new_renderer();
         let fresh = render(&mut other, dataset, &settings, SIZE).display;
         assert!(kept == fresh, "step {number}");
         assert_eq!(kept == whole, is_whole, "step {number}");
         // A dataset that a picture has shown carries its mask, which the next picture replaces.
         let shown = other.dataset().expect("it was shown").clone();
-        let mut third = Renderer::new(&context()).expect("a renderer");
+        let mut third = new_renderer();
         let again = render(&mut third, &shown, &settings, SIZE).display;
         assert!(again == fresh, "step {number}, from what was shown");
     }

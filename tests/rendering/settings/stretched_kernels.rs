@@ -1,10 +1,10 @@
 //! Kernels stretched to the pixel where pixels are wider than voxels (P §4): detail finer than a pixel becomes even,
 //! and uniform material is unchanged.
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, render, shaders};
 use crate::scenes::{self, axis_camera, linear_extinction, make_isotropic};
 use crate::thresholds::{STRETCHED_CONTRAST, STRETCHED_FLICKER, STRETCHED_FOG};
-use chiaroscuro_render::{Renderer, ShaderLibrary};
+use chiaroscuro_render::Renderer;
 use chiaroscuro_scene::{Camera, OpacityLength, RenderEngine, Settings};
 
 const N: usize = 96;
@@ -12,14 +12,12 @@ const N: usize = 96;
 const PIXELS: u32 = 22;
 
 fn renderer(stretches: bool) -> Renderer {
-    let context = context().with_full_precision();
-    let shaders = if stretches {
-        ShaderLibrary::new(&context)
-    } else {
+    let mut shaders = shaders().with_full_precision();
+    if !stretches {
         let level = "clamp(log2(max(stretch, 1e-9)), 0.0, MAX_STRETCH_LEVEL)";
-        ShaderLibrary::with_mutation(&context, level, "0.0 * stretch")
-    };
-    Renderer::with_shaders(&context, shaders).expect("a renderer")
+        shaders = shaders.with_mutation(level, "0.0 * stretch");
+    }
+    Renderer::with_shaders(&shaders.context().clone(), shaders).expect("a renderer")
 }
 
 /// Opacities of the middle 10 × 10 pixels of pictures from a camera that pans by an eighth of a pixel.

@@ -8,7 +8,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{Dataset, context, render};
+use crate::common::{Dataset, full_precision_renderer, render};
 use crate::compare::{channels_f32, compare, to_f64};
 use crate::scenes::{self, axis_camera};
 use crate::thresholds::MIRRORED;
@@ -16,7 +16,7 @@ use crate::thresholds::MIRRORED;
 const N: usize = 32;
 
 fn renderer() -> Renderer {
-    Renderer::new(&context().with_full_precision()).expect("a renderer")
+    full_precision_renderer()
 }
 
 fn curve(points: &[(f64, f64)]) -> TransferFunction {

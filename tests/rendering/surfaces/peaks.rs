@@ -7,7 +7,7 @@ use chiaroscuro_scene::{
 use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
-use crate::common::{context, damaged_renderer, render};
+use crate::common::{damaged_renderer, new_renderer, render};
 use crate::scenes::{self, axis_camera};
 use crate::thresholds::NARROW_PEAKS;
 
@@ -69,7 +69,7 @@ const PEAKS: [(f64, f64); 2] = [(4.0 / 255.0, NARROW_PEAKS[0]), (0.002, NARROW_P
 
 #[test]
 fn narrow_peaks_keep_their_opacity() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut failures = Vec::new();
     for (half_width, limit) in PEAKS {
         for length in [5.0, 24.0] {

@@ -14,7 +14,7 @@ use chiaroscuro_volume::{Dataset, Samples, Volume};
 use glam::DVec3;
 
 use super::plate_oracle::PlateOracle;
-use crate::common::{context, damaged_renderer, render};
+use crate::common::{damaged_renderer, new_renderer, render};
 use crate::scenes::{self, axis_camera};
 use crate::thresholds::{FLAT_EXACT, FLAT_STANDARD, PLATE_FINE, TILTED_EXACT, TILTED_STANDARD};
 
@@ -205,7 +205,7 @@ fn for_all_plates(mut check: impl FnMut(&PlateScene<'_>)) {
 
 #[test]
 fn plates_have_no_grain_and_the_right_level() {
-    let mut renderer = Renderer::new(&context()).expect("a renderer");
+    let mut renderer = new_renderer();
     let mut failures = Vec::new();
     for_all_plates(|scene| {
         let expected = scene.expected();

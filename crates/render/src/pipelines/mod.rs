@@ -2,6 +2,8 @@
 
 pub(super) mod binding;
 pub(super) mod layouts;
+#[cfg(feature = "testing")]
+pub(super) mod library_pool;
 mod pipeline_cache;
 pub(super) mod pipeline_variant;
 pub(super) mod preprocessor;

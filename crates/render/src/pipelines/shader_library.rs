@@ -23,14 +23,23 @@ use chiaroscuro_files::{
 #[derive(Debug, Clone)]
 pub struct ShaderLibrary {
     pub(crate) context: GpuContext,
-    /// Text replacement in the joined source; see [`Self::with_mutation`].
-    mutation: Option<(String, String)>,
+    /// Text replacement in the joined sources; see [`Self::with_mutation`].
+    mutation: Option<Arc<ShaderMutation>>,
     pipelines: Arc<Mutex<HashMap<PipelineKey, PipelineSlot>>>,
     /// Bind-group layouts, by the address of their slots and the format of targets.
     groups: Arc<Mutex<HashMap<LayoutKey, BindingGroup>>>,
     cache: Option<PipelineCache>,
     /// Time that callers have waited for compilations, in microseconds.
     wait_us: Arc<AtomicU64>,
+}
+
+/// Text replacement in joined sources.
+#[derive(Debug)]
+struct ShaderMutation {
+    from: String,
+    to: String,
+    /// Library of the sources that do not contain the text.
+    intact: ShaderLibrary,
 }
 
 /// Place of a pipeline, locked while it is compiled.
@@ -55,6 +64,11 @@ impl ShaderLibrary {
         Self { cache: PipelineCache::open(context, folder), ..Self::new(context) }
     }
 
+    /// Returns the device whose pipelines these are.
+    pub fn context(&self) -> &GpuContext {
+        &self.context
+    }
+
     /// Writes the pipeline cache to its file, for the next start.
     ///
     /// # Errors
@@ -63,12 +77,20 @@ impl ShaderLibrary {
         self.cache.as_ref().map_or(Ok(()), PipelineCache::save)
     }
 
-    /// Creates a library that replaces `from` by `to` in every shader that contains it. Tests use it to prove that
-    /// they detect a wrong shader.
+    /// Returns a library that replaces `from` by `to` in every shader that contains it. Tests use it to prove that they
+    /// detect a wrong shader.
     #[cfg(feature = "testing")]
     #[must_use]
-    pub fn with_mutation(context: &GpuContext, from: &str, to: &str) -> Self {
-        Self { mutation: Some((from.to_owned(), to.to_owned())), ..Self::new(context) }
+    pub fn with_mutation(&self, from: &str, to: &str) -> Self {
+        let mutation = ShaderMutation { from: from.to_owned(), to: to.to_owned(), intact: self.clone() };
+        Self { mutation: Some(Arc::new(mutation)), ..Self::new(&self.context) }
+    }
+
+    /// Returns the library for 32-bit storage where the adapter can filter it; pipelines are shared.
+    #[cfg(feature = "testing")]
+    #[must_use]
+    pub fn with_full_precision(&self) -> Self {
+        Self { context: self.context.clone().with_full_precision(), ..self.clone() }
     }
 
     /// Returns a shader with all imports and all its conditional parts, for storage textures of `format` and targets
@@ -132,23 +154,28 @@ impl ShaderLibrary {
         variant: &impl PipelineVariant,
         target: wgpu::TextureFormat,
     ) -> Result<ShaderPipeline, GpuError> {
-        let key = PipelineKey::new(variant, target);
-        let slot = self.slot(&key);
-        // Only this pipeline is locked: the window must not wait for variants that another thread makes.
         let begun = Instant::now();
-        let mut pipeline = lock(&slot);
-        let found = match &*pipeline {
-            Some(known) => known.clone(),
-            None => pipeline.insert(self.compile(&key)?).clone(),
-        };
+        let found =
+            self.known_or_compiled(&PipelineKey::new(variant, self.context.storage_format, target))?;
         self.wait_us.fetch_add(begun.elapsed().as_micros() as u64, Ordering::Relaxed);
         Ok(found)
+    }
+
+    fn known_or_compiled(&self, key: &PipelineKey) -> Result<ShaderPipeline, GpuError> {
+        let slot = self.slot(key);
+        // Only this pipeline is locked: the window must not wait for variants that another thread makes.
+        let mut pipeline = lock(&slot);
+        match &*pipeline {
+            Some(known) => Ok(known.clone()),
+            None => Ok(pipeline.insert(self.compile(key)?).clone()),
+        }
     }
 
     /// Starts to compile a variant on another thread, so that it is ready or nearly so when [`Self::pipeline`] asks for
     /// it; `None` if it is known or being compiled. Errors are left to that call.
     pub(crate) fn prepare(&self, variant: &impl PipelineVariant) -> Option<PipelinePreparation> {
-        let key = PipelineKey::new(variant, self.context.storage_format);
+        let format = self.context.storage_format;
+        let key = PipelineKey::new(variant, format, format);
         let slot = self.slot(&key);
         if slot.try_lock().map_or(true, |pipeline| pipeline.is_some()) {
             return None;
@@ -203,7 +230,7 @@ impl ShaderLibrary {
     }
 
     fn compile(&self, key: &PipelineKey) -> Result<ShaderPipeline, GpuError> {
-        let &PipelineKey { shader, ref constants, target } = key;
+        let &PipelineKey { shader, ref constants, storage, target } = key;
         let constants: Vec<_> = constants.iter().map(|(name, bits)| (*name, f64::from_bits(*bits))).collect();
         // Mesa's compiler does not check its allocations and crashes the process when one fails.
         if self.context.is_software() {
@@ -212,10 +239,13 @@ impl ShaderLibrary {
         let value = |wanted: &str| {
             constants.iter().find(|(name, _)| *name == wanted).map_or(0.0, |(_, value)| *value)
         };
-        let mut source = Self::preprocessed_source(shader, self.context.storage_format, target, &value)?;
+        let mut source = Self::preprocessed_source(shader, storage, target, &value)?;
         let overrides = override_constants(&constants)?;
-        if let Some((from, to)) = &self.mutation {
-            source = source.replace(from, to);
+        if let Some(mutation) = &self.mutation {
+            if !source.contains(&mutation.from) {
+                return mutation.intact.known_or_compiled(key);
+            }
+            source = source.replace(&mutation.from, &mutation.to);
         }
         if fault::is_on(InjectedFault::Shader) {
             source.push_str("a fault was injected");
@@ -254,21 +284,26 @@ impl ShaderLibrary {
 /// Key of a bind-group layout: address of the declared slots, and format of targets.
 type LayoutKey = (&'static [BindingSlot], wgpu::TextureFormat);
 
-/// Key of a pipeline: shader, constants in a canonical order, and format of the targets that it writes.
+/// Key of a pipeline: shader, constants in a canonical order, and formats of storage and of the targets that it writes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct PipelineKey {
     shader: &'static str,
     /// Names and the bits of their values, sorted by name.
     constants: Vec<(&'static str, u64)>,
+    storage: wgpu::TextureFormat,
     target: wgpu::TextureFormat,
 }
 
 impl PipelineKey {
-    fn new(variant: &impl PipelineVariant, target: wgpu::TextureFormat) -> Self {
+    fn new(
+        variant: &impl PipelineVariant,
+        storage: wgpu::TextureFormat,
+        target: wgpu::TextureFormat,
+    ) -> Self {
         let mut constants: Vec<_> =
             variant.constants().into_iter().map(|(name, value)| (name, value.to_bits())).collect();
         constants.sort_unstable();
-        Self { shader: variant.shader(), constants, target }
+        Self { shader: variant.shader(), constants, storage, target }
     }
 }
 
@@ -285,7 +320,7 @@ impl Drop for PipelinePreparation {
 }
 
 /// Locks what a thread that panicked has not left half done.
-fn lock<T>(shared: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(super) fn lock<T>(shared: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
