@@ -139,9 +139,8 @@ impl Loader {
 
     /// Creates a loader for the device of a library of pipelines, which compiles none before they are needed.
     pub(crate) fn with_pipelines(shaders: ShaderLibrary, options: LoadOptions) -> Self {
-        let mut warm_up = PipelineWarmUp::default();
+        let (context, mut warm_up) = (shaders.context().clone(), PipelineWarmUp::default());
         warm_up.is_complete = true;
-        let context = shaders.context().clone();
         Self { context, shaders, options, running: JobSlot::default(), warm_up }
     }
 

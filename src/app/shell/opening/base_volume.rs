@@ -1,13 +1,6 @@
 //! Choice of the volume over which others are shown: the picture has its grid.
 
-use std::path::Path;
-
-use super::VolumeOpener;
-use super::layers::{LayerFile, LayerReplacement};
-use super::second_volume::{common_volume, world_box};
-use crate::app::text;
-use crate::app::worker::loader::{OpenedVolume, ReadChoices};
-use chiaroscuro_volume::{DataKind, MAX_FIELDS, Volume, math::Aabb};
+use chiaroscuro_volume::{DataKind, Volume, math::Aabb};
 
 /// Largest ratio of the volumes of two voxels at which the smaller one is worth another grid: voxels a fifth shorter.
 const FINER_VOXEL: f64 = 0.5;
@@ -33,55 +26,16 @@ fn is_much_coarser(coarse: &Volume, fine: &Volume) -> bool {
     voxel(fine) < FINER_VOXEL * voxel(coarse)
 }
 
-impl VolumeOpener<'_> {
-    /// Returns true if the open volumes can become layers over another one: files that can be read again as they are,
-    /// and not more than fit.
-    pub(super) fn can_become_layers(&self) -> bool {
-        let Some(open) = &self.editor.document.volume else { return false };
-        let is_as_read = open.reading.raw.is_none() && open.volume.corrections().is_none();
-        is_as_read && self.editor.document.settings.layers.count() < MAX_FIELDS
-    }
+/// Bounding box of a volume's voxel centres in its own world space.
+pub(super) fn world_box(volume: &Volume) -> Aabb {
+    let map = volume.world_from_index();
+    let corners = Aabb::of_grid(volume.dims(), 0.0).corners();
+    Aabb::from_points(corners.map(|corner| map.transform_point3(corner)))
+}
 
-    /// Shows a volume that has been read, and the open ones as layers over it.
-    pub(super) fn show_below(&mut self, opened: OpenedVolume) {
-        self.state.requests.layers_over = self.open_volumes_as_layers();
-        self.show_opened_with_session(opened);
-    }
-
-    /// Opens a volume, and then shows those that are open now as layers over it.
-    pub(super) fn open_below(&mut self, source: &Path) {
-        let layers = self.open_volumes_as_layers();
-        if self.start_loading(source, ReadChoices::default()) {
-            self.state.requests.pending_look = None;
-            self.state.requests.layers_over = layers;
-        }
-    }
-
-    /// Adds the volumes that were open before as layers, if there are any.
-    pub(super) fn add_layers_over(&mut self) {
-        let layers = std::mem::take(&mut self.state.requests.layers_over);
-        if !layers.is_empty() {
-            self.editor.messages.note(text::opening::shown_below(self.editor.document.volume_name()));
-            self.add_layers(layers, LayerReplacement::BELOW_ALL);
-        }
-    }
-
-    /// Returns the open volumes as layers, with the looks that the user has changed.
-    fn open_volumes_as_layers(&self) -> Vec<LayerFile> {
-        let document = &self.editor.document;
-        let Some(open) = &document.volume else { return Vec::new() };
-        let further = open.further.iter().map(|volume| (&volume.origin.source, volume.origin.choice.clone()));
-        let volumes = std::iter::once((&open.source, open.held.choice())).chain(further);
-        let shown = volumes.zip(document.settings.layers.iter());
-        let mut layers = Vec::new();
-        for (index, ((source, choice), look)) in shown.enumerate() {
-            let is_changed = look != document.defaults.layer_at(index);
-            let mut layer = LayerFile::new(source, choice);
-            layer.look = is_changed.then(|| look.clone());
-            layers.push(layer);
-        }
-        layers
-    }
+/// Size of what two boxes have in common.
+pub(super) fn common_volume(a: &Aabb, b: &Aabb) -> f64 {
+    (a.max.min(b.max) - a.min.max(b.min)).max(glam::DVec3::ZERO).element_product()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use super::base_volume::is_better_base;
 use super::file_tasks::ReadPurpose;
 use crate::app::common::alternatives::Alternatives;
 use crate::app::text;
+use crate::app::worker::loader::{OpenedVolume, ReadChoices};
 use chiaroscuro_scene::{LookRecord, Settings, VolumeLayer, VolumeLocation, first_look};
 use chiaroscuro_volume::{ChoiceAspect, Dataset, LoadControl, MAX_FIELDS, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
@@ -21,12 +22,12 @@ pub(super) struct LayerFile {
     /// Content ID that a record has for the volume, in hexadecimal digits.
     recorded_id: Option<String>,
     /// Look of the volume, without its blend; `None` for the automatic one.
-    pub(super) look: Option<VolumeLayer>,
+    look: Option<VolumeLayer>,
 }
 
 /// Layers that further volumes replace.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LayerReplacement {
+struct LayerReplacement {
     /// Number of volumes that stay, from the first on.
     kept: usize,
     /// True if the settings have looks for those that are added.
@@ -37,7 +38,7 @@ pub(super) struct LayerReplacement {
 
 impl LayerReplacement {
     /// Replaces all layers but the first.
-    pub(super) const BELOW_ALL: Self = Self { kept: 1, has_looks: false, may_be_base: false };
+    const BELOW_ALL: Self = Self { kept: 1, has_looks: false, may_be_base: false };
 }
 
 /// Dataset with further fields, as far as they could be opened.
@@ -56,7 +57,7 @@ struct DatasetWithLayers {
 }
 
 impl LayerFile {
-    pub(super) fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
+    fn new(path: impl Into<PathBuf>, choice: VolumeChoice) -> Self {
         Self { path: path.into(), choice, recorded_id: None, look: None }
     }
 }
@@ -154,8 +155,57 @@ impl VolumeOpener<'_> {
         self.add_layers(sources, LayerReplacement { has_looks: true, ..LayerReplacement::BELOW_ALL });
     }
 
+    /// Returns true if the open volumes can become layers over another one: files that can be read again as they are,
+    /// and not more than fit.
+    pub(super) fn can_become_layers(&self) -> bool {
+        let Some(open) = &self.editor.document.volume else { return false };
+        let is_as_read = open.reading.raw.is_none() && open.volume.corrections().is_none();
+        is_as_read && self.editor.document.settings.layers.count() < MAX_FIELDS
+    }
+
+    /// Shows a volume that has been read, and the open ones as layers over it.
+    pub(super) fn show_below(&mut self, opened: OpenedVolume) {
+        self.state.requests.layers_over = self.open_volumes_as_layers();
+        self.show_opened_with_session(opened);
+    }
+
+    /// Opens a volume, and then shows those that are open now as layers over it.
+    fn open_below(&mut self, source: &Path) {
+        let layers = self.open_volumes_as_layers();
+        if self.start_loading(source, ReadChoices::default()) {
+            self.state.requests.pending_look = None;
+            self.state.requests.layers_over = layers;
+        }
+    }
+
+    /// Adds the volumes that were open before as layers, if there are any.
+    pub(super) fn add_layers_over(&mut self) {
+        let layers = std::mem::take(&mut self.state.requests.layers_over);
+        if !layers.is_empty() {
+            self.editor.messages.note(text::opening::shown_below(self.editor.document.volume_name()));
+            self.add_layers(layers, LayerReplacement::BELOW_ALL);
+        }
+    }
+
+    /// Returns the open volumes as layers, with the looks that the user has changed.
+    fn open_volumes_as_layers(&self) -> Vec<LayerFile> {
+        let document = &self.editor.document;
+        let Some(open) = &document.volume else { return Vec::new() };
+        let further = open.further.iter().map(|volume| (&volume.origin.source, volume.origin.choice.clone()));
+        let volumes = std::iter::once((&open.source, open.held.choice())).chain(further);
+        let shown = volumes.zip(document.settings.layers.iter());
+        let mut layers = Vec::new();
+        for (index, ((source, choice), look)) in shown.enumerate() {
+            let is_changed = look != document.defaults.layer_at(index);
+            let mut layer = LayerFile::new(source, choice);
+            layer.look = is_changed.then(|| look.clone());
+            layers.push(layer);
+        }
+        layers
+    }
+
     /// Reads volumes on a thread, and shows them with those that stay.
-    pub(super) fn add_layers(&mut self, sources: Vec<LayerFile>, replaced: LayerReplacement) {
+    fn add_layers(&mut self, sources: Vec<LayerFile>, replaced: LayerReplacement) {
         let LayerReplacement { kept, may_be_base, .. } = replaced;
         let Some(shown) = self.editor.viewport.dataset() else {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 
 use super::VolumeOpener;
-use super::base_volume::is_better_base;
+use super::base_volume::{common_volume, is_better_base, world_box};
 use crate::app::common::overlay_windows;
 use crate::app::text;
 use crate::app::worker::loader::OpenedVolume;
@@ -98,18 +98,6 @@ fn lies_over(volume: &Volume, open: &Volume) -> bool {
     let [a, b] = [volume, open].map(world_box);
     let size = |bounds: &Aabb| (bounds.max - bounds.min).element_product();
     common_volume(&a, &b) >= COMMON_SHARE * size(&a).min(size(&b))
-}
-
-/// Bounding box of a volume's voxel centres in its own world space.
-pub(super) fn world_box(volume: &Volume) -> Aabb {
-    let map = volume.world_from_index();
-    let corners = Aabb::of_grid(volume.dims(), 0.0).corners();
-    Aabb::from_points(corners.map(|corner| map.transform_point3(corner)))
-}
-
-/// Size of what two boxes have in common.
-pub(super) fn common_volume(a: &Aabb, b: &Aabb) -> f64 {
-    (a.max.min(b.max) - a.min.max(b.min)).max(glam::DVec3::ZERO).element_product()
 }
 
 #[cfg(test)]
