@@ -182,8 +182,9 @@ impl VolumeFacts {
 
     /// Name of the channel or component that is shown, or else of the volume.
     pub(crate) fn part_name(&self) -> String {
-        let mut parts =
-            ChoiceAspect::SHOWN_TOGETHER.into_iter().filter_map(|of| Alternatives::new(&self.held, of));
+        let mut parts = ChoiceAspect::SHOWN_TOGETHER.into_iter().filter_map(|aspect| {
+            Alternatives::new(&self.held, aspect).filter(|all| aspect.is_shown_together(all.count()))
+        });
         parts.next_back().map_or_else(|| self.name.clone(), |all| all.name(all.current()))
     }
 

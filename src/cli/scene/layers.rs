@@ -6,7 +6,9 @@ use std::str::FromStr;
 use super::open_with_size_warning;
 use crate::cli::CliError;
 use chiaroscuro_scene::{Settings, set_value};
-use chiaroscuro_volume::{Dataset, FileContents, FileDimension, MAX_FIELDS, VolumeChoice};
+use chiaroscuro_volume::{
+    Dataset, FileContents, FileDimension, MAX_FIELDS, VolumeAlternatives, VolumeChoice,
+};
 use chiaroscuro_volume_io::LoadOptions;
 
 /// Volume to be shown as a layer: `FILE[:key=value,…]`.
@@ -73,9 +75,18 @@ pub(super) fn with_layers(dataset: Dataset, layers: &[LayerArg]) -> Result<Datas
     layers.iter().try_fold(dataset, |dataset, layer| add_layer(&dataset, &layer.source, &layer.choice))
 }
 
-/// Adds the channels of a file that are not shown to a dataset, or the components of its voxels, as far as there is room.
+/// Adds the channels of a file that are not shown to a dataset, the components of its voxels, or its few time steps, as
+/// far as there is room.
 pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Dataset, CliError> {
-    let choices = other_channels(dataset.volume().contents());
+    let held = dataset.volume().contents();
+    let unmatched = held.alternatives.iter().find_map(|several| {
+        several.unmatched_selection.as_ref().map(|said| (several.dimension.option(), said))
+    });
+    if let Some((option, said)) = unmatched {
+        let why = format!("{option}: {} has no {said:?}", source.display());
+        return Err(CliError::Usage(why));
+    }
+    let choices = other_channels(held);
     if choices.is_empty() {
         let why = format!("--all-channels: {} has a single channel; leave this option out", source.display());
         return Err(CliError::Usage(why));
@@ -85,18 +96,22 @@ pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Data
     rest.clone().try_fold(first, |dataset, choice| add_layer(&dataset, source, choice))
 }
 
-/// Returns the choices of the channels that are not shown, or else of the components.
+/// Returns the choices of the channels that are not shown, or else of the components, or else of the time steps.
 fn other_channels(held: &FileContents) -> Vec<VolumeChoice> {
     let shown = held.choice();
+    let others_in = |several: &VolumeAlternatives| {
+        let others = several.offers.iter().enumerate().filter(|(at, _)| *at != several.selected);
+        others.map(|(_, offer)| shown.clone().with_selected(several.dimension, &offer.key)).collect()
+    };
     if let Some(channels) = held.alternatives_in(FileDimension::Channel) {
-        let others = channels.offers.iter().enumerate().filter(|(at, _)| *at != channels.selected);
-        return others
-            .map(|(_, offer)| shown.clone().with_selected(FileDimension::Channel, &offer.key))
-            .collect();
+        others_in(channels)
+    } else if let Some(components) = held.components {
+        let others = (0..components.count).filter(|at| Some(*at) != components.selected);
+        others.map(|at| VolumeChoice { component: Some(at), ..shown.clone() }).collect()
+    } else {
+        let frames = held.alternatives_in(FileDimension::Frame);
+        frames.filter(|frames| frames.offers.len() <= MAX_FIELDS).map_or_else(Vec::new, others_in)
     }
-    let Some(components) = held.components else { return Vec::new() };
-    let others = (0..components.count).filter(|at| Some(*at) != components.selected);
-    others.map(|at| VolumeChoice { component: Some(at), ..shown.clone() }).collect()
 }
 
 /// Opens a volume, and adds it to a dataset.

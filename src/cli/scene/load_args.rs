@@ -113,8 +113,8 @@ impl LoadArgs {
     }
 
     /// Loads a volume, and opens the adapter; records in `times` what both of them took beside each other. `choice`
-    /// selects one of several volumes and the portion that was read earlier; arguments of the command line take
-    /// precedence.
+    /// selects one of several volumes and the portion that was read earlier, or lets the first one be read; arguments of
+    /// the command line take precedence.
     pub(crate) fn open(
         &self,
         source: &Path,
@@ -124,6 +124,7 @@ impl LoadArgs {
         let mut options = self.load_options()?;
         if let Some(choice) = choice {
             options.choice = options.choice.with_fallback(choice);
+            options.choice.fall_back_to_first |= choice.fall_back_to_first;
         }
         // Drivers take up to half a second to open an adapter, meanwhile the file is read. Its errors are reported
         // before those of the adapter.

@@ -35,7 +35,7 @@ use chiaroscuro_scene::{
     first_look::{self, FirstLookOptions},
     set_value,
 };
-use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume};
+use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume, VolumeChoice};
 use chiaroscuro_volume_io::open;
 
 /// Path of the setting for the floor's height.
@@ -149,7 +149,7 @@ impl SceneArgs {
 
     /// Loads like [`Self::load`], and records in `times` what volume and adapter took beside each other.
     pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
-        let (volume, context) = self.look.load.open(&self.file, None, times)?;
+        let (volume, context) = self.look.load.open(&self.file, self.look.first_choice().as_ref(), times)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
         Ok((self.look.with_layers(&self.file, dataset)?, context))
     }
@@ -178,7 +178,14 @@ impl SceneArgs {
 impl LookArgs {
     /// Reads a volume, without regard to an adapter.
     pub(super) fn read_volume(&self, source: &Path, control: &LoadControl) -> Result<Volume, CliError> {
-        Ok(open(source, &self.load.load_options()?, control)?)
+        let mut options = self.load.load_options()?;
+        options.choice.fall_back_to_first |= self.all_channels;
+        Ok(open(source, &options, control)?)
+    }
+
+    /// Choice of the first channel, if all are shown.
+    fn first_choice(&self) -> Option<VolumeChoice> {
+        self.all_channels.then(|| VolumeChoice::default().with_first_as_fallback())
     }
 
     /// Returns the corrected dataset of a volume, downsampled if the adapter cannot hold it.

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::offer::{FileDimension, VolumeOffer};
 use super::portion::Portion;
+use crate::MAX_FIELDS;
 
 /// Aspect in which the volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,8 +16,16 @@ pub enum ChoiceAspect {
 }
 
 impl ChoiceAspect {
-    /// Aspects of which a file's volumes are on one grid at one time, and can be shown together.
-    pub const SHOWN_TOGETHER: [Self; 2] = [Self::Dimension(FileDimension::Channel), Self::Component];
+    /// Aspects of which a file's volumes are on one grid and can be shown together. Time steps can if they are few: files
+    /// of four dimensions call anything that differs a time step.
+    pub const SHOWN_TOGETHER: [Self; 3] =
+        [Self::Dimension(FileDimension::Frame), Self::Dimension(FileDimension::Channel), Self::Component];
+
+    /// Returns true if a file's volumes that differ in this aspect, `count` of them, can be shown together.
+    pub fn is_shown_together(self, count: usize) -> bool {
+        let is_few = self != Self::Dimension(FileDimension::Frame) || count <= MAX_FIELDS;
+        Self::SHOWN_TOGETHER.contains(&self) && is_few
+    }
 
     /// All aspects, in the order in which the user selects.
     pub const ALL: [Self; 5] = [

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, volume: &VolumeFacts, commands: &mut Vec<AppComm
     for aspect in ChoiceAspect::ALL {
         let Some(alternatives) = Alternatives::new(&volume.held, aspect) else { continue };
         alternative_row(ui, aspect, &alternatives, commands);
-        if ChoiceAspect::SHOWN_TOGETHER.contains(&aspect) {
+        if aspect.is_shown_together(alternatives.count()) {
             let (name, tooltip) = if alternatives.has_colors() {
                 (text::chooser::COLORS.name, text::chooser::COLORS.tooltip.to_owned())
             } else {

@@ -109,7 +109,8 @@ impl VolumeOpener<'_> {
     /// become layers. Colours of a file colour its luminance.
     pub(crate) fn add_all_of(&mut self, aspect: ChoiceAspect) {
         let Some(volume) = &self.editor.document.volume else { return };
-        let Some(all) = Alternatives::new(&volume.held, aspect) else { return };
+        let all = Alternatives::new(&volume.held, aspect);
+        let Some(all) = all.filter(|all| aspect.is_shown_together(all.count())) else { return };
         let others = (0..all.count()).filter(|&at| at != all.current()).take(MAX_FIELDS - 1);
         let sources = others.map(|at| LayerFile::new(&volume.source, all.choice(at))).collect();
         self.add_layers(sources, LayerReplacement::BELOW_ALL);

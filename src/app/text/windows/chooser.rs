@@ -129,6 +129,7 @@ pub(crate) const TOGETHER: &str = "Show all together";
 pub(crate) fn show_together(aspect: ChoiceAspect) -> &'static str {
     match aspect {
         ChoiceAspect::Component => "Show colours, or all components together",
+        ChoiceAspect::Dimension(FileDimension::Frame) => "Show a few time steps together",
         ChoiceAspect::Dimension(_) => "Show all channels together",
     }
 }

@@ -1,7 +1,8 @@
 //! Looks of further layers: what tells the fields of a picture apart.
 
 use crate::{
-    ControlPoint, DensityRange, LayerBlend, LightingTransfer, Settings, TransferFunction, VolumeLayer,
+    ControlPoint, DensityRange, LayerBlend, LayerVisibility, LightingTransfer, Settings, TransferFunction,
+    VolumeLayer,
 };
 use chiaroscuro_volume::{
     DataKind, Dataset, DatasetField, DefaultComponent, FileDimension, Modality, ValueRange, Volume,
@@ -10,6 +11,7 @@ use chiaroscuro_volume::{
 
 use super::DomainPalette;
 use super::covering_layers::thin_covering_layers;
+use super::empty_channel::is_only_noise;
 use crate::first_look::ObjectOutline;
 use crate::first_look::domain::DataDomain;
 use crate::first_look::first_settings;
@@ -99,6 +101,10 @@ fn further_layer(
         show_measurement(&mut layer, field);
     } else {
         color_channel(&mut layer.transfer, dataset, index);
+        // A curve spreads over whatever there is, and would show noise as a block.
+        if relation == FieldRelation::Channels && is_only_noise(volume) {
+            layer.visibility = LayerVisibility::Hidden;
+        }
     }
     layer
 }
@@ -134,8 +140,13 @@ fn recorded_colors(dataset: &Dataset) -> Option<Vec<[u8; 3]>> {
 impl FieldRelation {
     fn detect(dataset: &Dataset) -> Self {
         let first = dataset.volume();
-        let is_chosen =
-            |field: &DatasetField| field.origin().is_some_and(|origin| origin.choice.channel.is_some());
+        // Time steps shown together are seldom of time: a file of four dimensions has no other word for contrasts.
+        let has_frames = first.contents().alternatives_in(FileDimension::Frame).is_some();
+        let is_chosen = |field: &DatasetField| {
+            field.origin().is_some_and(|origin| {
+                origin.choice.channel.is_some() || (has_frames && origin.choice.frame.is_some())
+            })
+        };
         let is_microscopy = first.metadata().modality == Modality::LightMicroscopy
             || DataDomain::from_channels(first) == Some(DataDomain::Fluorescence);
         let is_color = |part: &VoxelComponents| {

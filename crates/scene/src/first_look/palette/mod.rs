@@ -2,6 +2,7 @@
 //! material.
 
 mod covering_layers;
+mod empty_channel;
 pub(super) mod further_layers;
 
 use super::domain::DataDomain;
