@@ -34,10 +34,10 @@ pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use label_cells::CellOccupancy;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
-    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, Portion, ReadContext,
-    ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize, VoxelComponents, VoxelRegion,
-    VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing, memory_budget_bytes,
-    quoted, spacing_ratio_error,
+    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, MAX_FIELDS, Portion,
+    ReadContext, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize, VoxelComponents,
+    VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing,
+    memory_budget_bytes, quoted, spacing_ratio_error,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
@@ -49,6 +49,6 @@ pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use values::voxel_mask::VoxelMask;
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
-    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MAX_FIELDS, MissingVoxels, Orientation,
-    PaddingValue, PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
+    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
+    PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

@@ -133,7 +133,7 @@ impl OuterPanels {
         let panel = panel.frame(theme::panel(ui));
         let panel = panel.size_range(90.0..=420.0);
         panel.show_collapsible(ui, &mut layout.transfer, |ui| {
-            let value = picture.light_probe.value().or_else(|| settings.shown_isovalue());
+            let value = picture.light_probe.value_in(of_layer.layer).or_else(|| settings.shown_isovalue());
             let marks = PlotMarks { value, hovered: picture.material_picker.hovered() };
             self.editor.ui(ui, settings, (volume, selected_layer), marks, commands);
         });

@@ -260,4 +260,10 @@ fn coarse_scans_and_labels_become_layers_over_a_finer_scan() {
     wait_until_read(&mut harness);
     assert_eq!(harness.state().volume_names(), ["scan", "labels"]);
     assert_eq!(harness.state().settings().layer_at(1).blend, LayerBlend::Tint);
+    // The probe names the label that tints what is seen.
+    harness.key_press(Key::I);
+    let (picture, _) = harness.state().viewport_rect().expect("a picture");
+    harness.hover_at(picture.center());
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("labels: Label ").is_some());
 }

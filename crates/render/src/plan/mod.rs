@@ -34,5 +34,5 @@ pub use keys::{
     ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,
     EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
-pub use probe::{LightArrival, Probe, probe};
+pub use probe::{LightArrival, Probe, probe, probe_layers};
 pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::offer::{FileDimension, VolumeOffer};
 use super::portion::Portion;
-use crate::MAX_FIELDS;
+
+/// Largest number of fields that one picture can show: the channels of a texel on the GPU.
+pub const MAX_FIELDS: usize = 4;
 
 /// Aspect in which the volumes of a file differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -19,7 +19,8 @@ pub use error::{ErrorExplanation, LoadError, LoadErrorKind};
 pub use error::{LoadContext, quoted};
 pub use extent::{GridExtent, ReadContext};
 pub use file_contents::{
-    ChoiceAspect, ContentsRecorder, DefaultComponent, FileContents, VolumeAlternatives, VoxelComponents,
+    ChoiceAspect, ContentsRecorder, DefaultComponent, FileContents, MAX_FIELDS, VolumeAlternatives,
+    VoxelComponents,
 };
 pub use free_memory::address_bytes_left;
 pub use limits::human_bytes;

@@ -40,12 +40,9 @@ use self::grid::VoxelGrid;
 use self::grid::face_voxels::face_voxels;
 use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
-use super::load_context::FileContents;
+use super::load_context::{FileContents, MAX_FIELDS};
 use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
-
-/// Largest number of fields that one picture can show: the channels of a texel on the GPU.
-pub const MAX_FIELDS: usize = 4;
 
 /// Identity of a volume together with its value ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,7 +11,7 @@ use crate::app::document::Document;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::text;
 use crate::app::viewport::canvas::Canvas;
-use crate::app::viewport::light_probe::ProbePointer;
+use crate::app::viewport::light_probe::{ProbePointer, ProbedVolumes};
 use crate::app::viewport::view_projection::ViewProjection;
 use crate::app::viewport::{
     RendererStatus, Viewport, empty_picture_notice, light_chips, light_probe, mouse_navigation,
@@ -202,14 +202,14 @@ impl PictureInputs<'_> {
     /// Shows the probe under the pointer, and the notice over an empty picture.
     fn show_probe_and_notice(&mut self, ui: &mut egui::Ui, response: &Response) {
         let is_one_view = self.is_one_view();
-        let Document { settings, defaults, .. } = &mut *self.document;
-        let Some(dataset) = self.viewport.dataset() else { return };
+        let Document { settings, defaults, volume, .. } = &mut *self.document;
+        let (Some(dataset), Some(facts)) = (self.viewport.dataset(), volume.as_ref()) else { return };
         let probe = &mut self.tools.light_probe;
         if probe.is_active && is_one_view {
             let pointer = response.hover_pos().filter(|_| !response.dragged());
             let clicked = response.clicked() && !response.double_clicked();
             let pointing = ProbePointer { pointer, clicked };
-            probe.show(ui, response.rect, settings, dataset.volume(), pointing);
+            probe.show(ui, response.rect, settings, ProbedVolumes { dataset: &dataset, facts }, pointing);
         }
         empty_picture_notice::show_empty_picture_notice(
             ui,

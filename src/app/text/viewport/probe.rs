@@ -18,6 +18,16 @@ pub(crate) fn sample(value: f64, decimals: usize, opacity: f64, place: &str) -> 
     format!("Value {value:.decimals$}, opacity {:.0} %\n{place}", 100.0 * opacity)
 }
 
+/// Value as a number.
+pub(crate) fn number(value: f64, decimals: usize) -> String {
+    format!("{value:.decimals$}")
+}
+
+/// Value or label of a layer at the probed point.
+pub(crate) fn layer_value(name: &str, value: &str) -> String {
+    format!("{}: {value}", chiaroscuro_files::sanitised(name, 40))
+}
+
 /// Number and name of the probed label.
 pub(crate) fn label(number: i64, name: &str) -> String {
     if name.is_empty() { format!("Label {number}") } else { format!("Label {number}: {name}") }

@@ -224,7 +224,16 @@ mod tests {
 
     fn found(lights: Vec<LightArrival>) -> Probe {
         let origin = DVec3::ZERO;
-        Probe { point: origin, index: origin, world_mm: origin, value: 1.0, opacity: 1.0, lights, sky: None }
+        Probe {
+            layer: 0,
+            point: origin,
+            index: origin,
+            world_mm: origin,
+            value: 1.0,
+            opacity: 1.0,
+            lights,
+            sky: None,
+        }
     }
 
     const LIT: LightArrival =

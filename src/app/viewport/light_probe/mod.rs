@@ -2,6 +2,7 @@
 //! and the distance between two points.
 
 mod diagnosis;
+mod layer_values;
 pub(crate) mod material_picker;
 mod tag;
 
@@ -9,14 +10,15 @@ use eframe::egui::{self, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
 use self::diagnosis::BrightnessCause;
+use self::layer_values::{LayerValue, values_of_other_layers};
 use self::tag::ProbeTag;
 use crate::app::common::overlay_windows;
 use crate::app::common::theme;
-use crate::app::common::volume_facts::range_decimals;
+use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::text::{self, common::LengthUnit};
-use chiaroscuro_render::plan::{LightArrival, Probe, probe};
+use chiaroscuro_render::plan::{LightArrival, Probe, probe, probe_layers};
 use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, RenderMode, Settings};
-use chiaroscuro_volume::{DataKind, Volume};
+use chiaroscuro_volume::{DataKind, Dataset, Volume};
 
 /// Point of the volume that was clicked.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +40,15 @@ pub(crate) struct LightProbe {
     pins: Vec<ProbePin>,
 }
 
+/// Volumes that are probed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ProbedVolumes<'a> {
+    /// Fields of the picture.
+    pub dataset: &'a Dataset,
+    /// Facts about them.
+    pub facts: &'a VolumeFacts,
+}
+
 /// Pointer input of the probe in this frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProbePointer {
@@ -55,10 +66,12 @@ impl LightProbe {
         ui: &Ui,
         picture: Rect,
         settings: &mut Settings,
-        volume: &Volume,
+        volumes: ProbedVolumes<'_>,
         ProbePointer { pointer, clicked }: ProbePointer,
     ) {
-        let of = Some(volume.content_id());
+        let dataset = volumes.dataset;
+        let volume = dataset.volume();
+        let of = Some(dataset.id().content_id);
         if !self.is_active || self.volume_id != of {
             (self.last_result, self.pins, self.volume_id) = (None, Vec::new(), of);
         }
@@ -69,7 +82,7 @@ impl LightProbe {
             self.pins.clear();
         }
         if let Some(at) = pointer.filter(|_| clicked) {
-            match probe_at(volume, settings, picture, at) {
+            match probe_layers_at(dataset, settings, picture, at) {
                 Some(found) => {
                     if self.pins.len() == 2 {
                         self.pins.remove(0);
@@ -86,7 +99,7 @@ impl LightProbe {
             return;
         };
         if self.last_result.as_ref().is_none_or(|(of, look, _)| *of != at || look != settings) {
-            let found = probe_at(volume, settings, picture, at);
+            let found = probe_layers_at(dataset, settings, picture, at);
             self.last_result = Some((at, settings.clone(), found));
         }
         let found = self.last_result.as_ref().and_then(|(_, _, found)| found.as_ref());
@@ -94,6 +107,8 @@ impl LightProbe {
         if let Some(found) = found {
             paint_light_rays(&painter, picture, settings, found);
         }
+        let others = found
+            .map_or_else(Vec::new, |found| values_of_other_layers(settings, dataset, volumes.facts, found));
         let (mm_per_unit, unit) = (volume.scene().mm_per_unit, length_unit(volume));
         let distance = match &self.pins[..] {
             [from, to] => {
@@ -113,7 +128,11 @@ impl LightProbe {
             Some(project(&settings.camera, picture, blocked)? - at)
         });
         let shown = ProbeTag {
-            subject: found.and_then(|found| label_text(settings, volume, found)),
+            subject: found.and_then(|found| {
+                let look = settings.clone().with_first_exchanged(found.layer);
+                let own = label_text(&look, dataset.fields().get(found.layer)?.volume(), found);
+                own.or_else(|| others.iter().find(|other| other.is_label).map(|label| label.text.clone()))
+            }),
             cause,
             remedies: cause
                 .filter(|_| pinned.is_some())
@@ -123,7 +142,7 @@ impl LightProbe {
                 || if found.is_some() { text::shading::UNLIT } else { text::probe::NOTHING }.to_owned(),
                 |cause| cause.description(settings, mm_per_unit, unit),
             ),
-            facts: found.map_or_else(String::new, |found| result_text(settings, volume, found)),
+            facts: found.map_or_else(String::new, |found| result_text(settings, dataset, found, &others)),
             distance,
             occluder_offset: lost,
             is_pinned: pinned.is_some(),
@@ -133,10 +152,10 @@ impl LightProbe {
         }
     }
 
-    /// Returns the value under the pointer, for other views to mark.
-    pub(crate) fn value(&self) -> Option<f64> {
+    /// Returns the value of a layer's material under the pointer, for other views to mark.
+    pub(crate) fn value_in(&self, layer: usize) -> Option<f64> {
         let (_, _, found) = self.last_result.as_ref().filter(|_| self.is_active)?;
-        Some(found.as_ref()?.value)
+        found.as_ref().filter(|found| found.layer == layer).map(|found| found.value)
     }
 }
 
@@ -160,16 +179,22 @@ fn paint_distance(painter: &egui::Painter, picture: Rect, camera: &Camera, ends:
     painter.galley(ground.min + vec2(5.0, 2.0), galley, theme::PICTURE_TEXT);
 }
 
-/// Probes the volume along the viewing ray through a point of the window.
+/// Probes the first volume along the viewing ray through a point of the window.
 pub(crate) fn probe_at(volume: &Volume, settings: &Settings, picture: Rect, at: Pos2) -> Option<Probe> {
-    let offset = at - picture.min;
-    let (origin, direction) = settings.camera.ray_through(
-        f64::from(offset.x),
-        f64::from(offset.y),
-        f64::from(picture.width()),
-        f64::from(picture.height()),
-    );
+    let (origin, direction) = viewing_ray(&settings.camera, picture, at);
     probe(volume, settings, origin, direction)
+}
+
+/// Probes all layers along the viewing ray through a point of the window.
+fn probe_layers_at(dataset: &Dataset, settings: &Settings, picture: Rect, at: Pos2) -> Option<Probe> {
+    let (origin, direction) = viewing_ray(&settings.camera, picture, at);
+    probe_layers(dataset, settings, origin, direction)
+}
+
+/// Returns origin and direction of the viewing ray through a point of the window, in scene space.
+fn viewing_ray(camera: &Camera, picture: Rect, at: Pos2) -> (DVec3, DVec3) {
+    let (offset, size) = (at - picture.min, picture.size());
+    camera.ray_through(f64::from(offset.x), f64::from(offset.y), f64::from(size.x), f64::from(size.y))
 }
 
 /// Returns the value of the first visible material under a point of the window, whatever the render mode.
@@ -201,12 +226,18 @@ fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<Str
     Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
 }
 
-/// Formats the probe's result: the value, its position, and a line per light.
-fn result_text(settings: &Settings, volume: &Volume, found: &Probe) -> String {
-    let unit = length_unit(volume);
-    let place =
-        text::probe::place(found.index.to_array(), found.world_mm.to_array(), unit, volume.is_anatomical());
-    let mut words = if settings.layer().labels.is_empty() || volume.labels().is_none() {
+/// Formats the probe's result: the value, its position, a line per light, and one for each other layer.
+fn result_text(settings: &Settings, dataset: &Dataset, found: &Probe, others: &[LayerValue]) -> String {
+    let fields = dataset.fields();
+    let volume = fields.get(found.layer).map_or(dataset.volume(), |field| field.volume());
+    let unit = length_unit(dataset.volume());
+    let place = text::probe::place(
+        found.index.to_array(),
+        found.world_mm.to_array(),
+        unit,
+        dataset.volume().is_anatomical(),
+    );
+    let mut words = if settings.layer_at(found.layer).labels.is_empty() || volume.labels().is_none() {
         text::probe::sample(found.value, range_decimals(volume.table_range()), found.opacity, &place)
     } else {
         text::probe::label_sample(found.opacity, &place)
@@ -218,6 +249,10 @@ fn result_text(settings: &Settings, volume: &Volume, found: &Probe) -> String {
     if let Some(open) = found.sky {
         words.push('\n');
         words.push_str(&text::probe::light_row(text::probe::SKY, &text::probe::sky_visibility(open)));
+    }
+    for other in others {
+        words.push('\n');
+        words.push_str(&other.text);
     }
     words
 }
@@ -329,6 +364,7 @@ mod tests {
         assert_eq!(said(&settings, 3.0).as_deref(), Some("Label 9"));
         let grey = Volume::with_spacing("t", [N; 3], DVec3::ONE, Samples::F32(vec![0.5; N.pow(3)])).unwrap();
         let found = Probe {
+            layer: 0,
             point: DVec3::ZERO,
             index: DVec3::ONE,
             world_mm: DVec3::ONE,

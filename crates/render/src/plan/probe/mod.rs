@@ -1,17 +1,24 @@
 //! Probe of the picture at a point: value, opacity and arriving light, computed on the CPU by single rays.
 
+mod arriving_light;
+mod layers;
 mod rays;
 
 use glam::DVec3;
 
-use self::rays::{LightSegment, VolumeRays};
-use crate::plan::sweep_directions;
-use chiaroscuro_scene::{BakedTransfer, LightGeometry, LitSides, RayProjection, SceneLight, Settings};
-use chiaroscuro_volume::{Volume, math::luminance};
+use self::arriving_light::ArrivingLight;
+use self::rays::VolumeRays;
+use chiaroscuro_scene::{LitSides, RayProjection, Settings};
+use chiaroscuro_volume::Volume;
+
+pub use self::arriving_light::LightArrival;
+pub use self::layers::probe_layers;
 
 /// Probe result at a position of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
+    /// Index of the layer whose material is seen.
+    pub layer: usize,
     /// Position in scene space.
     pub point: DVec3,
     /// Position in index space.
@@ -28,35 +35,13 @@ pub struct Probe {
     pub sky: Option<f64>,
 }
 
-/// Arriving part of a light at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LightArrival {
-    /// Transmittance of the material, 0 … 1; 1 for lights that cast no shadows.
-    pub transmittance: f64,
-    /// Share that the hood lets through, 0 … 1.
-    pub hood: f64,
-    /// Cosine between the surface's normal and the direction to the light, never negative if both sides are lit;
-    /// `None` where there is no surface.
-    pub facing: Option<f64>,
-    /// Range of distances from the point, in scene units, in which most of the light from the light's centre is lost;
-    /// `None` if hardly any is, or if the light casts no shadows.
-    pub blocked: Option<[f64; 2]>,
-}
-
-/// Number of rays to the sky: a few milliseconds.
-const SKY_DIRECTIONS: u32 = 48;
-
-/// Maximum number of rays to each area light: losses are displayed in whole per cent.
-const MAX_LIGHT_POINTS: u32 = 16;
-
 /// Traces a ray (in scene space) and returns the probe at the first visible position, in projections at the largest or
 /// smallest value; `None` if nothing is visible.
 pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVec3) -> Option<Probe> {
     let volume = &volume.with_density_mapping(settings.shown_content(&volume.ranges()));
     let (settings, range) = (&*settings.resolved_for(volume), volume.table_range());
-    let is_by_label = volume.shown_labels().is_some();
-    let rays = VolumeRays { volume, scene: volume.scene(), is_by_label };
-    let scene = &rays.scene;
+    let rays = VolumeRays::new(volume);
+    let (scene, is_by_label) = (&rays.scene, rays.is_by_label);
     let eye = settings.bake_eye(range, scene);
     let seen = settings.cuts.visible_part().region(scene);
     let point = match settings.ray_projection() {
@@ -67,76 +52,14 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     let index = scene.index_from_scene.transform_point3(point);
     // Not clamped to the shown range.
     let value = rays.value(index, &eye);
-    let lighting = settings.bake_lighting(range, scene);
-    let met_by_colors =
-        settings.has_colored_shadows().then(|| [0, 1, 2].map(|color| lighting.for_light_color(color)));
     let is_one_sided = settings.shading.sides == LitSides::One;
     // True if opacity falls towards high densities; never for solid labels, in which it rises.
     let falls = is_one_sided && !is_by_label && eye.slope_sign(rays.field(index, &eye).value) < 0.0;
     let turned = if falls { -1.0 } else { 1.0 };
     let normal = rays.gradient(point, &seen, turned, &eye).normalize_or_zero() * -turned;
-    let shading_cut = settings.cuts.shadowing_part().region(scene);
-    let sky = settings.sky.is_on().then(|| {
-        if !settings.has_sky_volume() {
-            return 1.0;
-        }
-        let left = |towards: DVec3| {
-            let depth = rays.optical_depth(
-                &lighting,
-                &shading_cut,
-                LightSegment { point, towards, distance: f64::INFINITY },
-            );
-            (-depth * settings.sky.density_scale).exp()
-        };
-        // For a surface, sky visibility over the hemisphere that it faces, weighted by the cosine.
-        let facing = |towards: DVec3| if normal == DVec3::ZERO { 1.0 } else { normal.dot(towards).max(0.0) };
-        let directions = sweep_directions(SKY_DIRECTIONS);
-        let open: f64 = directions.iter().map(|&towards| facing(towards) * left(towards)).sum();
-        open / directions.into_iter().map(facing).sum::<f64>().max(1e-9)
-    });
-    let lights = settings
-        .lights
-        .iter()
-        .map(|light| {
-            let light = light.resolve(&settings.camera);
-            let is_shadowed = light.needs_volume() && settings.shadows.algorithm.is_on();
-            // The mean over points of an area light.
-            let points = light.sample_lights(settings.shadows.area.samples.min(MAX_LIGHT_POINTS));
-            let mean =
-                |of: &dyn Fn(&SceneLight) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
-            let left = |light: &SceneLight| {
-                let way = segment_to_light(light, point);
-                let of_color = |table: &BakedTransfer| {
-                    let depth = rays.optical_depth(table, &shading_cut, way);
-                    (-depth * light.density_scale).exp()
-                };
-                match &met_by_colors {
-                    Some(tables) => luminance(tables.each_ref().map(of_color)),
-                    None => of_color(&lighting),
-                }
-            };
-            let through_hood = |light: &SceneLight| {
-                let cone = light.cone();
-                cone.attenuation(cone.axis.dot(-segment_to_light(light, point).towards))
-            };
-            let middle = segment_to_light(&light, point);
-            let blocked = is_shadowed.then(|| rays.blocked_range(&lighting, &shading_cut, middle)).flatten();
-            // For an area light, the part above the surface's horizon.
-            let risen = light.above_horizon(point, normal, 1.0);
-            let facing = if is_one_sided && light.casts_shadows {
-                risen.mean_cosine
-            } else {
-                risen.centre_cosine.abs()
-            };
-            LightArrival {
-                transmittance: if is_shadowed { mean(&left) } else { 1.0 },
-                hood: mean(&through_hood),
-                facing: (normal != DVec3::ZERO).then_some(facing),
-                blocked,
-            }
-        })
-        .collect();
+    let ArrivingLight { lights, sky } = ArrivingLight::new(&rays, settings, point, normal);
     Some(Probe {
+        layer: 0,
         point,
         index,
         world_mm: volume.world_from_index().transform_point3(index),
@@ -145,15 +68,6 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
         lights,
         sky,
     })
-}
-
-/// Returns the segment from a point to a light.
-fn segment_to_light(light: &SceneLight, point: DVec3) -> LightSegment {
-    let distance = match light.kind {
-        LightGeometry::Parallel => f64::INFINITY,
-        LightGeometry::Perspective => DVec3::from(light.position).distance(point),
-    };
-    LightSegment { point, towards: light.direction_from(point), distance }
 }
 
 #[cfg(test)]

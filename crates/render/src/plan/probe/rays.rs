@@ -59,7 +59,12 @@ pub(super) struct InterpolatedValue {
     pub(super) presence: f64,
 }
 
-impl VolumeRays<'_> {
+impl<'a> VolumeRays<'a> {
+    /// Creates the rays of a volume, in the scene that its grid has.
+    pub(super) fn new(volume: &'a Volume) -> Self {
+        Self { volume, scene: volume.scene(), is_by_label: volume.shown_labels().is_some() }
+    }
+
     /// Returns the box of voxel centres, in index space: there is nothing outside.
     fn grid(&self) -> Aabb {
         Aabb::of_grid(self.volume.dims(), 0.0)
