@@ -6,6 +6,7 @@ use eframe::egui::{self, Event, Modifiers, PointerButton, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
+use crate::accessibility::expand_sections;
 use crate::harness::{
     click, click_at, drag, picture, turn_wheel, wait_until_idle, window, window_without_overlays,
 };
@@ -170,4 +171,37 @@ fn parts_are_cut_away_in_the_picture() {
     assert!(matches!(&shapes[..], [ShapeCut { shape: CutShape::Component(_), .. }]), "{shapes:?}");
     wait_until_idle(&mut harness);
     harness.get_by_label_contains("No part of the volume is visible: it is ");
+}
+
+#[test]
+fn the_near_corner_is_cut_moved_and_shown_again() {
+    let mut harness = expand_sections(window_without_overlays());
+    wait_until_idle(&mut harness);
+    let (whole, _) = picture(&mut harness);
+    click(&mut harness, "Corner");
+    let bounds = |harness: &Harness<'_, App>| match harness.state().settings().cuts.shapes.as_slice() {
+        [ShapeCut { on: true, action: CutAction::Hide, shape: CutShape::Box(bounds) }] => *bounds,
+        other => panic!("a box: {other:?}"),
+    };
+    // The camera of a first look is in front, above, and on one side.
+    let (cut, eye) = (bounds(&harness), harness.state().settings().camera.position());
+    let is_high = [0, 1, 2].map(|axis| cut.low[axis] == 0.5);
+    assert_eq!(is_high, [eye.x > 0.0, eye.y > 0.0, eye.z > 0.0], "{cut:?}");
+    wait_until_idle(&mut harness);
+    let (without, _) = picture(&mut harness);
+    assert!(without != whole, "the corner is hidden");
+    // A side is moved by its number.
+    let side = harness.get_by_label("Corner z from").rect().center();
+    drag(&mut harness, side, vec2(24.0, 0.0));
+    harness.run_steps(3);
+    let moved = bounds(&harness);
+    assert!(moved.low[2] > cut.low[2] && moved.high == cut.high, "{moved:?}");
+    harness.run_steps(20);
+    for _ in 0..2 {
+        harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(3);
+    }
+    assert!(harness.state().settings().cuts.shapes.is_empty());
+    wait_until_idle(&mut harness);
+    assert!(picture(&mut harness).0 == whole, "no voxel was changed");
 }

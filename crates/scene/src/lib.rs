@@ -73,7 +73,7 @@ pub use self::settings::shadows::{
     ShadowSettings,
 };
 pub use self::settings::shape_cuts::{
-    ComponentCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS,
+    BoxCut, ComponentCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS,
     OutlineCut, ShapeCut, SphereCut,
 };
 pub use self::settings_io::path_encoding::{decode_path, encode_path};

@@ -3,7 +3,8 @@
 use super::Document;
 use crate::app::common::light_keys;
 use chiaroscuro_scene::{
-    COLOR_MAPS, Camera, LightSettings, LightingRig, Settings, StandardView, VolumeLayer,
+    BoxCut, COLOR_MAPS, Camera, CutShape, LightSettings, LightingRig, MAX_SHAPE_CUTS, Settings, ShapeCut,
+    StandardView, VolumeLayer,
 };
 
 impl Document {
@@ -35,6 +36,16 @@ impl Document {
         let Camera { target, .. } = self.settings.camera;
         let normal = self.settings.camera.scene_from_view().z_axis;
         self.settings.cuts.plane.place_facing(normal, target.into());
+    }
+
+    /// Hides the eighth of the volume that faces the camera, if there is room for another cut.
+    pub(crate) fn cut_corner(&mut self) {
+        let Some(volume) = &self.volume else { return };
+        let corner = BoxCut::corner_towards(self.settings.camera.position(), &volume.scene);
+        let shapes = &mut self.settings.cuts.shapes;
+        if shapes.len() < MAX_SHAPE_CUTS {
+            shapes.push(ShapeCut { shape: CutShape::Box(corner), ..ShapeCut::default() });
+        }
     }
 
     /// Resets the camera to that of the first look.

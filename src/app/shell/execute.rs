@@ -11,7 +11,7 @@ use crate::app::text::sections::{COMPARE, CUTS, DATA, FLOOR};
 use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
-use chiaroscuro_scene::RenderMode;
+use chiaroscuro_scene::{CutShapeKind, RenderMode};
 use chiaroscuro_volume::ChoiceAspect;
 
 impl App {
@@ -63,6 +63,10 @@ impl App {
             AppCommand::ToggleCrop => self.layout.show_section(ctx, CUTS, self.editor.toggle_crop()),
             AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),
+            AppCommand::CutByShape(CutShapeKind::Box) => {
+                self.editor.document.cut_corner();
+                self.layout.show_section(ctx, CUTS, true);
+            }
             AppCommand::CutByShape(kind) => {
                 self.layout.show_section(ctx, CUTS, self.picture.shape_cuts.toggle(kind));
             }

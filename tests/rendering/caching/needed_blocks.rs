@@ -49,7 +49,7 @@ fn needed_blocks_of_sky_visibility_are_the_same_among_all_blocks() {
         assert!((all.len() / 4..all.len() * 3 / 4).contains(&compared), "{compared} of {}", all.len());
         needed.iter().zip(&all).filter(|(some, all)| some.is_some_and(|some| some != **all)).count()
     };
-    assert_eq!(different(|| new_renderer()), 0);
+    assert_eq!(different(new_renderer), 0);
     // Rays that start beside the grid are then read where nothing follows them, where the light of earlier directions
     // remains.
     assert_ne!(different(|| damaged_renderer("1.0 + MAX_DISTANCE_OUTSIDE", "1.0")), 0);

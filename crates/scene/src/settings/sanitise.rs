@@ -2,7 +2,7 @@
 //! negative extinction or as an endless loop.
 
 use crate::{
-    AreaLightSampling, Background, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox,
+    AreaLightSampling, Background, BoxCut, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox,
     CutShape, EnvironmentLight, FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY,
     MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
     MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MATERIAL_BOXES,
@@ -172,13 +172,18 @@ fn sanitise_layer(layer: &mut VolumeLayer) {
     }
 }
 
-fn sanitise_clipping(cuts: &mut Clipping) {
-    let Clipping { crop, plane, shapes } = cuts;
-    let CropBox { on: _, low, high, effect: _ } = crop;
+/// Clamps the bounds of a box, which are fractions of the grid.
+fn clamp_extents(low: &mut [f64; 3], high: &mut [f64; 3]) {
     for axis in 0..3 {
         clamp_number(&mut low[axis], 0.0, 1.0 - MIN_CROP_EXTENT, 0.0);
         clamp_number(&mut high[axis], low[axis] + MIN_CROP_EXTENT, 1.0, 1.0);
     }
+}
+
+fn sanitise_clipping(cuts: &mut Clipping) {
+    let Clipping { crop, plane, shapes } = cuts;
+    let CropBox { on: _, low, high, effect: _ } = crop;
+    clamp_extents(low, high);
     let ClipPlane { on: _, normal, offset, effect: _ } = plane;
     clamp_point(normal, 1e6);
     if *normal == [0.0; 3] {
@@ -198,6 +203,10 @@ fn sanitise_clipping(cuts: &mut Clipping) {
         CutShape::Sphere(SphereCut { center, radius }) => {
             clamp_point(center, MAX_SHAPE_PLACE);
             clamp_number(radius, 0.0, MAX_SHAPE_PLACE, SphereCut::default().radius);
+            true
+        }
+        CutShape::Box(BoxCut { low, high }) => {
+            clamp_extents(low, high);
             true
         }
         CutShape::Component(ComponentCut { seed, values }) => {

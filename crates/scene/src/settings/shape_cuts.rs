@@ -1,12 +1,14 @@
-//! Cuts by shapes: outlines drawn in the picture, spheres and connected components, each of which hides a part of the
-//! volume, keeps it alone, or restores it. They are stored as they were made, and no voxel is changed.
+//! Cuts by shapes: outlines drawn in the picture, spheres, boxes and connected components, each of which hides a part of
+//! the volume, keeps it alone, or restores it. They are stored as they were made, and no voxel is changed.
 
 use std::hash::{DefaultHasher, Hash, Hasher as _};
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{Camera, Projection};
 use chiaroscuro_volume::ValueRange;
+use chiaroscuro_volume::math::{Aabb, SceneSpace};
 
 /// Largest number of cuts by shapes. One takes a tenth of a second for 256³ voxels on two cores.
 pub const MAX_SHAPE_CUTS: usize = 32;
@@ -58,13 +60,15 @@ pub enum CutShapeKind {
     Outline,
     /// Sphere in the scene.
     Sphere,
+    /// Box along the axes of the grid.
+    Box,
     /// Connected component of voxels.
     Component,
 }
 
 impl CutShapeKind {
     /// All kinds, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Outline, Self::Sphere, Self::Component];
+    pub const ALL: [Self; 4] = [Self::Outline, Self::Sphere, Self::Box, Self::Component];
 }
 
 /// Shape of a cut.
@@ -75,6 +79,8 @@ pub enum CutShape {
     Outline(OutlineCut),
     /// Sphere in the scene.
     Sphere(SphereCut),
+    /// Box along the axes of the grid.
+    Box(BoxCut),
     /// Connected voxels around one of them.
     Component(ComponentCut),
 }
@@ -128,6 +134,36 @@ impl Default for SphereCut {
     }
 }
 
+/// Box along the axes of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BoxCut {
+    /// Lower bound along each axis, as a fraction of the grid: 0 … 1.
+    pub low: [f64; 3],
+    /// Upper bound along each axis, as a fraction of the grid: 0 … 1.
+    pub high: [f64; 3],
+}
+
+impl Default for BoxCut {
+    fn default() -> Self {
+        Self { low: [0.5; 3], high: [1.0; 3] }
+    }
+}
+
+impl BoxCut {
+    /// Creates the eighth of a grid that lies on a point's side of its middle along each axis; `eye` is a position in
+    /// scene space.
+    pub fn corner_towards(eye: DVec3, scene: &SceneSpace) -> Self {
+        let grid = Aabb::of_grid(scene.dims, 0.0);
+        let side = scene.index_from_scene.transform_point3(eye) - 0.5 * (grid.min + grid.max);
+        let is_high = [0, 1, 2].map(|axis| side[axis] >= 0.0);
+        Self {
+            low: is_high.map(|is_high| if is_high { 0.5 } else { 0.0 }),
+            high: is_high.map(|is_high| if is_high { 1.0 } else { 0.5 }),
+        }
+    }
+}
+
 /// Voxels with values in a range that are connected through their faces with the one nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -162,6 +198,7 @@ impl CutShape {
         match self {
             Self::Outline(_) => CutShapeKind::Outline,
             Self::Sphere(_) => CutShapeKind::Sphere,
+            Self::Box(_) => CutShapeKind::Box,
             Self::Component(_) => CutShapeKind::Component,
         }
     }
@@ -186,6 +223,7 @@ impl CutShape {
                 )
             }
             Self::Sphere(SphereCut { center, radius }) => Box::new([1.0, *radius].into_iter().chain(*center)),
+            Self::Box(BoxCut { low, high }) => Box::new([3.0].into_iter().chain(*low).chain(*high)),
             Self::Component(ComponentCut { seed, values }) => {
                 Box::new([2.0, values.low, values.high].into_iter().chain(*seed))
             }
@@ -196,6 +234,7 @@ impl CutShape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DAffine3, DMat3};
 
     #[test]
     fn enabled_shapes_decide_the_id() {
@@ -221,5 +260,20 @@ mod tests {
             ..ShapeCut::default()
         };
         assert_ne!(id(&[outline(1.0)]), id(&[outline(2.0)]));
+        let boxed = |high| ShapeCut {
+            shape: CutShape::Box(BoxCut { high: [high; 3], ..BoxCut::default() }),
+            ..ShapeCut::default()
+        };
+        assert_ne!(id(&[boxed(0.8)]), id(&[boxed(0.9)]));
+    }
+
+    #[test]
+    fn a_corner_lies_on_the_side_of_the_eye() {
+        // Index axes that run the other way along x in the scene.
+        let mirrored = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+        let scene = SceneSpace::new([8, 16, 8], DAffine3::from_mat3_translation(mirrored, DVec3::ZERO));
+        let eye = scene.scene_from_index.transform_point3(DVec3::new(-20.0, 30.0, 1.0));
+        let corner = BoxCut::corner_towards(eye, &scene);
+        assert_eq!((corner.low, corner.high), ([0.0, 0.5, 0.0], [0.5, 1.0, 0.5]));
     }
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use self::component::component_voxels;
 use self::front_depth::FrontDepth;
 use self::outline::OutlineDistance;
-use crate::{CutAction, CutDepth, CutShape, ShapeCut, SphereCut};
+use crate::{BoxCut, CutAction, CutDepth, CutShape, ShapeCut, SphereCut};
 use chiaroscuro_volume::{Volume, VoxelMask, math::SceneSpace};
 use glam::DVec3;
 
@@ -65,6 +65,14 @@ fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &Cu
             let inside =
                 |index| (radius - scene.scene_from_index.transform_point3(index).distance(center)) / edge;
             let rows = RowChanges { dims: scene.dims, max_change: change };
+            apply_distance(hidden, action, rows, inside, None);
+        }
+        CutShape::Box(BoxCut { low, high }) => {
+            // From the first to the last face of the grid.
+            let dims = DVec3::from(scene.dims.map(|n| n as f64));
+            let [low, high] = [low, high].map(|bound| DVec3::from(*bound) * dims - 0.5);
+            let inside = |index: DVec3| (index - low).min(high - index).min_element();
+            let rows = RowChanges { dims: scene.dims, max_change: 1.0 };
             apply_distance(hidden, action, rows, inside, None);
         }
         CutShape::Component(component) => {
@@ -185,6 +193,20 @@ mod tests {
             None
         );
         assert_eq!(mask_from_shapes(&volume, [&restore, &hide]), Some(mask));
+    }
+
+    #[test]
+    fn boxes_end_where_their_fractions_say() {
+        let volume = volume(|[x, ..]| x as u8);
+        // Faces at indices 3.5, 7.75 and at the end of the grid.
+        let bounds = BoxCut { low: [0.25, 0.0, 0.5], high: [8.25 / 16.0, 1.0, 1.0] };
+        let mask = mask_from_shapes(&volume, &[cut(CutAction::Hide, CutShape::Box(bounds))]).unwrap();
+        let along_x = [2, 3, 4, 7, 8, 9].map(|x| hidden_at(&mask, [x, 5, 12]));
+        assert_eq!(along_x, [0, 0, 255, 255, 64, 0]);
+        let along_z = [7, 8, 15].map(|z| hidden_at(&mask, [5, 0, z]));
+        assert_eq!(along_z, [0, 255, 255], "the outermost voxels are hidden as a whole");
+        let kept = mask_from_shapes(&volume, &[cut(CutAction::Keep, CutShape::Box(bounds))]).unwrap();
+        assert!((0..4096).all(|voxel| kept.hidden(voxel) == 255 - mask.hidden(voxel)));
     }
 
     #[test]

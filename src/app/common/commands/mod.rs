@@ -120,7 +120,7 @@ pub(crate) enum AppCommand {
     ToggleOverlay,
     /// Switch the probe on or off, which explains the light under the pointer.
     ToggleProbe,
-    /// Begin or end cutting by shapes of a kind in the picture.
+    /// Begin or end cutting by shapes of a kind in the picture; of boxes, hide the corner that faces the camera.
     CutByShape(CutShapeKind),
     /// Begin or end making materials from clicks in the picture.
     PickMaterials,
@@ -251,6 +251,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::FacePlane,
         AppCommand::CutByShape(CutShapeKind::Outline),
         AppCommand::CutByShape(CutShapeKind::Sphere),
+        AppCommand::CutByShape(CutShapeKind::Box),
         AppCommand::CutByShape(CutShapeKind::Component),
         AppCommand::RemoveShapeCuts,
         AppCommand::PickMaterials,

@@ -1,29 +1,40 @@
 //! Cuts by shapes in the section "Clipping": buttons that begin one, and the list of those that there are.
 
-use eframe::egui::Ui;
+use std::ops::RangeInclusive;
+
+use eframe::egui::{DragValue, Ui};
 
 use super::super::controls::{row, unlabelled_row};
 use crate::app::common::commands::AppCommand;
 use crate::app::text::{self, ControlText};
-use chiaroscuro_scene::{CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, OutlineCut, ShapeCut};
+use chiaroscuro_scene::{
+    BoxCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, OutlineCut,
+    ShapeCut,
+};
 
 /// Shows the buttons, and a row for each cut in the order in which they are applied.
-pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, commands: &mut Vec<AppCommand>) {
-    row(ui, text::cuts::BY_SHAPE, |ui| {
+pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], commands: &mut Vec<AppCommand>) {
+    let mut buttons = |ui: &mut Ui, kinds: &[CutShapeKind]| {
         ui.add_enabled_ui(cuts.len() < MAX_SHAPE_CUTS, |ui| {
-            for kind in CutShapeKind::ALL {
+            for &kind in kinds {
                 let tip = text::cuts::cut_by_shape(kind).tooltip;
                 if ui.button(text::cuts::shape_name(kind)).on_hover_text(tip).clicked() {
                     commands.push(AppCommand::CutByShape(kind));
                 }
             }
         });
-    });
+    };
+    let (first, second) = CutShapeKind::ALL.split_at(CutShapeKind::ALL.len() / 2);
+    row(ui, text::cuts::BY_SHAPE, |ui| buttons(ui, first));
+    unlabelled_row(ui, |ui| buttons(ui, second));
     let mut removed = None;
     for (at, cut) in cuts.iter_mut().enumerate() {
         ui.push_id(("shape-cut", at), |ui| {
             if cut_row(ui, cut) {
                 removed = Some(at);
+            }
+            if let CutShape::Box(bounds) = &mut cut.shape {
+                corner_rows(ui, bounds, dims);
             }
         });
     }
@@ -62,4 +73,29 @@ fn cut_row(ui: &mut Ui, cut: &mut ShapeCut) -> bool {
         let removes = text::cuts::REMOVE_SHAPE;
         ui.button(removes.name).on_hover_text(removes.tooltip).clicked()
     })
+}
+
+/// Shows the extent of a box along each axis, in voxels.
+fn corner_rows(ui: &mut Ui, bounds: &mut BoxCut, dims: [usize; 3]) {
+    for (axis, name) in text::cuts::AXES.into_iter().enumerate() {
+        let voxels = dims[axis] as f64;
+        row(ui, ControlText { name, tooltip: text::cuts::CORNER_EXTENT_TIP }, |ui| {
+            let [mut from, mut to] = [bounds.low[axis], bounds.high[axis]].map(|share| share * voxels);
+            let min_extent = MIN_CROP_EXTENT * voxels;
+            let first = corner_field(&mut from, 0.0..=to - min_extent, voxels);
+            if ui.name_inputs(text::cuts::corner_from(name), |ui| ui.add(first)).changed() {
+                bounds.low[axis] = from / voxels;
+            }
+            ui.label(text::cuts::RANGE_SEPARATOR);
+            let last = corner_field(&mut to, from + min_extent..=voxels, voxels);
+            if ui.name_inputs(text::cuts::corner_to(name), |ui| ui.add(last)).changed() {
+                bounds.high[axis] = to / voxels;
+            }
+        });
+    }
+}
+
+/// Field for a bound of a box in voxels; dragging over 300 points covers an axis of so many.
+fn corner_field(bound: &mut f64, range: RangeInclusive<f64>, voxels: f64) -> DragValue<'_> {
+    DragValue::new(bound).range(range).speed(voxels / 300.0).max_decimals(0)
 }

@@ -68,6 +68,10 @@ pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
         CutShapeKind::Sphere => {
             control_text("Cut by ball", "Hides a ball around the place that you click in the picture")
         }
+        CutShapeKind::Box => control_text(
+            "Cut the near corner",
+            "Hides the eighth of the volume that faces you, so that three faces of its inside are seen",
+        ),
         CutShapeKind::Component => {
             control_text("Cut a part", "Hides the part that you click, with all that is connected with it")
         }
@@ -79,6 +83,7 @@ pub(crate) fn shape_name(kind: CutShapeKind) -> &'static str {
     match kind {
         CutShapeKind::Outline => "Outline",
         CutShapeKind::Sphere => "Ball",
+        CutShapeKind::Box => "Corner",
         CutShapeKind::Component => "Part",
     }
 }
@@ -101,9 +106,23 @@ pub(crate) fn shape_hint(kind: CutShapeKind, is_reversed: bool) -> &'static str 
         (CutShapeKind::Outline, true) => "Draw around what to keep, or click it: all else is hidden",
         (CutShapeKind::Sphere, false) => "Click to hide a ball · wheel: size · with Shift, it is shown again",
         (CutShapeKind::Sphere, true) => "Click to show what was hidden in the ball · wheel: size",
+        (CutShapeKind::Box, _) => "The sides of a corner are set in the section Clipping",
         (CutShapeKind::Component, false) => "Click the part to hide · with Shift, it is kept alone",
         (CutShapeKind::Component, true) => "Click the part to keep: all else is hidden",
     }
+}
+
+/// Tooltip of the first and last voxel that a corner hides.
+pub(crate) const CORNER_EXTENT_TIP: &str = "First and last voxel of the corner";
+
+/// Accessible name of the first voxel of a corner along an axis.
+pub(crate) fn corner_from(axis: &str) -> String {
+    format!("Corner {axis} from")
+}
+
+/// Accessible name of the last voxel of a corner along an axis.
+pub(crate) fn corner_to(axis: &str) -> String {
+    format!("Corner {axis} to")
 }
 
 /// Extent of the crop box along an axis, as the tooltip of its reset button names it.

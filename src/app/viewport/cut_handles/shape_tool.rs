@@ -90,6 +90,8 @@ impl ShapeCutTool {
                 // A drag turns the view as ever, but the wheel belongs to the sphere.
                 response.clicked() || wheel_notches(ui) != 0.0
             }
+            // Not chosen: it is cut at once.
+            CutShapeKind::Box => false,
             CutShapeKind::Component => {
                 self.pick_component(response, settings, volume);
                 response.clicked()

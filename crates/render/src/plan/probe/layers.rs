@@ -8,10 +8,10 @@ use super::{Probe, probe};
 use chiaroscuro_scene::{LayerBlend, LayerVisibility, RenderMode, Settings};
 use chiaroscuro_volume::Dataset;
 
-/// Traces a ray (in scene space) through the layers that add material, and returns the probe at the first visible
-/// position in one of them; of the first volume alone in other render modes. `None` if nothing is visible.
+/// Traces a ray (in scene space) through the layers that add material, and returns the probe at what is seen first.
 ///
-/// Layers that tint or gate are not regarded.
+/// Returns `None` if nothing is visible. Layers that tint or gate are not regarded, and in other render modes than
+/// *Matter* none but the first.
 pub fn probe_layers(
     dataset: &Dataset,
     settings: &Settings,
