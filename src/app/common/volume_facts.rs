@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::alternatives::Alternatives;
-use crate::app::text::common::LengthUnit;
+use crate::app::text::{self, common::LengthUnit};
 use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_scene::{LabelTable, Settings};
 use chiaroscuro_volume::{
@@ -125,6 +125,15 @@ impl LabelRow {
     }
 }
 
+/// Value of a voxel in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct VoxelValue {
+    /// Number in data units, or number and name of a label.
+    pub words: String,
+    /// True for a label.
+    pub is_label: bool,
+}
+
 impl VolumeFacts {
     /// Collects the facts about a dataset.
     pub(crate) fn new(source: PathBuf, reading: ReadChoices, dataset: &Dataset) -> Self {
@@ -201,6 +210,23 @@ impl VolumeFacts {
     /// Returns true if pictures with these settings show labels, whose looks are in a table.
     pub(crate) fn is_shown_by_label(&self, settings: &Settings) -> bool {
         !settings.layer_at(self.layer).labels.is_empty() && !self.labels.is_empty()
+    }
+
+    /// Returns the value at a voxel, or its label if labels are shown; `None` where the voxel is missing, or has a label
+    /// without a look, which is the background.
+    pub(crate) fn value_at(&self, settings: &Settings, [x, y, z]: [usize; 3]) -> Option<VoxelValue> {
+        let [nx, ny, _] = self.dims;
+        if self.volume.presence(x + nx * (y + ny * z)) <= 0.0 {
+            return None;
+        }
+        let value = self.volume.value(x, y, z);
+        if !self.is_shown_by_label(settings) {
+            let words = text::probe::number(value, range_decimals(self.volume.table_range()));
+            return Some(VoxelValue { words, is_label: false });
+        }
+        let (label, table) = (self.label_of(value)?, &settings.layer_at(self.layer).labels);
+        table.get(label.look_number)?;
+        Some(VoxelValue { words: text::probe::label(label.number, &label.name(table)), is_label: true })
     }
 
     /// Updates the facts for a dataset that shows other values or is corrected.

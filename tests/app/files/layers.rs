@@ -266,4 +266,9 @@ fn coarse_scans_and_labels_become_layers_over_a_finer_scan() {
     harness.hover_at(picture.center());
     harness.run_steps(4);
     assert!(harness.query_by_label_contains("labels: Label ").is_some());
+    // So do the slices at their cursor, in the middle of the volume.
+    harness.key_press(Key::I);
+    harness.key_press(Key::D);
+    harness.run_steps(6);
+    assert!(harness.query_by_label("Label 2").is_some());
 }

@@ -107,8 +107,8 @@ impl LightProbe {
         if let Some(found) = found {
             paint_light_rays(&painter, picture, settings, found);
         }
-        let others = found
-            .map_or_else(Vec::new, |found| values_of_other_layers(settings, dataset, volumes.facts, found));
+        let others =
+            found.map_or_else(Vec::new, |found| values_of_other_layers(settings, volumes.facts, found));
         let (mm_per_unit, unit) = (volume.scene().mm_per_unit, length_unit(volume));
         let distance = match &self.pins[..] {
             [from, to] => {

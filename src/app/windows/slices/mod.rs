@@ -19,7 +19,8 @@ use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::text;
 use crate::app::viewport::view_projection::ViewProjection;
-use chiaroscuro_scene::{LabelTable, TransferFunction};
+use chiaroscuro_files::sanitised;
+use chiaroscuro_scene::{Settings, TransferFunction};
 use chiaroscuro_volume::{ValueRange, Volume, math::SceneSpace};
 
 /// Longest edge of a slice on screen, in points, before the user resizes the window.
@@ -40,8 +41,8 @@ const MIN_WINDOW_SHARE: f64 = 1e-3;
 struct SliceLook<'a> {
     /// Transfer function of the settings as they are drawn.
     transfer: &'a TransferFunction,
-    /// Names and looks of labels.
-    labels: &'a LabelTable,
+    /// Settings of the picture.
+    settings: &'a Settings,
 }
 
 /// State of the window "Slices".
@@ -80,8 +81,7 @@ impl SceneTool for SlicesWindow {
             && let (Some(dataset), Some(facts)) = (&scene.dataset, scene.volume)
         {
             let as_drawn = scene.settings.resolved_for(dataset.volume());
-            let look =
-                SliceLook { transfer: &as_drawn.layer().transfer, labels: &scene.settings.layer().labels };
+            let look = SliceLook { transfer: &as_drawn.layer().transfer, settings: scene.settings };
             self.show_volume(ctx, dataset.volume(), facts, look);
         }
         None
@@ -156,7 +156,7 @@ impl SlicesWindow {
         volume: &Volume,
         facts: &VolumeFacts,
         grey: &mut GreyWindow,
-        SliceLook { transfer, labels }: SliceLook<'_>,
+        SliceLook { transfer, settings }: SliceLook<'_>,
     ) {
         let [x, y, z] = self.cursor;
         let value = volume.value(x, y, z);
@@ -177,13 +177,23 @@ impl SlicesWindow {
                 name.on_hover_text(text::slices::RAS_TIP);
             }
             if let Some(label) = facts.label_of(value) {
-                line(ui, text::slices::LABEL, &text::slices::label(label.number, &label.name(labels)));
+                line(
+                    ui,
+                    text::slices::LABEL,
+                    &text::slices::label(label.number, &label.name(&settings.layer().labels)),
+                );
             } else {
                 let digits = if facts.levels.is_some() { format!("{value}") } else { format!("{value:.5}") };
                 line(ui, text::slices::VALUE, &digits);
             }
             let place = volume.table_range().value_at(volume.density_of(value));
             line(ui, text::slices::OPACITY, &format!("{:.2}", transfer.opacity_at(place)));
+            let count = settings.layers.count().min(facts.further.len() + 1);
+            for layer in (1..count).map(|index| facts.of_layer(index)) {
+                if let Some(value) = layer.value_at(settings, self.cursor) {
+                    line(ui, &sanitised(&layer.part_name(), 24), &value.words);
+                }
+            }
             grey_window_fields(ui, grey, facts);
         });
         if facts.is_anatomical {
@@ -278,8 +288,8 @@ mod tests {
         let facts = VolumeFacts::new("ramp".into(), ReadChoices::default(), &dataset);
         let mut slices = SlicesWindow { open: true, ..SlicesWindow::default() };
         let ctx = egui::Context::default();
-        let (transfer, labels) = (TransferFunction::default(), LabelTable::default());
-        let look = SliceLook { transfer: &transfer, labels: &labels };
+        let settings = Settings::default();
+        let look = SliceLook { transfer: &settings.layer().transfer, settings: &settings };
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
                 slices.show_volume(ui.ctx(), dataset.volume(), &facts, look);
