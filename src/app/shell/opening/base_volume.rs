@@ -2,7 +2,7 @@
 
 use chiaroscuro_volume::{DataKind, Volume, math::Aabb};
 
-/// Largest ratio of the volumes of two voxels at which the smaller one is worth another grid: voxels a fifth shorter.
+/// Largest ratio of the volumes of two voxels at which the smaller one is worth another grid: its edges are then a fifth shorter.
 const FINER_VOXEL: f64 = 0.5;
 
 /// Share of the open volume's box that a finer one must have in it, so that little is lost outside its grid.

@@ -227,6 +227,7 @@ mod tests {
         Probe {
             layer: 0,
             point: origin,
+            normal: DVec3::ZERO,
             index: origin,
             world_mm: origin,
             value: 1.0,

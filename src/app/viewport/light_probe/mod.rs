@@ -17,7 +17,7 @@ use crate::app::common::theme;
 use crate::app::common::volume_facts::{VolumeFacts, range_decimals};
 use crate::app::text::{self, common::LengthUnit};
 use chiaroscuro_render::plan::{LightArrival, Probe, probe, probe_layers};
-use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, RenderMode, Settings};
+use chiaroscuro_scene::{Camera, LightGeometry, LightSettings, RenderMode, Settings, VolumeLayer};
 use chiaroscuro_volume::{DataKind, Dataset, Volume};
 
 /// Point of the volume that was clicked.
@@ -129,8 +129,11 @@ impl LightProbe {
         });
         let shown = ProbeTag {
             subject: found.and_then(|found| {
-                let look = settings.clone().with_first_exchanged(found.layer);
-                let own = label_text(&look, dataset.fields().get(found.layer)?.volume(), found);
+                let own = label_text(
+                    settings.layer_at(found.layer),
+                    dataset.fields().get(found.layer)?.volume(),
+                    found,
+                );
                 own.or_else(|| others.iter().find(|other| other.is_label).map(|label| label.text.clone()))
             }),
             cause,
@@ -205,8 +208,8 @@ pub(crate) fn material_value(volume: &Volume, settings: &Settings, picture: Rect
 }
 
 /// Returns the visible label as number and name; `None` if the values are not labels.
-fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<String> {
-    let is_by_curve = settings.layer().labels.is_empty();
+fn label_text(layer: &VolumeLayer, volume: &Volume, found: &Probe) -> Option<String> {
+    let is_by_curve = layer.labels.is_empty();
     // Other data would be counted first, which takes seconds.
     if is_by_curve && !matches!(volume.kind().kind, DataKind::LabelMap { .. }) {
         return None;
@@ -220,8 +223,7 @@ fn label_text(settings: &Settings, volume: &Volume, found: &Probe) -> Option<Str
     } else {
         found.value
     } as i64;
-    let named =
-        settings.layer().labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
+    let named = layer.labels.get(number).map(|look| look.name.as_str()).filter(|name| !name.is_empty());
     let in_file = volume.metadata().labels.get(number).map(|label| label.name.as_str());
     Some(text::probe::label(number, named.or(in_file).unwrap_or_default()))
 }
@@ -358,7 +360,7 @@ mod tests {
         let said = |settings: &Settings, from: f64| {
             let found =
                 probe(&volume, settings, DVec3::X * from, DVec3::X * -from.signum()).expect("a label");
-            label_text(settings, &volume, &found)
+            label_text(settings.layer(), &volume, &found)
         };
         assert_eq!(said(&settings, -3.0).as_deref(), Some("Label 3: Liver"));
         assert_eq!(said(&settings, 3.0).as_deref(), Some("Label 9"));
@@ -366,6 +368,7 @@ mod tests {
         let found = Probe {
             layer: 0,
             point: DVec3::ZERO,
+            normal: DVec3::ZERO,
             index: DVec3::ONE,
             world_mm: DVec3::ONE,
             value: 0.5,
@@ -373,7 +376,7 @@ mod tests {
             lights: Vec::new(),
             sky: None,
         };
-        assert_eq!(label_text(&Settings::default(), &grey, &found), None);
+        assert_eq!(label_text(&VolumeLayer::default(), &grey, &found), None);
     }
 
     #[test]

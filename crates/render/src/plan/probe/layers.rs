@@ -38,7 +38,7 @@ pub fn probe_layers(
         let volume = dataset.fields()[*index].volume();
         let volume = &volume.with_density_mapping(look.shown_content(&volume.ranges()));
         let rays = VolumeRays::new(volume);
-        light.dim_by(&ArrivingLight::new(&rays, &look.resolved_for(volume), found.point, DVec3::ZERO));
+        light.dim_by(&ArrivingLight::new(&rays, &look.resolved_for(volume), found.point, found.normal));
     }
     (found.lights, found.sky) = (light.lights, light.sky);
     Some(found)

@@ -21,6 +21,8 @@ pub struct Probe {
     pub layer: usize,
     /// Position in scene space.
     pub point: DVec3,
+    /// Normal of the surface at the position, in scene space; zero where there is no surface.
+    pub normal: DVec3,
     /// Position in index space.
     pub index: DVec3,
     /// Position in world space, in millimetres.
@@ -61,6 +63,7 @@ pub fn probe(volume: &Volume, settings: &Settings, origin: DVec3, direction: DVe
     Some(Probe {
         layer: 0,
         point,
+        normal,
         index,
         world_mm: volume.world_from_index().transform_point3(index),
         value,
