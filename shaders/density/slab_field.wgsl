@@ -29,6 +29,20 @@ fn slab_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
 #endif
 }
 
+// Presence for light averaged over slab k, in passes of the eye.
+fn slab_lighting_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
+#if MISSING
+    let depth = depth_of(frame, k);
+    let offset = select(0.0, TWO_POINT_OFFSET * frame.slab, QUADRATURE == 2u);
+    let near = depth - offset;
+    let far = depth + offset;
+    return 0.5 * (lighting_presence_at(ray.origin + ray.direction * near, kernel_level(frame, near))
+        + lighting_presence_at(ray.origin + ray.direction * far, kernel_level(frame, far)));
+#else
+    return slab_presence(frame, ray, k);
+#endif
+}
+
 // Fraction of slab k within the grid, where the ray crosses it.
 fn slab_in_grid(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
 #if MISSING

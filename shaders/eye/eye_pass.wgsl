@@ -46,6 +46,10 @@ struct PixelRayUniform {
 // Takes gradients from differences of neighbouring sheets.
 override SHEET_GRADIENTS: bool = false;
 
+fn slab_ray_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
+    return slab_lighting_presence(frame, ray, k);
+}
+
 // Extinction of slab k for rays to lights.
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if PRECLASSIFY

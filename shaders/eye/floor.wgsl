@@ -61,6 +61,10 @@ override SHADOWED: u32 = 1u;
 // Smallest visible opacity of the floor: an eighth of an 8-bit step.
 const MIN_VISIBLE_OPACITY = 0.0005;
 
+fn slab_ray_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
+    return slab_presence(frame, ray, k);
+}
+
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
 #if COLORED
 #if PRECLASSIFY

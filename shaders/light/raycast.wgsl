@@ -29,6 +29,10 @@ var<private> raycast: RaycastUniform;
 @group(0) @binding(3) var<storage, read> bricks: array<vec4u>;
 @group(0) @binding(4) var attenuation: texture_storage_3d<TARGET_FORMAT, write>;
 
+fn slab_ray_presence(frame: SheetFrameUniform, ray: Ray, k: f32) -> f32 {
+    return slab_presence(frame, ray, k);
+}
+
 // White light or a single colour is followed, so extinction is a scalar.
 fn ray_extinction(frame: SheetFrameUniform, ray: Ray, k: f32) -> Transmittance {
     return Transmittance(extinction_of(slab_field(frame, ray, k)));

@@ -25,7 +25,7 @@ fn ray_presence(p: vec3f) -> f32 {
 #if PRECLASSIFY
     return 1.0;
 #else
-    return presence_at(p, 0.0);
+    return lighting_presence_at(p, 0.0);
 #endif
 }
 

@@ -1,5 +1,6 @@
 // Shadow ray: ray marching from a point of the volume towards a light (P eq. 7 and 8). The importing shader provides
-// extinction and cell distances, as ray_extinction(frame, ray, k) and light_distance(cell).
+// extinction, presence and cell distances, as ray_extinction(frame, ray, k), slab_ray_presence(frame, ray, k) and
+// light_distance(cell).
 #import "common/transmittance.wgsl"
 #import "density/cells.wgsl"
 #import "density/cut.wgsl"
@@ -54,7 +55,7 @@ fn shadow_ray(
         if (k > inside.y) {
             break;
         }
-        let share = shading_fraction(cut, p + direction * depth_of(frame, f32(k))) * slab_presence(frame, ray, f32(k));
+        let share = shading_fraction(cut, p + direction * depth_of(frame, f32(k))) * slab_ray_presence(frame, ray, f32(k));
         depth += ray_extinction(frame, ray, f32(k)) * share * ray_step * scale;
         if (min_component(depth) > dark) {
             break;
@@ -65,7 +66,7 @@ fn shadow_ray(
     let end = p + direction * reach;
     if (frame.first_depth < reach && all(end > vec3f(-2.0)) && all(end < grid.dims + 1.0)) {
         frame.slab = reach - frame.first_depth;
-        let share = shading_fraction(cut, p + direction * depth_of(frame, 0.0)) * slab_presence(frame, ray, 0.0);
+        let share = shading_fraction(cut, p + direction * depth_of(frame, 0.0)) * slab_ray_presence(frame, ray, 0.0);
         depth += ray_extinction(frame, ray, 0.0) * share * frame.slab * scale;
     }
     return exp(-depth);

@@ -12,7 +12,13 @@ fn voxel_material(place: vec3i) -> vec4f {
 #else
     let found = layered_material(voxel);
 #endif
-    return select(vec4f(0.0), found, all(voxel == place));
+#if MISSING
+    // The sum is multiplied by presence, which is 0 outside.
+    let is_in_grid = true;
+#else
+    let is_in_grid = all(voxel == place);
+#endif
+    return select(vec4f(0.0), found, is_in_grid);
 }
 
 @compute @workgroup_size(8, 8, 4)
@@ -23,10 +29,14 @@ fn main(
 ) {
     resample = bound_resample;
     layers = bound_layers;
-    let sum = spread_material(group, local, index);
+    var sum = spread_material(group, local, index);
     let texel = level_texel(group, local);
     if (any(texel >= textureDimensions(level))) {
         return;
     }
+#if MISSING
+    // The fraction of the blur on voxels that are not hidden.
+    sum *= presence_at_texel(texel);
+#endif
     textureStore(level, texel, sum);
 }

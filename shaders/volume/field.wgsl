@@ -40,6 +40,8 @@ var<private> grid: GridUniform;
 // Presence where voxels are missing or hidden, with the levels of the pyramid: r is presence, from −1 for none to 1, and gba
 // are its differences from the previous to the next texel along x, y and z.
 @group(1) @binding(9) var presence_texture: texture_3d<f32>;
+// Presence for light, like presence_texture, in passes of the eye. Passes that follow light have it in presence_texture.
+@group(1) @binding(12) var lighting_presence_texture: texture_3d<f32>;
 // Pyramid that rays in the near field read: with pre-classification that of light, which is 0 where no voxel is.
 @group(1) @binding(10) var lighting_pyramid: texture_3d<f32>;
 // Pyramid of the tints of further layers (volume/composed_voxels.wgsl).
@@ -240,12 +242,25 @@ fn lighting_field(p: vec3f, level: f32) -> LightingField {
 #endif
 }
 
+// Presence for light at a point, in passes of the eye.
+fn lighting_presence_at(p: vec3f, level: f32) -> f32 {
+#if MISSING
+    return decode_presence(textureSampleLevel(lighting_presence_texture, clamped, pyramid_place(p), level));
+#else
+    return presence_at(p, level);
+#endif
+}
+
 // Presence for values of lighting_field().
 fn lighting_presence(p: vec3f, level: f32) -> f32 {
 #if PRECLASSIFY
     return 1.0;
 #else
+#if MISSING
+    return lighting_presence_at(p, level);
+#else
     return pyramid_presence(p, level);
+#endif
 #endif
 }
 

@@ -1,7 +1,7 @@
 //! Tests of the crop box and clip plane dragged in the picture, and of the slices beside it.
 
 use chiaroscuro::app::App;
-use chiaroscuro_scene::{CutAction, CutShape, ShapeCut};
+use chiaroscuro_scene::{ClipEffect, CutAction, CutShape, ShapeCut};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -180,7 +180,7 @@ fn the_near_corner_is_cut_moved_and_shown_again() {
     let (whole, _) = picture(&mut harness);
     click(&mut harness, "Corner");
     let bounds = |harness: &Harness<'_, App>| match harness.state().settings().cuts.shapes.as_slice() {
-        [ShapeCut { on: true, action: CutAction::Hide, shape: CutShape::Box(bounds) }] => *bounds,
+        [ShapeCut { on: true, action: CutAction::Hide, shape: CutShape::Box(bounds), .. }] => *bounds,
         other => panic!("a box: {other:?}"),
     };
     // The camera of a first look is in front, above, and on one side.
@@ -190,6 +190,17 @@ fn the_near_corner_is_cut_moved_and_shown_again() {
     wait_until_idle(&mut harness);
     let (without, _) = picture(&mut harness);
     assert!(without != whole, "the corner is hidden");
+    // Its shadow is put back: other light falls on the cut faces.
+    let effect = |harness: &Harness<'_, App>| harness.state().settings().cuts.shapes[0].effect;
+    click(&mut harness, "Inside: effect");
+    click(&mut harness, "Hidden, shadow stays");
+    assert_eq!(effect(&harness), ClipEffect::Hidden);
+    wait_until_idle(&mut harness);
+    assert!(picture(&mut harness).0 != without, "the shadow of the corner");
+    harness.run_steps(20);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(3);
+    assert_eq!(effect(&harness), ClipEffect::Removed);
     // A side is moved by its number.
     let side = harness.get_by_label("Corner z from").rect().center();
     drag(&mut harness, side, vec2(24.0, 0.0));

@@ -59,6 +59,7 @@ use chiaroscuro_scene::{
     VolumeLayer, mask_from_shapes,
 };
 use chiaroscuro_volume::{Dataset, ValueRange, Volume, math::SceneSpace};
+use extent::presence_pyramids::PresencePyramids;
 use field::classified::{ALL_TRANSFER_SIDES, ClassifiedVoxels, TransferSide};
 use field::layers::{composed_voxels, tint_voxels};
 use kernel::KernelProfile;
@@ -132,10 +133,8 @@ pub struct Reference<'a> {
     range: ValueRange,
     field: DensityField,
     pyramid: Pyramid,
-    /// Presence pyramid, if voxels are missing: the share of kernels that lies on present voxels.
-    presence: Option<Pyramid>,
-    /// Differences of presence along x, y and z, if it is rounded as stored.
-    presence_changes: Option<[Pyramid; 3]>,
+    /// Presence pyramids, if voxels are missing or hidden.
+    presence: Option<PresencePyramids>,
     /// Pre-classified voxels of the eye and of light, if voxels are classified before kernels spread them.
     classified: Option<Box<[ClassifiedVoxels; 3]>>,
     /// Tints of the first field by further layers: opacity in place of extinction.
@@ -167,39 +166,21 @@ impl<'a> Reference<'a> {
         let range = volume.table_range();
         let field = DensityField::with_rounding(volume, options.rounding.unwrap_or(|density| density));
         let pyramid = Pyramid::new(&field, kernel_width(options.fault), options.rounding);
-        let mut presence = DensityField::from_presence(volume)
-            .map(|field| Pyramid::new(&field, kernel_width(options.fault), None));
-        let mut presence_changes = None;
-        if options.rounding.is_some() {
-            // Stored as signed bytes, whose full range presence uses.
-            presence_changes = presence
-                .as_ref()
-                .map(|presence| [0, 1, 2].map(|axis| presence.central_differences(axis).quantised(127.0)));
-            presence = presence.map(|presence| presence.quantised(254.0));
-        }
+        // Layers have missing voxels of their own.
+        let counts_missing = settings.layer_composition() != LayerComposition::Composed;
+        let presence = PresencePyramids::from_volume(volume, counts_missing, options);
         let scene = volume.scene();
         let classification = settings.classification();
         let classified = classification.is_pre().then(|| {
-            let tables =
-                ALL_TRANSFER_SIDES.map(|side| transfer_table(settings, side, options.color, (range, &scene)));
             let (width, rounding) = (kernel_width(options.fault), options.rounding);
-            Box::new(tables.map(|table| {
+            Box::new(ALL_TRANSFER_SIDES.map(|side| {
+                let table = transfer_table(settings, side, options.color, (range, &scene));
                 let table = (&table, classification.has_crisp_edges());
-                ClassifiedVoxels::classify(&field, table, presence.as_ref(), width, rounding)
+                let presence = presence.as_ref().map(|presence| presence.for_side(side));
+                ClassifiedVoxels::classify(&field, table, presence, width, rounding)
             }))
         });
-        Self {
-            settings,
-            options,
-            scene,
-            range,
-            field,
-            pyramid,
-            presence,
-            presence_changes,
-            classified,
-            tints: None,
-        }
+        Self { settings, options, scene, range, field, pyramid, presence, classified, tints: None }
     }
 
     /// Creates a reference for a dataset whose fields are shown as layers; settings must be [as
@@ -216,12 +197,10 @@ impl<'a> Reference<'a> {
             let bake = |layer: &VolumeLayer, volume: &Volume| layer.bake_eye(volume.table_range(), &scene);
             let tints = settings.has_tints().then(|| tint_voxels(dataset, settings, bake));
             let tints = tints.map(|tints| {
-                ClassifiedVoxels::from_matter(dims, &tints, (1.0, None), width, options.rounding)
+                ClassifiedVoxels::from_matter(dims, &tints, (1.0, None), None, width, options.rounding)
             });
             return Self { tints: tints.map(Box::new), ..plain };
         }
-        let mask = mask_from_shapes(dataset.volume(), settings.cuts.enabled_shapes()).map(Arc::new);
-        let dataset = &dataset.with_mask(mask.as_ref());
         let classified = ALL_TRANSFER_SIDES.map(|side| {
             let has_effect = |layer: &VolumeLayer| match side {
                 TransferSide::Eye => layer.is_seen(),
@@ -246,7 +225,9 @@ impl<'a> Reference<'a> {
                 .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
                 .sum();
             let matter = composed_voxels(dataset, settings, has_effect, bake, opacity_length);
-            ClassifiedVoxels::from_matter(dims, &matter, (largest, opacity_length), width, options.rounding)
+            let presence = plain.presence.as_ref().map(|presence| presence.for_side(side));
+            let unit = (largest, opacity_length);
+            ClassifiedVoxels::from_matter(dims, &matter, unit, presence, width, options.rounding)
         });
         Self { classified: Some(Box::new(classified)), ..plain }
     }
@@ -292,10 +273,14 @@ impl<'a> Reference<'a> {
         transfer_table(self.settings, side, self.options.color, (self.range, &self.scene))
     }
 
-    /// Returns the presence of gathered densities; 1 for classified voxels, whose extinction ends at missing ones
-    /// anyway.
+    /// Returns the presence of densities gathered for light; 1 for classified voxels, whose extinction ends at missing
+    /// ones anyway.
     fn gathered_presence(&self, profile: &KernelProfile, point: DVec3, level: f64) -> f64 {
-        if self.classified.is_some() { 1.0 } else { self.presence(profile, point, level) }
+        if self.classified.is_some() {
+            1.0
+        } else {
+            self.presence(TransferSide::Lighting, profile, point, level)
+        }
     }
 
     /// Returns the density at an index-space point as the GPU gathers it, with the kernel stretched 2^`level` times.

@@ -197,9 +197,9 @@ impl<'r> SheetStack<'r> {
 
     /// Returns the presence of the material in slab `k`.
     pub(super) fn presence_at(&self, at: [f64; 3]) -> f64 {
-        let Self { reference, frame, profile, quadrature, .. } = self;
+        let Self { reference, frame, side, profile, quadrature, .. } = self;
         reference.slab_mean_presence(frame, *quadrature, at, |point, level| {
-            reference.presence(profile, point, level)
+            reference.presence(*side, profile, point, level)
         })
     }
 
@@ -235,7 +235,7 @@ impl<'r> SheetStack<'r> {
         let density = gather::density(reference, *side, profile, at, level);
         // Already part of the spread extinction of classified voxels.
         let is_pre = reference.settings.classification().is_pre();
-        let presence = if is_pre { 1.0 } else { reference.presence(profile, at, level) };
+        let presence = if is_pre { 1.0 } else { reference.presence(*side, profile, at, level) };
         (density, presence)
     }
 

@@ -27,8 +27,9 @@ mod turntable;
 pub use self::settings::camera_settings::camera::{Camera, FRAME_ASPECT, FovReference, Projection};
 pub use self::settings::camera_settings::scene_axis::SceneAxis;
 pub use self::settings::camera_settings::standard_view::StandardView;
+pub use self::settings::clip_effect::ClipEffect;
 pub use self::settings::clipping::{
-    ClipEffect, ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
+    ClipPlane, ClippedPart, Clipping, CropBox, MAX_PLANE_OFFSET, MIN_CROP_EXTENT,
 };
 pub use self::settings::floor::{FloorSettings, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS};
 pub use self::settings::layer::composition::{LayerBlend, LayerComposition, LayerVisibility};

@@ -46,7 +46,7 @@ pub use values::fill_value::find_fill_value;
 pub use values::range::ValueRange;
 pub use values::robust::ValueRanges;
 pub use values::samples::{FiniteRange, Samples, VoxelType};
-pub use values::voxel_mask::VoxelMask;
+pub use values::voxel_mask::{Observer, VoxelMask};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
     DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::cells::{BRICK_EDGE, CELL_EDGE};
-use super::{Volume, VoxelMask};
+use super::{Observer, Volume, VoxelMask};
 
 /// Number of cells along the edge of a brick.
 const CELLS_PER_BRICK_EDGE: usize = BRICK_EDGE / CELL_EDGE;
@@ -25,23 +25,35 @@ impl Volume {
         self.missing().is_some() || self.mask().is_some()
     }
 
-    /// Returns the presence of the voxel at an index, x fastest: 0 if it is missing, else the share of it that no mask
-    /// hides.
+    /// Returns the presence of the voxel at an index, x fastest: 0 if it is missing, else the share of it that a mask
+    /// leaves to the eye, or to light if that is more.
     pub fn presence(&self, voxel: usize) -> f32 {
-        if self.missing().is_some_and(|missing| missing.contains(voxel)) {
-            return 0.0;
-        }
-        self.mask().map_or(1.0, |mask| mask.visible_share(voxel))
+        if self.is_missing(voxel) { 0.0 } else { self.mask().map_or(1.0, |mask| mask.visible_to_any(voxel)) }
     }
 
-    /// Returns true if all voxels in a range of indices are known to be present as a whole.
+    /// Returns the presence of the voxel at an index, x fastest, for an observer: 0 if it is missing, else the share of
+    /// it that no mask hides from the observer.
+    pub fn presence_for(&self, observer: Observer, voxel: usize) -> f32 {
+        if self.is_missing(voxel) { 0.0 } else { self.unmasked_share(observer, voxel) }
+    }
+
+    /// Returns the share of the voxel at an index, x fastest, that no mask hides from an observer, even if the voxel is
+    /// missing.
+    pub fn unmasked_share(&self, observer: Observer, voxel: usize) -> f32 {
+        self.mask().map_or(1.0, |mask| mask.visible_to(voxel, observer))
+    }
+
+    fn is_missing(&self, voxel: usize) -> bool {
+        self.missing().is_some_and(|missing| missing.contains(voxel))
+    }
+
+    /// Returns true if all voxels in a range of indices are known to be present as a whole, to eye and light.
     fn is_present(&self, voxels: Range<usize>) -> bool {
-        self.missing().is_none()
-            && self.mask().is_none_or(|mask| mask.hidden_shares()[voxels].iter().all(|&share| share == 0))
+        self.missing().is_none() && self.mask().is_none_or(|mask| mask.hides_none_of(voxels))
     }
 
-    /// Returns the minimum of `number` over all voxels that are missing or hidden, at least in part; `u8::MAX` if there
-    /// are none.
+    /// Returns the minimum of `number` over all voxels that are missing or hidden, at least in part and from one
+    /// observer; `u8::MAX` if there are none.
     pub fn min_over_absent(&self, number: impl Fn([usize; 3]) -> u8 + Sync) -> u8 {
         if !self.has_absent_voxels() {
             return u8::MAX;
@@ -52,7 +64,8 @@ impl Volume {
             if self.is_present(row * nx..(row + 1) * nx) {
                 return u8::MAX;
             }
-            let absent = (0..nx).filter(|x| self.presence(x + nx * row) < 1.0);
+            let is_absent = |voxel: usize| Observer::ALL.iter().any(|by| self.presence_for(*by, voxel) < 1.0);
+            let absent = (0..nx).filter(|x| is_absent(x + nx * row));
             absent.map(|x| number([x, y, z])).min().unwrap_or(u8::MAX)
         };
         (0..ny * nz).into_par_iter().map(least_of_row).min().unwrap_or(u8::MAX)
@@ -131,6 +144,26 @@ mod tests {
         assert!(other.is_some() && masked.with_mask(other).mask().is_none());
         assert_eq!(VoxelMask::from_hidden_shares([2, 1, 1], vec![0; 2]), None);
         assert_eq!(VoxelMask::from_hidden_shares([2, 1, 1], vec![9; 3]), None);
+    }
+
+    #[test]
+    fn eye_and_light_may_see_different_voxels() {
+        let samples = Samples::U8(vec![0, 1, 2, 3]);
+        let volume = Volume::with_spacing("t", [4, 1, 1], DVec3::ONE, samples).unwrap();
+        let mask = VoxelMask::from_shares_by_observer([4, 1, 1], vec![0, 255, 0, 51], vec![0, 0, 255, 51]);
+        let mask = mask.map(Arc::new);
+        assert!(mask.as_ref().is_some_and(|mask| mask.differs_by_observer()));
+        let masked = volume.with_mask(mask);
+        let for_observer = |observer| [0, 1, 2, 3].map(|voxel| masked.presence_for(observer, voxel));
+        assert_eq!(for_observer(Observer::Eye), [1.0, 0.0, 1.0, 0.8]);
+        assert_eq!(for_observer(Observer::Light), [1.0, 1.0, 0.0, 0.8]);
+        assert_eq!([0, 1, 2, 3].map(|voxel| masked.presence(voxel)), [1.0, 1.0, 1.0, 0.8]);
+        // A voxel that is hidden from one observer counts as absent.
+        assert_eq!(masked.min_over_absent(|[x, ..]| x as u8), 1);
+        let alike = VoxelMask::from_shares_by_observer([4, 1, 1], vec![0, 9, 0, 0], vec![0, 9, 0, 0]);
+        assert!(alike.is_some_and(|mask| !mask.differs_by_observer()));
+        assert_eq!(VoxelMask::from_shares_by_observer([4, 1, 1], vec![0; 4], vec![0; 4]), None);
+        assert_eq!(VoxelMask::from_shares_by_observer([4, 1, 1], vec![0; 4], vec![9; 3]), None);
     }
 
     #[test]

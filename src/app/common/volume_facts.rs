@@ -9,7 +9,7 @@ use crate::app::worker::loader::ReadChoices;
 use chiaroscuro_scene::{LabelTable, Settings};
 use chiaroscuro_volume::{
     ChoiceAspect, CountedLabel, DataKind, Dataset, DatasetField, DensityMapping, FieldOrigin, FileContents,
-    Histogram, ValueRange, ValueRanges, Volume, VoxelType, math::SceneSpace,
+    Histogram, Observer, ValueRange, ValueRanges, Volume, VoxelType, math::SceneSpace,
 };
 
 /// Facts about a volume, all fixed except for the range of values that is shown.
@@ -216,7 +216,7 @@ impl VolumeFacts {
     /// without a look, which is the background.
     pub(crate) fn value_at(&self, settings: &Settings, [x, y, z]: [usize; 3]) -> Option<VoxelValue> {
         let [nx, ny, _] = self.dims;
-        if self.volume.presence(x + nx * (y + ny * z)) <= 0.0 {
+        if self.volume.presence_for(Observer::Eye, x + nx * (y + ny * z)) <= 0.0 {
             return None;
         }
         let value = self.volume.value(x, y, z);

@@ -2,8 +2,9 @@
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
 use chiaroscuro_scene::{
-    Camera, ClassificationOrder, ComponentCut, CutAction, CutShape, LightGeometry, NearFieldRay, OutlineCut,
-    ReconstructionKernel, RenderEngine, Settings, ShadowAlgorithm, ShapeCut, SphereCut, VolumeLayer,
+    Camera, ClassificationOrder, ClipEffect, ComponentCut, CutAction, CutShape, LightGeometry, NearFieldRay,
+    OutlineCut, ReconstructionKernel, RenderEngine, ScatteringSettings, Settings, ShadowAlgorithm, ShapeCut,
+    SkyMode, SkySettings, SphereCut, VolumeLayer,
 };
 use chiaroscuro_volume::ValueRange;
 use glam::DVec3;
@@ -16,7 +17,7 @@ use crate::scenes;
 
 /// Cuts of every kind: behind an outline, all but a ball, a part of that again, and what is connected.
 fn all_shapes() -> Vec<ShapeCut> {
-    let cut = |action, shape| ShapeCut { on: true, action, shape };
+    let cut = |action, shape| ShapeCut { action, shape, ..ShapeCut::default() };
     let sphere = |center, radius, action| cut(action, CutShape::Sphere(SphereCut { center, radius }));
     let outline = OutlineCut {
         camera: Camera { azimuth_deg: 70.0, elevation_deg: 20.0, ..Camera::default() },
@@ -40,6 +41,35 @@ fn look() -> Settings {
     let mut settings = two_lobes();
     settings.cuts.shapes = all_shapes();
     settings
+}
+
+/// The same cuts, some of which hide from the eye alone, or from light alone.
+fn look_by_observer() -> Settings {
+    let mut settings = look();
+    let effects = [ClipEffect::Hidden, ClipEffect::Shadowless, ClipEffect::Removed, ClipEffect::Hidden];
+    for (cut, effect) in settings.cuts.shapes.iter_mut().zip(effects) {
+        cut.effect = effect;
+    }
+    settings
+}
+
+#[test]
+fn eye_and_light_see_different_voxels() {
+    let mut settings = look_by_observer();
+    settings.sky = SkySettings { mode: SkyMode::White, directions: 12, ..SkySettings::default() };
+    check_volume("effects", waves(18, DVec3::ONE, true), &settings, Some(round_to_f16));
+    settings.scattering = ScatteringSettings { bounces: 2, directions: 12, ..ScatteringSettings::default() };
+    settings.sampling.classification = ClassificationOrder::Pre;
+    check_volume("effects, classified", waves(16, DVec3::ONE, false), &settings, Some(round_to_f16));
+    let mut settings = look_by_observer();
+    settings.shadows.near_field = NearFieldRay::Long;
+    settings.camera.distance = 9.0;
+    check_volume("effects, near", waves(16, DVec3::ONE, false), &settings, Some(round_to_f16));
+    settings.shadows.algorithm = ShadowAlgorithm::Direct;
+    check_volume("effects, direct", waves(12, DVec3::ONE, false), &settings, Some(round_to_f16));
+    settings = look_by_observer();
+    settings.sampling.engine = RenderEngine::Scatter;
+    check_volume("scattered effects", waves(16, DVec3::ONE, false), &settings, None);
 }
 
 #[test]
@@ -89,6 +119,9 @@ fn all_layers_are_hidden() {
     let options = ReferenceOptions { rounding: Some(round_to_f16), ..ReferenceOptions::default() };
     let drawn = settings.resolved_for_dataset(&dataset);
     check_with("cuts of layers", &dataset, &settings, &Reference::with_layers(&dataset, &drawn, options));
+    settings.cuts = look_by_observer().cuts;
+    let drawn = settings.resolved_for_dataset(&dataset);
+    check_with("effects on layers", &dataset, &settings, &Reference::with_layers(&dataset, &drawn, options));
 }
 
 #[test]
@@ -118,6 +151,11 @@ fn mistakes_in_masks_are_noticed() {
     let CutShape::Outline(outline) = &mut other.cuts.shapes[0].shape else { panic!("an outline") };
     outline.camera.azimuth_deg += 5.0;
     assert!(is_noticed(&other, none), "camera of an outline");
+    for effect in [ClipEffect::Hidden, ClipEffect::Shadowless] {
+        other = settings.clone();
+        other.cuts.shapes[1].effect = effect;
+        assert!(is_noticed(&other, none), "{effect:?} instead of removed");
+    }
     // Without the component, which hides what the ball restores.
     let mut plain = settings.clone();
     plain.cuts.shapes.remove(3);
@@ -125,4 +163,11 @@ fn mistakes_in_masks_are_noticed() {
     other.cuts.shapes.swap(1, 2);
     let reference = Reference::new(loaded.volume(), &other, options);
     assert!(differs_with(&loaded, &plain, &reference, none), "order of cuts");
+    // Rays from the eye to lights.
+    let mut near = look_by_observer();
+    near.shadows.near_field = NearFieldRay::Long;
+    let reference = Reference::new(loaded.volume(), &near, options);
+    assert!(!differs_with(&loaded, &near, &reference, none), "nothing is damaged");
+    let of_eye = ("textureSampleLevel(lighting_presence_texture,", "textureSampleLevel(presence_texture,");
+    assert!(differs_with(&loaded, &near, &reference, of_eye), "rays see what the eye sees");
 }

@@ -3,21 +3,24 @@
 
 use chiaroscuro_reference::{cubic_b_spline, tent};
 use chiaroscuro_scene::{
-    Camera, ClassificationOrder, ControlPoint, CutAction, CutShape, OpacityInterpolation, OutlineCut,
-    Projection, ReconstructionKernel, RenderEngine, ShapeCut, TransferFunction,
+    Camera, ClassificationOrder, ClipEffect, ControlPoint, CutAction, CutShape, LightGeometry,
+    OpacityInterpolation, OutlineCut, Projection, ReconstructionKernel, RenderEngine, ShapeCut,
+    TransferFunction,
 };
-use chiaroscuro_volume::{Samples, Volume};
+use chiaroscuro_volume::{Samples, Volume, math::SceneSpace};
 use glam::DVec3;
 
 use super::{base, renderer, with_both_engines};
-use crate::common::{Dataset, render};
+use crate::common::{Dataset, full_attenuation, render};
 use crate::compare::{compare, to_f64};
+use crate::scenes;
 use crate::thresholds::{CHORD_OPACITY, EDGE_PROFILE, LOBES};
 
 with_both_engines! {
     a_constant_volume_ends_at_its_faces
     holes_are_empty
     hidden_slabs_are_empty
+    slabs_hidden_from_eye_or_light
     lobes_of_either_sign_look_alike
 }
 
@@ -138,11 +141,8 @@ fn holes_are_empty(engine: RenderEngine) {
     }
 }
 
-/// A slab that an outline hides is empty: drawn from the side, with edges between voxels.
-fn hidden_slabs_are_empty(engine: RenderEngine) {
-    let per_voxel = 0.04;
-    let loaded = constant_volume(0);
-    let scene = loaded.volume().scene();
+/// Outline around voxels 8 … 15 along y, drawn from the side, with edges between voxels.
+fn outlined_slab(scene: &SceneSpace) -> CutShape {
     // The camera looks along x; y is across.
     let side = Camera {
         azimuth_deg: 0.0,
@@ -156,12 +156,46 @@ fn hidden_slabs_are_empty(engine: RenderEngine) {
         [x, y]
     };
     let points = vec![place(7.5, -9.0), place(15.5, -9.0), place(15.5, 33.0), place(7.5, 33.0)];
-    let outline = OutlineCut { camera: side.clone(), aspect: 1.0, points, ..OutlineCut::default() };
+    CutShape::Outline(OutlineCut { camera: side.clone(), aspect: 1.0, points, ..OutlineCut::default() })
+}
+
+/// A slab that is hidden from the eye alone attenuates light, and one that lets light pass is seen.
+fn slabs_hidden_from_eye_or_light(engine: RenderEngine) {
+    let per_voxel = 0.04;
+    let loaded = constant_volume(0);
+    let shape = outlined_slab(&loaded.volume().scene());
+    for (effect, seen, met) in [
+        (ClipEffect::Removed, EDGE_VOXELS - 8, 9),
+        (ClipEffect::Hidden, EDGE_VOXELS - 8, 17),
+        (ClipEffect::Shadowless, EDGE_VOXELS, 9),
+    ] {
+        let mut settings = base(engine, per_voxel).with_transfer(falling_extinction(per_voxel));
+        settings.sampling.slab = 0.5;
+        settings.lights = vec![scenes::light(LightGeometry::Parallel, [0.0, 1.0, 0.0])];
+        settings.cuts.shapes = vec![ShapeCut { effect, shape: shape.clone(), ..ShapeCut::default() }];
+        let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
+        // The camera looks along y.
+        let expected = 1.0 - (-per_voxel * seen as f64).exp();
+        let found = f64::from(picture.linear[32 * 64 + 32][3]);
+        assert!((found - expected).abs() <= CHORD_OPACITY, "{effect:?}: {found} not {expected}");
+        // Light falls along y, too: from one side of the slab to the other.
+        let light = full_attenuation(&mut renderer(), &loaded, &settings, 0);
+        let [one, other] = [3, 20].map(|y| f64::from(light[12 + EDGE_VOXELS * (y + EDGE_VOXELS * 12)]));
+        let expected = (-per_voxel * f64::from(met)).exp();
+        let found = one.min(other) / one.max(other);
+        assert!((found - expected).abs() <= CHORD_OPACITY, "{effect:?}: {found} of light, not {expected}");
+    }
+}
+
+/// A slab that an outline hides is empty.
+fn hidden_slabs_are_empty(engine: RenderEngine) {
+    let per_voxel = 0.04;
+    let loaded = constant_volume(0);
+    let shape = outlined_slab(&loaded.volume().scene());
     for (action, left) in [(CutAction::Hide, EDGE_VOXELS - 8), (CutAction::Keep, 8)] {
         let mut settings = base(engine, per_voxel).with_transfer(falling_extinction(per_voxel));
         settings.sampling.slab = 0.5;
-        let shape = CutShape::Outline(outline.clone());
-        settings.cuts.shapes = vec![ShapeCut { on: true, action, shape }];
+        settings.cuts.shapes = vec![ShapeCut { action, shape: shape.clone(), ..ShapeCut::default() }];
         let picture = render(&mut renderer(), &loaded, &settings, [64, 64]);
         // The camera looks along y.
         let expected = 1.0 - (-per_voxel * left as f64).exp();

@@ -9,7 +9,7 @@ use crate::scenes;
 const SIZE: [u32; 2] = [64, 56];
 
 fn sphere(center: [f64; 3], radius: f64, action: CutAction) -> ShapeCut {
-    ShapeCut { on: true, action, shape: CutShape::Sphere(SphereCut { center, radius }) }
+    ShapeCut { action, shape: CutShape::Sphere(SphereCut { center, radius }), ..ShapeCut::default() }
 }
 
 /// Lists of cuts, each of which changes another part of the volume.

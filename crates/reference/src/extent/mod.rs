@@ -3,4 +3,5 @@
 pub(super) mod cut;
 pub(super) mod point_weights;
 mod presence;
+pub(super) mod presence_pyramids;
 pub(super) mod surface_normals;

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use crate::field::classified::TransferSide;
 use crate::field::pyramid::MAX_LEVEL;
 use crate::kernel::{KernelProfile, quadrature_nodes};
 use crate::{Reference, ReferenceWeights};
@@ -10,12 +11,18 @@ use chiaroscuro_render::plan::SheetFrame;
 use chiaroscuro_scene::{ReconstructionKernel, SlabQuadrature};
 
 impl Reference<'_> {
-    /// Returns Σ w(v) over the present voxels, at an index-space point with the kernel stretched 2^`level` times. If
-    /// voxels are missing, it is a fetch of the presence pyramid, with the prefiltered kernel whatever the settings
+    /// Returns Σ w(v) over the voxels that are present to the eye or to light, at an index-space point with the kernel
+    /// stretched 2^`level` times. If voxels are missing, it is a fetch of the presence pyramid, with the prefiltered kernel whatever the settings
     /// are.
-    pub(crate) fn presence(&self, profile: &KernelProfile, point: DVec3, level: f64) -> f64 {
+    pub(crate) fn presence(
+        &self,
+        side: TransferSide,
+        profile: &KernelProfile,
+        point: DVec3,
+        level: f64,
+    ) -> f64 {
         match &self.presence {
-            Some(presence) => presence.fetch(point, level),
+            Some(presence) => presence.for_side(side).fetch(point, level),
             None => self.presence_in_grid(profile, point, level),
         }
     }
@@ -36,10 +43,10 @@ impl Reference<'_> {
     /// Returns ∇ presence in index space: central differences over the stretched width of a voxel.
     fn presence_slope(&self, profile: &KernelProfile, point: DVec3, level: f64) -> DVec3 {
         let step = level.clamp(0.0, MAX_LEVEL as f64).exp2();
-        if let Some(changes) = &self.presence_changes {
+        if let Some(changes) = self.presence.as_ref().and_then(|presence| presence.changes.as_ref()) {
             return DVec3::from(changes.each_ref().map(|along| along.fetch(point, level))) / (2.0 * step);
         }
-        let at = |point| self.presence(profile, point, level);
+        let at = |point| self.presence(TransferSide::Eye, profile, point, level);
         let along = |axis: DVec3| (at(point + axis * step) - at(point - axis * step)) / (2.0 * step);
         DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
     }

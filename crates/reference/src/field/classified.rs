@@ -68,11 +68,13 @@ impl ClassifiedVoxels {
 
 impl ClassifiedVoxels {
     /// Spreads voxels of which colour times extinction, and extinction, are known, as shares of the largest extinction,
-    /// or of the opacity that it has over a length.
+    /// or of the opacity that it has over a length. If a mask hides some, `presence` is their presence pyramid, by which
+    /// the spread values are multiplied.
     pub(crate) fn from_matter(
         dims: [usize; 3],
         matter: &[[f64; 4]],
         (largest, opacity_length): (f64, Option<f64>),
+        presence: Option<&Pyramid>,
         width: f64,
         rounding: Option<Rounding>,
     ) -> Self {
@@ -90,11 +92,12 @@ impl ClassifiedVoxels {
                     matter[channel] * share(extinction) / extinction.max(1e-20)
                 }
             });
-            DensityField { dims, densities: shares.collect(), border: BorderMode::Zero }
+            let border = if presence.is_some() { BorderMode::Clamp } else { BorderMode::Zero };
+            DensityField { dims, densities: shares.collect(), border }
         };
-        let spread = |channel: usize| Pyramid::new(&field_of(channel), width, rounding);
+        let spread = |channel: usize| Pyramid::with_presence(&field_of(channel), width, rounding, presence);
         Self {
-            field: field_of(3),
+            field: DensityField { border: BorderMode::Zero, ..field_of(3) },
             shares: spread(3),
             colors: [0, 1, 2].map(spread),
             table: match opacity_length {

@@ -20,14 +20,15 @@ struct LayeredField<'a> {
 }
 
 impl LayeredField<'_> {
-    /// Returns the density of a voxel; `None` if it is missing, hidden by more than half, or outside the grid.
+    /// Returns the density of a voxel, even if a mask hides it; `None` if it is missing or outside the grid.
     fn density(&self, place: [i64; 3]) -> Option<f64> {
         let dims = self.volume.dims().map(|n| n as i64);
         if (0..3).any(|axis| !(0..dims[axis]).contains(&place[axis])) {
             return None;
         }
         let voxel = (place[0] + dims[0] * (place[1] + dims[1] * place[2])) as usize;
-        (self.volume.presence(voxel) >= 0.5).then(|| self.densities[voxel])
+        let is_missing = self.volume.missing().is_some_and(|missing| missing.contains(voxel));
+        (!is_missing).then(|| self.densities[voxel])
     }
 
     /// Returns the opacity of matter over the length to which opacities refer.

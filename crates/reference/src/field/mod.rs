@@ -8,7 +8,7 @@ pub(crate) mod pyramid;
 
 use glam::DVec3;
 
-use chiaroscuro_volume::Volume;
+use chiaroscuro_volume::{Observer, Volume};
 
 /// Rounding of a number when it is stored; for the GPU's half floats, f32 → f16 → f32.
 pub type Rounding = fn(f32) -> f32;
@@ -44,17 +44,18 @@ impl DensityField {
         Self { dims, densities, border: BorderMode::Clamp }
     }
 
-    /// Creates the presence of voxels, 1 for present and 0 for missing or hidden ones; `None` if all are present.
-    pub(crate) fn from_presence(volume: &Volume) -> Option<Self> {
-        let missing = volume.missing();
-        let mask = volume.mask();
-        let share = |voxel: usize| match mask {
+    /// Creates the presence of voxels for an observer, 1 for present and 0 for missing or hidden ones; missing voxels
+    /// count as present unless `counts_missing`. `None` if all are present to eye and light.
+    pub(crate) fn from_presence(volume: &Volume, observer: Observer, counts_missing: bool) -> Option<Self> {
+        let missing = volume.missing().filter(|_| counts_missing);
+        let hidden = volume.mask().map(|mask| mask.hidden_from(observer));
+        let share = |voxel: usize| match hidden {
             _ if missing.is_some_and(|missing| missing.contains(voxel)) => 0.0,
-            Some(mask) => 1.0 - f64::from(mask.hidden(voxel)) / 255.0,
+            Some(hidden) => 1.0 - f64::from(hidden[voxel]) / 255.0,
             None => 1.0,
         };
         let densities = (0..volume.voxel_count()).map(share).collect();
-        (missing.is_some() || mask.is_some()).then_some(Self {
+        (missing.is_some() || hidden.is_some()).then_some(Self {
             dims: volume.dims(),
             densities,
             border: BorderMode::Zero,

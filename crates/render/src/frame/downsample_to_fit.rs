@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::light::light_volume::attenuation_texture;
-use crate::volume::{self, presence::PresenceTexture};
+use crate::volume::{self, presence::PresenceTextures};
 use crate::{GpuContext, GpuError};
 use chiaroscuro_volume::{
     DataKind, Samples, Volume, VolumeError, VoxelType, block_counts, memory_budget_bytes,
@@ -116,7 +116,7 @@ fn try_allocation(context: &GpuContext, like: &Volume, dims: [usize; 3]) -> Resu
     }
     let made = volume::density_texture(context, like, dims).and_then(|density| {
         let textures = (density, volume::pyramid_texture(context, dims)?);
-        let presence = PresenceTexture::new(context, like, dims)?;
+        let presence = PresenceTextures::new(context, like, dims, true)?;
         Ok((textures, presence, attenuation_texture(context, dims, context.storage_format)?))
     });
     let held = made.map(drop);

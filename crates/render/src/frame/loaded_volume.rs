@@ -13,12 +13,13 @@ use crate::scatter::voxels::ScatterVoxels;
 use crate::scattered_light::volume::ScatteredLightVolume;
 use crate::sky::volume::SkyVolume;
 use crate::volume::GpuVolume;
-use crate::volume::preclassified::PreclassifiedVoxels;
+use crate::volume::preclassified::{PreclassificationKey, PreclassifiedVoxels};
+use crate::volume::presence::PresenceTextures;
 use crate::volume::reused_textures::ReusedTextures;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{LayerComposition, Settings, SheetOrder};
-use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume::{Dataset, Observer};
 
 /// Inputs for finding or creating the products of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -56,6 +57,11 @@ pub(crate) struct LoadedVolume {
     pub scatter_voxels: Option<Arc<ScatterVoxels>>,
 }
 
+/// Returns true if missing voxels of the first field are absent from a composition, whatever the others have.
+fn counts_missing(composition: LayerComposition) -> bool {
+    composition != LayerComposition::Composed
+}
+
 impl LoadedVolume {
     /// Allocates a volume and its tables. Nothing is uploaded yet, except textures that are passed in.
     ///
@@ -68,8 +74,10 @@ impl LoadedVolume {
         tables_key: &TablesKey,
         reused: ReusedTextures,
     ) -> Result<Self, GpuError> {
-        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), reused)?;
-        let volume = match tables_key.volume.composition {
+        let composition = tables_key.volume.composition;
+        let counts_missing = counts_missing(composition);
+        let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), counts_missing, reused)?;
+        let volume = match composition {
             LayerComposition::First => volume,
             // Tints colour matter up to the edge of what is hidden.
             LayerComposition::Tinted => volume.with_fields(context, dataset.with_mask(None).fields())?,
@@ -107,7 +115,9 @@ impl LoadedVolume {
         let GpuVolume { density, pyramid, presence, .. } = volume;
         ReusedTextures {
             density: (is_first_alone && has_same_densities).then_some((density, pyramid)),
-            presence: presence.map(|presence| (presence, mask)),
+            presence: presence
+                .filter(|presence| presence.counts_missing == counts_missing(wanted.composition))
+                .map(|presence| (presence, mask)),
         }
     }
 
@@ -153,10 +163,16 @@ impl LoadedVolume {
         let known = self.tints.take();
         self.tints = match tints {
             None => None,
-            Some((baked, _)) if known.as_ref().is_some_and(|known| known.matches(baked, false)) => known,
             Some((baked, occupied)) => {
-                let left = known.and_then(Arc::into_inner);
-                Some(Arc::new(PreclassifiedVoxels::new(context, &self.volume, baked, false, occupied, left)?))
+                let baked = Arc::clone(baked);
+                let key = PreclassificationKey { baked, is_crisp: false, observer: Observer::Eye };
+                Some(match known {
+                    Some(known) if known.matches(&key) => known,
+                    other => {
+                        let left = other.and_then(Arc::into_inner);
+                        Arc::new(PreclassifiedVoxels::new(context, &self.volume, key, occupied, left)?)
+                    }
+                })
             }
         };
         if let Some(table) = &mut tables.tints {
@@ -167,21 +183,25 @@ impl LoadedVolume {
             return Ok(());
         }
         let is_crisp = classification.has_crisp_edges();
-        let baked = [&tables.eye, &tables.lighting]
-            .map(|table| (Arc::clone(table.baked()), Arc::clone(&table.occupied_bricks)));
+        let differ = self.volume.presence.as_ref().is_some_and(PresenceTextures::differ_by_observer);
+        let light = if differ { Observer::Light } else { Observer::Eye };
+        let wanted = [(&tables.eye, Observer::Eye), (&tables.lighting, light)].map(|(table, observer)| {
+            let key = PreclassificationKey { baked: Arc::clone(table.baked()), is_crisp, observer };
+            (key, Arc::clone(&table.occupied_bricks))
+        });
         // Pre-classified voxels of earlier tables are reused for their textures.
         let (needed, mut reusable): (Vec<_>, Vec<_>) = std::mem::take(&mut self.materials)
             .into_iter()
-            .partition(|known| baked.iter().any(|(baked, _)| known.matches(baked, is_crisp)));
+            .partition(|known| wanted.iter().any(|(key, _)| known.matches(key)));
         self.materials = needed;
         let mut found = [None, None];
-        for ((baked, occupied), found) in baked.iter().zip(&mut found) {
-            let known = self.materials.iter().find(|known| known.matches(baked, is_crisp));
+        for ((key, occupied), found) in wanted.into_iter().zip(&mut found) {
+            let known = self.materials.iter().find(|known| known.matches(&key));
             let materials = if let Some(known) = known {
                 Arc::clone(known)
             } else {
                 let left = reusable.pop().and_then(Arc::into_inner);
-                let fresh = PreclassifiedVoxels::new(context, &self.volume, baked, is_crisp, occupied, left)?;
+                let fresh = PreclassifiedVoxels::new(context, &self.volume, key, &occupied, left)?;
                 let fresh = Arc::new(fresh);
                 self.materials.push(Arc::clone(&fresh));
                 fresh

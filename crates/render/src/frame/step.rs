@@ -8,6 +8,7 @@ use crate::resources::submission_pace::StepKind;
 use crate::resources::work_part::WorkPart;
 use crate::scattered_light::steps::ScatteringStep;
 use crate::volume::transfer_tables::{TransferTable, TransferTables};
+use chiaroscuro_volume::Observer;
 
 /// Stage of the picture that a step belongs to, for reports and for the status bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,8 +108,8 @@ pub(crate) enum FrameProduct {
 pub(crate) enum RenderStep {
     /// Uploads slices of the volume.
     Upload(Range<usize>),
-    /// Uploads a box of texels of the coarsest level of the presence texture, with those of the finer levels.
-    Presence([Range<usize>; 3]),
+    /// Uploads a box of texels of the coarsest level of an observer's presence texture, with those of the finer levels.
+    Presence(Observer, [Range<usize>; 3]),
     /// Prefilters bricks of one pyramid level.
     Pyramid(u32, Range<usize>),
     /// Computes gradients in bricks of one pyramid level.
@@ -167,7 +168,7 @@ impl RenderStep {
     /// Returns the stage for reports; `None` for steps without commands.
     pub(super) fn stage(&self) -> Option<RenderStage> {
         Some(match self {
-            Self::Upload(_) | Self::Presence(_) => RenderStage::Upload,
+            Self::Upload(_) | Self::Presence(..) => RenderStage::Upload,
             Self::Pyramid(..) | Self::Gradients(..) | Self::Materials { .. } => RenderStage::Pyramid,
             Self::March(..) => RenderStage::LightMarch,
             Self::Backproject(..) | Self::Average { .. } | Self::MergeColors(_) | Self::Combine(_) => {

@@ -151,7 +151,7 @@ impl Renderer {
         let none = || GpuError::NothingDrawn("light volume");
         let target = self.light_volume(&request, light).ok_or_else(none)?;
         let loaded = &self.loaded.as_ref().ok_or_else(none)?.product;
-        let (gpu, tables) = (VolumeContext::new(&self.tools, &loaded.volume), &loaded.tables.product);
+        let (gpu, tables) = (VolumeContext::for_light(&self.tools, &loaded.volume), &loaded.tables.product);
         let scene_light = settings.lights[light].resolve(&settings.camera);
         let geometry = &light_views(&scene_light, &settings.shadows, &gpu.volume.scene)[view];
         let count = geometry.frame.slab_count;

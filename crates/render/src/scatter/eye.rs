@@ -18,7 +18,7 @@ use crate::volume::VolumeContext;
 use crate::volume::transfer_tables::{TransferTables, upload_distances};
 use crate::{GpuError, RenderOptions};
 use chiaroscuro_scene::{Settings, SheetOrder};
-use chiaroscuro_volume::BRICK_EDGE;
+use chiaroscuro_volume::{BRICK_EDGE, Observer};
 
 /// Number of slabs per submission: each is splatted and composited, which takes a software adapter some milliseconds.
 pub(crate) const SLABS_PER_STEP: u32 = 2;
@@ -187,6 +187,7 @@ impl EyeScatter {
                     bind_view("lighting_pyramid", eye.levels().choose(tables.lighting.pyramid(volume))),
                     bind_view("tint_pyramid", gpu.placeholder),
                     bind_view("presence_texture", gpu.presence(eye.levels())),
+                    bind_view("lighting_presence_texture", gpu.presence_for(Observer::Light, eye.levels())),
                     sampler("clamped", &volume.clamped),
                     bind_buffer("bound_scatter", &slab),
                     bind_buffer("sheets", &self.scatterer.sheets),

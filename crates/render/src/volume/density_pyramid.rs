@@ -1,9 +1,10 @@
 //! Pyramid of prefiltered densities with the gradients of its levels, made for the first picture that reads it:
 //! pictures of labels, whose voxels are classified first, read neither.
 
-use super::gradients::gradient_texture;
-use super::textures::pyramid_texture;
-use super::{PyramidViews, gradients};
+use crate::volume::PyramidViews;
+use crate::volume::gradients::{self, gradient_texture};
+use crate::volume::texture_shapes::texel_count;
+use crate::volume::textures::pyramid_texture;
 use crate::{GpuContext, GpuError};
 use chiaroscuro_scene::{RenderEngine, Settings};
 use chiaroscuro_volume::Volume;
@@ -25,7 +26,7 @@ impl DensityPyramid {
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the pyramid.
-    pub(super) fn new(context: &GpuContext, volume: &Volume) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &GpuContext, volume: &Volume) -> Result<Self, GpuError> {
         let texture = pyramid_texture(context, volume.dims())?;
         let gradients = gradient_texture(context, &texture);
         Ok(Self {
@@ -48,8 +49,8 @@ impl DensityPyramid {
     }
 
     /// Returns the size of the gradient texture, in bytes.
-    pub(super) fn gradient_bytes(&self) -> u64 {
-        self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(super::texel_count(texture)))
+    pub(crate) fn gradient_bytes(&self) -> u64 {
+        self.gradients.as_ref().map_or(0, |texture| gradients::gradient_bytes(texel_count(texture)))
     }
 }
 

@@ -15,9 +15,6 @@ const LARGEST_STORED_DENSITY: f32 = 65534.0;
 /// Stored number of a missing voxel, and of fields that there are not.
 const MISSING: u16 = u16::MAX;
 
-/// Presence from which on a voxel counts: composed voxels are there or not.
-const MIN_PRESENCE: f32 = 0.5;
-
 /// Densities of up to [`MAX_FIELDS`] fields at the voxels of the grid.
 #[derive(Debug)]
 pub(crate) struct FieldTexture {
@@ -79,8 +76,10 @@ impl FieldTexture {
         for (channel, field) in self.fields.iter().enumerate() {
             let volume = field.volume();
             let first = z * nx * ny;
+            // Hidden voxels are stored, too: what a mask leaves of matter is known once it is composed.
+            let is_missing = |at: usize| volume.missing().is_some_and(|missing| missing.contains(first + at));
             for (at, density) in volume.slice_densities(z).into_iter().enumerate() {
-                if volume.presence(first + at) >= MIN_PRESENCE {
+                if !is_missing(at) {
                     texels[at * self.channels + channel] = stored(density);
                 }
             }

@@ -15,6 +15,7 @@ mod texture_shapes;
 mod textures;
 pub(super) mod transfer_tables;
 
+pub(crate) use pyramid::pyramid_views::{PyramidLevels, PyramidViews};
 pub(crate) use texture_shapes::{brick_dims, texture_3d};
 #[cfg(feature = "testing")]
 pub use textures::stored_density;
@@ -26,7 +27,7 @@ use half::f16;
 
 use self::density_pyramid::DensityPyramid;
 use self::field_texture::FieldTexture;
-use self::presence::PresenceTexture;
+use self::presence::PresenceTextures;
 use self::reused_textures::ReusedTextures;
 use self::texture_shapes::{pyramid_dims, texel_count};
 use self::textures::{density_is_unorm, unorm16};
@@ -36,7 +37,9 @@ use super::{GpuContext, GpuError};
 use crate::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::GridBoundaries;
 use crate::pipelines::uniforms::GridUniform;
-use chiaroscuro_volume::{BRICK_EDGE, BrickBounds, CELL_EDGE, DatasetField, Volume, math::SceneSpace};
+use chiaroscuro_volume::{
+    BRICK_EDGE, BrickBounds, CELL_EDGE, DatasetField, Observer, Volume, math::SceneSpace,
+};
 
 /// Size of an upload step in bytes, small enough for a few milliseconds.
 const UPLOAD_BYTES: usize = 2 << 20;
@@ -47,16 +50,23 @@ pub(crate) struct VolumeContext<'a> {
     pub context: &'a GpuContext,
     pub shaders: &'a super::ShaderLibrary,
     pub volume: &'a GpuVolume,
+    /// Observer whose way through the volume the pass follows.
+    observer: Observer,
     /// 1 × 1 × 1 texture that is bound where a shader declares a texture which the pass does not need.
     pub placeholder: &'a wgpu::TextureView,
     pub pool: &'a ResourcePool,
 }
 
 impl<'a> VolumeContext<'a> {
-    /// Combines the tools of a device with a volume.
+    /// Combines the tools of a device with a volume, for a pass of the eye.
     pub(crate) fn new(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
         let GpuTools { context, shaders, pool, placeholder, .. } = tools;
-        Self { context, shaders, volume, placeholder, pool }
+        Self { context, shaders, volume, observer: Observer::Eye, placeholder, pool }
+    }
+
+    /// Combines the tools of a device with a volume, for a pass that follows light.
+    pub(crate) fn for_light(tools: &'a GpuTools, volume: &'a GpuVolume) -> Self {
+        Self { observer: Observer::Light, ..Self::new(tools, volume) }
     }
 }
 
@@ -132,13 +142,21 @@ impl VolumeContext<'_> {
             let tints = pyramids.tints.map_or(self.placeholder, |views| levels.choose(views));
             entries.push(bind_view("lighting_pyramid", levels.choose(views)));
             entries.push(bind_view("tint_pyramid", tints));
+            entries.push(bind_view("lighting_presence_texture", self.presence_for(Observer::Light, levels)));
         }
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
 
-    /// Returns the view of the presence texture if voxels are missing or hidden, else the placeholder.
+    /// Returns the view of the presence texture of the pass's observer if voxels are missing or hidden, else the
+    /// placeholder.
     pub(crate) fn presence(&self, levels: PyramidLevels) -> &wgpu::TextureView {
-        self.volume.presence.as_ref().map_or(self.placeholder, |presence| levels.choose(&presence.views))
+        self.presence_for(self.observer, levels)
+    }
+
+    /// Returns the view of the presence texture of an observer if voxels are missing or hidden, else the placeholder.
+    pub(crate) fn presence_for(&self, observer: Observer, levels: PyramidLevels) -> &wgpu::TextureView {
+        let presence = self.volume.presence.as_ref();
+        presence.map_or(self.placeholder, |presence| levels.choose(&presence.get(observer).views))
     }
 }
 
@@ -150,48 +168,6 @@ pub(crate) struct PassPyramids<'a> {
     pub lighting: Option<&'a PyramidViews>,
     /// Pyramid of the tints of further layers, for eye passes.
     pub tints: Option<&'a PyramidViews>,
-}
-
-/// Range of pyramid levels that a pass may read.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum PyramidLevels {
-    /// Level 0 alone, for kernels that are not stretched.
-    Finest,
-    /// All levels, for stretched kernels.
-    All,
-}
-
-impl PyramidLevels {
-    /// Returns the levels that stretched or unstretched kernels need.
-    pub(crate) fn for_stretch(is_stretched: bool) -> Self {
-        if is_stretched { Self::All } else { Self::Finest }
-    }
-
-    /// Selects the view with these levels.
-    pub(crate) fn choose(self, views: &PyramidViews) -> &wgpu::TextureView {
-        match self {
-            Self::Finest => &views.finest,
-            Self::All => &views.all,
-        }
-    }
-}
-
-/// Views of a pyramid texture: all levels, and the finest alone. For views with several levels a software driver
-/// computes the level sizes for each lane and fetch, which the second view avoids.
-#[derive(Debug)]
-pub(crate) struct PyramidViews {
-    /// View of all levels of the pyramid.
-    pub all: wgpu::TextureView,
-    /// View of level 0 of the pyramid.
-    finest: wgpu::TextureView,
-}
-
-impl PyramidViews {
-    fn new(texture: &wgpu::Texture) -> Self {
-        let all = wgpu::TextureViewDescriptor::default();
-        let finest = wgpu::TextureViewDescriptor { mip_level_count: Some(1), ..all.clone() };
-        Self { all: texture.create_view(&all), finest: texture.create_view(&finest) }
-    }
 }
 
 /// Textures, samplers and brick data of a volume.
@@ -212,8 +188,8 @@ pub(crate) struct GpuVolume {
     no_pyramid: PyramidViews,
     /// Densities of all fields, if voxels are composed of layers.
     pub fields: Option<Box<FieldTexture>>,
-    /// Presence texture, if voxels are missing or hidden.
-    pub presence: Option<PresenceTexture>,
+    /// Presence textures, if voxels are missing or hidden.
+    pub presence: Option<PresenceTextures>,
     /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid of densities.
     pub filled_levels: Vec<Vec<u32>>,
     pub clamped: wgpu::Sampler,
@@ -223,7 +199,8 @@ pub(crate) struct GpuVolume {
 }
 
 impl GpuVolume {
-    /// Creates the textures. Nothing is uploaded yet, except textures that are passed in.
+    /// Creates the textures. Nothing is uploaded yet, except textures that are passed in. Missing voxels count as
+    /// absent if `counts_missing`, else only hidden ones do.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the textures.
@@ -231,6 +208,7 @@ impl GpuVolume {
         context: &GpuContext,
         volume: &Arc<Volume>,
         bricks: &Arc<BrickBounds>,
+        counts_missing: bool,
         reused: ReusedTextures,
     ) -> Result<Self, GpuError> {
         let dims = volume.dims();
@@ -244,9 +222,9 @@ impl GpuVolume {
             wgpu::TextureFormat::R16Float,
             wgpu::TextureUsages::TEXTURE_BINDING,
         ))?;
-        let presence = match reused.presence.filter(|_| volume.has_absent_voxels()) {
-            None => PresenceTexture::new(context, volume, dims)?,
-            Some((known, _)) => Some(known),
+        let presence = match reused.presence.filter(|_| presence::is_needed(volume, counts_missing)) {
+            None => PresenceTextures::new(context, volume, dims, counts_missing)?,
+            Some((known, _)) => Some(known.with_observers_of(context, volume, dims)?),
         };
         let padded = pyramid_dims(dims);
         let reciprocal = |sizes: [usize; 3]| sizes.map(|n| 1.0 / n as f32);
@@ -379,7 +357,7 @@ impl GpuVolume {
             .pyramid
             .as_ref()
             .map_or(0, |pyramid| texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes());
-        let presence = self.presence.as_ref().map_or(0, PresenceTexture::bytes);
+        let presence = self.presence.as_ref().map_or(0, PresenceTextures::bytes);
         let fields = self.fields.as_ref().map_or(0, |fields| fields.bytes());
         2 * texel_count(&self.density) + pyramid + presence + fields
     }

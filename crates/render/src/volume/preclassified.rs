@@ -18,15 +18,30 @@ use crate::pipelines::pipeline_variant::{PipelineVariant, ShaderConstants, Singl
 use crate::plan::{BrickSet, MAX_STRETCH_LEVEL};
 use crate::resources::pass;
 use crate::{GpuContext, GpuError};
-use chiaroscuro_volume::memory_budget_bytes;
+use chiaroscuro_volume::{Observer, memory_budget_bytes};
+
+/// Inputs that voxels are classified with.
+#[derive(Debug, Clone)]
+pub(crate) struct PreclassificationKey {
+    /// Transfer functions of all layers.
+    pub baked: Arc<BakedLayers>,
+    /// `true` if edges are made steep.
+    pub is_crisp: bool,
+    /// Observer from whom voxels may be hidden.
+    pub observer: Observer,
+}
+
+impl PreclassificationKey {
+    fn matches(&self, other: &Self) -> bool {
+        (self.is_crisp, self.observer) == (other.is_crisp, other.observer)
+            && self.baked.has_same_matter(&other.baked)
+    }
+}
 
 /// Pre-classified voxels of one transfer function.
 #[derive(Debug)]
 pub(crate) struct PreclassifiedVoxels {
-    /// Transfer functions that the voxels are classified with.
-    baked: Arc<BakedLayers>,
-    /// `true` if edges are made steep.
-    is_crisp: bool,
+    key: PreclassificationKey,
     texture: wgpu::Texture,
     pub views: PyramidViews,
     /// Table that converts relative to absolute extinction, bound in place of the transfer function.
@@ -39,19 +54,18 @@ pub(crate) struct PreclassifiedVoxels {
 
 impl PreclassifiedVoxels {
     /// Creates the texture for a volume, or takes that of `reusable`; nothing is classified yet. `occupied` are the
-    /// bricks of the volume in which the transfer function has extinction; edges are made steep if `is_crisp`.
+    /// bricks of the volume in which the transfer function has extinction.
     ///
     /// # Errors
     /// Returns an error if the adapter cannot hold the texture.
     pub(crate) fn new(
         context: &GpuContext,
         volume: &GpuVolume,
-        baked: &Arc<BakedLayers>,
-        is_crisp: bool,
+        key: PreclassificationKey,
         occupied: &BrickSet,
         reusable: Option<Self>,
     ) -> Result<Self, GpuError> {
-        let shares = baked.conversion_table(is_crisp);
+        let shares = key.baked.conversion_table(key.is_crisp);
         let table = context.buffer("Materials::table", &shares.to_f32s(), wgpu::BufferUsages::STORAGE);
         let dims = volume.volume.dims();
         let mut bricks = pyramid::level_bricks(dims, occupied.dims, |at| occupied.members[at]);
@@ -67,8 +81,7 @@ impl PreclassifiedVoxels {
             None => Self::texture(context, dims)?,
         };
         Ok(Self {
-            baked: Arc::clone(baked),
-            is_crisp,
+            key,
             views: PyramidViews::new(&texture),
             texture,
             table,
@@ -97,9 +110,9 @@ impl PreclassifiedVoxels {
         })
     }
 
-    /// Returns true if the voxels are classified with the entries of these transfer functions, and with such edges.
-    pub(crate) fn matches(&self, baked: &BakedLayers, is_crisp: bool) -> bool {
-        self.is_crisp == is_crisp && self.baked.has_same_matter(baked)
+    /// Returns true if the voxels are classified with these inputs.
+    pub(crate) fn matches(&self, key: &PreclassificationKey) -> bool {
+        self.key.matches(key)
     }
 
     /// Marks the pyramid as complete.
@@ -128,22 +141,23 @@ impl PreclassifiedVoxels {
     ) -> Result<(), GpuError> {
         let VolumeContext { context, shaders, volume, placeholder, .. } = gpu;
         let bricks = &self.bricks[level as usize][range.clone()];
-        let layers = self.baked.parameters().zip(volume.fields.as_ref());
+        let has_missing = volume.presence.is_some();
+        let layers = self.key.baked.parameters().zip(volume.fields.as_ref());
         let pipeline = match level {
             0 if layers.is_some() => {
-                shaders.pipeline(&ComposedVariant { are_tints: self.baked.are_tints() })?
+                let are_tints = self.key.baked.are_tints();
+                shaders.pipeline(&ComposedVariant { are_tints, has_missing: has_missing && !are_tints })?
             }
-            0 => shaders.pipeline(&MaterialsVariant {
-                has_missing: volume.presence.is_some(),
-                is_crisp: self.is_crisp,
-            })?,
+            0 => shaders.pipeline(&MaterialsVariant { has_missing, is_crisp: self.key.is_crisp })?,
             _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), self.texture.format())?,
         };
         let source = match level {
             0 => volume.density_view.clone(),
             _ => level_view(&self.texture, level - 1),
         };
-        let presence = volume.presence.as_ref().map(|presence| level_view(&presence.texture, 0));
+        let presence = volume.presence.as_ref();
+        let presence = presence.map(|presence| level_view(&presence.get(self.key.observer).texture, 0));
+        let presence = presence.as_ref().unwrap_or(placeholder);
         let LevelBuffers { uniform, bricks: list } = level_buffers(context, level, bricks);
         let target = level_view(&self.texture, level);
         let mut entries = vec![
@@ -157,11 +171,12 @@ impl PreclassifiedVoxels {
                 bind_buffer("layer_tables", table),
                 bind_buffer("bound_layers", parameters),
                 bind_view("field_texture", &fields.view),
+                bind_view("presence_level", presence),
             ]),
             (0, None) => entries.extend([
                 bind_view("source_texture", &source),
                 bind_buffer("table", table),
-                bind_view("presence_level", presence.as_ref().unwrap_or(placeholder)),
+                bind_view("presence_level", presence),
             ]),
             _ => entries
                 .extend([bind_view("source_texture", &source), sampler("source_sampler", &volume.clamped)]),
@@ -190,6 +205,7 @@ fn bytes(texels: u64) -> u64 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ComposedVariant {
     are_tints: bool,
+    has_missing: bool,
 }
 
 impl PipelineVariant for ComposedVariant {
@@ -198,7 +214,7 @@ impl PipelineVariant for ComposedVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![flag("TINTS", self.are_tints)]
+        vec![flag("TINTS", self.are_tints), flag("MISSING", self.has_missing)]
     }
 }
 

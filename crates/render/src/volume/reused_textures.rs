@@ -6,8 +6,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::density_pyramid::DensityPyramid;
-use super::presence::PresenceTexture;
-use chiaroscuro_volume::{Volume, VoxelMask};
+use super::presence::PresenceTextures;
+use chiaroscuro_volume::{Observer, Volume, VoxelMask};
 
 /// Textures that are kept where a picture shows the same voxels in another way.
 #[derive(Debug, Default)]
@@ -15,12 +15,13 @@ pub(crate) struct ReusedTextures {
     /// Densities with their pyramid, if they represent the same quantity.
     pub density: Option<(wgpu::Texture, Option<DensityPyramid>)>,
     /// Presence, with the mask for which it was uploaded.
-    pub presence: Option<(PresenceTexture, Option<Arc<VoxelMask>>)>,
+    pub presence: Option<(PresenceTextures, Option<Arc<VoxelMask>>)>,
 }
 
-/// Returns the box of voxels in which two masks of a volume differ; `None` if they are equal.
+/// Returns the box of voxels in which two masks of a volume differ for an observer; `None` if they are equal.
 pub(crate) fn changed_box(
     volume: &Volume,
+    observer: Observer,
     before: Option<&VoxelMask>,
     after: Option<&VoxelMask>,
 ) -> Option<[Range<usize>; 3]> {
@@ -28,7 +29,7 @@ pub(crate) fn changed_box(
     let all_visible = vec![0; nx];
     let changes = (0..ny * nz).into_par_iter().filter_map(|row| {
         let [old, new] = [before, after].map(|mask| {
-            mask.map_or(&all_visible[..], |mask| &mask.hidden_shares()[row * nx..(row + 1) * nx])
+            mask.map_or(&all_visible[..], |mask| &mask.hidden_from(observer)[row * nx..(row + 1) * nx])
         });
         if old == new {
             return None;
@@ -58,7 +59,7 @@ mod tests {
             VoxelMask::from_hidden_shares([4, 3, 5], shares)
         };
         let changed = |before: &[usize], after: &[usize]| {
-            changed_box(&volume, mask(before).as_ref(), mask(after).as_ref())
+            changed_box(&volume, Observer::Eye, mask(before).as_ref(), mask(after).as_ref())
         };
         assert_eq!(changed(&[], &[]), None);
         // Voxel 13 is (1, 0, 1), and voxel 59 is the last.

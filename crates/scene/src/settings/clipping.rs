@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::clip_effect::ClipEffect;
 use super::shape_cuts::{ShapeCut, enabled_id};
 use chiaroscuro_volume::math::{Aabb, ClipRegion, HalfSpace, SceneSpace};
 
@@ -11,32 +12,6 @@ pub const MAX_PLANE_OFFSET: f64 = 2.0;
 
 /// Smallest extent of a crop box along an axis, as a fraction of the volume.
 pub const MIN_CROP_EXTENT: f64 = 0.001;
-
-/// Effect of clipping on the part that is cut away.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ClipEffect {
-    /// Invisible, and casts no shadow.
-    #[default]
-    Removed,
-    /// Invisible, but still casts its shadow.
-    Hidden,
-    /// Visible, but casts no shadow.
-    Shadowless,
-}
-
-impl ClipEffect {
-    /// All effects, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Removed, Self::Hidden, Self::Shadowless];
-
-    fn is_invisible(self) -> bool {
-        self != Self::Shadowless
-    }
-
-    fn is_shadowless(self) -> bool {
-        self != Self::Hidden
-    }
-}
 
 /// Crop box along the axes of the grid; everything outside is cut away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

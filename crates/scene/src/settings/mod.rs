@@ -2,6 +2,7 @@
 
 mod apply_corrections;
 pub(super) mod camera_settings;
+pub(super) mod clip_effect;
 pub(super) mod clipping;
 pub(super) mod floor;
 pub(super) mod layer;

@@ -6,6 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher as _};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::clip_effect::ClipEffect;
 use crate::{Camera, Projection};
 use chiaroscuro_volume::ValueRange;
 use chiaroscuro_volume::math::{Aabb, SceneSpace};
@@ -22,23 +23,25 @@ pub const MAX_OUTLINE_POINTS: usize = 256;
 pub struct ShapeCut {
     /// Enables the cut.
     pub on: bool,
-    /// Effect on the part inside the shape.
+    /// Action on the part inside the shape.
     pub action: CutAction,
+    /// Effect on the part that is hidden; without one where a part is shown again.
+    pub effect: ClipEffect,
     /// Shape of the part.
     pub shape: CutShape,
 }
 
 impl Default for ShapeCut {
     fn default() -> Self {
-        Self { on: true, action: CutAction::Hide, shape: CutShape::default() }
+        Self { on: true, action: CutAction::Hide, effect: ClipEffect::Removed, shape: CutShape::default() }
     }
 }
 
-/// Effect of a cut on the part inside its shape.
+/// Action of a cut on the part inside its shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutAction {
-    /// Hides the part inside, with its shadow.
+    /// Hides the part inside.
     #[default]
     Hide,
     /// Hides everything but the part inside.
@@ -50,6 +53,11 @@ pub enum CutAction {
 impl CutAction {
     /// All actions, in the order of menus.
     pub const ALL: [Self; 3] = [Self::Hide, Self::Keep, Self::Restore];
+
+    /// Returns true if the action hides a part, from the eye, from light or from both.
+    pub fn hides(self) -> bool {
+        self != Self::Restore
+    }
 }
 
 /// Kind of shape, for menus and names.
@@ -184,8 +192,9 @@ impl Default for ComponentCut {
 pub(super) fn enabled_id(cuts: &[ShapeCut]) -> Option<u64> {
     let mut hasher = DefaultHasher::new();
     let mut count = 0;
-    for ShapeCut { on: _, action, shape } in cuts.iter().filter(|cut| cut.on) {
+    for ShapeCut { on: _, action, effect, shape } in cuts.iter().filter(|cut| cut.on) {
         action.hash(&mut hasher);
+        action.hides().then_some(effect).hash(&mut hasher);
         shape.numbers().for_each(|number| number.to_bits().hash(&mut hasher));
         count += 1;
     }
@@ -250,6 +259,11 @@ mod tests {
         assert_ne!(id(&[sphere(0.2), sphere(0.1)]), id(&[sphere(0.1), sphere(0.2)]));
         let keep = ShapeCut { action: CutAction::Keep, ..sphere(0.2) };
         assert_ne!(id(&[keep]), id(&[sphere(0.2)]));
+        let casting = ShapeCut { effect: ClipEffect::Hidden, ..sphere(0.2) };
+        assert_ne!(id(std::slice::from_ref(&casting)), id(&[sphere(0.2)]));
+        // What is shown again has no effect of its own.
+        let restored = |effect| ShapeCut { action: CutAction::Restore, effect, ..sphere(0.2) };
+        assert_eq!(id(&[restored(ClipEffect::Hidden)]), id(&[restored(ClipEffect::Removed)]));
         let outline = |azimuth_deg| ShapeCut {
             shape: CutShape::Outline(OutlineCut {
                 camera: Camera { azimuth_deg, ..Camera::default() },

@@ -30,24 +30,69 @@ pub fn mask_from_shapes<'a>(
 ) -> Option<VoxelMask> {
     let mut cuts = cuts.into_iter().peekable();
     cuts.peek()?;
-    let mut hidden = vec![0; volume.voxel_count()];
-    for ShapeCut { on: _, action, shape } in cuts {
-        apply_shape(volume, &mut hidden, *action, shape);
+    let mut hidden = HiddenShares { from_eye: vec![0; volume.voxel_count()], from_light: None };
+    for cut in cuts {
+        apply_shape(volume, &mut hidden, cut);
     }
-    VoxelMask::from_hidden_shares(volume.dims(), hidden)
+    let HiddenShares { from_eye, from_light } = hidden;
+    match from_light {
+        None => VoxelMask::from_hidden_shares(volume.dims(), from_eye),
+        Some(from_light) => VoxelMask::from_shares_by_observer(volume.dims(), from_eye, from_light),
+    }
 }
 
-/// Hides or shows voxels inside or outside a shape.
-fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &CutShape) {
+/// Hidden share of each voxel, from 0 to 255.
+struct HiddenShares {
+    /// Shares that are hidden from the eye.
+    from_eye: Vec<u8>,
+    /// Shares that are hidden from light, once a cut has hidden something from eye or light alone.
+    from_light: Option<Vec<u8>>,
+}
+
+impl HiddenShares {
+    /// Returns the shares that a cut changes.
+    fn changed_by(&mut self, cut: &ShapeCut) -> Vec<&mut Vec<u8>> {
+        let (is_seen, is_met) = match cut.action {
+            CutAction::Restore => (true, true),
+            CutAction::Hide | CutAction::Keep => (cut.effect.is_invisible(), cut.effect.is_shadowless()),
+        };
+        if !(is_seen && is_met) && self.from_light.is_none() {
+            self.from_light = Some(self.from_eye.clone());
+        }
+        let from_eye = is_seen.then_some(&mut self.from_eye);
+        let from_light = self.from_light.as_mut().filter(|_| is_met);
+        from_eye.into_iter().chain(from_light).collect()
+    }
+
+    /// Applies a cut to all voxels of a grid, with the signed distance by which each lies inside its shape, and inside
+    /// a limit that may jump.
+    fn apply_distance(
+        &mut self,
+        cut: &ShapeCut,
+        rows: RowChanges,
+        inside: &Distance<'_>,
+        limit: Option<&Distance<'_>>,
+    ) {
+        for shares in self.changed_by(cut) {
+            apply_distance(shares, cut.action, rows, inside, limit);
+        }
+    }
+}
+
+/// Hides or shows voxels inside or outside a shape. Surfaces and components are those that the eye sees so far.
+fn apply_shape(volume: &Volume, hidden: &mut HiddenShares, cut: &ShapeCut) {
     let scene = volume.scene();
     let edge = voxel_edge(&scene);
     // A voxel's step along x, in edges of a cube of its size. Seen in perspective, distances change a little faster.
     let change = 2.0 * scene.scene_from_index.matrix3.x_axis.length() / edge;
-    match shape {
+    let rows = |max_change| RowChanges { dims: scene.dims, max_change };
+    match &cut.shape {
         CutShape::Outline(outline) => {
             let distance = OutlineDistance::new(outline, &scene);
             let front = match (outline.depth, outline.surface) {
-                (CutDepth::Front, Some(values)) => Some(FrontDepth::new(&distance, volume, hidden, values)),
+                (CutDepth::Front, Some(values)) => {
+                    Some(FrontDepth::new(&distance, volume, &hidden.from_eye, values))
+                }
                 _ => None,
             };
             let limit = front.as_ref().map(|front| {
@@ -56,34 +101,35 @@ fn apply_shape(volume: &Volume, hidden: &mut [u8], action: CutAction, shape: &Cu
                     front.distance_before_end(place, depth) / edge
                 }
             });
-            let limit = limit.as_ref().map(|limit| limit as &(dyn Fn(DVec3) -> f64 + Sync));
-            let rows = RowChanges { dims: scene.dims, max_change: change };
-            apply_distance(hidden, action, rows, |index| distance.voxels_inside(index), limit);
+            let limit = limit.as_ref().map(|limit| limit as &Distance<'_>);
+            hidden.apply_distance(cut, rows(change), &|index| distance.voxels_inside(index), limit);
         }
         CutShape::Sphere(SphereCut { center, radius }) => {
             let center = DVec3::from(*center);
             let inside =
                 |index| (radius - scene.scene_from_index.transform_point3(index).distance(center)) / edge;
-            let rows = RowChanges { dims: scene.dims, max_change: change };
-            apply_distance(hidden, action, rows, inside, None);
+            hidden.apply_distance(cut, rows(change), &inside, None);
         }
         CutShape::Box(BoxCut { low, high }) => {
             // From the first to the last face of the grid.
             let dims = DVec3::from(scene.dims.map(|n| n as f64));
             let [low, high] = [low, high].map(|bound| DVec3::from(*bound) * dims - 0.5);
             let inside = |index: DVec3| (index - low).min(high - index).min_element();
-            let rows = RowChanges { dims: scene.dims, max_change: 1.0 };
-            apply_distance(hidden, action, rows, inside, None);
+            hidden.apply_distance(cut, rows(1.0), &inside, None);
         }
         CutShape::Component(component) => {
-            if let Some(inside) = component_voxels(volume, hidden, component) {
-                hidden.par_iter_mut().zip(inside).for_each(|(hidden, is_inside)| {
-                    *hidden = applied(action, *hidden, if is_inside { HIDDEN } else { 0 });
+            let Some(inside) = component_voxels(volume, &hidden.from_eye, component) else { return };
+            for shares in hidden.changed_by(cut) {
+                shares.par_iter_mut().zip(&inside).for_each(|(hidden, is_inside)| {
+                    *hidden = applied(cut.action, *hidden, if *is_inside { HIDDEN } else { 0 });
                 });
             }
         }
     }
 }
+
+/// Signed distance in voxels by which a point of index space lies inside a shape.
+type Distance<'a> = dyn Fn(DVec3) -> f64 + Sync + 'a;
 
 /// Rows of a grid, along which distances change slowly.
 #[derive(Debug, Clone, Copy)]
@@ -100,8 +146,8 @@ fn apply_distance(
     hidden: &mut [u8],
     action: CutAction,
     RowChanges { dims: [nx, ny, _], max_change }: RowChanges,
-    voxels_inside: impl Fn(DVec3) -> f64 + Sync,
-    limit: Option<&(dyn Fn(DVec3) -> f64 + Sync)>,
+    voxels_inside: &Distance<'_>,
+    limit: Option<&Distance<'_>>,
 ) {
     hidden.par_chunks_mut(nx).enumerate().for_each(|(row, hidden)| {
         let (y, z) = ((row % ny) as f64, (row / ny) as f64);
@@ -148,8 +194,8 @@ fn voxel_edge(scene: &SceneSpace) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Camera, ComponentCut, OutlineCut, Projection};
-    use chiaroscuro_volume::{Samples, ValueRange};
+    use crate::{Camera, ClipEffect, ComponentCut, OutlineCut, Projection};
+    use chiaroscuro_volume::{Observer, Samples, ValueRange};
 
     const EDGE: usize = 16;
 
@@ -161,11 +207,16 @@ mod tests {
     }
 
     fn cut(action: CutAction, shape: CutShape) -> ShapeCut {
-        ShapeCut { on: true, action, shape }
+        ShapeCut { action, shape, ..ShapeCut::default() }
     }
 
     fn hidden_at(mask: &VoxelMask, [x, y, z]: [usize; 3]) -> u8 {
-        mask.hidden(x + EDGE * (y + EDGE * z))
+        mask.hidden_from(Observer::Eye)[x + EDGE * (y + EDGE * z)]
+    }
+
+    fn is_inverse(a: &VoxelMask, b: &VoxelMask) -> bool {
+        let [a, b] = [a, b].map(|mask| mask.hidden_from(Observer::Eye));
+        a.iter().zip(b).all(|(a, b)| *a == 255 - b)
     }
 
     /// Square outline of half of the picture's height, as seen through a camera.
@@ -185,7 +236,7 @@ mod tests {
         let along_x = [3, 4, 5, 8, 12, 13].map(|x| hidden_at(&mask, [x, 8, 8]));
         assert_eq!(along_x, [0, 191, 255, 255, 191, 0]);
         let kept = mask_from_shapes(&volume, &[cut(CutAction::Keep, sphere.clone())]).unwrap();
-        assert!((0..4096).all(|voxel| kept.hidden(voxel) == 255 - mask.hidden(voxel)));
+        assert!(is_inverse(&kept, &mask));
         // Restored, everything is visible again; in the other order the sphere is hidden.
         let [hide, restore] = [CutAction::Hide, CutAction::Restore].map(|action| cut(action, sphere.clone()));
         assert_eq!(
@@ -193,6 +244,34 @@ mod tests {
             None
         );
         assert_eq!(mask_from_shapes(&volume, [&restore, &hide]), Some(mask));
+    }
+
+    #[test]
+    fn effects_hide_from_the_eye_or_from_light() {
+        let volume = volume(|[x, ..]| x as u8);
+        let half =
+            |low: f64, high: f64| CutShape::Box(BoxCut { low: [low, 0.0, 0.0], high: [high, 1.0, 1.0] });
+        let with_effect = |effect, shape| ShapeCut { effect, ..cut(CutAction::Hide, shape) };
+        let hidden = |cuts: &[ShapeCut], observer| {
+            let mask = mask_from_shapes(&volume, cuts).unwrap();
+            [1, 5, 9, 13].map(|x| mask.hidden_from(observer)[x + EDGE * 8])
+        };
+        let casting = with_effect(ClipEffect::Hidden, half(0.0, 0.5));
+        let shadowless = with_effect(ClipEffect::Shadowless, half(0.25, 0.75));
+        let removed = with_effect(ClipEffect::Removed, half(0.75, 1.0));
+        let cuts = [casting.clone(), shadowless.clone(), removed.clone()];
+        assert_eq!(hidden(&cuts, Observer::Eye), [255, 255, 0, 255]);
+        assert_eq!(hidden(&cuts, Observer::Light), [0, 255, 255, 255]);
+        // What was removed before stays so for both, and what is shown again is shown to both.
+        let cuts = [removed.clone(), casting.clone()];
+        assert_eq!(hidden(&cuts, Observer::Light), [0, 0, 0, 255]);
+        let again = ShapeCut { effect: ClipEffect::Hidden, ..cut(CutAction::Restore, half(0.0, 1.0)) };
+        assert_eq!(mask_from_shapes(&volume, &[casting, shadowless, removed, again]), None);
+        // What is kept leaves everything else to light.
+        let kept = ShapeCut { effect: ClipEffect::Hidden, ..cut(CutAction::Keep, half(0.25, 0.5)) };
+        let kept = std::slice::from_ref(&kept);
+        assert_eq!(hidden(kept, Observer::Eye), [255, 0, 255, 255]);
+        assert_eq!(hidden(kept, Observer::Light), [0; 4]);
     }
 
     #[test]
@@ -206,7 +285,7 @@ mod tests {
         let along_z = [7, 8, 15].map(|z| hidden_at(&mask, [5, 0, z]));
         assert_eq!(along_z, [0, 255, 255], "the outermost voxels are hidden as a whole");
         let kept = mask_from_shapes(&volume, &[cut(CutAction::Keep, CutShape::Box(bounds))]).unwrap();
-        assert!((0..4096).all(|voxel| kept.hidden(voxel) == 255 - mask.hidden(voxel)));
+        assert!(is_inverse(&kept, &mask));
     }
 
     #[test]

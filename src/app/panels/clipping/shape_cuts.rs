@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{DragValue, Ui};
 
 use super::super::controls::{row, unlabelled_row};
+use super::cut_effect_row;
 use crate::app::common::commands::AppCommand;
 use crate::app::text::{self, ControlText};
 use chiaroscuro_scene::{
@@ -33,6 +34,11 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], comm
             if cut_row(ui, cut) {
                 removed = Some(at);
             }
+            match cut.action {
+                CutAction::Hide => cut_effect_row(ui, text::cuts::INSIDE_SHAPE, &mut cut.effect),
+                CutAction::Keep => cut_effect_row(ui, text::cuts::OUTSIDE_SHAPE, &mut cut.effect),
+                CutAction::Restore => {}
+            }
             if let CutShape::Box(bounds) = &mut cut.shape {
                 corner_rows(ui, bounds, dims);
             }
@@ -51,7 +57,7 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], comm
     }
 }
 
-/// Shows one cut: its switch, its effect, and a button that removes it. Returns true if that was clicked.
+/// Shows one cut: its switch, its action, and a button that removes it. Returns true if that was clicked.
 fn cut_row(ui: &mut Ui, cut: &mut ShapeCut) -> bool {
     let name = text::cuts::shape_name(cut.shape.kind());
     row(ui, ControlText { name, tooltip: text::cuts::SHAPE_TIP }, |ui| {

@@ -34,6 +34,10 @@ pub(crate) const TOWARDS_EYE: ControlText =
 /// Effect on the part in front of the clip plane.
 pub(crate) const IN_FRONT: ControlText = control_text("In front", EFFECT_TIP);
 
+/// Effect of a cut by a shape on the part inside it, or on all else if that part is kept.
+pub(crate) const INSIDE_SHAPE: ControlText = control_text("Inside", EFFECT_TIP);
+pub(crate) const OUTSIDE_SHAPE: ControlText = control_text("Outside", EFFECT_TIP);
+
 pub(crate) const REMOVED: &str = "Hidden, no shadow";
 pub(crate) const HIDDEN: &str = "Hidden, shadow stays";
 pub(crate) const SHADOWLESS: &str = "Visible, no shadow";
@@ -48,8 +52,9 @@ pub(crate) const SHAPE_TIP: &str = "Cut by a shape; without the tick, what it hi
 pub(crate) const REMOVE_SHAPE: ControlText = control_text("×", "Removes the cut");
 pub(crate) const REMOVE_SHAPES: ControlText =
     control_text("Show cut parts again", "Removes all cuts by shapes");
-/// Tooltip of the button that changes the effect of a cut.
-pub(crate) const ACTION_TIP: &str = "What happens to the part inside; a click takes the next effect";
+/// Tooltip of the button that changes the action of a cut.
+pub(crate) const ACTION_TIP: &str =
+    "Whether the part inside is cut away, is kept alone, or is shown again; a click takes the next";
 /// Depths of an outline, and the tooltip of the button that changes between them.
 pub(crate) const THROUGH: &str = "through";
 pub(crate) const FRONT: &str = "front";

@@ -102,7 +102,7 @@ impl ShapeCutTool {
     /// Adds a cut, if there is room for one.
     fn add_cut(settings: &mut Settings, action: CutAction, shape: CutShape) {
         if settings.cuts.shapes.len() < MAX_SHAPE_CUTS {
-            settings.cuts.shapes.push(ShapeCut { on: true, action, shape });
+            settings.cuts.shapes.push(ShapeCut { action, shape, ..ShapeCut::default() });
         }
     }
 

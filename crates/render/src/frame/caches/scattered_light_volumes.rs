@@ -66,7 +66,7 @@ impl LoadedVolume {
         self.bounces.make_room(&key, MAX_AMBIENT_VOLUMES);
         tools.pool.drop_bind_groups();
         let fresh = ScatteredLightVolume::new(context, self.volume.volume.dims(), divisor, filled)?;
-        let gpu = VolumeContext::new(tools, &self.volume);
+        let gpu = VolumeContext::for_light(tools, &self.volume);
         let (tables, settings) = (&self.tables.product, &request.settings);
         let build = ScatteredLightFill::new(gpu, tables, options, &key, settings, &fresh)?;
         let slot = self.bounces.insert(key.clone(), fresh, now);

@@ -75,7 +75,7 @@ impl LoadedVolume {
         tools.pool.drop_bind_groups();
         let extent = SkyVolumeExtent { filled, margin, floor };
         let fresh = SkyVolume::new(context, &self.volume.scene, divisor, extent)?;
-        let gpu = VolumeContext::new(tools, &self.volume);
+        let gpu = VolumeContext::for_light(tools, &self.volume);
         let build = SkyFill::new(gpu, &self.tables.product, options, &key, &fresh)?;
         let slot = self.skies.insert(key.clone(), fresh, now);
         Ok(SkyPlace::with_build(key, slot, build))

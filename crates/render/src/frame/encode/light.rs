@@ -24,7 +24,7 @@ impl RenderJob<'_> {
         let settings = &self.request.settings;
         let LightFillView { point, geometry, chunk } = &build.views[view];
         let loaded = &self.loaded.product;
-        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let (gpu, tables) = (VolumeContext::for_light(self.tools, &loaded.volume), &loaded.tables.product);
         let light = build.target_volume(*point, color, &loaded.lights[build.cache_index].product);
         let skips = self.options.switches.empty_space_skipping;
         let reach = if skips { i32::from(build.reach) } else { UNLIMITED_REACH };
@@ -105,7 +105,7 @@ impl RenderJob<'_> {
         let is_first = color.unwrap_or(0) == 0 && view == 0 && begin == 0 && part.is_first();
         if is_first {
             let loaded = &self.loaded.product;
-            let gpu = VolumeContext::new(self.tools, &loaded.volume);
+            let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
             loaded.lights[build.cache_index].product.clear_margin(gpu, &build.margin, encoder)?;
             self.begin_light(build);
         }
@@ -114,7 +114,7 @@ impl RenderJob<'_> {
         let LightFillView { point, geometry, chunk } = &build.views[view];
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
         let loaded = &self.loaded.product;
-        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let (gpu, tables) = (VolumeContext::for_light(self.tools, &loaded.volume), &loaded.tables.product);
         let source = LightWithSettings { light: &build.points[*point], settings: &self.request.settings };
         if let (Some(scatter), Some(scattering)) = (scatter, &self.scattering) {
             let table = &tables.lighting_of_color(color).buffer;
@@ -139,7 +139,7 @@ impl RenderJob<'_> {
         let slabs = begin..(begin + chunk).min(geometry.frame.slab_count);
         let ends_view = slabs.end == geometry.frame.slab_count && part.is_last();
         let loaded = &self.loaded.product;
-        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
         let light_volume = &loaded.lights[build.cache_index].product;
         let light = build.target_volume(*point, color, light_volume);
         let MarchState { sheets, schedule, scatter } = &current;
@@ -183,7 +183,7 @@ impl RenderJob<'_> {
     ) -> Result<(), GpuError> {
         let build = &self.light_fills[*at];
         let loaded = &self.loaded.product;
-        let (gpu, tables) = (VolumeContext::new(self.tools, &loaded.volume), &loaded.tables.product);
+        let (gpu, tables) = (VolumeContext::for_light(self.tools, &loaded.volume), &loaded.tables.product);
         let whole = &loaded.lights[build.cache_index].product;
         let is_first = color.unwrap_or(0) == 0 && *point == 0 && bricks.start == 0;
         if is_first {
@@ -220,7 +220,7 @@ impl RenderJob<'_> {
         let Some(average) = &build.average else { return Ok(()) };
         let loaded = &self.loaded.product;
         let whole = &loaded.lights[build.cache_index].product;
-        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
         let is_first = color.unwrap_or(0) == 0 && AreaLightAverage::is_in_first_batch(point);
         if let Some(normals) = average.normals.as_ref().filter(|_| is_first) {
             let (tables, settings) = (&loaded.tables.product, &self.request.settings);
@@ -238,7 +238,7 @@ impl RenderJob<'_> {
         let build = &self.light_fills[at];
         let Some(colors) = &build.colors else { return Ok(()) };
         let loaded = &self.loaded.product;
-        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
         colors.merge(gpu, &loaded.lights[build.cache_index].product, &build.bricks, encoder)
     }
 }

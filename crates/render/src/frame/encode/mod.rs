@@ -37,10 +37,10 @@ impl RenderJob<'_> {
                 volume.upload(context, slices.clone());
                 Ok(())
             }
-            RenderStep::Presence(texels) => {
+            RenderStep::Presence(observer, texels) => {
                 self.report.step_counts.volume += 1;
                 if let Some(presence) = &volume.presence {
-                    presence.upload(context, &volume.volume, texels);
+                    presence.upload(context, &volume.volume, *observer, texels);
                 }
                 Ok(())
             }
@@ -77,7 +77,7 @@ impl RenderJob<'_> {
                 let target = self.targets.get(self.role);
                 let picture = &target.linear_light(self.keys.antialiased.as_ref()).view;
                 let floor = &target.floor.product.view;
-                let gpu = VolumeContext::new(self.tools, volume);
+                let gpu = VolumeContext::for_light(self.tools, volume);
                 let lights = light_inputs(&self.lights, &self.light_indices, &self.loaded.product);
                 let shadows: Vec<_> = lights.iter().map(|light| light.volume?.floor.as_ref()).collect();
                 let inputs = floor::FloorInputs {
@@ -293,7 +293,7 @@ impl RenderJob<'_> {
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
         self.report.step_counts.bounces += u32::from(step == ScatteringStep::Blocks);
         let Some(volume) = self.ambient_volumes().bounces else { return Ok(()) };
-        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
         let look = ScatteringInputs {
             tables: &loaded.tables.product,
             settings: &self.request.settings,
@@ -318,7 +318,7 @@ impl RenderJob<'_> {
         self.report.peak_gpu_bytes = self.report.peak_gpu_bytes.max(bytes);
         self.report.step_counts.sky += u32::from(batch.is_none());
         let Some(volume) = self.sky_volume() else { return Ok(()) };
-        let gpu = VolumeContext::new(self.tools, &loaded.volume);
+        let gpu = VolumeContext::for_light(self.tools, &loaded.volume);
         let Some(batch) = batch else {
             let settings = &self.request.settings;
             return build.fill_blocks(gpu, &loaded.tables.product, settings, volume, encoder);

@@ -22,7 +22,7 @@ use crate::volume::density_pyramid::needs_density_pyramid;
 use crate::volume::reused_textures::{ReusedTextures, changed_box};
 use crate::{GpuError, RenderOptions, Renderer};
 use chiaroscuro_scene::{PixelFormat, mask_from_shapes};
-use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume::{Dataset, Observer};
 
 impl Renderer {
     /// Returns true if a picture needs no more than a display pass.
@@ -146,14 +146,19 @@ impl Renderer {
         let dataset = dataset.with_mask(mask.as_ref());
         let has_density = reused.density.is_some();
         let volume = dataset.volume();
-        let changed = match &reused.presence {
-            None => Some(volume.dims().map(|n| 0..n)),
-            Some((_, before)) => changed_box(volume, before.as_deref(), volume.mask().map(AsRef::as_ref)),
-        };
+        let changed = Observer::ALL.map(|observer| match &reused.presence {
+            Some((known, before)) if known.own(observer).is_some() => {
+                changed_box(volume, observer, before.as_deref(), volume.mask().map(AsRef::as_ref))
+            }
+            _ => Some(volume.dims().map(|n| 0..n)),
+        });
         let (context, settings) = (&self.tools.context, &request.settings);
         let fresh = LoadedVolume::new(context, &dataset, settings, &keys.tables, reused)?;
-        if let Some((presence, changed)) = fresh.volume.presence.as_ref().zip(changed) {
-            steps.extend(presence.steps(&changed).map(RenderStep::Presence));
+        for (observer, changed) in Observer::ALL.into_iter().zip(changed) {
+            let presence = fresh.volume.presence.as_ref().and_then(|presence| presence.own(observer));
+            if let Some((presence, changed)) = presence.zip(changed) {
+                steps.extend(presence.steps(&changed).map(|texels| RenderStep::Presence(observer, texels)));
+            }
         }
         if !has_density {
             steps.extend(upload_steps(&fresh.volume));

@@ -23,6 +23,8 @@ const NEAREST: BindingSlot = BindingSlot::bind_sampler(4, "nearest");
 const PRESENCE_TEXTURE: BindingSlot = BindingSlot::sampled_texture(9, "presence_texture", TextureShape::D3);
 
 const LIGHTING_PYRAMID: BindingSlot = BindingSlot::sampled_texture(10, "lighting_pyramid", TextureShape::D3);
+const LIGHTING_PRESENCE: BindingSlot =
+    BindingSlot::sampled_texture(12, "lighting_presence_texture", TextureShape::D3);
 const TINT_PYRAMID: BindingSlot = BindingSlot::sampled_texture(11, "tint_pyramid", TextureShape::D3);
 
 /// Density texture, with the pyramid for kernels that perspective stretches.
@@ -35,9 +37,19 @@ const VOLUME: &[BindingSlot] = &[
     PRESENCE_TEXTURE,
 ];
 
-/// Density and pyramid as in [`VOLUME`], with the pyramid that near-field rays read, and that of tints.
-const VOLUME_AND_LIGHTING: &[BindingSlot] =
-    &[VOLUME[0], VOLUME[1], VOLUME[2], VOLUME[3], VOLUME[4], VOLUME[5], LIGHTING_PYRAMID, TINT_PYRAMID];
+/// Density and pyramid as in [`VOLUME`], with the pyramid and the presence that rays to lights read, and the pyramid of
+/// tints.
+const VOLUME_AND_LIGHTING: &[BindingSlot] = &[
+    VOLUME[0],
+    VOLUME[1],
+    VOLUME[2],
+    VOLUME[3],
+    VOLUME[4],
+    VOLUME[5],
+    LIGHTING_PYRAMID,
+    TINT_PYRAMID,
+    LIGHTING_PRESENCE,
+];
 
 /// Pyramid without the density texture.
 const PYRAMID: &[BindingSlot] = &[GRID, PYRAMID_TEXTURE, CLAMPED, PRESENCE_TEXTURE];
@@ -213,6 +225,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
                 PRESENCE_TEXTURE,
                 LIGHTING_PYRAMID,
                 TINT_PYRAMID,
+                LIGHTING_PRESENCE,
             ],
             LIGHTS_AND_AMBIENT,
         ],
@@ -310,6 +323,7 @@ const COMMON_LAYOUTS: ShaderLayouts = &[
             BindingSlot::uniform::<uniforms::PyramidLevelUniform>(3, "bound_resample"),
             BindingSlot::storage(5, "bricks", 4, BufferAccess::Read),
             BindingSlot::uniform::<uniforms::LayersUniform>(6, "bound_layers"),
+            PRESENCE_LEVEL,
             BindingSlot::uint_texture(28, "field_texture", TextureShape::D3),
             BindingSlot::storage(29, "layer_tables", TABLE_BYTES, BufferAccess::Read),
         ]],

@@ -39,6 +39,7 @@ pub(super) struct ArrivingLight {
 impl ArrivingLight {
     /// Computes the light that a volume lets through to a point; `normal` is that of the surface there, or zero.
     pub(super) fn new(rays: &VolumeRays<'_>, settings: &Settings, point: DVec3, normal: DVec3) -> Self {
+        let rays = &rays.of_light();
         let (scene, range) = (&rays.scene, rays.volume.table_range());
         let is_one_sided = settings.shading.sides == LitSides::One;
         let lighting = settings.bake_lighting(range, scene);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use chiaroscuro_scene::BakedTransfer;
 use chiaroscuro_volume::{
-    Volume,
+    Observer, Volume,
     math::{Aabb, ClipRegion, RayInterval, SceneSpace},
 };
 
@@ -35,11 +35,14 @@ pub(super) struct LightSegment {
 }
 
 /// Volume and scene for tracing single rays.
+#[derive(Clone, Copy)]
 pub(super) struct VolumeRays<'a> {
     pub(super) volume: &'a Volume,
     pub(super) scene: SceneSpace,
     /// True if voxels are classified before interpolation.
     pub(super) is_by_label: bool,
+    /// Observer from whom voxels may be hidden.
+    observer: Observer,
 }
 
 /// Step of a ray towards a light.
@@ -60,9 +63,21 @@ pub(super) struct InterpolatedValue {
 }
 
 impl<'a> VolumeRays<'a> {
-    /// Creates the rays of a volume, in the scene that its grid has.
+    /// Creates the rays of the eye through a volume, in the scene that its grid has.
     pub(super) fn new(volume: &'a Volume) -> Self {
-        Self { volume, scene: volume.scene(), is_by_label: volume.shown_labels().is_some() }
+        let is_by_label = volume.shown_labels().is_some();
+        Self { volume, scene: volume.scene(), is_by_label, observer: Observer::Eye }
+    }
+
+    /// Returns the rays of light through the same volume.
+    pub(super) fn of_light(self) -> Self {
+        Self { observer: Observer::Light, ..self }
+    }
+
+    /// Returns the presence of a voxel for the observer.
+    fn presence(&self, [x, y, z]: [usize; 3]) -> f32 {
+        let [nx, ny, _] = self.volume.dims();
+        self.volume.presence_for(self.observer, x + nx * (y + ny * z))
     }
 
     /// Returns the box of voxel centres, in index space: there is nothing outside.
@@ -218,14 +233,13 @@ impl<'a> VolumeRays<'a> {
         if !self.is_by_label {
             return self.interpolate(index, |value| value).value;
         }
-        let dims = self.volume.dims();
         // An invisible voxel counts only if all around it are invisible, too.
         let seen = |value: f64| self.voxel_extinction(table, value).max(1e-12);
         let mut parts: Vec<(f64, f64)> = Vec::new();
         for (voxel, weight) in self.nearest_voxels(index) {
             let [x, y, z] = voxel;
             let value = self.volume.value(x, y, z);
-            if self.volume.presence(x + dims[0] * (y + dims[1] * z)) <= 0.0 {
+            if self.presence(voxel) <= 0.0 {
                 continue;
             }
             match parts.iter_mut().find(|(known, _)| *known == value) {
@@ -254,10 +268,10 @@ impl<'a> VolumeRays<'a> {
 
     /// Returns the weighted mean of `of` over the present voxels around a point, and the sum of their weights.
     fn interpolate(&self, index: DVec3, of: impl Fn(f64) -> f64) -> InterpolatedValue {
-        let dims = self.volume.dims();
         let (mut sum, mut there) = (0.0, 0.0);
-        for ([x, y, z], weight) in self.nearest_voxels(index) {
-            let weight = weight * f64::from(self.volume.presence(x + dims[0] * (y + dims[1] * z)));
+        for (voxel, weight) in self.nearest_voxels(index) {
+            let [x, y, z] = voxel;
+            let weight = weight * f64::from(self.presence(voxel));
             if weight > 0.0 {
                 sum += weight * of(self.volume.value(x, y, z));
                 there += weight;

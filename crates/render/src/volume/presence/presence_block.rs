@@ -1,123 +1,45 @@
-//! Presence texture of volumes with missing or hidden voxels: presence (the fraction of the kernel on existing voxels)
-//! and its differences.
-//!
-//! A mip pyramid parallel to that of density. Computed on the CPU and uploaded, since few volumes have such voxels.
+//! Presence of the texels of a box, computed level by level.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::PyramidViews;
-use super::texture_shapes::{PYRAMID_PADDING, pyramid_dims, texture_3d};
 use crate::plan::MAX_STRETCH_LEVEL;
-use crate::{GpuContext, GpuError};
-use chiaroscuro_volume::Volume;
+use crate::volume::texture_shapes::{PYRAMID_PADDING, pyramid_dims};
+use chiaroscuro_volume::{Observer, Volume};
 
 /// Index of the coarsest level.
-const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
+pub(super) const MAX_LEVEL: u32 = MAX_STRETCH_LEVEL as u32;
 
 /// Size of a texel in bytes: presence, and its differences along x, y and z.
-const TEXEL_BYTES: usize = 4;
+pub(super) const TEXEL_BYTES: usize = 4;
 
 /// Number of steps from 0 to 1 of signed bytes. Software drivers interpolate signed bytes in floating point, but
 /// unsigned ones in eight bits, which tilts normals.
 const SNORM_STEPS: f32 = 127.0;
 
-/// Number of texels of level 0 per upload step: some 20 ms, and 16 MiB of temporary memory.
-const STEP_TEXELS: usize = 1 << 20;
-
-/// Reach of a texel of the coarsest level, in texels of level 0 on either side: texel c of level 2 is made of texels 4c − 3 … 4c + 6, its differences reach one texel of level 2 further, and the blur one of level 0.
-const COARSEST_REACH: usize = 12;
-
-/// Presence texture of a volume with missing or hidden voxels.
-#[derive(Debug)]
-pub(crate) struct PresenceTexture {
-    pub texture: wgpu::Texture,
-    pub views: PyramidViews,
+/// Presence of the voxels of a volume for an observer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PresenceSource<'a> {
+    pub volume: &'a Volume,
+    pub observer: Observer,
+    /// `true` if missing voxels are absent; else only hidden ones are.
+    pub counts_missing: bool,
 }
 
-impl PresenceTexture {
-    /// Creates the texture for a volume as if it had these dimensions; `None` if all voxels are present.
-    ///
-    /// # Errors
-    /// Returns an error if the adapter cannot hold it.
-    pub(crate) fn new(
-        context: &GpuContext,
-        volume: &Volume,
-        dims: [usize; 3],
-    ) -> Result<Option<Self>, GpuError> {
-        if !volume.has_absent_voxels() {
-            return Ok(None);
+impl PresenceSource<'_> {
+    /// Returns the presence of the voxel at an index, x fastest.
+    fn presence(&self, voxel: usize) -> f32 {
+        if self.counts_missing {
+            self.volume.presence_for(self.observer, voxel)
+        } else {
+            self.volume.unmasked_share(self.observer, voxel)
         }
-        let texture = context.texture(&wgpu::TextureDescriptor {
-            mip_level_count: MAX_LEVEL + 1,
-            ..texture_3d(
-                "Volume::presence",
-                pyramid_dims(dims),
-                wgpu::TextureFormat::Rgba8Snorm,
-                wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            )
-        })?;
-        let views = PyramidViews::new(&texture);
-        Ok(Some(Self { texture, views }))
-    }
-
-    /// Returns the boxes of texels of the coarsest level that depend on a box of voxels, for short upload steps.
-    pub(crate) fn steps(
-        &self,
-        changed: &[Range<usize>; 3],
-    ) -> impl Iterator<Item = [Range<usize>; 3]> + use<> {
-        let size = self.texture.size();
-        let size = [size.width, size.height, size.depth_or_array_layers].map(|n| (n >> MAX_LEVEL) as usize);
-        let [across, down, slices] = [0, 1, 2].map(|axis| {
-            let Range { start, end } = changed[axis];
-            let first = (start + PYRAMID_PADDING).saturating_sub(COARSEST_REACH) >> MAX_LEVEL;
-            first..size[axis].min(((end + PYRAMID_PADDING + COARSEST_REACH) >> MAX_LEVEL) + 1)
-        });
-        let texels = (across.len() * down.len()) << (3 * MAX_LEVEL);
-        let each = (STEP_TEXELS / texels).max(1);
-        slices
-            .clone()
-            .step_by(each)
-            .map(move |first| [across.clone(), down.clone(), first..slices.end.min(first + each)])
-    }
-
-    /// Computes and uploads a box of texels of the coarsest level, with the corresponding texels of all finer levels.
-    pub(crate) fn upload(&self, context: &GpuContext, volume: &Volume, coarsest: &[Range<usize>; 3]) {
-        for (mip_level, block) in (0..).zip(presence_levels(volume, coarsest)) {
-            let finer = MAX_LEVEL - mip_level;
-            let kept = coarsest.each_ref().map(|range| range.start << finer..range.end << finer);
-            let [x, y, z] = kept.each_ref().map(|range| range.start as u32);
-            let [width, height, depth] = kept.each_ref().map(|range| range.len() as u32);
-            context.queue.write_texture(
-                wgpu::TexelCopyTextureInfo {
-                    texture: &self.texture,
-                    mip_level,
-                    origin: wgpu::Origin3d { x, y, z },
-                    aspect: wgpu::TextureAspect::All,
-                },
-                bytemuck::cast_slice(&block.texels(&kept)),
-                wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(width * TEXEL_BYTES as u32),
-                    rows_per_image: Some(height),
-                },
-                wgpu::Extent3d { width, height, depth_or_array_layers: depth },
-            );
-        }
-    }
-
-    /// Returns the size of the texture, in bytes.
-    pub(crate) fn bytes(&self) -> u64 {
-        let size = self.texture.size();
-        let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
-        // The coarser levels add a seventh.
-        TEXEL_BYTES as u64 * texels * 8 / 7
     }
 }
 
 /// Presence at the texels of a box of one level.
-struct PresenceBlock {
+pub(super) struct PresenceBlock {
     /// Indices of the texels within the level.
     texels: [Range<usize>; 3],
     /// Number of texels of the whole level along each axis.
@@ -127,8 +49,11 @@ struct PresenceBlock {
 
 /// Computes all levels, finest first: at least the texels within the given ones of the coarsest level, and one to
 /// either side.
-fn presence_levels(volume: &Volume, coarsest: &[Range<usize>; 3]) -> Vec<PresenceBlock> {
-    let size = pyramid_dims(volume.dims());
+pub(super) fn presence_levels(
+    source: PresenceSource<'_>,
+    coarsest: &[Range<usize>; 3],
+) -> Vec<PresenceBlock> {
+    let size = pyramid_dims(source.volume.dims());
     let widened =
         |range: &Range<usize>, by: usize, n: usize| range.start.saturating_sub(by)..(range.end + by).min(n);
     // Differences read the neighbouring texels.
@@ -144,7 +69,7 @@ fn presence_levels(volume: &Volume, coarsest: &[Range<usize>; 3]) -> Vec<Presenc
     let mut blocks: Vec<PresenceBlock> = Vec::with_capacity(boxes.len());
     for kept in boxes.into_iter().rev() {
         let block = match blocks.last() {
-            None => prefiltered_presence(volume, &kept),
+            None => prefiltered_presence(source, &kept),
             Some(finer) => finer.downsample(&kept),
         };
         blocks.push(block);
@@ -154,8 +79,8 @@ fn presence_levels(volume: &Volume, coarsest: &[Range<usize>; 3]) -> Vec<Presenc
 
 /// Computes texels of level 0: the presence of voxels, blurred like densities (`shaders/volume/prefilter.wgsl`).
 /// Outside the grid is 0.
-fn prefiltered_presence(volume: &Volume, texels: &[Range<usize>; 3]) -> PresenceBlock {
-    let dims = volume.dims();
+fn prefiltered_presence(source: PresenceSource<'_>, texels: &[Range<usize>; 3]) -> PresenceBlock {
+    let dims = source.volume.dims();
     let level = pyramid_dims(dims);
     // The blur reads the neighbouring texels.
     let read = [0, 1, 2].map(|axis| {
@@ -169,7 +94,7 @@ fn prefiltered_presence(volume: &Volume, texels: &[Range<usize>; 3]) -> Presence
     let row = |at: usize| {
         let (y, z) = (voxel(at % down, 1), voxel(at / down, 2));
         (0..across).map(move |x| match (voxel(x, 0), y, z) {
-            (Some(x), Some(y), Some(z)) => volume.presence(x + dims[0] * (y + dims[1] * z)),
+            (Some(x), Some(y), Some(z)) => source.presence(x + dims[0] * (y + dims[1] * z)),
             _ => 0.0,
         })
     };
@@ -238,7 +163,7 @@ impl PresenceBlock {
     }
 
     /// Encodes the texels in a box.
-    fn texels(&self, kept: &[Range<usize>; 3]) -> Vec<[i8; TEXEL_BYTES]> {
+    pub(super) fn texels(&self, kept: &[Range<usize>; 3]) -> Vec<[i8; TEXEL_BYTES]> {
         let [across, down, slices] = kept.each_ref().map(Range::len);
         let row = |at: usize| {
             let place = [kept[0].start, kept[1].start + at % down, kept[2].start + at / down];
@@ -279,6 +204,10 @@ mod tests {
         (Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap(), there)
     }
 
+    fn for_eye(volume: &Volume) -> PresenceSource<'_> {
+        PresenceSource { volume, observer: Observer::Eye, counts_missing: true }
+    }
+
     fn whole(dims: [usize; 3]) -> [Range<usize>; 3] {
         pyramid_dims(dims).map(|n| 0..n >> MAX_LEVEL)
     }
@@ -287,7 +216,7 @@ mod tests {
     fn levels_keep_the_sum_of_what_is_there() {
         let dims = [13, 9, 7];
         let (volume, there) = volume_with_holes(dims);
-        let blocks = presence_levels(&volume, &whole(dims));
+        let blocks = presence_levels(for_eye(&volume), &whole(dims));
         assert_eq!(blocks.len(), MAX_LEVEL as usize + 1);
         assert_eq!(blocks[0].level, [24, 24, 16]);
         for (level, block) in (0..).zip(&blocks) {
@@ -303,7 +232,7 @@ mod tests {
         let values: Vec<f32> =
             (0..dims.iter().product::<usize>()).map(|at| if at % 16 < 8 { f32::NAN } else { 1.0 }).collect();
         let volume = Volume::with_spacing("t", dims, DVec3::ONE, Samples::F32(values)).unwrap();
-        let blocks = presence_levels(&volume, &whole(dims));
+        let blocks = presence_levels(for_eye(&volume), &whole(dims));
         let middle = PYRAMID_PADDING + 2;
         let along_x: Vec<[i8; TEXEL_BYTES]> =
             (0..16).map(|x| blocks[0].texel([PYRAMID_PADDING + x, middle, middle])).collect();
@@ -318,11 +247,13 @@ mod tests {
         let dims = [17, 9, 21];
         let (volume, _) = volume_with_holes(dims);
         let all = whole(dims);
-        let at_once = presence_levels(&volume, &all);
+        let at_once = presence_levels(for_eye(&volume), &all);
         for z in all[2].clone() {
             for x in all[0].clone() {
                 let coarsest = [x..x + 1, 1..3, z..z + 1];
-                for ((level, whole), block) in (0..).zip(&at_once).zip(presence_levels(&volume, &coarsest)) {
+                for ((level, whole), block) in
+                    (0..).zip(&at_once).zip(presence_levels(for_eye(&volume), &coarsest))
+                {
                     let finer = MAX_LEVEL - level;
                     let kept = coarsest.each_ref().map(|range| range.start << finer..range.end << finer);
                     assert_eq!(whole.texels(&kept), block.texels(&kept), "{coarsest:?}, level {level}");
