@@ -6,6 +6,7 @@
 // long, whose variance is the same: a twelfth of the sum of the squared differences across the cube.
 #import "common/srgb.wgsl"
 #import "volume/material.wgsl"
+#option MASK_BY_LAYER: a mask hides voxels of some layers
 
 const MAX_MATERIALS = 8u;
 
@@ -30,7 +31,8 @@ struct LayerUniform {
     edges: f32,
     // Number of materials that take the place of the table.
     material_count: u32,
-    pad0: u32,
+    // 1 if the layer stays where voxels are hidden, so that the mask is of each layer.
+    ignores_cuts: u32,
     pad1: u32,
     pad2: u32,
     materials: array<MaterialUniform, MAX_MATERIALS>,
@@ -199,11 +201,17 @@ fn densest_beside(i: u32, voxel: vec3i) -> vec4f {
 // Matter of a voxel as a texel of pre-classified voxels.
 fn layered_material(voxel: vec3i) -> vec4f {
     let found = field_neighbourhood(voxel);
+#if MASK_BY_LAYER
+    // The pyramid begins four voxels before the grid.
+    let unmasked = presence_at_texel(vec3u(voxel + 4));
+#else
+    let unmasked = 1.0;
+#endif
     // Colour × extinction, and extinction.
     var sum = vec4f(0.0);
     for (var i = 0u; i < layers.count; i += 1u) {
         let blend = layers.layers[i].blend;
-        let matter = layer_matter(i, found);
+        let matter = layer_matter(i, found) * select(unmasked, 1.0, layers.layers[i].ignores_cuts == 1u);
         let opacity = layer_opacity(i, matter);
         if (blend == LAYER_TINT) {
             sum = with_tint(sum, sum.a, matter, opacity);

@@ -2,7 +2,7 @@
 
 use chiaroscuro::app::App;
 use chiaroscuro_scene::{ClipEffect, CutAction, CutShape, ShapeCut};
-use eframe::egui::{self, Event, Modifiers, PointerButton, Vec2, vec2};
+use eframe::egui::{self, Event, Modifiers, PointerButton, Role, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
@@ -215,4 +215,18 @@ fn the_near_corner_is_cut_moved_and_shown_again() {
     assert!(harness.state().settings().cuts.shapes.is_empty());
     wait_until_idle(&mut harness);
     assert!(picture(&mut harness).0 == whole, "no voxel was changed");
+    // The half that faces the camera, and the place of its plane.
+    click(&mut harness, "Near half");
+    let half = |harness: &Harness<'_, App>| match harness.state().settings().cuts.shapes.as_slice() {
+        [ShapeCut { on: true, action: CutAction::Hide, shape: CutShape::HalfSpace(plane), .. }] => *plane,
+        other => panic!("a half-space: {other:?}"),
+    };
+    let eye = harness.state().settings().camera.position();
+    assert!(half(&harness).unit_normal().dot(eye.normalize()) > 0.999, "{:?}", half(&harness));
+    wait_until_idle(&mut harness);
+    let (behind, _) = picture(&mut harness);
+    assert!(behind != whole && behind != without, "half of the chair");
+    harness.get_by_role_and_label(Role::Slider, "Plane at").set_value_accesskit(0.25);
+    harness.run_steps(3);
+    assert_eq!(half(&harness).offset, 0.25);
 }

@@ -224,8 +224,10 @@ impl<'a> Reference<'a> {
                 .filter(|(layer, _)| layer.blend.adds_matter())
                 .map(|(layer, field)| f64::from(bake(layer, field.volume()).max_extinction()))
                 .sum();
-            let matter = composed_voxels(dataset, settings, has_effect, bake, opacity_length);
             let presence = plain.presence.as_ref().map(|presence| presence.for_side(side));
+            let is_by_layer = settings.layers.iter().any(VolumeLayer::is_never_cut);
+            let (of_layers, presence) = if is_by_layer { (presence, None) } else { (None, presence) };
+            let matter = composed_voxels(dataset, settings, has_effect, bake, opacity_length, of_layers);
             let unit = (largest, opacity_length);
             ClassifiedVoxels::from_matter(dims, &matter, unit, presence, width, options.rounding)
         });

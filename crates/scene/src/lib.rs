@@ -74,8 +74,8 @@ pub use self::settings::shadows::{
     ShadowSettings,
 };
 pub use self::settings::shape_cuts::{
-    BoxCut, ComponentCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_OUTLINE_POINTS, MAX_SHAPE_CUTS,
-    OutlineCut, ShapeCut, SphereCut,
+    BoxCut, ComponentCut, CutAction, CutDepth, CutShape, CutShapeKind, HalfSpaceCut, MAX_OUTLINE_POINTS,
+    MAX_SHAPE_CUTS, OutlineCut, ShapeCut, SphereCut,
 };
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;

@@ -141,7 +141,15 @@ impl Dataset {
     /// Returns the dataset with voxels of all fields hidden by a mask, in place of an earlier one ([`Volume::with_mask`]).
     #[must_use]
     pub fn with_mask(&self, mask: Option<&Arc<VoxelMask>>) -> Self {
-        Self { fields: self.fields.iter().map(|field| field.with_mask(mask)).collect() }
+        self.with_mask_where(mask, |_| true)
+    }
+
+    /// Returns the dataset with voxels hidden by a mask as [`Self::with_mask`] does, in those fields with an index for which
+    /// `hides` is true.
+    #[must_use]
+    pub fn with_mask_where(&self, mask: Option<&Arc<VoxelMask>>, hides: impl Fn(usize) -> bool) -> Self {
+        let fields = self.fields.iter().enumerate();
+        Self { fields: fields.map(|(at, field)| field.with_mask(mask.filter(|_| hides(at)))).collect() }
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.

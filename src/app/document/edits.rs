@@ -3,8 +3,8 @@
 use super::Document;
 use crate::app::common::light_keys;
 use chiaroscuro_scene::{
-    BoxCut, COLOR_MAPS, Camera, CutShape, LightSettings, LightingRig, MAX_SHAPE_CUTS, Settings, ShapeCut,
-    StandardView, VolumeLayer,
+    BoxCut, COLOR_MAPS, Camera, CutShape, CutShapeKind, HalfSpaceCut, LightSettings, LightingRig,
+    MAX_SHAPE_CUTS, Settings, ShapeCut, StandardView, VolumeLayer,
 };
 
 impl Document {
@@ -38,13 +38,19 @@ impl Document {
         self.settings.cuts.plane.place_facing(normal, target.into());
     }
 
-    /// Hides the eighth of the volume that faces the camera, if there is room for another cut.
-    pub(crate) fn cut_corner(&mut self) {
+    /// Hides the eighth or the half of the volume that faces the camera, if there is room for another cut.
+    pub(crate) fn cut_near_part(&mut self, kind: CutShapeKind) {
         let Some(volume) = &self.volume else { return };
-        let corner = BoxCut::corner_towards(self.settings.camera.position(), &volume.scene);
+        let camera = &self.settings.camera;
+        let shape = if kind == CutShapeKind::HalfSpace {
+            let normal = camera.scene_from_view().z_axis;
+            CutShape::HalfSpace(HalfSpaceCut { normal: normal.into(), offset: 0.0 })
+        } else {
+            CutShape::Box(BoxCut::corner_towards(camera.position(), &volume.scene))
+        };
         let shapes = &mut self.settings.cuts.shapes;
         if shapes.len() < MAX_SHAPE_CUTS {
-            shapes.push(ShapeCut { shape: CutShape::Box(corner), ..ShapeCut::default() });
+            shapes.push(ShapeCut { shape, ..ShapeCut::default() });
         }
     }
 

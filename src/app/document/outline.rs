@@ -42,6 +42,7 @@ fn has_same_outline(a: &VolumeLayer, b: &VolumeLayer) -> bool {
         blend,
         edges: _,
         materials,
+        ignores_cuts,
     } = a;
     *range == b.range
         && *labels == b.labels
@@ -49,6 +50,7 @@ fn has_same_outline(a: &VolumeLayer, b: &VolumeLayer) -> bool {
         && *visibility == b.visibility
         && *blend == b.blend
         && *materials == b.materials
+        && *ignores_cuts == b.ignores_cuts
 }
 
 /// Outline of the object with the search for it.

@@ -63,8 +63,8 @@ impl App {
             AppCommand::ToggleCrop => self.layout.show_section(ctx, CUTS, self.editor.toggle_crop()),
             AppCommand::TogglePlane => self.layout.show_section(ctx, CUTS, self.editor.toggle_plane()),
             AppCommand::FacePlane => self.editor.document.face_plane(),
-            AppCommand::CutByShape(CutShapeKind::Box) => {
-                self.editor.document.cut_corner();
+            AppCommand::CutByShape(kind @ (CutShapeKind::Box | CutShapeKind::HalfSpace)) => {
+                self.editor.document.cut_near_part(kind);
                 self.layout.show_section(ctx, CUTS, true);
             }
             AppCommand::CutByShape(kind) => {

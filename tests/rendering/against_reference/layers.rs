@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use chiaroscuro_reference::{Reference, ReferenceOptions};
 use chiaroscuro_scene::{
-    DensityRange, LabelLook, LabelTable, LayerBlend, LayerComposition, LayerVisibility, MaterialBox,
-    Settings, VolumeLayer,
+    ClipEffect, ClipPlane, Clipping, CropBox, CutShape, DensityRange, LabelLook, LabelTable, LayerBlend,
+    LayerComposition, LayerVisibility, MaterialBox, Settings, ShapeCut, SphereCut, VolumeLayer,
 };
 use chiaroscuro_volume::{Samples, Volume};
 use glam::DVec3;
@@ -188,6 +188,38 @@ fn mistakes_in_outlines_are_noticed() {
     ] {
         assert!(differs_with(&dataset, &settings, &reference, (from, to)), "{to}");
     }
+}
+
+/// Look in which a box, a plane and a ball cut one layer, and the other stays whole: the second, unless it is a gate.
+fn cut_around(blend: LayerBlend) -> Settings {
+    // A gate that is cut leaves nothing there of what is whole.
+    let is_first_whole = blend == LayerBlend::Gate;
+    let mut settings = look(&[VolumeLayer { ignores_cuts: !is_first_whole, blend, ..second() }]);
+    settings.layer_mut().ignores_cuts = is_first_whole;
+    let ball = SphereCut { center: [0.3, -0.2, 0.3], radius: 0.4 };
+    settings.cuts = Clipping {
+        crop: CropBox { on: true, high: [1.0, 1.0, 0.8], effect: ClipEffect::Hidden, ..CropBox::default() },
+        plane: ClipPlane { on: true, normal: [1.0, -2.0, 0.5], offset: 0.1, ..ClipPlane::default() },
+        shapes: vec![ShapeCut { shape: CutShape::Sphere(ball), ..ShapeCut::default() }],
+    };
+    settings
+}
+
+#[test]
+fn layers_that_are_never_cut_stay_whole() {
+    let dataset = dataset_of(&[ball()]);
+    for blend in [LayerBlend::Add, LayerBlend::Gate] {
+        let settings = cut_around(blend);
+        check(&format!("never cut, {blend:?}"), &dataset, &settings);
+    }
+    let settings = cut_around(LayerBlend::Add);
+    let drawn = settings.resolved_for_dataset(&dataset);
+    let reference = Reference::with_layers(&dataset, &drawn, options());
+    let differs = |from, to| differs_with(&dataset, &settings, &reference, (from, to));
+    assert!(!differs("", ""), "nothing is damaged");
+    let never = "select(unmasked, 1.0, layers.layers[i].ignores_cuts == 1u)";
+    assert!(differs(never, "unmasked"), "all layers are cut");
+    assert!(differs(never, "1.0"), "no layer is cut");
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub(super) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
                 opacity_unit,
                 edges,
                 material_count,
-                pad0,
+                ignores_cuts,
                 pad1,
                 pad2,
                 materials

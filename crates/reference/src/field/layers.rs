@@ -3,8 +3,10 @@
 use super::classified::unassociated;
 use super::integrated_table::IntegratedTable;
 use super::material_regions::{MaterialRegion, material_regions};
+use super::pyramid::Pyramid;
 use chiaroscuro_scene::{BakedTransfer, LayerBlend, Settings, VolumeLayer, linear_from_srgb};
 use chiaroscuro_volume::{Dataset, Volume, math::SceneSpace};
+use glam::DVec3;
 
 /// Field with its layer and the layer's transfer function of a side.
 struct LayeredField<'a> {
@@ -17,6 +19,8 @@ struct LayeredField<'a> {
     /// Materials that take the place of the table.
     materials: Vec<MaterialRegion>,
     scene: SceneSpace,
+    /// Presence that the matter is multiplied by, if the mask is not of the sum of all layers.
+    presence: Option<&'a Pyramid>,
 }
 
 impl LayeredField<'_> {
@@ -42,6 +46,14 @@ impl LayeredField<'_> {
         let opacity = mean[3].clamp(1e-12, 1.0 - 1e-6);
         let extinction = -(-opacity).ln_1p() / length;
         mean.map(|number| number.max(0.0) * extinction / opacity)
+    }
+
+    /// Returns colour times extinction, and extinction, of a voxel, as far as no mask of the layer hides it.
+    fn visible_matter(&self, place: [i64; 3]) -> [f64; 4] {
+        let matter = self.matter(place);
+        let Some(presence) = self.presence else { return matter };
+        let left = presence.fetch(DVec3::from(place.map(|at| at as f64)), 0.0);
+        matter.map(|number| number * left)
     }
 
     /// Returns colour times extinction, and extinction, of a voxel: the mean over the densities in it.
@@ -80,15 +92,19 @@ impl LayeredField<'_> {
 
 /// Returns colour times extinction, and extinction, of every voxel of a dataset with layers. `has_effect` tells if a
 /// layer counts, and `bake` makes its table over the values of its field. Opacities over a length are composed, or
-/// extinctions if there is none.
+/// extinctions if there is none. If some layers are never cut, `presence` is that of the others.
 pub(crate) fn composed_voxels(
     dataset: &Dataset,
     settings: &Settings,
     has_effect: impl Fn(&VolumeLayer) -> bool,
     bake: impl Fn(&VolumeLayer, &Volume) -> BakedTransfer,
     opacity_length: Option<f64>,
+    presence: Option<&Pyramid>,
 ) -> Vec<[f64; 4]> {
-    let fields = layered_fields(dataset, settings, has_effect, bake, opacity_length);
+    let mut fields = layered_fields(dataset, settings, has_effect, bake, opacity_length);
+    for field in &mut fields {
+        field.presence = presence.filter(|_| !field.layer.ignores_cuts);
+    }
     let places = voxel_places(dataset.volume().dims());
     places.map(|place| fields.iter().fold([0.0; 4], |sum, field| composed(sum, field, place))).collect()
 }
@@ -128,6 +144,7 @@ fn layered_fields<'a>(
                 opacity_length,
                 materials: material_regions(layer, volume, &bake, opacity_length),
                 scene: dataset.volume().scene(),
+                presence: None,
             }
         })
         .collect()
@@ -175,7 +192,7 @@ pub(crate) fn tint_voxels(
 
 /// Returns the matter of a voxel with that of one more layer.
 fn composed(sum: [f64; 4], field: &LayeredField<'_>, place: [i64; 3]) -> [f64; 4] {
-    let matter = field.matter(place);
+    let matter = field.visible_matter(place);
     let opacity = field.opacity(matter);
     match field.layer.blend {
         LayerBlend::Add => std::array::from_fn(|i| sum[i] + matter[i]),

@@ -77,6 +77,14 @@ impl LoadedVolume {
         let composition = tables_key.volume.composition;
         let counts_missing = counts_missing(composition);
         let volume = GpuVolume::new(context, dataset.volume(), dataset.bricks(), counts_missing, reused)?;
+        // The mask of the first field is that of the picture, even if the layer is never cut.
+        let never_cut = tables_key.volume.never_cut;
+        let dataset = match dataset.volume().mask() {
+            Some(mask) if never_cut != 0 => {
+                &dataset.with_mask_where(Some(mask), |at| never_cut >> at & 1 == 0)
+            }
+            _ => dataset,
+        };
         let volume = match composition {
             LayerComposition::First => volume,
             // Tints colour matter up to the edge of what is hidden.

@@ -32,6 +32,8 @@ pub struct VolumeKey {
     pub further: [Option<DensityMapping>; MAX_FIELDS - 1],
     /// Hash of the cuts that hide voxels, if there are some.
     pub mask: Option<u64>,
+    /// Layers that the cuts leave whole, a bit for each.
+    pub never_cut: u8,
     /// Way in which layers become one picture; if not by the first alone, their fields are stored together.
     pub composition: LayerComposition,
 }
@@ -52,6 +54,7 @@ impl RenderRequest {
             density_mapping: self.settings.shown_content(&ranges),
             further: self.settings.further_mappings(&self.volume),
             mask: self.settings.cuts.shapes_id(),
+            never_cut: self.settings.layers_never_cut(),
             composition: self.settings.layer_composition(),
         }
     }

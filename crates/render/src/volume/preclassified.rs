@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::brick_list::two_workgroups_per_brick;
-use super::layers::BakedLayers;
+use super::layers::{BakedLayers, MaskUse};
 use super::pyramid::{self, LevelBuffers, level_buffers, level_view};
 use super::texture_shapes::pyramid_dims;
 use super::{GpuVolume, PyramidViews, VolumeContext, texture_3d};
@@ -144,10 +144,10 @@ impl PreclassifiedVoxels {
         let has_missing = volume.presence.is_some();
         let layers = self.key.baked.parameters().zip(volume.fields.as_ref());
         let pipeline = match level {
-            0 if layers.is_some() => {
-                let are_tints = self.key.baked.are_tints();
-                shaders.pipeline(&ComposedVariant { are_tints, has_missing: has_missing && !are_tints })?
-            }
+            0 if layers.is_some() => shaders.pipeline(&ComposedVariant {
+                are_tints: self.key.baked.are_tints(),
+                mask: if has_missing { self.key.baked.mask_use() } else { MaskUse::Unused },
+            })?,
             0 => shaders.pipeline(&MaterialsVariant { has_missing, is_crisp: self.key.is_crisp })?,
             _ => shaders.pipeline_into(&SingleVariant("volume/downsample.wgsl"), self.texture.format())?,
         };
@@ -205,7 +205,7 @@ fn bytes(texels: u64) -> u64 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct ComposedVariant {
     are_tints: bool,
-    has_missing: bool,
+    mask: MaskUse,
 }
 
 impl PipelineVariant for ComposedVariant {
@@ -214,7 +214,11 @@ impl PipelineVariant for ComposedVariant {
     }
 
     fn constants(&self) -> ShaderConstants {
-        vec![flag("TINTS", self.are_tints), flag("MISSING", self.has_missing)]
+        vec![
+            flag("TINTS", self.are_tints),
+            flag("MISSING", self.mask == MaskUse::AllLayers),
+            flag("MASK_BY_LAYER", self.mask == MaskUse::SomeLayers),
+        ]
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::clip_effect::ClipEffect;
-use super::shape_cuts::{ShapeCut, enabled_id};
+use super::shape_cuts::{BoxCut, CutAction, CutShape, HalfSpaceCut, ShapeCut, enabled_id};
 use chiaroscuro_volume::math::{Aabb, ClipRegion, HalfSpace, SceneSpace};
 
 /// Largest distance of a clip plane from the centre, in scene units: that of a cube's corner, √3, with a margin.
@@ -101,6 +101,25 @@ impl Clipping {
     /// Returns the cuts by shapes that are enabled.
     pub fn enabled_shapes(&self) -> impl Iterator<Item = &ShapeCut> {
         self.shapes.iter().filter(|cut| cut.on)
+    }
+
+    /// Returns the same cuts by shapes alone, which hide voxels: the crop box and the plane are the last of them.
+    pub(crate) fn by_shapes(&self) -> Self {
+        let Self { crop, plane, shapes } = self;
+        let mut shapes = shapes.clone();
+        if crop.on {
+            let shape = CutShape::Box(BoxCut { low: crop.low, high: crop.high });
+            shapes.push(ShapeCut { on: true, action: CutAction::Keep, effect: crop.effect, shape });
+        }
+        if plane.on {
+            let shape = CutShape::HalfSpace(HalfSpaceCut { normal: plane.normal, offset: plane.offset });
+            shapes.push(ShapeCut { on: true, action: CutAction::Hide, effect: plane.effect, shape });
+        }
+        Self {
+            crop: CropBox { on: false, ..crop.clone() },
+            plane: ClipPlane { on: false, ..plane.clone() },
+            shapes,
+        }
     }
 
     /// Returns a hash of the cuts by shapes that are enabled; `None` if there are none.

@@ -3,7 +3,7 @@
 
 use crate::{
     AreaLightSampling, Background, BoxCut, Camera, ClipPlane, Clipping, ComponentCut, ControlPoint, CropBox,
-    CutShape, EnvironmentLight, FloorSettings, LightSettings, LightingTransfer, MAX_ANISOTROPY,
+    CutShape, EnvironmentLight, FloorSettings, HalfSpaceCut, LightSettings, LightingTransfer, MAX_ANISOTROPY,
     MAX_BIAS_VOXELS, MAX_BOUNCES, MAX_ENVIRONMENT_RADIANCE, MAX_EXPOSURE, MAX_FLOOR_HEIGHT, MAX_FLOOR_RADIUS,
     MAX_LIGHT_ANGLE_DEG, MAX_LIGHT_ASPECT, MAX_LIGHT_SAMPLES, MAX_LIGHT_SIZE, MAX_MATERIAL_BOXES,
     MAX_MIN_BLOCKS, MAX_NAME_CHARS, MAX_OUTLINE_POINTS, MAX_PLANE_OFFSET, MAX_POINTS, MAX_SHAPE_CUTS,
@@ -142,6 +142,7 @@ fn sanitise_layer(layer: &mut VolumeLayer) {
         blend: _,
         edges,
         materials,
+        ignores_cuts: _,
     } = layer;
     let LightingTransfer { linked: _, scale, curve } = lighting;
     for function in [transfer, curve] {
@@ -185,11 +186,7 @@ fn sanitise_clipping(cuts: &mut Clipping) {
     let CropBox { on: _, low, high, effect: _ } = crop;
     clamp_extents(low, high);
     let ClipPlane { on: _, normal, offset, effect: _ } = plane;
-    clamp_point(normal, 1e6);
-    if *normal == [0.0; 3] {
-        *normal = ClipPlane::default().normal;
-    }
-    clamp_number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
+    clamp_plane(normal, offset);
     shapes.truncate(MAX_SHAPE_CUTS);
     shapes.retain_mut(|cut| match &mut cut.shape {
         CutShape::Outline(OutlineCut { camera, aspect, points, depth: _, surface }) => {
@@ -209,11 +206,23 @@ fn sanitise_clipping(cuts: &mut Clipping) {
             clamp_extents(low, high);
             true
         }
+        CutShape::HalfSpace(HalfSpaceCut { normal, offset }) => {
+            clamp_plane(normal, offset);
+            true
+        }
         CutShape::Component(ComponentCut { seed, values }) => {
             clamp_point(seed, MAX_SHAPE_PLACE);
             values.low.is_finite() && values.high.is_finite()
         }
     });
+}
+
+fn clamp_plane(normal: &mut [f64; 3], offset: &mut f64) {
+    clamp_point(normal, 1e6);
+    if *normal == [0.0; 3] {
+        *normal = ClipPlane::default().normal;
+    }
+    clamp_number(offset, -MAX_PLANE_OFFSET, MAX_PLANE_OFFSET, 0.0);
 }
 
 fn sanitise_floor(floor: &mut FloorSettings, default: &FloorSettings) {

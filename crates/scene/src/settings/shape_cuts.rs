@@ -70,13 +70,15 @@ pub enum CutShapeKind {
     Sphere,
     /// Box along the axes of the grid.
     Box,
+    /// Half-space in front of a plane.
+    HalfSpace,
     /// Connected component of voxels.
     Component,
 }
 
 impl CutShapeKind {
     /// All kinds, in the order of menus.
-    pub const ALL: [Self; 4] = [Self::Outline, Self::Sphere, Self::Box, Self::Component];
+    pub const ALL: [Self; 5] = [Self::Outline, Self::Sphere, Self::Component, Self::Box, Self::HalfSpace];
 }
 
 /// Shape of a cut.
@@ -89,6 +91,8 @@ pub enum CutShape {
     Sphere(SphereCut),
     /// Box along the axes of the grid.
     Box(BoxCut),
+    /// Everything in front of a plane.
+    HalfSpace(HalfSpaceCut),
     /// Connected voxels around one of them.
     Component(ComponentCut),
 }
@@ -172,6 +176,29 @@ impl BoxCut {
     }
 }
 
+/// Half-space in front of a plane in the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HalfSpaceCut {
+    /// Direction that the plane faces, in scene space; its length is ignored.
+    pub normal: [f64; 3],
+    /// Distance of the plane from the centre of the volume along the normal, in scene units.
+    pub offset: f64,
+}
+
+impl Default for HalfSpaceCut {
+    fn default() -> Self {
+        Self { normal: [0.0, -1.0, 0.0], offset: 0.0 }
+    }
+}
+
+impl HalfSpaceCut {
+    /// Returns the normal as a unit vector.
+    pub fn unit_normal(&self) -> DVec3 {
+        DVec3::from(self.normal).normalize_or(DVec3::NEG_Y)
+    }
+}
+
 /// Voxels with values in a range that are connected through their faces with the one nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -208,6 +235,7 @@ impl CutShape {
             Self::Outline(_) => CutShapeKind::Outline,
             Self::Sphere(_) => CutShapeKind::Sphere,
             Self::Box(_) => CutShapeKind::Box,
+            Self::HalfSpace(_) => CutShapeKind::HalfSpace,
             Self::Component(_) => CutShapeKind::Component,
         }
     }
@@ -233,6 +261,9 @@ impl CutShape {
             }
             Self::Sphere(SphereCut { center, radius }) => Box::new([1.0, *radius].into_iter().chain(*center)),
             Self::Box(BoxCut { low, high }) => Box::new([3.0].into_iter().chain(*low).chain(*high)),
+            Self::HalfSpace(HalfSpaceCut { normal, offset }) => {
+                Box::new([4.0, *offset].into_iter().chain(*normal))
+            }
             Self::Component(ComponentCut { seed, values }) => {
                 Box::new([2.0, values.low, values.high].into_iter().chain(*seed))
             }

@@ -4,8 +4,18 @@
 use serde_json::{Map, Value};
 
 /// Settings of a layer that are found at the top level, too.
-const LAYER_FIELDS: [&str; 9] =
-    ["range", "labels", "transfer", "lighting", "opacity_unit", "visibility", "blend", "edges", "materials"];
+const LAYER_FIELDS: [&str; 10] = [
+    "range",
+    "labels",
+    "transfer",
+    "lighting",
+    "opacity_unit",
+    "visibility",
+    "blend",
+    "edges",
+    "materials",
+    "ignores_cuts",
+];
 
 /// Path of the first layer, before the path of a setting in it.
 const FIRST_LAYER: &str = "layers.0.";

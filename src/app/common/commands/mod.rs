@@ -252,6 +252,7 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::CutByShape(CutShapeKind::Outline),
         AppCommand::CutByShape(CutShapeKind::Sphere),
         AppCommand::CutByShape(CutShapeKind::Box),
+        AppCommand::CutByShape(CutShapeKind::HalfSpace),
         AppCommand::CutByShape(CutShapeKind::Component),
         AppCommand::RemoveShapeCuts,
         AppCommand::PickMaterials,

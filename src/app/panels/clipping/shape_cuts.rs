@@ -4,14 +4,17 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{DragValue, Ui};
 
-use super::super::controls::{row, unlabelled_row};
+use super::super::controls::{NumberRow, row, unlabelled_row};
 use super::cut_effect_row;
 use crate::app::common::commands::AppCommand;
 use crate::app::text::{self, ControlText};
 use chiaroscuro_scene::{
-    BoxCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, OutlineCut,
-    ShapeCut,
+    BoxCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_PLANE_OFFSET, MAX_SHAPE_CUTS, MIN_CROP_EXTENT,
+    OutlineCut, ShapeCut,
 };
+
+/// Number of buttons that fit beside a label, with wide letters, too.
+const BUTTONS_IN_ROW: usize = 2;
 
 /// Shows the buttons, and a row for each cut in the order in which they are applied.
 pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], commands: &mut Vec<AppCommand>) {
@@ -25,9 +28,13 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], comm
             }
         });
     };
-    let (first, second) = CutShapeKind::ALL.split_at(CutShapeKind::ALL.len() / 2);
-    row(ui, text::cuts::BY_SHAPE, |ui| buttons(ui, first));
-    unlabelled_row(ui, |ui| buttons(ui, second));
+    for (line, kinds) in CutShapeKind::ALL.chunks(BUTTONS_IN_ROW).enumerate() {
+        if line == 0 {
+            row(ui, text::cuts::BY_SHAPE, |ui| buttons(ui, kinds));
+        } else {
+            unlabelled_row(ui, |ui| buttons(ui, kinds));
+        }
+    }
     let mut removed = None;
     for (at, cut) in cuts.iter_mut().enumerate() {
         ui.push_id(("shape-cut", at), |ui| {
@@ -39,8 +46,14 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], comm
                 CutAction::Keep => cut_effect_row(ui, text::cuts::OUTSIDE_SHAPE, &mut cut.effect),
                 CutAction::Restore => {}
             }
-            if let CutShape::Box(bounds) = &mut cut.shape {
-                corner_rows(ui, bounds, dims);
+            match &mut cut.shape {
+                CutShape::Box(bounds) => corner_rows(ui, bounds, dims),
+                CutShape::HalfSpace(plane) => {
+                    let offset =
+                        NumberRow::new(text::cuts::HALF_OFFSET, -MAX_PLANE_OFFSET..=MAX_PLANE_OFFSET);
+                    offset.show(ui, &mut plane.offset, 0.0);
+                }
+                CutShape::Outline(_) | CutShape::Sphere(_) | CutShape::Component(_) => {}
             }
         });
     }

@@ -29,6 +29,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFa
         }
         visibility_rows(ui, &mut settings.layers, selected.layer);
     }
+    let is_layered = settings.is_layered();
     let layer = settings.layer_at_mut(selected.layer);
     if count > 1 {
         if selected.layer > 0 {
@@ -36,6 +37,10 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFa
             choice_row(ui, text::data::LAYER_BLEND, &mut layer.blend, &blends);
         }
         strength_row(ui, layer);
+        // Tints have no matter that could stay.
+        if is_layered {
+            switch_row(ui, text::data::LAYER_IGNORES_CUTS, &mut layer.ignores_cuts);
+        }
     }
     if layer.labels.is_empty() {
         let edges = NumberRow::new(text::data::LAYER_EDGES, 0.0..=MAX_EDGES);

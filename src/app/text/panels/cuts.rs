@@ -36,7 +36,7 @@ pub(crate) const IN_FRONT: ControlText = control_text("In front", EFFECT_TIP);
 
 /// Effect of a cut by a shape on the part inside it, or on all else if that part is kept.
 pub(crate) const INSIDE_SHAPE: ControlText = control_text("Inside", EFFECT_TIP);
-pub(crate) const OUTSIDE_SHAPE: ControlText = control_text("Outside", EFFECT_TIP);
+pub(crate) const OUTSIDE_SHAPE: ControlText = control_text("All else", EFFECT_TIP);
 
 pub(crate) const REMOVED: &str = "Hidden, no shadow";
 pub(crate) const HIDDEN: &str = "Hidden, shadow stays";
@@ -77,6 +77,10 @@ pub(crate) fn cut_by_shape(kind: CutShapeKind) -> ControlText {
             "Cut the near corner",
             "Hides the eighth of the volume that faces you, so that three faces of its inside are seen",
         ),
+        CutShapeKind::HalfSpace => control_text(
+            "Cut the near half",
+            "Hides everything in front of a plane through the middle that faces you",
+        ),
         CutShapeKind::Component => {
             control_text("Cut a part", "Hides the part that you click, with all that is connected with it")
         }
@@ -89,6 +93,7 @@ pub(crate) fn shape_name(kind: CutShapeKind) -> &'static str {
         CutShapeKind::Outline => "Outline",
         CutShapeKind::Sphere => "Ball",
         CutShapeKind::Box => "Corner",
+        CutShapeKind::HalfSpace => "Near half",
         CutShapeKind::Component => "Part",
     }
 }
@@ -111,7 +116,9 @@ pub(crate) fn shape_hint(kind: CutShapeKind, is_reversed: bool) -> &'static str 
         (CutShapeKind::Outline, true) => "Draw around what to keep, or click it: all else is hidden",
         (CutShapeKind::Sphere, false) => "Click to hide a ball · wheel: size · with Shift, it is shown again",
         (CutShapeKind::Sphere, true) => "Click to show what was hidden in the ball · wheel: size",
-        (CutShapeKind::Box, _) => "The sides of a corner are set in the section Clipping",
+        (CutShapeKind::Box | CutShapeKind::HalfSpace, _) => {
+            "The sides of a corner or a half are set in the section Clipping"
+        }
         (CutShapeKind::Component, false) => "Click the part to hide · with Shift, it is kept alone",
         (CutShapeKind::Component, true) => "Click the part to keep: all else is hidden",
     }
@@ -119,6 +126,10 @@ pub(crate) fn shape_hint(kind: CutShapeKind, is_reversed: bool) -> &'static str 
 
 /// Tooltip of the first and last voxel that a corner hides.
 pub(crate) const CORNER_EXTENT_TIP: &str = "First and last voxel of the corner";
+
+/// Place of the plane of a half-space.
+pub(crate) const HALF_OFFSET: ControlText =
+    control_text("Plane at", "Distance from the middle of the volume, in the direction that the plane faces");
 
 /// Accessible name of the first voxel of a corner along an axis.
 pub(crate) fn corner_from(axis: &str) -> String {

@@ -44,6 +44,10 @@ pub(crate) const LAYER_OUTLINES: ControlText = control_text(
     "Outlines only",
     "Leaves the borders of labels, and the scan shows its own colours inside of them",
 );
+pub(crate) const LAYER_IGNORES_CUTS: ControlText = control_text(
+    "Never cut",
+    "Leaves the layer whole where the crop box, the clip plane and shapes cut others, such as vessels in a cut head",
+);
 pub(crate) const LAYER_BLEND: ControlText =
     control_text("Layer does", "Effect of the layer on those before it");
 pub(crate) const LAYER_STRENGTH: ControlText =

@@ -109,6 +109,7 @@ pub(crate) const KIND_OF_DATA: &str =
     "kind of data type ct hounsfield scalar signed mask labels segmentation dark on bright";
 pub(crate) const RANGE: &str = "window level contrast range min max clamp values";
 pub(crate) const EDGES: &str = "gradient magnitude border boundary surface interface contour modulation";
+pub(crate) const NEVER_CUT: &str = "cut crop clip by layer whole uncut intact keep cutaway";
 pub(crate) const OUTLINES: &str = "contour border label outline segmentation boundary";
 pub(crate) const LAYERS: &str = "channels overlay segmentation mask fusion second volume merge";
 pub(crate) const OPACITY_UNIT: &str = "opacity unit density scale extinction thickness";

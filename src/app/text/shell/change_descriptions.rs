@@ -31,8 +31,18 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         kept,
         volume,
     } = before;
-    let VolumeLayer { range, labels, transfer, lighting, opacity_unit, visibility, blend, edges, materials } =
-        layers.first();
+    let VolumeLayer {
+        range,
+        labels,
+        transfer,
+        lighting,
+        opacity_unit,
+        visibility,
+        blend,
+        edges,
+        materials,
+        ignores_cuts,
+    } = layers.first();
     let layer_after = after.layer();
     let with = |differs: bool, words: &str| differs.then(|| words.to_owned());
     let parts = [
@@ -45,7 +55,11 @@ pub(crate) fn describe_change(before: &Settings, after: &Settings) -> Option<Str
         with(*opacity_unit != layer_after.opacity_unit, "change opacity unit"),
         with(*edges != layer_after.edges, "change edges"),
         with(*materials != layer_after.materials, "change materials"),
-        with((visibility, blend) != (&layer_after.visibility, &layer_after.blend), "change layer"),
+        with(
+            (visibility, blend, ignores_cuts)
+                != (&layer_after.visibility, &layer_after.blend, &layer_after.ignores_cuts),
+            "change layer",
+        ),
         with(!layers.iter().skip(1).eq(after.layers.iter().skip(1)), describe_layers(before, after)),
         with(*mode != after.mode, describe_mode(mode, &after.mode)),
         with(*shading != after.shading, "change shading"),

@@ -91,7 +91,7 @@ impl ShapeCutTool {
                 response.clicked() || wheel_notches(ui) != 0.0
             }
             // Not chosen: it is cut at once.
-            CutShapeKind::Box => false,
+            CutShapeKind::Box | CutShapeKind::HalfSpace => false,
             CutShapeKind::Component => {
                 self.pick_component(response, settings, volume);
                 response.clicked()

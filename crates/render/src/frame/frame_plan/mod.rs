@@ -133,12 +133,14 @@ impl Renderer {
             known.key().content_id == keys.volume.content_id && known.product.has_voxel_type_of(dataset)
         });
         let is_same_mask = known.as_ref().is_some_and(|known| known.key().mask == keys.volume.mask);
+        let known_mask = known.as_ref().and_then(|known| known.product.volume.volume.mask().cloned());
         let known_dataset = known.as_ref().map(|known| known.product.dataset.clone());
         let reused = known
             .map_or_else(ReusedTextures::default, |known| LoadedVolume::into_reused(known, &keys.volume));
-        let mask = match &known_dataset {
-            Some(known) if is_same_mask => known.volume().mask().cloned(),
-            _ => mask_from_shapes(dataset.volume(), request.settings.cuts.enabled_shapes()).map(Arc::new),
+        let mask = if is_same_mask {
+            known_mask
+        } else {
+            mask_from_shapes(dataset.volume(), request.settings.cuts.enabled_shapes()).map(Arc::new)
         };
         let known =
             known_dataset.filter(|known| known.volume().density_mapping() == keys.volume.density_mapping);

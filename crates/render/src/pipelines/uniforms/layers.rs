@@ -14,7 +14,7 @@ pub struct LayerUniform {
     pub opacity_unit: f32,
     pub edges: f32,
     pub material_count: u32,
-    pub pad0: u32,
+    pub ignores_cuts: u32,
     pub pad1: u32,
     pub pad2: u32,
     pub materials: [MaterialUniform; MAX_MATERIAL_BOXES],

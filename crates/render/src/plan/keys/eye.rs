@@ -163,6 +163,8 @@ impl EyeKey {
             blend: _,
             edges: _,
             materials: _,
+            // Part of the key of the volume, whose mask it changes.
+            ignores_cuts: _,
         } = layers.first();
         let lit = ActiveLights::from_settings(settings);
         let own = if combined.is_some() { lit.unshadowed() } else { lit.all() };

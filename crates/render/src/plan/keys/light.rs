@@ -134,6 +134,8 @@ impl LightKey {
             blend: _,
             edges: _,
             materials: _,
+            // Part of the key of the volume, whose mask it changes.
+            ignores_cuts: _,
         } = layers.first();
         let light = lights.get(index)?.resolve(camera);
         let wanted = shadows.algorithm.has_volume() && light.needs_volume();

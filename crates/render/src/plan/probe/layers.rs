@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::arriving_light::ArrivingLight;
 use super::rays::VolumeRays;
 use super::{Probe, probe};
-use chiaroscuro_scene::{LayerBlend, LayerVisibility, RenderMode, Settings};
+use chiaroscuro_scene::{Clipping, LayerBlend, LayerVisibility, RenderMode, Settings};
 use chiaroscuro_volume::Dataset;
 
 /// Traces a ray (in scene space) through the layers that add material, and returns the probe at what is seen first.
@@ -26,7 +26,15 @@ pub fn probe_layers(
         let layer = settings.layer_at(index);
         (index == 0 || layer.blend == LayerBlend::Add) && layer.visibility != LayerVisibility::Hidden
     });
-    let looks: Vec<_> = adding.map(|index| (index, settings.clone().with_first_exchanged(index))).collect();
+    let never_cut = settings.layers_never_cut();
+    let looks = adding.map(|index| {
+        let mut look = settings.clone().with_first_exchanged(index);
+        if never_cut >> index & 1 == 1 {
+            look.cuts = Clipping::default();
+        }
+        (index, look)
+    });
+    let looks: Vec<_> = looks.collect();
     let seen = looks.iter().filter(|(index, _)| settings.layer_at(*index).is_seen());
     let found = seen.filter_map(|(index, look)| {
         let found = probe(dataset.fields()[*index].volume(), look, origin, direction)?;

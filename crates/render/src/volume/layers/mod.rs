@@ -23,6 +23,17 @@ pub(crate) struct BakedLayers {
     are_tints: bool,
 }
 
+/// Layers whose voxels a mask hides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum MaskUse {
+    /// None of them: there is no mask, or layers only tint.
+    Unused,
+    /// All layers, and so their sum.
+    AllLayers,
+    /// Those that do not ignore cuts.
+    SomeLayers,
+}
+
 impl BakedLayers {
     /// Bakes the layers of a volume for one side: `has_effect` tells if a layer is seen, or attenuates light, and `bake`
     /// makes its table over a range of values.
@@ -104,6 +115,7 @@ impl BakedLayers {
                 is_label: u32::from(field.volume().shown_labels().is_some()),
                 opacity_unit: layer.opacity_unit_in_scene(scene) as f32,
                 edges: layer.edges as f32,
+                ignores_cuts: u32::from(layer.is_never_cut()),
                 ..LayerUniform::default()
             };
         }
@@ -130,6 +142,18 @@ impl BakedLayers {
     /// Returns true if the layers are those that tint.
     pub(crate) fn are_tints(&self) -> bool {
         self.are_tints
+    }
+
+    /// Returns the layers whose voxels a mask hides.
+    pub(crate) fn mask_use(&self) -> MaskUse {
+        let layers = self.parameters.as_ref().map_or(&[][..], |parameters| &parameters.layers);
+        if self.are_tints {
+            MaskUse::Unused
+        } else if layers.iter().any(|layer| layer.ignores_cuts == 1) {
+            MaskUse::SomeLayers
+        } else {
+            MaskUse::AllLayers
+        }
     }
 
     /// Returns the tables for one colour of light.

@@ -95,6 +95,11 @@ impl VolumeLayer {
         self.visibility != LayerVisibility::Hidden
     }
 
+    /// Returns true if the layer has an effect where cuts hide others.
+    pub fn is_never_cut(&self) -> bool {
+        self.ignores_cuts && self.casts_shadows()
+    }
+
     /// Returns the opacity unit in scene units, safe to divide by.
     pub fn opacity_unit_in_scene(&self, scene: &SceneSpace) -> f64 {
         self.opacity_unit.scene_units(scene).max(1e-9)
@@ -214,6 +219,12 @@ impl Settings {
         self.layer_composition() == LayerComposition::Tinted
     }
 
+    /// Returns the layers that stay whole where cuts hide others, a bit for each; none unless voxels are composed.
+    pub fn layers_never_cut(&self) -> u8 {
+        let never_cut = self.layers.iter().enumerate().filter(|(_, layer)| layer.is_never_cut());
+        if self.is_layered() { never_cut.fold(0, |bits, (at, _)| bits | 1 << at) } else { 0 }
+    }
+
     /// Returns the quantities that densities of the further fields represent.
     pub fn further_mappings(&self, id: &VolumeId) -> [Option<DensityMapping>; MAX_FIELDS - 1] {
         let mapping = |at: usize| {
@@ -244,6 +255,10 @@ impl Settings {
         }
         if drawn.is_layered() {
             drawn.sampling.classification = drawn.classification();
+            if drawn.layers.iter().any(VolumeLayer::is_never_cut) {
+                // Each layer is cut by itself, voxel by voxel.
+                drawn.cuts = drawn.cuts.by_shapes();
+            }
         } else {
             drawn = drawn.resolved_for(dataset.volume()).into_owned();
         }

@@ -46,6 +46,8 @@ pub struct VolumeLayer {
     /// Materials by value and change, at most [`crate::MAX_MATERIAL_BOXES`]. If there are any, and no labels, they take the
     /// place of the transfer functions.
     pub materials: Vec<MaterialBox>,
+    /// Leaves the layer whole where cuts hide others, if voxels are composed of several layers.
+    pub ignores_cuts: bool,
 }
 
 impl Default for VolumeLayer {
@@ -60,6 +62,7 @@ impl Default for VolumeLayer {
             blend: LayerBlend::Add,
             edges: 0.0,
             materials: Vec::new(),
+            ignores_cuts: false,
         }
     }
 }

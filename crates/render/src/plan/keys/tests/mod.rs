@@ -137,6 +137,8 @@ fn every_setting_causes_what_the_design_says() {
         ("visibility", "casts_shadows", ChangeEffect::Bounces),
         ("blend", "gate", ChangeEffect::Nothing), // There is no layer before the first.
         ("edges", "0.1", ChangeEffect::AllLights),
+        // A single layer is cut in any case.
+        ("ignores_cuts", "true", ChangeEffect::Nothing),
         ("materials", r#"[{"values": [0, 9], "changes": [0, 9]}]"#, ChangeEffect::AllLights),
         // Volumes of light stay, but a projection without light needs none.
         ("mode.kind", "maximum", ChangeEffect::Eye),
