@@ -77,6 +77,7 @@ impl eframe::App for App {
             shows_start,
         };
         self.panels.show(ui, &mut inputs);
+        self.editor.document.highlighted_material = self.panels.editor.take_hovered_material();
         if shows_start {
             self.show_start(ui, &mut commands);
         } else {

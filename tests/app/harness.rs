@@ -231,6 +231,11 @@ pub(crate) fn picture(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
     harness.run_steps(12);
     // The number of frames until the picture is finished depends on the machine; a note lasts for some seconds.
     wait_until(harness, "a note stays", |app| app.is_idle() && !app.shows_note());
+    picture_with_pointer(harness)
+}
+
+/// Bytes and size of the picture in the window as it is, with the pointer where it is.
+pub(crate) fn picture_with_pointer(harness: &mut Harness<'_, App>) -> (Vec<u8>, [u32; 2]) {
     let (rect, size) = harness.state().viewport_rect().expect("a picture");
     let image = harness.render().expect("a picture of the window");
     let [x, y] = [rect.min.x, rect.min.y].map(|at| (at * harness.ctx.pixels_per_point()).round() as u32);

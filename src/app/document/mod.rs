@@ -18,6 +18,8 @@ mod outline;
 mod saved_views;
 pub(super) mod session;
 
+use std::borrow::Cow;
+
 use self::auto_balance::AutoBalance;
 use self::corrections::CorrectionState;
 use self::data_kind::KindOverride;
@@ -43,6 +45,8 @@ pub(crate) struct Document {
     pub selected_light: usize,
     /// Index of the layer whose curve and range are edited; the first one is if there is no such layer.
     pub selected_layer: usize,
+    /// Layer and index of the material that is bright in the picture, while the pointer is over its box.
+    pub highlighted_material: Option<(usize, usize)>,
     /// Further volumes that the record of the look names; those that could not be opened stay in what is saved.
     pub recorded_layers: Vec<FieldOrigin>,
     /// Undo history of the look.
@@ -70,6 +74,7 @@ impl Default for Document {
             volume: None,
             selected_light: 0,
             selected_layer: 0,
+            highlighted_material: None,
             recorded_layers: Vec::new(),
             history: History::default(),
             session: None,
@@ -94,6 +99,14 @@ impl Document {
             orientation: OrientationTasks::default(),
             outline_cache: OutlineCache::default(),
             ..self
+        }
+    }
+
+    /// Returns the settings that the picture shows: those of the look, with a highlighted material.
+    pub(crate) fn shown_settings(&self) -> Cow<'_, Settings> {
+        match self.highlighted_material {
+            None => Cow::Borrowed(&self.settings),
+            Some((layer, material)) => Cow::Owned(self.settings.with_material_highlighted(layer, material)),
         }
     }
 

@@ -91,6 +91,11 @@ const KEY_STEP: [f64; 2] = [1.0 / 256.0, 0.01];
 const WIDE_LAYOUT_WIDTH: f32 = 1100.0;
 
 impl TransferEditor {
+    /// Takes layer and index of the material under the pointer, if the plane of materials has just been shown.
+    pub(super) fn take_hovered_material(&mut self) -> Option<(usize, usize)> {
+        Some((self.layer, self.materials.take_hovered()?))
+    }
+
     /// Shows the editor of the selected layer in the whole of `ui`. `volume`: facts about the first volume; `marks`:
     /// what the picture marks of it.
     pub(super) fn ui(

@@ -2,11 +2,13 @@
 
 use chiaroscuro::app::App;
 use chiaroscuro_scene::MaterialBox;
-use eframe::egui::{Key, Modifiers, pos2};
+use eframe::egui::{Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{click, click_at, drag, picture, wait_until_idle, window_without_overlays};
+use crate::harness::{
+    click, click_at, drag, picture, picture_with_pointer, wait_until_idle, window_without_overlays,
+};
 
 fn materials(harness: &Harness<'_, App>) -> Vec<MaterialBox> {
     harness.state().settings().layer().materials.clone()
@@ -40,6 +42,18 @@ fn a_curve_becomes_boxes_that_are_drawn_and_removed() {
     assert_eq!(two.len(), 2);
     assert!(two[1].values[0] < two[1].values[1] && two[1].changes[0] < two[1].changes[1], "{:?}", two[1]);
     assert!(two[1].color != two[0].color);
+    // Under the pointer, a material is bright, and others are dark; outside of the plane, nothing is changed.
+    let away = plane.left_top() - vec2(0.0, 60.0);
+    let picture_at = |harness: &mut Harness<'_, App>, at| {
+        harness.hover_at(at);
+        harness.run_steps(3);
+        wait_until_idle(harness);
+        picture_with_pointer(harness).0
+    };
+    let both = picture_at(&mut harness, away);
+    let highlighted = picture_at(&mut harness, at(0.085, 0.45));
+    assert!(highlighted != both, "one of two");
+    assert!(picture_at(&mut harness, away) == both);
     undo(&mut harness);
     assert_eq!(materials(&harness).len(), 1, "a drag is one step");
     assert!(picture(&mut harness).0 == one);
@@ -65,7 +79,7 @@ fn parts_that_are_clicked_become_materials() {
     click_at(&mut harness, area.center(), 1);
     harness.run_steps(3);
     assert_eq!(materials(&harness), [], "one alone would hide the other");
-    click_at(&mut harness, area.center() + eframe::egui::vec2(0.0, 0.1 * area.height()), 1);
+    click_at(&mut harness, area.center() + vec2(0.0, 0.1 * area.height()), 1);
     harness.run_steps(3);
     wait_until_idle(&mut harness);
     assert_eq!(materials(&harness).len(), 2);

@@ -54,7 +54,7 @@ impl LookEditor {
 
     /// Returns the looks that the picture shows: the current one, or the two of a comparison.
     pub(crate) fn shown_looks(&self) -> ComparedLooks {
-        self.viewport.compare.looks(&self.document.settings)
+        self.viewport.compare.looks(&self.document.shown_settings())
     }
 
     /// Returns true if the full-quality picture of the current settings is on screen, and the volume is corrected as

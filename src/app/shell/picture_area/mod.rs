@@ -227,7 +227,8 @@ impl PictureInputs<'_> {
         if canvas.size.contains(&0) || self.document.is_correcting(self.viewport.dataset().as_ref()) {
             return Ok(());
         }
-        let (settings, now_s) = (&self.document.settings, ui.input(|input| input.time));
+        let settings = &*self.document.shown_settings();
+        let now_s = ui.input(|input| input.time);
         let looks = match self.tools.camera_animation.current_view(&settings.camera, now_s) {
             Some(camera) => {
                 ui.ctx().request_repaint();

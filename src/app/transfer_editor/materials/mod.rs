@@ -50,6 +50,8 @@ pub(super) struct MaterialEditor {
     selected: usize,
     histogram: HistogramCache,
     drag: Option<BoxDrag>,
+    /// Index of the material under the pointer, while no box is dragged.
+    hovered: Option<usize>,
 }
 
 impl MaterialEditor {
@@ -73,6 +75,8 @@ impl MaterialEditor {
         let plane = MaterialPlane { axes, largest: self.histogram.largest_change() * axes.range.span() };
         self.drag(&response, &plane, layer);
         self.edit_by_keys(ui, &response, layer);
+        let is_under = |at| layer.materials.iter().rposition(|material| plane.rect(material).contains(at));
+        self.hovered = response.hover_pos().filter(|_| self.drag.is_none()).and_then(is_under);
         plane.paint(ui, self.histogram.texture(), &layer.materials, self.selected);
         let painter = ui.painter_at(area);
         let format = |value: f64| plot::format_value(value, axes.range);
@@ -86,6 +90,11 @@ impl MaterialEditor {
             let words = text::materials::readout(&format(value), &format(change));
             plot::paint_readout_text(ui, &axes, at, words);
         }
+    }
+
+    /// Takes the index of the material under the pointer in the last frame, if the editor was shown then.
+    pub(super) fn take_hovered(&mut self) -> Option<usize> {
+        self.hovered.take()
     }
 
     /// Shows the buttons that add, select and remove materials, and the fields of the selected one.

@@ -107,6 +107,29 @@ impl MaterialBox {
     }
 }
 
+/// Share of white in the colour of a highlighted material, and of its own colour in that of others.
+const HIGHLIGHT: f32 = 0.5;
+const DIMMED: f32 = 0.15;
+
+impl Settings {
+    /// Returns the settings with one material of a layer in a bright colour, and all others in dark greys. Opacities
+    /// stay, and with them light.
+    #[must_use]
+    pub fn with_material_highlighted(&self, layer: usize, material: usize) -> Self {
+        let mut settings = self.clone();
+        for (at, shown) in settings.layers.iter_mut().enumerate() {
+            for (index, shown) in shown.materials.iter_mut().enumerate() {
+                shown.color = if (at, index) == (layer, material) {
+                    shown.color.map(|c| c + (1.0 - c) * HIGHLIGHT)
+                } else {
+                    [DIMMED * shown.color.iter().sum::<f32>() / 3.0; 3]
+                };
+            }
+        }
+        settings
+    }
+}
+
 /// Returns the optical depth of an opacity.
 fn depth(opacity: f64) -> f64 {
     -(-opacity.clamp(0.0, crate::MAX_OPACITY)).ln_1p()
@@ -178,12 +201,29 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::{MaterialBox, transfer_at_any_change};
+    use crate::Settings;
     use chiaroscuro_volume::ValueRange;
 
     const RANGE: ValueRange = ValueRange::new(-100.0, 300.0);
 
     fn material(values: [f64; 2], opacity: f64) -> MaterialBox {
         MaterialBox { values, changes: [0.0, 1e3], opacity, ..MaterialBox::default() }
+    }
+
+    #[test]
+    fn a_highlight_changes_colors_alone() {
+        let material = |color| MaterialBox { color, opacity: 0.3, ..MaterialBox::default() };
+        let mut settings = Settings::default();
+        settings.layer_mut().materials = vec![material([0.2, 0.4, 0.6]), material([0.9, 0.0, 0.0])];
+        let shown = settings.with_material_highlighted(0, 0);
+        let [bright, dark] = shown.layer().materials[..] else { panic!("two materials") };
+        assert!((0..3).all(|c| bright.color[c] > settings.layer().materials[0].color[c]), "{bright:?}");
+        assert!(dark.color[0] == dark.color[2] && dark.color[0] < 0.1, "{dark:?}");
+        let mut again = shown.clone();
+        for (material, own) in again.layer_mut().materials.iter_mut().zip(&settings.layer().materials) {
+            material.color = own.color;
+        }
+        assert_eq!(again, settings);
     }
 
     #[test]
