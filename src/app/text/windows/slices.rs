@@ -22,8 +22,10 @@ pub(crate) const WIDTH: ControlText = control_text(
     "Window",
     "The width of the window: values from black to white; drag a slice with the right button, to the right for less contrast",
 );
-pub(crate) const COLORED: ControlText =
-    control_text("As in the picture", "Adds the colours of the transfer function, by their opacity");
+pub(crate) const COLORED: ControlText = control_text(
+    "As in the picture",
+    "Adds the colours of the transfer function and of other layers, by their opacity",
+);
 pub(crate) const HINT: &str = "Drag: move the cursor\nWheel: next slice\nRight drag: window and level";
 
 /// Display conventions for left and right of a body.

@@ -9,6 +9,7 @@ use eframe::egui::{
 
 use super::plane::{BodyPlane, SlicePlane};
 use super::slice_image::{GreyWindow, color_table, render_slice};
+use super::slice_overlay::SliceOverlay;
 use crate::app::common::theme;
 use crate::app::text;
 use crate::app::viewport::mouse_navigation::wheel_notches;
@@ -19,8 +20,17 @@ use chiaroscuro_volume::{DensityMapping, ValueRange, Volume};
 /// Distance from the edges of a slice to its letters, in points.
 const LETTER_MARGIN: f32 = 3.0;
 
-/// Inputs of a texture: content id of the volume, plane, slice index, grey levels, colours.
-type SliceTextureKey = (u64, SlicePlane, usize, GreyWindow, Option<TransferFunction>);
+/// Inputs of a texture: content id of the volume, plane, slice index, grey levels, colours, further layers.
+type SliceTextureKey = (u64, SlicePlane, usize, GreyWindow, Option<TransferFunction>, Vec<SliceOverlay>);
+
+/// Colours of a slice: those of the first layer, and of further ones over it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SliceColors<'a> {
+    /// Transfer function of the first layer.
+    pub transfer: &'a TransferFunction,
+    /// Layers that are blended over it.
+    pub further: &'a [SliceOverlay],
+}
 
 /// Plane of a cut, and its size on screen.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +56,7 @@ impl SliceCut {
         volume: &Arc<Volume>,
         (cursor, wheel_fraction): (&mut [usize; 3], &mut f64),
         grey_window: &mut GreyWindow,
-        colors: Option<&TransferFunction>,
+        colors: Option<SliceColors<'_>>,
     ) {
         self.update_texture(ui, plane, volume, cursor[plane.normal_axis], *grey_window, colors);
         let Some(texture) = &self.texture else { return };
@@ -100,9 +110,11 @@ impl SliceCut {
         volume: &Arc<Volume>,
         at: usize,
         grey: GreyWindow,
-        colors: Option<&TransferFunction>,
+        colors: Option<SliceColors<'_>>,
     ) {
-        let what = (volume.content_id(), plane, at, grey, colors.cloned());
+        let further = colors.map_or(&[][..], |colors| colors.further);
+        let colors = colors.map(|colors| colors.transfer);
+        let what = (volume.content_id(), plane, at, grey, colors.cloned(), further.to_vec());
         if self.texture_key.as_ref() == Some(&what) {
             return;
         }
@@ -112,7 +124,10 @@ impl SliceCut {
         let is_by_label = colors.is_some() && volume.shown_labels().is_some();
         let shown = if is_by_label { DensityMapping::Labels } else { greys };
         let volume = volume.with_density_mapping(shown);
-        let image = render_slice(&volume, &plane, at, &color_table(&volume, grey, colors));
+        let mut image = render_slice(&volume, &plane, at, &color_table(&volume, grey, colors));
+        for layer in further {
+            layer.blend_over(&mut image, &plane, at);
+        }
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             empty => *empty = Some(ui.ctx().load_texture("slice", image, TextureOptions::LINEAR)),

@@ -4,15 +4,17 @@
 mod cut;
 pub(crate) mod plane;
 pub(crate) mod slice_image;
+mod slice_overlay;
 
 use std::sync::Arc;
 
 use eframe::egui::{self, DragValue, Painter, Stroke, Ui};
 use glam::DVec3;
 
-use self::cut::{CutGeometry, SliceCut};
+use self::cut::{CutGeometry, SliceColors, SliceCut};
 use self::plane::{SlicePlane, ViewingConvention};
 use self::slice_image::GreyWindow;
+use self::slice_overlay::SliceOverlay;
 use super::{SceneTool, ToolRequest, ToolScene};
 use crate::app::common::dock::ToolWindow;
 use crate::app::common::theme;
@@ -41,6 +43,8 @@ const MIN_WINDOW_SHARE: f64 = 1e-3;
 struct SliceLook<'a> {
     /// Transfer function of the settings as they are drawn.
     transfer: &'a TransferFunction,
+    /// Further layers, if colours are shown.
+    further: &'a [SliceOverlay],
     /// Settings of the picture.
     settings: &'a Settings,
 }
@@ -81,7 +85,16 @@ impl SceneTool for SlicesWindow {
             && let (Some(dataset), Some(facts)) = (&scene.dataset, scene.volume)
         {
             let as_drawn = scene.settings.resolved_for(dataset.volume());
-            let look = SliceLook { transfer: &as_drawn.layer().transfer, settings: scene.settings };
+            let further = if self.uses_colors {
+                SliceOverlay::from_dataset(dataset, scene.settings)
+            } else {
+                Vec::new()
+            };
+            let look = SliceLook {
+                transfer: &as_drawn.layer().transfer,
+                further: &further,
+                settings: scene.settings,
+            };
             self.show_volume(ctx, dataset.volume(), facts, look);
         }
         None
@@ -144,7 +157,8 @@ impl SlicesWindow {
         grey: &mut GreyWindow,
         look: SliceLook<'_>,
     ) {
-        let colors = self.uses_colors.then_some(look.transfer);
+        let SliceLook { transfer, further, .. } = look;
+        let colors = self.uses_colors.then_some(SliceColors { transfer, further });
         let shape = CutGeometry { plane, edge: self.slice_edge };
         self.cuts[at].show(ui, shape, volume, (&mut self.cursor, &mut self.wheel_fraction), grey, colors);
     }
@@ -156,7 +170,7 @@ impl SlicesWindow {
         volume: &Volume,
         facts: &VolumeFacts,
         grey: &mut GreyWindow,
-        SliceLook { transfer, settings }: SliceLook<'_>,
+        SliceLook { transfer, settings, .. }: SliceLook<'_>,
     ) {
         let [x, y, z] = self.cursor;
         let value = volume.value(x, y, z);
@@ -289,7 +303,7 @@ mod tests {
         let mut slices = SlicesWindow { open: true, ..SlicesWindow::default() };
         let ctx = egui::Context::default();
         let settings = Settings::default();
-        let look = SliceLook { transfer: &settings.layer().transfer, settings: &settings };
+        let look = SliceLook { transfer: &settings.layer().transfer, further: &[], settings: &settings };
         for _ in 0..2 {
             let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
                 slices.show_volume(ui.ctx(), dataset.volume(), &facts, look);

@@ -86,6 +86,19 @@ impl ScreenAxis {
 }
 
 impl SlicePlane {
+    /// Iterates over the voxels of the slice at an index across the plane, row by row from the top left.
+    pub(super) fn voxels(&self, dims: [usize; 3], at: usize) -> impl Iterator<Item = [usize; 3]> + '_ {
+        let (right, up) = (&self.right, &self.up);
+        let [u, v] = [right.axis, up.axis];
+        (0..dims[v]).rev().flat_map(move |row| {
+            (0..dims[u]).map(move |column| {
+                let mut voxel = [at; 3];
+                (voxel[u], voxel[v]) = (right.nth_index(column, dims[u]), up.nth_index(row, dims[v]));
+                voxel
+            })
+        })
+    }
+
     /// Creates the plane across an axis of a grid without anatomical directions.
     pub(crate) fn across_axis(axis: usize) -> Self {
         let [right, up] = [[1, 2], [0, 2], [0, 1]][axis].map(|axis| ScreenAxis { axis, is_reversed: false });

@@ -8,7 +8,7 @@ use chiaroscuro_scene::TransferFunction;
 use chiaroscuro_volume::{ValueRange, Volume};
 
 /// Number of steps of the lookup table from densities to colours: four times as many greys as can be told apart.
-const LOOKUP_STEPS: usize = 1024;
+pub(super) const LOOKUP_STEPS: usize = 1024;
 
 /// Grey window: values that are shown black and white.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,27 +65,25 @@ pub(crate) fn color_table(
         let Some(transfer) = transfer else { return Color32::from_gray((level * 255.0).round() as u8) };
         let place = volume.table_range().value_at(density);
         let opacity = transfer.opacity_at(place) as f32;
-        let shown = transfer.sample(place).color.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)));
+        let shown = displayed_color(transfer.sample(place).color);
         let [r, g, b] = shown.map(|c| (level * 255.0 + (c - level * 255.0) * opacity).round() as u8);
         Color32::from_rgb(r, g, b)
     };
     (0..=LOOKUP_STEPS).map(color).collect()
 }
 
+/// Returns a linear colour as the screen shows it, 0 … 255.
+pub(super) fn displayed_color(linear: [f64; 3]) -> [f32; 3] {
+    linear.map(|c| f32::from(gamma_u8_from_linear_f32(c as f32)))
+}
+
 /// Renders the slice of a plane at an index across it, through a lookup table; missing voxels are black.
 pub(crate) fn render_slice(volume: &Volume, plane: &SlicePlane, at: usize, table: &[Color32]) -> ColorImage {
     let dims = volume.dims();
-    let [u, v] = [plane.right.axis, plane.up.axis];
-    let mut pixels = Vec::with_capacity(dims[u] * dims[v]);
-    for row in (0..dims[v]).rev() {
-        for column in 0..dims[u] {
-            let mut voxel = [at; 3];
-            (voxel[u], voxel[v]) = (plane.right.nth_index(column, dims[u]), plane.up.nth_index(row, dims[v]));
-            let color = |density: f64| table[((density * LOOKUP_STEPS as f64) as usize).min(LOOKUP_STEPS)];
-            pixels.push(volume.density_at(voxel).map_or(Color32::BLACK, color));
-        }
-    }
-    ColorImage::new([dims[u], dims[v]], pixels)
+    let color = |density: f64| table[((density * LOOKUP_STEPS as f64) as usize).min(LOOKUP_STEPS)];
+    let pixel = |voxel: [usize; 3]| volume.density_at(voxel).map_or(Color32::BLACK, color);
+    let pixels = plane.voxels(dims, at).map(pixel).collect();
+    ColorImage::new([plane.right.axis, plane.up.axis].map(|axis| dims[axis]), pixels)
 }
 
 #[cfg(test)]

@@ -69,6 +69,11 @@ impl LayerBlend {
         self == Self::Tint || self.channel().is_some()
     }
 
+    /// Returns true if the layer has a colour of its own, of its matter or of its tint.
+    pub fn has_own_color(self) -> bool {
+        self == Self::Add || self == Self::Tint
+    }
+
     /// Returns true if the layer has matter of its own.
     pub fn adds_matter(self) -> bool {
         self == Self::Add
