@@ -1,5 +1,7 @@
 //! Tests of the crop box and clip plane dragged in the picture, and of the slices beside it.
 
+use std::time::Instant;
+
 use chiaroscuro::app::App;
 use chiaroscuro_scene::{ClipEffect, CutAction, CutShape, ShapeCut};
 use eframe::egui::{self, Event, Modifiers, PointerButton, Role, Vec2, vec2};
@@ -8,7 +10,8 @@ use egui_kittest::kittest::Queryable as _;
 
 use crate::accessibility::expand_sections;
 use crate::harness::{
-    click, click_at, drag, picture, turn_wheel, wait_until_idle, window, window_without_overlays,
+    WAIT_TIMEOUT, click, click_at, drag, picture, picture_with_pointer, turn_wheel, wait_until_idle, window,
+    window_without_overlays,
 };
 
 #[test]
@@ -164,6 +167,18 @@ fn parts_are_cut_away_in_the_picture() {
     harness.hover_at(at);
     harness.event(key(true));
     harness.step();
+    let (plain, _) = picture_with_pointer(&mut harness);
+    // Once the pointer rests, the part is outlined.
+    let start = Instant::now();
+    loop {
+        harness.run_steps(10);
+        let (now, _) = picture_with_pointer(&mut harness);
+        let changed = now.chunks_exact(4).zip(plain.chunks_exact(4)).filter(|(a, b)| a != b).count();
+        if changed > 500 {
+            break;
+        }
+        assert!(start.elapsed() < WAIT_TIMEOUT, "{changed} pixels differ");
+    }
     click_at(&mut harness, at, 1);
     harness.event(key(false));
     harness.run_steps(2);
@@ -226,7 +241,8 @@ fn the_near_corner_is_cut_moved_and_shown_again() {
     wait_until_idle(&mut harness);
     let (behind, _) = picture(&mut harness);
     assert!(behind != whole && behind != without, "half of the chair");
-    harness.get_by_role_and_label(Role::Slider, "Plane at").set_value_accesskit(0.25);
+    harness.get_by_role_and_label(Role::Slider, "Plane at").set_value_accesskit(16.0);
     harness.run_steps(3);
-    assert_eq!(half(&harness).offset, 0.25);
+    // The chair is 128 mm high, two units of the scene.
+    assert!((half(&harness).offset - 0.25).abs() < 1e-3, "{:?}", half(&harness));
 }

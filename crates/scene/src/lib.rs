@@ -85,7 +85,7 @@ pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
 pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
 pub use self::settings_io::volume_location::VolumeLocation;
-pub use self::shape_mask::mask_from_shapes;
+pub use self::shape_mask::{ComponentSilhouette, mask_from_shapes};
 pub use self::transfer::baked_transfer::BakedTransfer;
 pub use self::transfer::color_map::{COLOR_MAPS, ColorMap};
 pub use self::transfer::colored_shadows::LIGHT_COLORS;

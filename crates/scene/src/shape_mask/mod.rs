@@ -4,11 +4,13 @@ mod component;
 mod front_depth;
 mod hidden_shares;
 mod outline;
+mod silhouette;
 
 use self::component::component_voxels;
 use self::front_depth::FrontDepth;
 use self::hidden_shares::{Distance, HiddenShares, RowChanges};
 use self::outline::OutlineDistance;
+pub use self::silhouette::ComponentSilhouette;
 use crate::{BoxCut, CutDepth, CutShape, ShapeCut, SphereCut};
 use chiaroscuro_volume::{Volume, VoxelMask, math::SceneSpace};
 use glam::DVec3;

@@ -53,7 +53,7 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>) {
         cut_effect_row(ui, text::cuts::IN_FRONT, &mut cuts.plane.effect);
     });
     ui.add_space(4.0);
-    shape_cuts::show(ui, &mut cuts.shapes, volume.dims, panels.commands);
+    shape_cuts::show(ui, &mut cuts.shapes, (volume, unit), panels.commands);
 }
 
 /// Row for the extent of the crop box along an axis, in voxels.

@@ -4,20 +4,26 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{DragValue, Ui};
 
-use super::super::controls::{NumberRow, row, unlabelled_row};
+use super::super::controls::{NumberRow, SceneUnit, row, unlabelled_row};
 use super::cut_effect_row;
 use crate::app::common::commands::AppCommand;
+use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text::{self, ControlText};
 use chiaroscuro_scene::{
-    BoxCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_PLANE_OFFSET, MAX_SHAPE_CUTS, MIN_CROP_EXTENT,
-    OutlineCut, ShapeCut,
+    BoxCut, CutAction, CutDepth, CutShape, CutShapeKind, MAX_SHAPE_CUTS, MIN_CROP_EXTENT, OutlineCut,
+    ShapeCut,
 };
 
 /// Number of buttons that fit beside a label, with wide letters, too.
 const BUTTONS_IN_ROW: usize = 2;
 
 /// Shows the buttons, and a row for each cut in the order in which they are applied.
-pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], commands: &mut Vec<AppCommand>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    cuts: &mut Vec<ShapeCut>,
+    (volume, unit): (&VolumeFacts, SceneUnit),
+    commands: &mut Vec<AppCommand>,
+) {
     let mut buttons = |ui: &mut Ui, kinds: &[CutShapeKind]| {
         ui.add_enabled_ui(cuts.len() < MAX_SHAPE_CUTS, |ui| {
             for &kind in kinds {
@@ -47,11 +53,11 @@ pub(super) fn show(ui: &mut Ui, cuts: &mut Vec<ShapeCut>, dims: [usize; 3], comm
                 CutAction::Restore => {}
             }
             match &mut cut.shape {
-                CutShape::Box(bounds) => corner_rows(ui, bounds, dims),
+                CutShape::Box(bounds) => corner_rows(ui, bounds, volume.dims),
                 CutShape::HalfSpace(plane) => {
-                    let offset =
-                        NumberRow::new(text::cuts::HALF_OFFSET, -MAX_PLANE_OFFSET..=MAX_PLANE_OFFSET);
-                    offset.show(ui, &mut plane.offset, 0.0);
+                    let reach = volume.scene.support_radius();
+                    let offset = NumberRow::new(text::cuts::HALF_OFFSET, -reach..=reach);
+                    offset.show_length(ui, &mut plane.offset, 0.0, unit);
                 }
                 CutShape::Outline(_) | CutShape::Sphere(_) | CutShape::Component(_) => {}
             }

@@ -2,6 +2,7 @@
 //! plane along its normal, and the normal is rotated by the tip of an arrow. [`shape_tool`] cuts by shapes.
 
 mod geometry;
+mod part_highlight;
 pub(crate) mod shape_tool;
 
 use eframe::egui::{

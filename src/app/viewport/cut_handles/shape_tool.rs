@@ -1,8 +1,11 @@
 //! Tool that cuts by shapes in the picture: an outline is drawn, a sphere is placed, a part is picked.
 
+use std::sync::Arc;
+
 use eframe::egui::{Align2, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Shape, Stroke, Ui, vec2};
 use glam::DVec3;
 
+use super::part_highlight::PartHighlight;
 use crate::app::common::{overlay_windows, shortcuts, theme};
 use crate::app::text;
 use crate::app::viewport::light_probe;
@@ -48,6 +51,8 @@ pub(crate) struct ShapeCutTool {
     center: Option<(Pos2, Option<DVec3>)>,
     /// True while Shift is held, for the hint.
     is_reversed: bool,
+    /// Outline of the part that a click would cut.
+    part: PartHighlight,
 }
 
 impl ShapeCutTool {
@@ -64,7 +69,7 @@ impl ShapeCutTool {
         ui: &Ui,
         response: &Response,
         settings: &mut Settings,
-        volume: &Volume,
+        volume: &Arc<Volume>,
     ) -> bool {
         let is_held = !shortcuts::is_typing(ui.ctx())
             && ui.input(|input| input.key_down(Key::Q) && !input.modifiers.command);
@@ -73,6 +78,11 @@ impl ShapeCutTool {
         }
         self.active = self.chosen.or((is_held || !self.corners.is_empty()).then_some(CutShapeKind::Outline));
         self.is_reversed = ui.input(|input| input.modifiers.shift);
+        if self.cuts_by_click() {
+            self.part.update(ui, response, settings, volume);
+        } else {
+            self.part.clear();
+        }
         let Some(kind) = self.active else { return false };
         if response.hovered() || response.dragged() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
@@ -96,6 +106,15 @@ impl ShapeCutTool {
                 self.pick_component(response, settings, volume);
                 response.clicked()
             }
+        }
+    }
+
+    /// Returns true if a click would cut the part under the pointer.
+    fn cuts_by_click(&self) -> bool {
+        match self.active {
+            Some(CutShapeKind::Component) => true,
+            Some(CutShapeKind::Outline) => self.corners.is_empty(),
+            _ => false,
         }
     }
 
@@ -178,6 +197,7 @@ impl ShapeCutTool {
     pub(crate) fn paint(&self, ui: &Ui, picture: Rect, camera: &Camera) {
         let Some(kind) = self.active else { return };
         let painter = ui.painter_at(picture);
+        self.part.paint(&painter, picture);
         let line: Vec<Pos2> = match (kind, self.center, self.radius) {
             (CutShapeKind::Sphere, Some((_, Some(center))), Some(radius)) => {
                 circle(camera, picture, center, radius)
