@@ -32,3 +32,39 @@ fn turntables_are_files_that_move_or_folders() {
     assert_eq!(outcome.code, Some(2), "{outcome:?}");
     assert!(outcome.stderr.contains("no light 9"), "{outcome:?}");
 }
+
+#[test]
+fn parts_of_a_turn_are_drawn_by_several_programs() {
+    let folder = ProgramFolder::new();
+    let turn = "turntable builtin:chair:16 --size 40x30 --frames 5";
+    folder.run_successfully(&format!("{turn} -o whole"));
+    folder.run_successfully(&format!("{turn} -o parts --part 2/2"));
+    assert!(!folder.path("parts/0001.png").exists() && folder.path("parts/0002.png").exists());
+    folder.run_successfully(&format!("{turn} -o parts --part 1/2"));
+    let is_same =
+        |at: u32| folder.read(&format!("whole/000{at}.png")) == folder.read(&format!("parts/000{at}.png"));
+    assert!((0..5).all(is_same));
+    // What a program left that was killed is drawn again, as is the picture of another look; others stay as they are.
+    let bytes = folder.read("parts/0003.png");
+    std::fs::write(folder.path("parts/0003.png"), &bytes[..bytes.len() / 2]).expect("a part of a file");
+    std::fs::remove_file(folder.path("parts/0002.png")).expect("it was there");
+    std::fs::copy(folder.path("parts/0001.png"), folder.path("parts/0004.png")).expect("another picture");
+    let written_at = |at: u32| {
+        let path = folder.path(&format!("parts/000{at}.png"));
+        std::fs::metadata(path).and_then(|file| file.modified()).expect("a file")
+    };
+    let before = written_at(1);
+    folder.run_successfully(&format!("{turn} -o parts --only 1..4"));
+    assert!((0..5).all(is_same));
+    assert_eq!(written_at(1), before, "it was there");
+    for (wrong, why) in [
+        ("-o parts --part 3/2", "expected a part"),
+        ("-o parts --only 3..5", "there is no frame 5"),
+        ("-o parts.gif --part 1/2", "into a folder"),
+        ("-o parts --part 1/2 --only 0..1", "cannot be used with"),
+    ] {
+        let outcome = folder.run(&format!("{turn} {wrong}"));
+        assert_eq!(outcome.code, Some(2), "{outcome:?}");
+        assert!(outcome.stderr.contains(why), "{outcome:?}");
+    }
+}

@@ -18,7 +18,7 @@ mod picture_file;
 mod png_file;
 mod rows;
 
-pub use animation::{Animation, AnimationFormat, AnimationSpec, frame_names};
+pub use animation::{Animation, AnimationFormat, AnimationSpec, FrameFolder, frame_names};
 pub use environment_map::read_environment_map;
 pub use environment_map_error::EnvironmentMapError;
 pub use error::{ExportError, ReadPictureError};

@@ -54,6 +54,9 @@ pub(crate) struct LoadArgs {
     /// Array to show, if a file holds several
     #[arg(long, value_name = "NAME")]
     array: Option<String>,
+    /// Graphics adapter to draw with, counted from the fastest, which is 0
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    adapter: usize,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -130,7 +133,7 @@ impl LoadArgs {
         // before those of the adapter.
         let begin = Instant::now();
         let (whole, read_ms, context) = std::thread::scope(|scope| {
-            let context = scope.spawn(GpuContext::headless);
+            let context = scope.spawn(|| GpuContext::headless_on(self.adapter));
             let whole = open_with_size_warning(source, &options);
             let read_ms = begin.elapsed().as_secs_f64() * 1000.0;
             (whole, read_ms, context.join())

@@ -6,7 +6,7 @@ mod gif;
 mod image_sequence;
 mod mp4;
 
-pub use image_sequence::frame_names;
+pub use image_sequence::{FrameFolder, frame_names};
 
 use std::path::{Path, PathBuf};
 
@@ -197,6 +197,12 @@ mod tests {
         assert_eq!(crate::read_record(&last).unwrap().as_deref(), Some("{\"at\": 2}"));
         assert_eq!(image::open(&last).unwrap().to_rgba8().get_pixel(1, 0).0, [120, 10, 30, 255]);
         assert_eq!(std::fs::read_dir(&path).unwrap().count(), 3);
+        // Frames may be written in any order.
+        let frames = FrameFolder::create(&path, &TEST_ANIMATION).unwrap();
+        let bytes = std::fs::read(&last).unwrap();
+        std::fs::remove_file(&last).unwrap();
+        frames.write(2, &picture(2), "{\"at\": 2}").unwrap();
+        assert!(std::fs::read(&last).unwrap() == bytes);
         // A shorter turn would be mixed with the remaining frames of this one.
         assert!(Animation::create(&path, &AnimationSpec { frames: 2, ..TEST_ANIMATION }).is_err());
         assert!(Animation::create(&path, &TEST_ANIMATION).is_ok());

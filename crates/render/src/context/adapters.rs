@@ -37,11 +37,11 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
-/// Returns the fastest adapter among those that the environment variables allow.
+/// Returns an adapter among those that the environment variables allow, counted from the fastest, which is 0.
 ///
 /// # Errors
-/// Returns [`GpuError::NoAdapter`] if there is none.
-pub(super) fn fastest_adapter() -> Result<wgpu::Adapter, GpuError> {
+/// Returns [`GpuError::NoAdapter`] if there is none with this number.
+pub(super) fn nth_fastest_adapter(number: usize) -> Result<wgpu::Adapter, GpuError> {
     let asked = |variable: &str| std::env::var(variable).ok().filter(|value| !value.is_empty());
     // Other packages may compile in further backends (GL), which lack the features that volume rendering needs.
     let enabled = wgpu::Instance::enabled_backend_features() & wgpu::Backends::PRIMARY;
@@ -65,10 +65,26 @@ pub(super) fn fastest_adapter() -> Result<wgpu::Adapter, GpuError> {
         wgpu::DeviceType::Cpu => 3,
         wgpu::DeviceType::Other => 4,
     });
-    adapters
-        .into_iter()
-        .next()
-        .ok_or_else(|| no_adapter_error(&names, &wanted, asked(BACKEND_VARIABLE).as_deref()))
+    let allowed: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    adapters.into_iter().nth(number).ok_or_else(|| {
+        if allowed.is_empty() {
+            no_adapter_error(&names, &wanted, asked(BACKEND_VARIABLE).as_deref())
+        } else {
+            no_number_error(number, &allowed)
+        }
+    })
+}
+
+/// Builds the error for a number that no adapter has; `names` are those of all adapters, from the fastest on.
+fn no_number_error(number: usize, names: &[String]) -> GpuError {
+    let listed: Vec<String> = names
+        .iter()
+        .enumerate()
+        .take(MAX_LISTED_ADAPTERS)
+        .map(|(at, name)| format!("{at} is {:?}", sanitised(name, MAX_NAME_BYTES)))
+        .collect();
+    let reason = format!("there is no adapter {number}: {}", listed.join(", "));
+    GpuError::NoAdapter { reason, help: "choose one of these numbers" }
 }
 
 /// Builds the error for a `WGPU_BACKEND` that selects no graphics API of this program.
@@ -119,6 +135,8 @@ mod tests {
         let message = no_adapter_error(&names, "nothing", None).to_string();
         assert!(message.contains("no adapter is called \"nothing\" (WGPU_ADAPTER_NAME)"), "{message}");
         assert!(message.contains("there are \"llvmpipe (LLVM 15)\", \"Card·[2J\"; give"), "{message}");
+        let said = no_number_error(2, &names).to_string();
+        assert!(said.contains("no adapter 2: 0 is \"llvmpipe (LLVM 15)\", 1 is \"Card"), "{said}");
         let said = no_adapter_error(&[], "nothing", Some("vulkan")).to_string();
         assert!(said.contains("no driver offers one (WGPU_BACKEND is \"vulkan\"); install"), "{said}");
         let said = no_backend_error("gl", wgpu::Backends::VULKAN).to_string();

@@ -69,9 +69,18 @@ impl GpuContext {
     /// # Errors
     /// Returns an error if there is no adapter, or if it cannot store the textures that the renderer needs.
     pub fn headless() -> Result<Self, GpuError> {
+        Self::headless_on(0)
+    }
+
+    /// Opens a device as [`Self::headless`] does, on one of the adapters from the fastest on, counted from 0: a machine
+    /// may have several graphics cards.
+    ///
+    /// # Errors
+    /// Returns an error as [`Self::headless`] does, or if there are fewer adapters.
+    pub fn headless_on(number: usize) -> Result<Self, GpuError> {
         let begin = Instant::now();
         check_driver_address_space()?;
-        let adapter = adapters::fastest_adapter()?;
+        let adapter = adapters::nth_fastest_adapter(number)?;
         let instance = begin.elapsed();
         let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
             .map_err(|err| GpuError::NoAdapter { reason: err.to_string(), help: ADAPTER_HELP })?;
