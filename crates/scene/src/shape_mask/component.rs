@@ -52,9 +52,19 @@ struct Candidates<'a> {
     is_candidate: &'a [bool],
 }
 
-/// Returns for each voxel whether it belongs to a component, among voxels that are visible so far; `None` if there is
-/// no voxel with its values near the seed.
-pub(super) fn component_voxels(volume: &Volume, hidden: &[u8], cut: &ComponentCut) -> Option<Vec<bool>> {
+/// Returns for each voxel whether it belongs to a component or to the skin around it, among voxels that are visible so
+/// far; `None` if there is no voxel with its values near the seed.
+pub(super) fn component_with_skin(volume: &Volume, hidden: &[u8], cut: &ComponentCut) -> Option<Vec<bool>> {
+    component_voxels(volume, hidden, cut, SKIN_VOXELS)
+}
+
+/// Returns for each voxel whether it belongs to a component, with so many layers of voxels around it.
+pub(super) fn component_voxels(
+    volume: &Volume,
+    hidden: &[u8],
+    cut: &ComponentCut,
+    layers: usize,
+) -> Option<Vec<bool>> {
     let ComponentCut { seed, values } = cut;
     let samples = volume.samples();
     let has_value = |voxel: usize| {
@@ -70,7 +80,7 @@ pub(super) fn component_voxels(volume: &Volume, hidden: &[u8], cut: &ComponentCu
     let first = candidates.nearest(index.to_array().map(|at| at as i64))?;
     let mut inside = candidates.connected(first);
     // The skin does not reach into other components.
-    for _ in 0..SKIN_VOXELS {
+    for _ in 0..layers {
         let grown = candidates.grown(&inside);
         inside = inside
             .par_iter()

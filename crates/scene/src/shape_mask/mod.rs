@@ -6,7 +6,7 @@ mod hidden_shares;
 mod outline;
 mod silhouette;
 
-use self::component::component_voxels;
+use self::component::component_with_skin;
 use self::front_depth::FrontDepth;
 use self::hidden_shares::{Distance, HiddenShares, RowChanges};
 use self::outline::OutlineDistance;
@@ -85,7 +85,7 @@ fn apply_shape(volume: &Volume, hidden: &mut HiddenShares, cut: &ShapeCut) {
             hidden.apply_distance(cut, rows(1.0), &inside, None);
         }
         CutShape::Component(component) => {
-            if let Some(inside) = component_voxels(volume, &hidden.from_eye, component) {
+            if let Some(inside) = component_with_skin(volume, &hidden.from_eye, component) {
                 hidden.apply_voxels(cut, &inside);
             }
         }
