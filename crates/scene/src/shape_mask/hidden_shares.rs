@@ -45,7 +45,7 @@ impl HiddenShares {
         &mut self,
         cut: &ShapeCut,
         rows: RowChanges,
-        inside: &Distance<'_>,
+        inside: &(impl Fn(DVec3) -> f64 + Sync),
         limit: Option<&Distance<'_>>,
     ) {
         for shares in self.changed_by(cut) {
@@ -81,7 +81,7 @@ fn apply_distance(
     hidden: &mut [u8],
     action: CutAction,
     RowChanges { dims: [nx, ny, _], max_change }: RowChanges,
-    voxels_inside: &Distance<'_>,
+    voxels_inside: &(impl Fn(DVec3) -> f64 + Sync),
     limit: Option<&Distance<'_>>,
 ) {
     hidden.par_chunks_mut(nx).enumerate().for_each(|(row, hidden)| {
