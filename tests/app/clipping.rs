@@ -205,7 +205,7 @@ fn the_near_corner_is_cut_moved_and_shown_again() {
     wait_until_idle(&mut harness);
     let (without, _) = picture(&mut harness);
     assert!(without != whole, "the corner is hidden");
-    // Its shadow is put back: other light falls on the cut faces.
+    // With the shadow of the corner, the cut faces are darker.
     let effect = |harness: &Harness<'_, App>| harness.state().settings().cuts.shapes[0].effect;
     click(&mut harness, "Inside: effect");
     click(&mut harness, "Hidden, shadow stays");

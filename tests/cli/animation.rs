@@ -44,7 +44,7 @@ fn parts_of_a_turn_are_drawn_by_several_programs() {
     let is_same =
         |at: u32| folder.read(&format!("whole/000{at}.png")) == folder.read(&format!("parts/000{at}.png"));
     assert!((0..5).all(is_same));
-    // What a program left that was killed is drawn again, as is the picture of another look; others stay as they are.
+    // Truncated and missing frames, and those of another look, are drawn again; others stay as they are.
     let bytes = folder.read("parts/0003.png");
     std::fs::write(folder.path("parts/0003.png"), &bytes[..bytes.len() / 2]).expect("a part of a file");
     std::fs::remove_file(folder.path("parts/0002.png")).expect("it was there");

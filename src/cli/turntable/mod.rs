@@ -97,8 +97,10 @@ pub(super) fn run(args: &TurntableArgs) -> Result<(), CliError> {
     let image_spec = ImageSpec { transparent, ..ImageSpec::new(size) };
     let how = ImageRecord::new(image_spec, context.description());
     let options = RenderOptions::for_image(&image_spec, &settings);
-    let mut is_empty = true;
-    for frame in selection.map_or(0..frames, FrameSelection::range) {
+    let drawn = selection.map_or(0..frames, FrameSelection::range);
+    // With more programs than frames, some have nothing to do.
+    let mut is_empty = !drawn.is_empty();
+    for frame in drawn {
         let settings = settings.at_turntable_angle(light, f64::from(frame) / f64::from(args.frames));
         let record = LookRecord::to_json(&settings, Some(&volume), Some(&how));
         if selection.is_some() && is_drawn(&written[frame as usize], size, &record) {

@@ -43,7 +43,7 @@ fn look() -> Settings {
     settings
 }
 
-/// The same cuts, some of which hide from the eye alone, or from light alone.
+/// Look with the cuts of [`look`], of which some hide from the eye alone and others from light alone.
 fn look_by_observer() -> Settings {
     let mut settings = look();
     let effects = [ClipEffect::Hidden, ClipEffect::Shadowless, ClipEffect::Removed, ClipEffect::Hidden];

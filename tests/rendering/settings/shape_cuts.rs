@@ -1,6 +1,10 @@
 //! Cuts by shapes one after another: what is kept between pictures changes none of them.
 
-use chiaroscuro_scene::{ClassificationOrder, CutAction, CutShape, Settings, ShapeCut, SphereCut};
+use chiaroscuro_render::RenderOptions;
+use chiaroscuro_render::plan::RenderRequest;
+use chiaroscuro_scene::{
+    ClassificationOrder, CutAction, CutShape, Settings, ShapeCut, SphereCut, VolumeLayer,
+};
 use glam::DVec3;
 
 use crate::common::{Dataset, new_renderer, render};
@@ -59,4 +63,28 @@ fn a_series_of_cuts_shows_what_each_alone_shows() {
     layered.layers.push(layered.layers.first().clone());
     let creature = scenes::creature(24, DVec3::ONE);
     check(&Dataset::from_volumes(creature.clone(), [creature]), &layered);
+}
+
+#[test]
+fn a_picture_with_a_layer_that_is_never_cut_is_known_again() {
+    let creature = scenes::creature(20, DVec3::ONE);
+    let dataset = Dataset::from_volumes(creature.clone(), [creature]);
+    let mut settings = scenes::look();
+    settings.layers.push(VolumeLayer { ignores_cuts: true, ..settings.layers.first().clone() });
+    settings.cuts.crop.on = true;
+    settings.cuts.crop.high[2] = 0.5;
+    let mut renderer = new_renderer();
+    let options = RenderOptions::default();
+    renderer.draw(&dataset, &settings, SIZE, &options).expect("a picture");
+    let is_drawn = |settings: &Settings| {
+        let settings = settings.clone();
+        let request = RenderRequest { volume: dataset.id(), settings, size: SIZE, preview_resolution: None };
+        renderer.is_drawn(&request, &options)
+    };
+    assert!(is_drawn(&settings), "nothing has changed");
+    let mut other = settings.clone();
+    other.output.background.top = [0.9; 3];
+    assert!(is_drawn(&other), "the background is of the display");
+    other.cuts.crop.high[2] = 0.6;
+    assert!(!is_drawn(&other), "another cut");
 }

@@ -292,7 +292,7 @@ mod tests {
         assert_ne!(id(&[keep]), id(&[sphere(0.2)]));
         let casting = ShapeCut { effect: ClipEffect::Hidden, ..sphere(0.2) };
         assert_ne!(id(std::slice::from_ref(&casting)), id(&[sphere(0.2)]));
-        // What is shown again has no effect of its own.
+        // Restored parts are visible to eye and light, whatever the effect.
         let restored = |effect| ShapeCut { action: CutAction::Restore, effect, ..sphere(0.2) };
         assert_eq!(id(&[restored(ClipEffect::Hidden)]), id(&[restored(ClipEffect::Removed)]));
         let outline = |azimuth_deg| ShapeCut {

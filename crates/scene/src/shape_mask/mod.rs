@@ -173,12 +173,12 @@ mod tests {
         let cuts = [casting.clone(), shadowless.clone(), removed.clone()];
         assert_eq!(hidden(&cuts, Observer::Eye), [255, 255, 0, 255]);
         assert_eq!(hidden(&cuts, Observer::Light), [0, 255, 255, 255]);
-        // What was removed before stays so for both, and what is shown again is shown to both.
+        // A later cut shows nothing to light that an earlier one removed, and a restored part is visible to both.
         let cuts = [removed.clone(), casting.clone()];
         assert_eq!(hidden(&cuts, Observer::Light), [0, 0, 0, 255]);
         let again = ShapeCut { effect: ClipEffect::Hidden, ..cut(CutAction::Restore, half(0.0, 1.0)) };
         assert_eq!(mask_from_shapes(&volume, &[casting, shadowless, removed, again]), None);
-        // What is kept leaves everything else to light.
+        // A part that is kept alone, with shadows that stay: light sees everything.
         let kept = ShapeCut { effect: ClipEffect::Hidden, ..cut(CutAction::Keep, half(0.25, 0.5)) };
         let kept = std::slice::from_ref(&kept);
         assert_eq!(hidden(kept, Observer::Eye), [255, 0, 255, 255]);

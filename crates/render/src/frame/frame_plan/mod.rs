@@ -27,8 +27,11 @@ use chiaroscuro_volume::{Dataset, Observer};
 impl Renderer {
     /// Returns true if a picture needs no more than a display pass.
     pub fn is_drawn(&self, request: &RenderRequest, options: &RenderOptions) -> bool {
-        let keys = FrameKeys::new(request, options);
-        let role = self.targets.find(&keys, target_shape(request, options));
+        let Some(loaded) = &self.loaded else { return false };
+        // Pictures are known by the settings that they are drawn with.
+        let request = with_resolved_labels(request.clone(), &loaded.product.dataset);
+        let keys = FrameKeys::new(&request, options);
+        let role = self.targets.find(&keys, target_shape(&request, options));
         // Destructured without `..`, so that the compiler asks about each new product. The key of the eye covers
         // everything that its picture depends on.
         let FrameKeys {
@@ -172,8 +175,8 @@ impl Renderer {
     }
 }
 
-/// Returns the request with label settings converted to transfer functions, and with layers that have a field, so that
-/// passes and keys need not know of labels.
+/// Returns the request with label settings converted to transfer functions, with layers that have a field, and with cuts
+/// by voxel if some layers are never cut, so that passes and keys need not know of these.
 fn with_resolved_labels(mut request: RenderRequest, dataset: &Dataset) -> RenderRequest {
     let resolved = match request.settings.resolved_for_dataset(dataset) {
         Cow::Owned(drawn) => Some(drawn),
