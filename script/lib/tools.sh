@@ -36,3 +36,25 @@ need_tools() {
     fi
     PATH=$folder/bin:$PATH
 }
+
+# need_python_packages: puts NumPy and what else the tests of the Python package need into PYTHONPATH. Installs them into
+# the target folder if the list or the version of Python has changed since the last installation.
+need_python_packages() {
+    local list folder version
+    list=$(dirname "${BASH_SOURCE[0]}")/python-tests.txt
+    want_command python3 python3 python3 "runs the tests of the Python package"
+    install_wanted
+    version=$(python3 -c 'import sys; print("%s.%s" % sys.version_info[:2])')
+    folder=$(target_folder)/python-tests-$version
+    if ! cmp -s "$list" "$folder/python-tests.txt"; then
+        python3 -m pip --version >/dev/null 2>&1 ||
+            want_package python3-pip python3-pip "installs what the tests of the Python package need"
+        install_wanted
+        say "installing into $folder: $(sed -n 's/^\([a-z]*\)[=>].*/\1/p' "$list" | paste -s -d ',' -)"
+        rm -rf "$folder"
+        PIP_ROOT_USER_ACTION=ignore python3 -m pip install --quiet --disable-pip-version-check --only-binary :all: \
+            --target "$folder" --requirement "$list" >&2 || die "the packages of $list could not be installed"
+        cp "$list" "$folder/python-tests.txt"
+    fi
+    export PYTHONPATH=$folder${PYTHONPATH:+:$PYTHONPATH}
+}

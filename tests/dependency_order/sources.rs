@@ -21,7 +21,7 @@ impl SourceFile {
 
 /// Crates of the project from the lowest layer up, each with the folder of its sources and the crates that it may
 /// depend on.
-pub(crate) const LAYERS: [(&str, &str, &[&str]); 9] = [
+pub(crate) const LAYERS: [(&str, &str, &[&str]); 10] = [
     ("chiaroscuro-files", "crates/files/src", &[]),
     ("chiaroscuro-codecs", "crates/codecs/src", &[]),
     ("chiaroscuro-volume", "crates/volume/src", &["files"]),
@@ -30,6 +30,7 @@ pub(crate) const LAYERS: [(&str, &str, &[&str]); 9] = [
     ("chiaroscuro-media", "crates/media/src", &["files", "scene", "volume"]),
     ("chiaroscuro-render", "crates/render/src", &["files", "media", "scene", "volume"]),
     ("chiaroscuro-reference", "crates/reference/src", &["render", "scene", "volume"]),
+    ("chiaroscuro-python", "python/src", &["files", "media", "render", "scene", "volume", "volume-io"]),
     ("chiaroscuro", "src", &["files", "media", "render", "scene", "volume", "volume-io"]),
 ];
 

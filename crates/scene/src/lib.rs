@@ -79,7 +79,7 @@ pub use self::settings::shape_cuts::{
 };
 pub use self::settings_io::path_encoding::{decode_path, encode_path};
 pub use self::settings_io::preset_error::PresetError;
-pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value};
+pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value, setting_value};
 #[cfg(any(test, feature = "testing"))]
 pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json};
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};

@@ -8,29 +8,21 @@ use chiaroscuro_render::{Renderer, UndecidedPart, complete_first_look};
 use chiaroscuro_scene::{Settings, first_look};
 use chiaroscuro_volume::Dataset;
 
-/// Parts of a look that are determined automatically unless they are given, with the paths of their settings.
-const AUTOMATIC_PARTS: [(&str, UndecidedPart); 4] = [
-    ("lights", UndecidedPart::Lights),
-    ("floor", UndecidedPart::Floor),
-    ("shadows.balance", UndecidedPart::Balance),
-    ("output.exposure", UndecidedPart::Exposure),
-];
-
 /// Automatic parts that a preset, session or single setting overrides.
 #[derive(Debug, Default)]
 pub(super) struct OverriddenParts {
-    paths: Vec<&'static str>,
+    parts: Vec<UndecidedPart>,
 }
 
 impl OverriddenParts {
     /// Adds the parts for whose path `is_named` is true.
     pub(super) fn add(&mut self, is_named: impl Fn(&str) -> bool) {
-        self.paths.extend(AUTOMATIC_PARTS.iter().map(|(path, _)| *path).filter(|path| is_named(path)));
+        self.parts.extend(UndecidedPart::ALL.into_iter().filter(|part| is_named(part.path())));
     }
 
     /// Returns the parts that are still to be determined automatically.
     fn remaining(&self) -> Vec<UndecidedPart> {
-        AUTOMATIC_PARTS.iter().filter(|(path, _)| !self.paths.contains(path)).map(|(_, part)| *part).collect()
+        UndecidedPart::ALL.into_iter().filter(|part| !self.parts.contains(part)).collect()
     }
 }
 
@@ -55,11 +47,7 @@ fn determine_open_parts(
     settings: &Settings,
     open: &[UndecidedPart],
 ) -> Result<Settings, CliError> {
-    let mut look = complete_first_look(renderer, loaded, settings, open)?;
-    if look.floor.on && !settings.floor.on {
-        // The exposure, on which the floor's colour depends, has only now been determined.
-        look.floor.color = first_look::floor_color(look.output.exposure);
-    }
+    let look = complete_first_look(renderer, loaded, settings, open)?;
     if renderer.context().is_software() && look.casts_rays_to_all_samples() {
         warn_line(
             "warning: this software driver (CPU rendering) ends shadow rays to area lights too early, so that these \

@@ -3,7 +3,7 @@
 use super::balance::{BrightnessPictures, with_fast_shadows};
 use super::light_search::{LightSearch, LightSearchResult, SearchedLight};
 use crate::{GpuError, Renderer};
-use chiaroscuro_scene::Settings;
+use chiaroscuro_scene::{Settings, first_look::floor_color};
 use chiaroscuro_volume::Dataset;
 
 /// Part of the settings that is still to be chosen automatically.
@@ -17,6 +17,21 @@ pub enum UndecidedPart {
     Balance,
     /// Exposure of the displayed picture.
     Exposure,
+}
+
+impl UndecidedPart {
+    /// All parts, in the order in which they are chosen.
+    pub const ALL: [Self; 4] = [Self::Lights, Self::Floor, Self::Balance, Self::Exposure];
+
+    /// Returns the path of the part's setting: whoever sets it has decided the part.
+    pub const fn path(self) -> &'static str {
+        match self {
+            Self::Lights => "lights",
+            Self::Floor => "floor",
+            Self::Balance => "shadows.balance",
+            Self::Exposure => "output.exposure",
+        }
+    }
 }
 
 /// Returns the settings with all `open` parts chosen. Uploads the volume and fills the light volumes.
@@ -48,6 +63,10 @@ pub fn complete_first_look(
         if open.contains(&UndecidedPart::Exposure) {
             look.output.exposure = seen.exposure(&look);
         }
+    }
+    if look.floor.on && !settings.floor.on {
+        // The exposure, on which the floor's colour depends, has only now been determined.
+        look.floor.color = floor_color(look.output.exposure);
     }
     look.sanitise();
     Ok(look)

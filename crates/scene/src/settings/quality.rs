@@ -88,6 +88,16 @@ impl QualityPreset {
     /// All levels, from the fastest to the most accurate.
     pub const ALL: [Self; 4] = [Self::Fast, Self::Standard, Self::Fine, Self::Exact];
 
+    /// Returns the name of the level, as in code and on the command line.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Standard => "standard",
+            Self::Fine => "fine",
+            Self::Exact => "exact",
+        }
+    }
+
     fn settings(self) -> QualitySettings {
         let splat = |near_field, slabs, slab| QualitySettings {
             algorithm: ShadowAlgorithm::Splat,

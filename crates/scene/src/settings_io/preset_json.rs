@@ -182,10 +182,10 @@ fn json_pointer(path: &str) -> String {
     format!("/{}", path.replace('.', "/"))
 }
 
-/// Returns the value of a setting by its path.
-fn setting_value(settings: &Settings, path: &str) -> Option<Value> {
+/// Returns the value of a setting by its path, as [`set_value`] takes it; `None` if there is no such setting.
+pub fn setting_value(settings: &Settings, path: &str) -> Option<Value> {
     let tree = serde_json::to_value(settings).ok()?;
-    tree.pointer(&json_pointer(path)).cloned()
+    tree.pointer(&json_pointer(&full_path(&current_path(path)))).cloned()
 }
 
 /// Collects the paths of fields that were given but not understood. Names that begin with an underscore are remarks,
