@@ -11,6 +11,7 @@
 //! | `chiaroscuro-media` | pictures, animations and environment maps in files |
 //! | `chiaroscuro-render` | the renderer: plan of a picture's products, passes on the GPU |
 //! | `chiaroscuro-reference` | the paper in f64, literal and slow; for tests only |
+//! | `chiaroscuro-python` | the package for Python |
 //! | `chiaroscuro` | the window (`app`, feature `window`) and the command line (`cli`, feature `cli`) |
 //!
 //! `examples/` writes a picture to a file and shows a light volume as an array, a turntable, and the renderer inside
