@@ -87,9 +87,13 @@ class Renderer:
         name = np.dtype(dtype).name
         if name not in ("uint8", "float32"):
             raise InvalidArgument(f"dtype: expected uint8 or float32, found {name}")
-        return self._native.render(
-            volume._native, look._native, _size(size), int(samples), bool(transparent), name == "float32"
-        )
+        request = {
+            "size": _size(size),
+            "samples": _samples(samples),
+            "is_transparent": bool(transparent),
+            "is_linear": name == "float32",
+        }
+        return self._native.render(volume._native, look._native, request)
 
     def light_volume(self, volume: Volume, look: Look, light: int = 0) -> np.ndarray:
         """Returns the share of a light, 0 … 1, that reaches each voxel of its light volume.
@@ -132,6 +136,12 @@ def _size(size: Sequence[int]) -> tuple[int, int]:
     if width < 1 or height < 1 or max(width, height) > 2**31:
         raise InvalidArgument(f"size: expected (width, height) in pixels, found {size!r}")
     return width, height
+
+
+def _samples(samples: int) -> int:
+    if int(samples) < 1:
+        raise InvalidArgument(f"samples: expected 1 to 4 samples along the edge of a pixel, found {samples}")
+    return int(samples)
 
 
 _default: Renderer | None = None

@@ -28,7 +28,7 @@ pub(crate) enum ExceptionClass {
 
 impl ExceptionClass {
     /// Creates an exception of this class.
-    pub(crate) fn new(self, message: impl Into<String>) -> PyErr {
+    pub(crate) fn error(self, message: impl Into<String>) -> PyErr {
         let message = message.into();
         Python::attach(|py| {
             let class = py
@@ -51,7 +51,7 @@ pub(crate) fn from_load(err: &LoadError) -> PyErr {
         LoadErrorKind::Limit => ExceptionClass::OutOfMemory,
         LoadErrorKind::Cancelled => ExceptionClass::Error,
     };
-    class.new(err.to_string())
+    class.error(err.to_string())
 }
 
 /// Converts an error of the renderer.
@@ -67,20 +67,20 @@ pub(crate) fn from_gpu(err: &GpuError) -> PyErr {
         | GpuError::Refused(_)
         | GpuError::Internal(_) => ExceptionClass::Error,
     };
-    class.new(err.to_string())
+    class.error(err.to_string())
 }
 
 /// Converts an error of a setting.
 pub(crate) fn from_preset(err: &PresetError) -> PyErr {
-    ExceptionClass::InvalidArgument.new(err.to_string())
+    ExceptionClass::InvalidArgument.error(err.to_string())
 }
 
 /// Converts an error of creating a volume from voxels.
 pub(crate) fn from_volume(err: &VolumeError) -> PyErr {
-    ExceptionClass::InvalidArgument.new(err.to_string())
+    ExceptionClass::InvalidArgument.error(err.to_string())
 }
 
 /// Converts an error of adding a field to a volume.
-pub(crate) fn from_field(err: &AddFieldError) -> PyErr {
-    ExceptionClass::InvalidArgument.new(err.to_string())
+pub(crate) fn from_field(err: AddFieldError) -> PyErr {
+    ExceptionClass::InvalidArgument.error(err.to_string())
 }

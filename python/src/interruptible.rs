@@ -23,7 +23,7 @@ pub(crate) fn check_process() -> PyResult<()> {
     if *FIRST_PROCESS.get_or_init(process::id) == process::id() {
         return Ok(());
     }
-    Err(ExceptionClass::ForkedProcess.new(
+    Err(ExceptionClass::ForkedProcess.error(
         "this process is a fork of one that has used chiaroscuro, whose threads and graphics device were not copied; \
          start workers afresh, by multiprocessing.get_context(\"spawn\") or \"forkserver\"",
     ))
@@ -44,7 +44,7 @@ pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + 
             let mut interrupt = None;
             while is_done.recv_timeout(SIGNAL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 if interrupt.is_none() {
-                    interrupt = Python::attach(|py| py.check_signals()).err();
+                    interrupt = Python::attach(|py| py.check_signals().err());
                     if interrupt.is_some() {
                         token.cancel();
                     }
@@ -59,6 +59,6 @@ pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + 
     outcome.map_err(|panic| {
         let said = panic.downcast_ref::<String>().map(String::as_str);
         let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
-        ExceptionClass::Error.new(format!("internal error, please report it: {said}"))
+        ExceptionClass::Error.error(format!("internal error, please report it: {said}"))
     })
 }

@@ -4,6 +4,8 @@
 //! arguments and carry the documentation. Array order is that of NumPy everywhere: z, y, x, with x varying fastest,
 //! which is also the order of voxels in memory.
 
+#![expect(clippy::needless_pass_by_value, reason = "arguments from Python are values of their own")]
+
 mod errors;
 mod interruptible;
 mod look;
@@ -46,11 +48,11 @@ fn encode_png<'py>(py: Python<'py>, picture: PyReadonlyArray3<'py, u8>) -> PyRes
         return Err(not_a_picture());
     }
     let encoded = encode_shown([width as u32, height as u32], bytes, true, None);
-    Ok(PyBytes::new(py, &encoded.map_err(|err| ExceptionClass::Error.new(err.to_string()))?))
+    Ok(PyBytes::new(py, &encoded.map_err(|err| ExceptionClass::Error.error(err.to_string()))?))
 }
 
 /// Error for an array that is not a picture.
 fn not_a_picture() -> PyErr {
     ExceptionClass::InvalidArgument
-        .new("picture: expected a contiguous array of shape (height, width, 4) and type uint8")
+        .error("picture: expected a contiguous array of shape (height, width, 4) and type uint8")
 }

@@ -58,7 +58,7 @@ fn overlaps(one: &str, other: &str) -> bool {
 /// Reads a record from a built-in preset, a JSON file or an exported picture.
 fn read_look(name: &Path) -> PyResult<LookRecord> {
     let shown = name.display();
-    let unreadable = |why: String| ExceptionClass::UnreadableFile.new(format!("{why} ({shown})"));
+    let unreadable = |why: String| ExceptionClass::UnreadableFile.error(format!("{why} ({shown})"));
     let text = if let Some(preset) = name.to_str().and_then(Preset::find) {
         preset.json().as_bytes().to_vec()
     } else if may_carry_record(name) {
@@ -103,7 +103,7 @@ impl NativeLook {
                 kinds.into_iter().find(|kind| kind.key() == name).ok_or_else(|| {
                     let known = kinds.map(KindName::key).join(", ");
                     ExceptionClass::InvalidArgument
-                        .new(format!("kind: expected one of {known}, found {name:?}"))
+                        .error(format!("kind: expected one of {known}, found {name:?}"))
                 })
             })
             .transpose()?;
@@ -128,8 +128,8 @@ impl NativeLook {
     /// Reads all settings from JSON.
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
-        let tree =
-            serde_json::from_str(text).map_err(|err| ExceptionClass::InvalidArgument.new(err.to_string()))?;
+        let tree = serde_json::from_str(text)
+            .map_err(|err| ExceptionClass::InvalidArgument.error(err.to_string()))?;
         let settings =
             apply_json(&Settings::default(), &tree).map_err(|err| errors::from_preset(&err))?.settings;
         Ok(Self { settings, undecided: Vec::new() })
@@ -140,7 +140,7 @@ impl NativeLook {
         let levels = QualityPreset::ALL;
         let level = levels.into_iter().find(|level| level.key() == name).ok_or_else(|| {
             let known = levels.map(QualityPreset::key).join(", ");
-            ExceptionClass::InvalidArgument.new(format!("quality: expected one of {known}, found {name:?}"))
+            ExceptionClass::InvalidArgument.error(format!("quality: expected one of {known}, found {name:?}"))
         })?;
         let mut settings = self.settings.clone();
         level.apply(&mut settings);
@@ -148,7 +148,7 @@ impl NativeLook {
     }
 
     /// Returns the look with another range of values shown, over which the transfer function is stretched.
-    fn with_range(&self, volume: &NativeVolume, low: f64, high: f64) -> PyResult<Self> {
+    fn with_range(&self, volume: &NativeVolume, low: f64, high: f64) -> Self {
         let mut settings = self.settings.clone();
         let ranges = volume.dataset.volume().ranges();
         let layer = settings.layer_mut();
@@ -159,7 +159,7 @@ impl NativeLook {
         }
         layer.range = DensityRange::Typed(ValueRange::new(low, high));
         settings.sanitise();
-        Ok(self.with_settings(settings, |_| false))
+        self.with_settings(settings, |_| false)
     }
 
     /// Returns the look with one setting changed, given as JSON.
@@ -190,7 +190,8 @@ impl NativeLook {
     fn with_color_map(&self, layer: usize, name: &str, is_reversed: bool) -> PyResult<Self> {
         let map = COLOR_MAPS.iter().find(|map| map.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
             let known = color_map_names().join(", ");
-            ExceptionClass::InvalidArgument.new(format!("colormap: expected one of {known}, found {name:?}"))
+            ExceptionClass::InvalidArgument
+                .error(format!("colormap: expected one of {known}, found {name:?}"))
         })?;
         let mut settings = self.settings.clone();
         layer_of(&mut settings, layer)?.transfer.apply_color_map(map, is_reversed);
@@ -278,7 +279,7 @@ impl NativeLook {
     fn save(&self, path: PathBuf) -> PyResult<()> {
         let text = format!("{}\n", self.to_json());
         write_atomically(&path, text.as_bytes())
-            .map_err(|err| ExceptionClass::Error.new(format!("the look was not saved: {err}")))
+            .map_err(|err| ExceptionClass::Error.error(format!("the look was not saved: {err}")))
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -291,7 +292,7 @@ fn layer_of(settings: &mut Settings, index: usize) -> PyResult<&mut VolumeLayer>
     let count = settings.layers.count();
     if index >= count {
         let why = format!("layer: there are {count} layers, counted from 0, and no layer {index}");
-        return Err(ExceptionClass::InvalidArgument.new(why));
+        return Err(ExceptionClass::InvalidArgument.error(why));
     }
     Ok(settings.layer_at_mut(index))
 }
@@ -300,5 +301,5 @@ fn layer_of(settings: &mut Settings, index: usize) -> PyResult<&mut VolumeLayer>
 fn no_light(settings: &Settings, light: usize) -> PyErr {
     let count = settings.lights.len();
     ExceptionClass::InvalidArgument
-        .new(format!("light: there are {count} lights, counted from 0, and no light {light}"))
+        .error(format!("light: there are {count} lights, counted from 0, and no light {light}"))
 }

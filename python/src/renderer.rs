@@ -36,7 +36,7 @@ struct OpenRenderer {
 #[derive(Debug)]
 pub(crate) struct NativeRenderer {
     /// Open renderer; `None` after it was closed.
-    open: Mutex<Option<OpenRenderer>>,
+    open: Mutex<Option<Box<OpenRenderer>>>,
     adapter: String,
 }
 
@@ -67,22 +67,46 @@ impl OpenRenderer {
     }
 }
 
-/// Shape of an image that Python asks for.
-fn image_spec(size: (u32, u32), samples: u32, is_transparent: bool, is_linear: bool) -> PyResult<ImageSpec> {
-    let (width, height) = size;
+/// Picture that Python asks for.
+#[derive(Debug, FromPyObject)]
+pub(crate) struct PictureRequest {
+    /// Width and height in pixels.
+    #[pyo3(item)]
+    size: (u32, u32),
+    /// Samples along the edge of a pixel.
+    #[pyo3(item)]
+    samples: u32,
+    /// True if the background is left out.
+    #[pyo3(item)]
+    is_transparent: bool,
+    /// True for linear light, false for bytes in sRGB.
+    #[pyo3(item)]
+    is_linear: bool,
+}
+
+impl PictureRequest {
+    /// Returns the specification of the picture.
+    fn image_spec(&self) -> PyResult<ImageSpec> {
+        let (size, samples) = (check_size(self.size)?, self.samples);
+        if !(1..=MAX_SAMPLES_PER_EDGE).contains(&samples) {
+            return Err(ExceptionClass::InvalidArgument.error(format!(
+                "samples: expected 1 to {MAX_SAMPLES_PER_EDGE} samples along the edge of a pixel, found {samples}"
+            )));
+        }
+        let depth = if self.is_linear { PixelFormat::Linear } else { PixelFormat::Eight };
+        Ok(ImageSpec { samples, transparent: self.is_transparent, depth, ..ImageSpec::new(size) })
+    }
+}
+
+/// Checks width and height of a picture.
+fn check_size((width, height): (u32, u32)) -> PyResult<[u32; 2]> {
     let edges = 1..=MAX_IMAGE_EDGE;
     if !edges.contains(&width) || !edges.contains(&height) {
-        return Err(ExceptionClass::InvalidArgument.new(format!(
+        return Err(ExceptionClass::InvalidArgument.error(format!(
             "size: expected (width, height) of 1 to {MAX_IMAGE_EDGE} pixels, found ({width}, {height})"
         )));
     }
-    if !(1..=MAX_SAMPLES_PER_EDGE).contains(&samples) {
-        return Err(ExceptionClass::InvalidArgument.new(format!(
-            "samples: expected 1 to {MAX_SAMPLES_PER_EDGE} samples along the edge of a pixel, found {samples}"
-        )));
-    }
-    let depth = if is_linear { PixelFormat::Linear } else { PixelFormat::Eight };
-    Ok(ImageSpec { samples, transparent: is_transparent, depth, ..ImageSpec::new([width, height]) })
+    Ok([width, height])
 }
 
 impl NativeRenderer {
@@ -92,12 +116,13 @@ impl NativeRenderer {
         py: Python<'_>,
         work: impl FnOnce(&mut OpenRenderer) -> Result<T, GpuError> + Send,
     ) -> PyResult<T> {
-        let done = interruptible(py, || self.lock().as_mut().map(work))?;
-        let done = done.ok_or_else(|| ExceptionClass::Error.new("the renderer is closed; make a new one"))?;
+        let done = interruptible(py, || self.lock().as_mut().map(|open| work(open)))?;
+        let done =
+            done.ok_or_else(|| ExceptionClass::Error.error("the renderer is closed; make a new one"))?;
         done.map_err(|err| errors::from_gpu(&err))
     }
 
-    fn lock(&self) -> MutexGuard<'_, Option<OpenRenderer>> {
+    fn lock(&self) -> MutexGuard<'_, Option<Box<OpenRenderer>>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -109,10 +134,11 @@ impl NativeRenderer {
     fn new(py: Python<'_>, adapter: usize) -> PyResult<Self> {
         let opened = interruptible(py, || {
             let context = GpuContext::headless_on(adapter)?;
-            Ok((Renderer::new(&context)?, context.description()))
+            let open = Box::new(OpenRenderer { renderer: Renderer::new(&context)?, fitted: None });
+            Ok((open, context.description()))
         })?;
-        let (renderer, adapter) = opened.map_err(|err| errors::from_gpu(&err))?;
-        Ok(Self { open: Mutex::new(Some(OpenRenderer { renderer, fitted: None })), adapter })
+        let (open, adapter) = opened.map_err(|err| errors::from_gpu(&err))?;
+        Ok(Self { open: Mutex::new(Some(open)), adapter })
     }
 
     /// Name and driver of the adapter.
@@ -137,23 +163,20 @@ impl NativeRenderer {
 
     /// Draws a picture and returns it row by row from the top left, as an array of (height, width, 4) `uint8` in sRGB,
     /// or `float32` of linear light.
-    #[expect(clippy::too_many_arguments, reason = "named arguments of a Python function")]
     fn render<'py>(
         &self,
         py: Python<'py>,
         volume: &NativeVolume,
         look: &NativeLook,
-        size: (u32, u32),
-        samples: u32,
-        is_transparent: bool,
-        is_linear: bool,
+        request: PictureRequest,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let spec = image_spec(size, samples, is_transparent, is_linear)?;
+        let spec = request.image_spec()?;
         let rows = self.with_renderer(py, |open| {
             let dataset = open.fitting(&volume.dataset)?;
             open.renderer.bands(&dataset, &look.settings, &spec).all()
         })?;
-        let shape = [size.1 as usize, size.0 as usize, 4];
+        let [width, height] = spec.size.map(|edge| edge as usize);
+        let shape = [height, width, 4];
         Ok(match rows {
             PixelRows::Bytes(bytes) => bytes.into_pyarray(py).reshape(shape)?.into_any(),
             PixelRows::Floats(floats) => floats.into_pyarray(py).reshape(shape)?.into_any(),
@@ -186,7 +209,7 @@ impl NativeRenderer {
             open.renderer.attenuation(&request, light)
         })?;
         let found = found.ok_or_else(|| {
-            ExceptionClass::InvalidArgument.new(format!(
+            ExceptionClass::InvalidArgument.error(format!(
                 "light: light {light} has no light volume; expected one of the {lights} lights, counted from 0, that \
                  is on and casts shadows, with shadows on"
             ))
@@ -196,17 +219,16 @@ impl NativeRenderer {
     }
 
     /// Returns facts about the material that is first seen at a pixel, or `None` if there is none.
+    #[staticmethod]
     fn pick<'py>(
-        &self,
         py: Python<'py>,
         volume: &NativeVolume,
         look: &NativeLook,
         pixel: (f64, f64),
         size: (u32, u32),
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let spec = image_spec(size, 1, false, false)?;
         let settings: &Settings = &look.settings;
-        let [width, height] = spec.size.map(f64::from);
+        let [width, height] = check_size(size)?.map(f64::from);
         // Pixels are numbered; the ray goes through the middle of one.
         let (origin, direction) = settings.camera.ray_through(pixel.0 + 0.5, pixel.1 + 0.5, width, height);
         let found = interruptible(py, || probe_layers(&volume.dataset, settings, origin, direction))?;

@@ -131,7 +131,7 @@ impl NativeVolume {
         let source = other.dataset.volume().name().to_owned();
         interruptible(py, || self.dataset.with_field(other.dataset.volume(), source))?
             .map(|dataset| Self { dataset })
-            .map_err(|err| errors::from_field(&err))
+            .map_err(errors::from_field)
     }
 
     /// Returns this volume without the table under a body, and true if there was one. Material is what the first look

@@ -21,7 +21,7 @@ pub(crate) struct VoxelBuffer {
 fn with_room<T>(count: usize) -> PyResult<Vec<T>> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_too_large| {
-        ExceptionClass::OutOfMemory.new(format!(
+        ExceptionClass::OutOfMemory.error(format!(
             "no memory for {count} voxels of {} bytes; take a part of the array, or every second voxel",
             size_of::<T>()
         ))
@@ -33,7 +33,7 @@ fn with_room<T>(count: usize) -> PyResult<Vec<T>> {
 fn append<T: Element + Copy>(to: &mut Vec<T>, array: &Bound<'_, PyAny>) -> PyResult<()> {
     let array = array.cast::<PyArrayDyn<T>>()?.readonly();
     if to.capacity() - to.len() < array.len() {
-        return Err(ExceptionClass::InvalidArgument.new("the array has more voxels than its shape says"));
+        return Err(ExceptionClass::InvalidArgument.error("the array has more voxels than its shape says"));
     }
     match array.as_slice() {
         // A slice of an array in Fortran order has another order, too.
@@ -52,7 +52,7 @@ impl VoxelBuffer {
         let known = VoxelType::ALL.into_iter().find(|known| known.name() == dtype);
         let known = known.ok_or_else(|| {
             let names = VoxelType::ALL.map(VoxelType::name).join(", ");
-            ExceptionClass::InvalidArgument.new(format!("dtype: expected one of {names}, found {dtype:?}"))
+            ExceptionClass::InvalidArgument.error(format!("dtype: expected one of {names}, found {dtype:?}"))
         })?;
         let samples = match known {
             VoxelType::U8 => Samples::U8(with_room(count)?),
@@ -93,5 +93,5 @@ impl VoxelBuffer {
 
 /// Error for a buffer of which a volume was made.
 fn used() -> PyErr {
-    ExceptionClass::Error.new("a volume was made of these voxels already")
+    ExceptionClass::Error.error("a volume was made of these voxels already")
 }
