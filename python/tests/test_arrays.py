@@ -166,9 +166,12 @@ def test_nibabel_and_simpleitk_agree_on_the_place(ball):
         np.testing.assert_allclose(volume.affine, affine)
 
 
-def test_torch_and_vtk_are_taken(ball):
+def test_tensors_are_taken(ball):
     torch = pytest.importorskip("torch")
     np.testing.assert_array_equal(voxels(torch.from_numpy(ball.astype(np.int16))), ball)
+
+
+def test_images_of_vtk_are_taken(ball):
     pyvista = pytest.importorskip("pyvista")
     grid = pyvista.ImageData(dimensions=ball.shape[::-1], spacing=(1, 2, 3), origin=(4, 5, 6))
     grid.point_data["values"] = ball.ravel()

@@ -222,13 +222,17 @@ def resident_bytes():
 def test_pictures_and_volumes_leave_nothing_behind(ball, chair, chair_look, renderer):
     count = int(os.environ.get("CHIAROSCURO_REPEATS", "40"))
 
-    def draw():
-        renderer.render(chair, chair_look, size=(32, 24))
+    look = chair_look.copy()
+
+    def draw(number):
+        look["camera.azimuth_deg"] = float(number)
+        look.lights[0].direction = (number % 90, 30)
+        renderer.render(chair, look, size=(32, 24))
         ch.Volume(ball)
 
-    for _ in range(20):
-        draw()
+    for number in range(40):
+        draw(number)
     before = resident_bytes()
-    for _ in range(count):
-        draw()
+    for number in range(count):
+        draw(number)
     assert resident_bytes() - before < 1 << 20, f"memory grew in {count} pictures and volumes"
