@@ -13,9 +13,10 @@ With Ray, the same function is `draw = ray.remote(num_gpus=1)(ch.render_frame)`,
 import pathlib
 import sys
 
-import chiaroscuro as ch
 from dask.distributed import Client, LocalCluster, as_completed
 from PIL import Image
+
+import chiaroscuro as ch
 
 
 def main(source: str, folder: pathlib.Path, frames: int) -> None:

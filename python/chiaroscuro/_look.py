@@ -287,7 +287,9 @@ class Look:
         return _from_json, (self._native.to_json(),)
 
     def __repr__(self) -> str:
-        return f"<chiaroscuro.Look: {len(self.lights)} lights, {self['mode.kind']}, shadows {self['shadows.algorithm']}>"
+        return (
+            f"<chiaroscuro.Look: {len(self.lights)} lights, {self['mode.kind']}, shadows {self['shadows.algorithm']}>"
+        )
 
 
 def _from_json(text: str) -> Look:

@@ -152,7 +152,8 @@ class Volume:
 
     def __repr__(self) -> str:
         z, y, x = self.shape
-        spacing, unit = self.spacing_mm, "mm"
+        spacing: tuple[float, ...] = self.spacing_mm
+        unit = "mm"
         if self._native.has_unknown_scale:
             unit = "voxels"
         elif max(spacing) < 0.1:
@@ -248,7 +249,8 @@ def _channels(array: Any, axis: int) -> list[Any]:
 
 def _from_array(image: _arrays.ArrayImage, array: Any, facts: Mapping[str, Any]) -> _native.NativeVolume:
     array = _arrays.three_dimensional(array)
-    facts = _arrays.facts_of(image, tuple(int(n) for n in array.shape), **facts)
+    z, y, x = (int(n) for n in array.shape)
+    facts = _arrays.facts_of(image, (z, y, x), **facts)
     return _native.NativeVolume.from_voxels(_arrays.voxels_of(array), facts)
 
 

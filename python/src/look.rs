@@ -264,12 +264,6 @@ impl NativeLook {
         self.settings.lights.len()
     }
 
-    /// Returns true if parts of the look are still to be found by drawing.
-    #[getter]
-    fn is_undecided(&self) -> bool {
-        !self.undecided.is_empty()
-    }
-
     /// Returns all settings as JSON.
     fn to_json(&self) -> String {
         LookRecord::to_json(&self.settings, None, None)

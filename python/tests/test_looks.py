@@ -60,7 +60,13 @@ def test_changes_have_the_words_of_other_packages(chair, chair_look):
     assert max(point["opacity"] for point in drawn["transfer.points"]) == 0.5
     listed = chair_look.with_(opacity=[(0, 0), (30, 0), (200, 0.7)])
     assert [point["value"] for point in listed["transfer.points"]] == [0, 30, 200]
-    for wrong in [{"colormap": "rainbow"}, {"opacity": "steep"}, {"rendering": "x"}, {"clim": (3, 1)}, {"quality": "x"}]:
+    for wrong in [
+        {"colormap": "rainbow"},
+        {"opacity": "steep"},
+        {"rendering": "x"},
+        {"clim": (3, 1)},
+        {"quality": "x"},
+    ]:
         with pytest.raises(ch.InvalidArgument, match=next(iter(wrong)).replace("clim", "contrast_limits")):
             chair_look.with_(chair, **wrong)
     with pytest.raises(ch.InvalidArgument, match="give it"):

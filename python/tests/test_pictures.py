@@ -25,7 +25,8 @@ def test_one_line_makes_the_bytes_of_the_program(program, renderer, tmp_path):
     picture = ch.render("builtin:chair:32", size=SIZE, renderer=renderer)
     run(program, "render", "builtin:chair:32", "-o", tmp_path / "a.png", "--size", "96x72")
     of_program = np.asarray(Image.open(tmp_path / "a.png").convert("RGBA"))
-    assert picture.shape == (72, 96, 4) and picture.dtype == np.uint8
+    assert picture.shape == (72, 96, 4)
+    assert picture.dtype == np.uint8
     assert picture.std() > 5, "something is seen"
     np.testing.assert_array_equal(picture, of_program)
 
@@ -66,8 +67,10 @@ def test_the_light_volume_is_that_of_the_program(program, chair, chair_look, ren
     session = ["--session", tmp_path / "look.json", "--light", 0]
     run(program, "light-volume", "builtin:chair:32", "-o", tmp_path / "light.nrrd", *session)
     light = renderer.light_volume(chair, chair_look)
-    assert light.dtype == np.float32 and light.ndim == 3
-    assert 0.0 <= light.min() < 0.1 and light.max() <= 1.0
+    assert light.dtype == np.float32
+    assert light.ndim == 3
+    assert 0.0 <= light.min() < 0.1
+    assert light.max() <= 1.0
     np.testing.assert_array_equal(light, np.asarray(ch.Volume(tmp_path / "light.nrrd")))
     with pytest.raises(ch.InvalidArgument, match="light 9"):
         renderer.light_volume(chair, chair_look, 9)
@@ -75,8 +78,10 @@ def test_the_light_volume_is_that_of_the_program(program, chair, chair_look, ren
 
 def test_linear_light_is_premultiplied(chair, chair_look, renderer):
     light = renderer.render(chair, chair_look, size=SIZE, transparent=True, dtype="float32")
-    assert light.shape == (72, 96, 4) and light.dtype == np.float32
-    assert light[0, 0].tolist() == [0, 0, 0, 0] and light[..., 3].max() > 0.9
+    assert light.shape == (72, 96, 4)
+    assert light.dtype == np.float32
+    assert light[0, 0].tolist() == [0, 0, 0, 0]
+    assert light[..., 3].max() > 0.9
     with pytest.raises(ch.InvalidArgument, match="uint8 or float32"):
         renderer.render(chair, chair_look, dtype="float64")
 
@@ -118,7 +123,8 @@ def test_what_is_seen_is_told(chair, chair_look, renderer):
     assert found is not None
     index = np.round(found["index"]).astype(int)
     assert np.asarray(chair)[tuple(index)] > 0
-    assert all(0 <= share <= 1 for share in found["lights"]) and len(found["lights"]) == len(chair_look.lights)
+    assert all(0 <= share <= 1 for share in found["lights"])
+    assert len(found["lights"]) == len(chair_look.lights)
     assert renderer.pick(chair, chair_look, (0, 0), size) is None
 
 
