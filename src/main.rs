@@ -78,6 +78,7 @@ fn open_window(request: ViewerRequest) -> Result<(), CliError> {
         source: request.source,
         load: request.load,
         session: request.session,
+        saves_on_close: request.saves_on_close,
         volume: request.volume,
         trust_paths: request.trust_paths,
         adjust: None,

@@ -3,7 +3,7 @@
 Here the workers are processes of this machine. On a cluster with Slurm, only the lines of the cluster change:
 
     from dask_jobqueue import SLURMCluster
-    cluster = SLURMCluster(cores=1, processes=1, memory="16GB", walltime="02:00:00", job_extra_directives=["--gres=gpu:1"])
+    cluster = SLURMCluster(cores=1, memory="16GB", walltime="02:00:00", job_extra_directives=["--gres=gpu:1"])
     cluster.scale(jobs=8)
 
 With Ray, the same function is `draw = ray.remote(num_gpus=1)(ch.render_frame)`, the frames are

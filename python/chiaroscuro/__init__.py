@@ -11,6 +11,7 @@ from . import _native
 from ._errors import Error, ForkedProcess, InvalidArgument, NoAdapter, OutOfMemory, UnreadableFile
 from ._look import Light, Look
 from ._renderer import Renderer, render, render_frame, turntable
+from ._viewer import Viewer
 from ._volume import Scene, Volume, remove_table
 
 __version__: str = _native.VERSION
@@ -26,6 +27,7 @@ __all__ = [
     "Renderer",
     "Scene",
     "UnreadableFile",
+    "Viewer",
     "Volume",
     "colormaps",
     "presets",

@@ -143,6 +143,10 @@ class Volume:
         """Remarks about how the file was read."""
         return self._native.remarks
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the voxels of the first field as NRRD, NIfTI or TIFF, by the ending of the name."""
+        self._native.save(os.fspath(path))
+
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         """Copies the voxels of the first field, of shape (z, y, x)."""
         if copy is False:

@@ -7,12 +7,13 @@ use chiaroscuro_volume::{
     Corrections, Dataset, Downsampling, LoadControl, Portion, Samples, ValueMeaning, ValueMetadata, Volume,
     VolumeChoice, with_samples,
 };
+use chiaroscuro_volume_io::write::{ExportVolume, VolumeFormat, write_volume};
 use chiaroscuro_volume_io::{LoadOptions, open};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 
-use crate::errors;
+use crate::errors::{self, ExceptionClass};
 use crate::interruptible::interruptible;
 use crate::voxel_buffer::VoxelBuffer;
 
@@ -211,6 +212,18 @@ impl NativeVolume {
     #[getter]
     fn remarks(&self) -> Vec<String> {
         self.dataset.volume().remarks().to_vec()
+    }
+
+    /// Writes the voxels of the first field to a file, whose format is that of the name's ending.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let format = VolumeFormat::from_path(&path).ok_or_else(|| {
+            let found = path.display();
+            ExceptionClass::InvalidArgument
+                .error(format!("path: expected a name such as volume.nrrd, .nii.gz or .tif, found {found}"))
+        })?;
+        let volume = ExportVolume::new(self.dataset.volume());
+        interruptible(py, || write_volume(&path, format, &volume, false))?
+            .map_err(|err| ExceptionClass::Error.error(err.to_string()))
     }
 
     /// Copies the voxels, as one row in C order.

@@ -32,9 +32,9 @@ def chair_look(chair, renderer):
 def program():
     """Path of the command-line program, whose pictures are compared with those of the package."""
     path = os.environ.get("CHIAROSCURO_PROGRAM") or shutil.which("chiaroscuro")
-    assert path and pathlib.Path(path).exists(), (
-        "the program `chiaroscuro` was not found; build it, and name it by CHIAROSCURO_PROGRAM"
-    )
+    advice = "the program `chiaroscuro` was not found; build it, and name it by CHIAROSCURO_PROGRAM"
+    assert path, advice
+    assert pathlib.Path(path).exists(), advice
     return path
 
 

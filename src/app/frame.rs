@@ -149,6 +149,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.editor.autosave_look();
+        self.editor.save_on_close();
         if self.device.is_lost {
             self.device.hand_over(
                 &mut self.editor,

@@ -38,6 +38,9 @@ struct CommandLine {
     /// Session to continue; Ctrl+S saves to it
     #[arg(long, value_name = "FILE")]
     session: Option<PathBuf>,
+    /// Write the session when the window is closed
+    #[arg(long, requires = "session")]
+    save_on_close: bool,
     /// Volume of the session or picture (FILE or --session), if it is not at the recorded path
     #[arg(long, value_name = "FILE")]
     volume: Option<PathBuf>,
@@ -59,6 +62,7 @@ impl CommandLine {
             command: _,
             file,
             session,
+            save_on_close,
             volume,
             trust_paths,
             load,
@@ -74,7 +78,14 @@ impl CommandLine {
                 volume.display()
             )));
         }
-        Ok(ViewerRequest { source: file, load: load.load_options()?, session, volume, trust_paths })
+        Ok(ViewerRequest {
+            source: file,
+            load: load.load_options()?,
+            session,
+            saves_on_close: save_on_close,
+            volume,
+            trust_paths,
+        })
     }
 }
 
@@ -112,6 +123,8 @@ pub struct ViewerRequest {
     pub load: chiaroscuro_volume_io::LoadOptions,
     /// Session to continue, from `--session`.
     pub session: Option<PathBuf>,
+    /// True if the session is written when the window is closed, from `--save-on-close`.
+    pub saves_on_close: bool,
     /// Volume of a look, from `--volume`.
     pub volume: Option<PathBuf>,
     /// True if recorded paths of volumes are trusted, from `--trust-paths`.

@@ -16,23 +16,30 @@ pub(crate) struct SessionFile {
     unknown: Value,
     /// Reason why the file must not be overwritten, if any.
     protection: Option<&'static str>,
+    /// True if the look is saved when the window is closed.
+    saves_on_close: bool,
 }
 
 impl SessionFile {
     /// Creates a session named on the command line; an existing file is protected until it has been read.
-    pub(crate) fn from_command_line(path: PathBuf) -> Self {
+    pub(crate) fn from_command_line(path: PathBuf, saves_on_close: bool) -> Self {
         let protected = path.symlink_metadata().is_ok().then_some(text::persistence::NOT_READ_YET);
-        Self { path, unknown: Value::Null, protection: protected }
+        Self { path, unknown: Value::Null, protection: protected, saves_on_close }
     }
 
     /// Creates the session of a file that was just written.
     fn just_written(path: &Path) -> Self {
-        Self { path: path.to_owned(), unknown: Value::Null, protection: None }
+        Self { path: path.to_owned(), unknown: Value::Null, protection: None, saves_on_close: false }
     }
 
     /// Path of the session file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Path of the file if it is to be written when the window is closed, and may be.
+    pub(crate) fn path_on_close(&self) -> Option<&Path> {
+        (self.saves_on_close && self.protection.is_none()).then_some(&*self.path)
     }
 
     /// Path of the file and the reason for its protection, if it is protected.

@@ -47,6 +47,7 @@ impl App {
             source,
             load,
             session,
+            saves_on_close,
             volume,
             trust_paths,
             adjust,
@@ -64,7 +65,8 @@ impl App {
         (app.windows.slices.open, app.windows.light_slice.open) = (app.layout.slices, app.layout.light_slice);
         app.windows.slices.convention = app.layout.slice_convention;
         app.opening.requests.session_is_due = session.is_some();
-        app.editor.document.session = session.map(SessionFile::from_command_line);
+        app.editor.document.session =
+            session.map(|path| SessionFile::from_command_line(path, saves_on_close));
         app.opening.adjust_first_look = adjust;
         app.editor.light_search_limit_s = light_search_limit_s.unwrap_or(SEARCH_LIMIT_S);
         app.opening.requests.trusts_paths = trust_paths;

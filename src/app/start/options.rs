@@ -16,6 +16,8 @@ pub struct WindowOptions {
     pub load: LoadOptions,
     /// Session file of Ctrl+S; applied to the first look if the file exists.
     pub session: Option<PathBuf>,
+    /// True if the session is written when the window is closed.
+    pub saves_on_close: bool,
     /// Volume for the look in `source` or `session`, in place of the one that it names.
     pub volume: Option<PathBuf>,
     /// True if looks may open volumes anywhere without a confirmation.

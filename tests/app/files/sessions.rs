@@ -4,6 +4,7 @@ use std::path::Path;
 
 use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro_scene::{LookRecord, Settings, VolumeRecord};
+use chiaroscuro_volume::ValueRanges;
 use eframe::egui::{self, Modifiers, Vec2, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -23,6 +24,35 @@ fn changed_and_saved(session: &Path) -> Harness<'static, App> {
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
     harness.run_steps(3);
     harness
+}
+
+#[test]
+fn the_session_is_written_when_the_window_is_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("preset.json"), r#"{"shadows": {"gain": 2.0}}"#).unwrap();
+    // A file that is no session stays as it is.
+    for (name, saves_on_close, is_written) in
+        [("asked.json", true, true), ("unasked.json", false, false), ("preset.json", true, false)]
+    {
+        let before = std::fs::read(path(name)).unwrap_or_default();
+        let session = Some(path(name));
+        let options =
+            WindowOptions { source: Some(SCENE.into()), session, saves_on_close, ..WindowOptions::default() };
+        let mut harness = adjusted_window(options, Vec2::new(760.0, 900.0));
+        harness.key_press(egui::Key::CloseBracket);
+        harness.run_steps(2);
+        let shown = harness.state().settings().clone();
+        eframe::App::on_exit(harness.state_mut());
+        let after = std::fs::read(path(name)).unwrap_or_default();
+        assert_eq!(after != before, is_written, "{name}");
+        if is_written {
+            let record = LookRecord::from_bytes(&after).unwrap();
+            let read = record.apply(&Settings::default(), &ValueRanges::UNIT).unwrap().settings;
+            assert_eq!(read.lights, shown.lights);
+            assert_eq!(read.camera, shown.camera);
+        }
+    }
 }
 
 fn backup(session: &Path) -> std::path::PathBuf {

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use self::automatic_changes::LookTasks;
 use crate::app::document::Document;
 use crate::app::document::light_placement::SEARCH_LIMIT_S;
+use crate::app::document::session::SessionFile;
 use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
 use crate::app::text;
@@ -133,6 +134,15 @@ impl LookEditor {
         match self.document.save_session(path, self.opened_id()) {
             Ok(()) => self.messages.note(text::opening::session_saved(path)),
             Err(err) => self.messages.error(text::opening::SETTINGS_NOT_SAVED, err),
+        }
+    }
+
+    /// Saves the look to the session's file if the command line asked for that at the end of the run.
+    pub(crate) fn save_on_close(&mut self) {
+        let path = self.document.session.as_ref().and_then(SessionFile::path_on_close).map(Path::to_owned);
+        let Some(path) = path.filter(|_| self.document.volume.is_some()) else { return };
+        if let Err(err) = self.document.save_session(&path, self.opened_id()) {
+            log::error!("{}: {err}", text::opening::SETTINGS_NOT_SAVED);
         }
     }
 
