@@ -4,6 +4,7 @@
 mod bench;
 mod compare;
 mod convert;
+mod documentation;
 mod error;
 mod image_args;
 mod info;
@@ -112,6 +113,10 @@ enum CliCommand {
     Info(info::InfoArgs),
     /// Measure the times of rendering, light volumes and loading
     Bench(bench::BenchArgs),
+    /// Print the definitions with which a shell completes arguments
+    Completions(documentation::CompletionsArgs),
+    /// Write the manual pages of all commands
+    ManPages(documentation::ManPagesArgs),
 }
 
 /// Request with which the window is opened.
@@ -163,6 +168,8 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
         Some(CliCommand::Convert(args)) => convert::run(&args),
         Some(CliCommand::Info(args)) => info::run(&args),
         Some(CliCommand::Bench(args)) => bench::run(&args),
+        Some(CliCommand::Completions(args)) => documentation::print_completions(&args),
+        Some(CliCommand::ManPages(args)) => documentation::write_manual_pages(&args),
         None => args.viewer_request().and_then(open_window),
     });
     exit_code(result)

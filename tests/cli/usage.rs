@@ -1,4 +1,4 @@
-//! Tests of invalid arguments, and of their error messages.
+//! Tests of arguments: help, manual pages and completions list them all, and invalid ones are refused with a message.
 
 use std::fs;
 use std::path::Path;
@@ -14,6 +14,56 @@ fn help_and_version_are_no_errors() {
         assert!(help.contains(command), "{command} is missing: {help}");
         assert!(!folder.run_successfully(&format!("{command} --help")).is_empty());
     }
+}
+
+/// Names of the commands that the help lists, without `help` itself.
+fn command_names(folder: &ProgramFolder) -> Vec<String> {
+    let help = folder.run_successfully("--help");
+    let list = help.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1);
+    let names = list.take_while(|line| !line.is_empty()).filter_map(|line| line.split_whitespace().next());
+    names.filter(|name| *name != "help").map(str::to_owned).collect()
+}
+
+#[test]
+fn completions_name_all_commands() {
+    let folder = ProgramFolder::new();
+    let names = command_names(&folder);
+    assert!(names.len() > 8, "the check must see the commands: {names:?}");
+    for shell in ["bash", "zsh", "fish"] {
+        let script = folder.run_successfully(&format!("completions {shell}"));
+        for word in names.iter().map(String::as_str).chain(["session", "trust-paths"]) {
+            assert!(script.contains(word), "{shell}: {word} is missing");
+        }
+        // Control characters would have been replaced by this one.
+        assert!(!script.contains('·'), "{shell}: {script}");
+    }
+    assert!(folder.run_failing("completions tcl", 2).contains("bash"), "the known shells");
+}
+
+#[test]
+fn man_pages_are_written_for_all_commands() {
+    let folder = ProgramFolder::new();
+    let printed = folder.run_successfully("man-pages new/man1");
+    let mut expected: Vec<_> =
+        command_names(&folder).iter().map(|name| format!("chiaroscuro-{name}.1")).collect();
+    expected.push("chiaroscuro.1".to_owned());
+    let mut written: Vec<_> = printed.lines().filter_map(|line| line.rsplit('/').next()).collect();
+    expected.sort();
+    written.sort_unstable();
+    assert_eq!(written, expected);
+    for name in written {
+        let text = String::from_utf8(folder.read(&format!("new/man1/{name}"))).expect("pages are UTF-8");
+        assert!(text.contains(".TH chiaroscuro"), "{name} begins with a title: {text}");
+        assert!(text.contains(env!("CARGO_PKG_VERSION")), "{name} names the version: {text}");
+        assert!(!text.contains("\\-fault"), "{name}: hidden options are not described");
+    }
+    let render = String::from_utf8(folder.read("new/man1/chiaroscuro-render.1")).expect("pages are UTF-8");
+    assert!(render.contains("transparent"), "options are described: {render}");
+    // Pages have no room for the mark of this program.
+    assert!(folder.run_failing("man-pages new/man1", 2).contains("--force"));
+    folder.run_successfully("man-pages new/man1 --force");
+    folder.write("file", "none");
+    assert!(folder.run_failing("man-pages file", 6).contains("file"));
 }
 
 #[test]
