@@ -75,6 +75,22 @@ pub(super) fn nth_fastest_adapter(number: usize) -> Result<wgpu::Adapter, GpuErr
     })
 }
 
+/// Checks that an adapter's driver does not crash on the renderer's shaders.
+///
+/// # Errors
+/// Returns [`GpuError::NoAdapter`] for the software driver of Mesa 20, the first that there was: its compiler ends the
+/// process on most of them (20.3.5, in Debian 11).
+pub(super) fn check_driver(info: &wgpu::AdapterInfo) -> Result<(), GpuError> {
+    if info.driver != "llvmpipe" || !info.driver_info.starts_with("Mesa 20.") {
+        return Ok(());
+    }
+    let version = sanitised(&info.driver_info, MAX_NAME_BYTES);
+    Err(GpuError::NoAdapter {
+        reason: format!("the software driver llvmpipe of {version} crashes on volumes"),
+        help: "install a newer one (mesa-vulkan-drivers of Debian 12 has Mesa 22), or the driver of a graphics card",
+    })
+}
+
 /// Builds the error for a number that no adapter has; `names` are those of all adapters, from the fastest on.
 fn no_number_error(number: usize, names: &[String]) -> GpuError {
     let listed: Vec<String> = names
@@ -144,5 +160,21 @@ mod tests {
             said.contains("WGPU_BACKEND is \"gl\"") && said.contains("supports only vulkan; unset"),
             "{said}"
         );
+    }
+    #[test]
+    fn the_first_software_driver_of_mesa_is_refused() {
+        let info = |driver: &str, version: &str| wgpu::AdapterInfo {
+            driver: driver.to_owned(),
+            driver_info: version.to_owned(),
+            ..wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan)
+        };
+        let refused = check_driver(&info("llvmpipe", "Mesa 20.3.5 (LLVM 11.0.1)"));
+        let message = refused.expect_err("it crashes").to_string();
+        assert!(message.contains("Mesa 20.3.5") && message.contains("mesa-vulkan-drivers"), "{message}");
+        for (driver, version) in
+            [("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)"), ("radv", "Mesa 20.3.5"), ("llvmpipe", "")]
+        {
+            assert!(check_driver(&info(driver, version)).is_ok(), "{driver} {version}");
+        }
     }
 }

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use self::adapters::OPTIONAL_FEATURES;
 pub use self::adapters::device_descriptor;
+use self::adapters::{OPTIONAL_FEATURES, check_driver};
 pub use self::address_space::check_driver_address_space;
 pub(super) use self::address_space::{COMPILER_ADDRESS_BYTES, check_address_space};
 use self::device_errors::DeviceErrors;
@@ -94,8 +94,8 @@ impl GpuContext {
     /// work on the same thread. Programs with a handler of their own install it afterwards.
     ///
     /// # Errors
-    /// Returns an error if the adapter cannot store the textures that the renderer needs, or if the device was opened
-    /// without the feature for it.
+    /// Returns an error if the adapter cannot store the textures that the renderer needs, if the device was opened
+    /// without the feature for it, or if its driver is known to crash.
     pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         Self::with_opening_times(adapter, device, queue, OpeningTimes::default())
     }
@@ -107,6 +107,7 @@ impl GpuContext {
         queue: wgpu::Queue,
         opening_times: OpeningTimes,
     ) -> Result<Self, GpuError> {
+        check_driver(&adapter.get_info())?;
         let features = device.features();
         let usable = |format: wgpu::TextureFormat| {
             let can = format.guaranteed_format_features(features);
