@@ -17,24 +17,36 @@ need_shellcheck() {
     has shellcheck || die "shellcheck was not found; install it (macOS: brew install shellcheck)"
 }
 
-# need_tools: puts the programs of tools.txt first in PATH. Installs them into the target folder if the list has changed
-# since the last installation.
+# need_tools [LIST]: puts the programs of a list first in PATH, of tools.txt or, with the argument packaging, of
+# packaging.txt. Installs them into a folder of that name in the target folder, if the list has changed since the last
+# installation. Sets `tools_folder`.
 need_tools() {
-    local list folder
-    list=$(dirname "${BASH_SOURCE[0]}")/tools.txt
-    folder=$(target_folder)/tools
-    if ! cmp -s "$list" "$folder/tools.txt"; then
-        want_command python3 python3 python3 "installs programs that check the project"
+    local list
+    list=$(dirname "${BASH_SOURCE[0]}")/${1:-tools}.txt
+    tools_folder=$(target_folder)/${1:-tools}
+    if ! cmp -s "$list" "$tools_folder/list.txt"; then
+        want_command python3 python3 python3 "installs programs that the scripts use"
         python3 -m pip --version >/dev/null 2>&1 ||
-            want_package python3-pip python3-pip "installs programs that check the project"
+            want_package python3-pip python3-pip "installs programs that the scripts use"
         install_wanted
-        say "installing into $folder: $(sed -n 's/^\([a-z-]*\)==\([0-9.]*\) .*/\1 \2/p' "$list" | paste -s -d ',' -)"
-        rm -rf "$folder"
+        say "installing into $tools_folder: $(sed -n 's/^\([a-z-]*\)==\([0-9.]*\) .*/\1 \2/p' "$list" | paste -s -d ',' -)"
+        rm -rf "$tools_folder"
         PIP_ROOT_USER_ACTION=ignore python3 -m pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --require-hashes \
-            --target "$folder" --requirement "$list" >&2 || die "the programs of $list could not be installed"
-        cp "$list" "$folder/tools.txt"
+            --target "$tools_folder" --requirement "$list" >&2 || die "the programs of $list could not be installed"
+        cp "$list" "$tools_folder/list.txt"
     fi
-    PATH=$folder/bin:$PATH
+    PATH=$tools_folder/bin:$PATH
+}
+
+# need_cargo_tool PROGRAM VERSION: builds a program of Rust into `tools_folder`, unless it is there, and puts it in PATH.
+need_cargo_tool() {
+    if ! grep -q "^\"$1 $2 " "$tools_folder/.crates.toml" 2>/dev/null; then
+        say "building $1 $2 into $tools_folder"
+        env -u CARGO_ENCODED_RUSTFLAGS cargo install --quiet --locked --root "$tools_folder" \
+            --target-dir "$tools_folder/build" "$1@$2" || die "$1 $2 could not be installed"
+        rm -rf "$tools_folder/build"
+    fi
+    PATH=$tools_folder/bin:$PATH
 }
 
 # need_python_packages: puts NumPy and what else the tests of the Python package need into PYTHONPATH. Installs them into
