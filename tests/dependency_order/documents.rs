@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use crate::sources::{SourceFile, source_files};
 
 /// Folders and scripts of the project with which a path in a document begins.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "src/",
     "crates/",
     "shaders/",
@@ -18,6 +18,7 @@ const ROOMS: [&str; 11] = [
     "examples/",
     "benches/",
     "fuzz/",
+    "packaging/",
 ];
 
 /// Documents at the top of the project; the change log names what was there when a version was made.
