@@ -39,12 +39,12 @@ pack_deb() {
 pack_rpm() {
     local top=$work/rpm list=$work/rpm-files
     mkdir "$top"
-    # Folders belong to the packages of the system, except that of the documents.
-    {
-        printf '%s\n' '%dir /usr/share/doc/chiaroscuro'
-        (cd "$1" && find usr -type f | sort | sed -e 's|^|/|' -e 's|^/usr/share/doc/.*LICENSE|%license &|' \
-            -e 's|^/usr/share/doc/|%doc &|' -e 's|^/usr/share/man/|%doc &|')
-    } >"$list"
+    # Folders that every system has belong to it. The others belong to this package too, as rpm allows, so that it removes
+    # those that it has created.
+    (cd "$1" && find usr -mindepth 1 -type d | sort | sed -e 's|^|/|' \
+        -e '/\/bin$/d' -e '/\/share$/d' -e '/\/share\/doc$/d' -e '/\/share\/man/d' -e 's|^|%dir |') >"$list"
+    (cd "$1" && find usr -type f | sort | sed -e 's|^|/|' -e 's|^/usr/share/doc/.*LICENSE|%license &|' \
+        -e 's|^/usr/share/doc/|%doc &|' -e 's|^/usr/share/man/|%doc &|') >>"$list"
     rpmbuild -bb --quiet --target x86_64 \
         --define "_topdir $top" --define "_tmppath $top/tmp" --define "_rpmdir $top" --define "_rpmfilename out.rpm" \
         --define "version $version" --define "glibc $oldest_glibc" \
