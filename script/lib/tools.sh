@@ -17,13 +17,12 @@ need_shellcheck() {
     has shellcheck || die "shellcheck was not found; install it (macOS: brew install shellcheck)"
 }
 
-# need_tools [LIST]: puts the programs of a list first in PATH, of tools.txt or, with the argument packaging, of
-# packaging.txt. Installs them into a folder of that name in the target folder, if the list has changed since the last
-# installation. Sets `tools_folder`.
+# need_tools NAME: puts the programs of a list, NAME.txt, first in PATH: tools for checks, or packaging. Installs them into
+# a folder NAME in the target folder, if the list has changed since the last installation. Sets `tools_folder`.
 need_tools() {
     local list
-    list=$(dirname "${BASH_SOURCE[0]}")/${1:-tools}.txt
-    tools_folder=$(target_folder)/${1:-tools}
+    list=$(dirname "${BASH_SOURCE[0]}")/$1.txt
+    tools_folder=$(target_folder)/$1
     if ! cmp -s "$list" "$tools_folder/list.txt"; then
         want_command python3 python3 python3 "installs programs that the scripts use"
         python3 -m pip --version >/dev/null 2>&1 ||
