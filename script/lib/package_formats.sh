@@ -56,5 +56,16 @@ pack_rpm() {
     mv "$top/out.rpm" "$2"
 }
 
-# pack_wheel TREE FOLDER: a wheel with the program, whose name follows from version and C library.
-pack_wheel() { python3 "$root/script/lib/wheel.py" "$1" "$version" "$oldest_glibc" "$2" >/dev/null; }
+# pack_wheels TREE FOLDER: a wheel with the program, and one with the package for Python; their names follow from version
+# and C library.
+pack_wheels() {
+    local documents=$1/usr/share/doc/chiaroscuro own=$work/python-documents
+    python3 "$root/script/lib/wheel.py" program "$2" "$documents" "$version" "$oldest_glibc" "$program" >/dev/null
+    mkdir "$own"
+    cp "$root/LICENSE-MIT" "$root/LICENSE-APACHE" "$own"
+    third_party_licences chiaroscuro-python >"$own/THIRD-PARTY-LICENSES"
+    list_of_components python/chiaroscuro-python.cdx.json >"$own/chiaroscuro.cdx.json"
+    compress "$own/THIRD-PARTY-LICENSES"
+    compress "$own/chiaroscuro.cdx.json"
+    python3 "$root/script/lib/wheel.py" package "$2" "$own" "$version" "$oldest_glibc" "$module" >/dev/null
+}

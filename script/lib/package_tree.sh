@@ -58,19 +58,21 @@ stage_documents() {
     mkdir -p "$documents"
     cp "$root/packaging/deb/copyright" "$root/LICENSE-MIT" "$root/LICENSE-APACHE" "$documents"
     cp "$root/CHANGELOG.md" "$documents/changelog"
-    third_party_licences >"$documents/THIRD-PARTY-LICENSES"
-    list_of_components >"$documents/chiaroscuro.cdx.json"
+    third_party_licences chiaroscuro >"$documents/THIRD-PARTY-LICENSES"
+    list_of_components chiaroscuro.cdx.json >"$documents/chiaroscuro.cdx.json"
     compress "$documents/changelog"
     compress "$documents/THIRD-PARTY-LICENSES"
     compress "$documents/chiaroscuro.cdx.json"
 }
 
+# third_party_licences CRATE: prints the licences of everything that a crate is linked with.
 third_party_licences() {
-    (cd "$root" && cargo tree --locked -p chiaroscuro --edges normal --target "$triple" --prefix none --format '{p}') |
+    (cd "$root" && cargo tree --locked -p "$1" --edges normal --target "$triple" --prefix none --format '{p}') |
         python3 "$root/script/lib/licences.py" "$triple" "LLVM libunwind=$tools_folder/ziglang/lib/libunwind/LICENSE.TXT"
 }
 
-# list_of_components: prints the crates of the program in the format of CycloneDX.
+# list_of_components FILE: prints the crates that a crate is linked with in the format of CycloneDX; FILE is named after it,
+# and lies beside its manifest.
 list_of_components() {
     local copy=$work/source
     # The tool writes beside each manifest, so it works on a copy.
@@ -79,7 +81,7 @@ list_of_components() {
     (cd "$copy" && cargo cyclonedx --quiet --format json --spec-version 1.5 --target "$triple" --no-build-deps) ||
         die "cargo cyclonedx could not list the crates"
     # Crates of the project are identified by their folder.
-    sed "s|path+file://$copy|path+file:///chiaroscuro|g" "$copy/chiaroscuro.cdx.json"
+    sed "s|path+file://$copy|path+file:///chiaroscuro|g" "$copy/$1"
     rm -rf "$copy"
 }
 

@@ -42,21 +42,30 @@ oldest_glibc=2.28
 auditable_version=0.7.7
 cyclonedx_version=0.5.9
 
-# build_portable: builds the program without symbols, for all systems since that C library, and sets `program` to it.
-# The caller has set `triple`, and called need_tools packaging.
+# build_portable: builds the program and the module for Python without symbols, for all systems since that C library, and
+# sets `program` and `module` to them. The caller has set `triple`, and called need_tools packaging.
 build_portable() {
     release_flags
     say "building for glibc $oldest_glibc"
+    portable_build --bin chiaroscuro
+    portable_build --package chiaroscuro-python --lib
+    program=$release_folder/$triple/release/chiaroscuro
+    module=$release_folder/$triple/release/libchiaroscuro_python.so
+    check_release "$program"
+    check_portable "$program"
+    check_release "$module"
+    check_portable "$module"
+}
+
+# portable_build ARGS: builds what ARGS of cargo select.
+portable_build() {
     # Everything that the linker compiles for itself stays in the target folder. A profile's `strip` would count for
     # script/release too, which keeps the names of functions for reports of crashes.
     CARGO_PROFILE_RELEASE_STRIP=symbols \
         CARGO_ZIGBUILD_ZIG_PATH=$tools_folder/ziglang/zig CARGO_ZIGBUILD_CACHE_DIR=$tools_folder/cache \
         ZIG_GLOBAL_CACHE_DIR=$tools_folder/cache/zig ZIG_LOCAL_CACHE_DIR=$tools_folder/cache/zig \
-        cargo auditable zigbuild --release --locked --bin chiaroscuro \
+        cargo auditable zigbuild --release --locked "$@" \
         --target "$triple.$oldest_glibc" --target-dir "$release_folder"
-    program=$release_folder/$triple/release/chiaroscuro
-    check_release "$program"
-    check_portable "$program"
 }
 
 # check_portable PROGRAM: stops if a program needs a newer C library than `oldest_glibc`, has symbols besides those for
