@@ -55,6 +55,8 @@ build_portable() {
     check_portable "$program"
     check_release "$module"
     check_portable "$module"
+    ! readelf --wide --dynamic "$module" | grep -F libpython ||
+        die "$module needs a libpython; expected the interpreter's own functions, by the feature extension-module of pyo3"
 }
 
 # portable_build ARGS: builds what ARGS of cargo select.
