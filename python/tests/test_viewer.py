@@ -68,5 +68,6 @@ def test_a_window_that_fails_says_so(window, chair, chair_look, monkeypatch):
         ch.Viewer(chair, chair_look)
     monkeypatch.delenv("CHIAROSCURO_PROGRAM")
     monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr("sysconfig.get_path", lambda _: "nowhere")
     with pytest.raises(ch.Error, match="chiaroscuro-app"):
         ch.Viewer(chair, chair_look)
