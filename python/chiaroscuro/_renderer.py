@@ -167,6 +167,13 @@ def _volume_of(data: Any, options: dict[str, Any]) -> Volume:
     return Volume(data, **own)
 
 
+def _look_of(volume: Volume, look: Look | None, renderer: Renderer, options: dict[str, Any]) -> Look:
+    """Returns a look with the options that are left, or the automatic one with them."""
+    if look is None:
+        return Look.auto(volume, renderer=renderer, **options)
+    return look.with_(volume, **options) if options else look
+
+
 def render(
     data: Any,
     *,
@@ -197,10 +204,7 @@ def render(
     """
     volume = _volume_of(data, options)
     renderer = renderer if renderer is not None else default_renderer()
-    if look is None:
-        look = Look.auto(volume, renderer=renderer, **options)
-    elif options:
-        look = look.with_(volume, **options)
+    look = _look_of(volume, look, renderer, options)
     return renderer.render(volume, look, size=size, samples=samples, transparent=transparent, dtype=dtype)
 
 
@@ -222,10 +226,7 @@ def turntable(
     """
     volume = _volume_of(data, options)
     renderer = renderer if renderer is not None else default_renderer()
-    if look is None:
-        look = Look.auto(volume, renderer=renderer, **options)
-    elif options:
-        look = look.with_(volume, **options)
+    look = _look_of(volume, look, renderer, options)
     for frame in range(int(frames)):
         turned = Look(look._native.turned(frame / frames, light))
         yield renderer.render(volume, turned, size=size, samples=samples, transparent=transparent)

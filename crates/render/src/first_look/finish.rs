@@ -23,7 +23,7 @@ impl UndecidedPart {
     /// All parts, in the order in which they are chosen.
     pub const ALL: [Self; 4] = [Self::Lights, Self::Floor, Self::Balance, Self::Exposure];
 
-    /// Returns the path of the part's setting: whoever sets it has decided the part.
+    /// Returns the path of the setting that holds the part. A part whose setting is given is not chosen automatically.
     pub const fn path(self) -> &'static str {
         match self {
             Self::Lights => "lights",
