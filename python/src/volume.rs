@@ -96,15 +96,26 @@ pub(crate) struct FileSelection {
     /// Array of a file with several.
     #[pyo3(item)]
     array: Option<String>,
+    /// Resolution level, by number from 0, the finest, or by name.
+    #[pyo3(item)]
+    level: Option<String>,
 }
 
 impl FileSelection {
     /// Converts the selection to the readers' options.
     fn load_options(self) -> LoadOptions {
-        let Self { reduce, channel, frame, component, series, array } = self;
+        let Self { reduce, channel, frame, component, series, array, level } = self;
         let portion = reduce.map(|block| Portion { region: None, thinning: Downsampling::Average(block) });
-        let choice =
-            VolumeChoice { channel, frame, component, series, array, portion, ..VolumeChoice::default() };
+        let choice = VolumeChoice {
+            channel,
+            frame,
+            component,
+            series,
+            array,
+            level,
+            portion,
+            ..VolumeChoice::default()
+        };
         LoadOptions { choice, ..LoadOptions::default() }
     }
 }

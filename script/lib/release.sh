@@ -63,10 +63,13 @@ build_portable() {
 portable_build() {
     # Everything that the linker compiles for itself stays in the target folder. A profile's `strip` would count for
     # script/release too, which keeps the names of functions for reports of crashes.
+    # cargo-auditable is given as the compiler's wrapper by its name, as `cargo auditable` would give it by its absolute
+    # path: cargo hashes the text into the names of symbols, and the bytes would depend on where the tool lies.
     CARGO_PROFILE_RELEASE_STRIP=symbols \
+        RUSTC_WORKSPACE_WRAPPER=cargo-auditable CARGO_AUDITABLE_ORIG_ARGS='[]' \
         CARGO_ZIGBUILD_ZIG_PATH=$tools_folder/ziglang/zig CARGO_ZIGBUILD_CACHE_DIR=$tools_folder/cache \
         ZIG_GLOBAL_CACHE_DIR=$tools_folder/cache/zig ZIG_LOCAL_CACHE_DIR=$tools_folder/cache/zig \
-        cargo auditable zigbuild --release --locked "$@" \
+        cargo zigbuild --release --locked "$@" \
         --target "$triple.$oldest_glibc" --target-dir "$release_folder"
 }
 

@@ -35,9 +35,9 @@ pub use label_cells::CellOccupancy;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
     FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, MAX_FIELDS, Portion,
-    ReadContext, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize, VoxelComponents,
-    VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine, is_usable_spacing,
-    memory_budget_bytes, quoted, spacing_ratio_error,
+    ReadContext, ResolutionLevel, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize,
+    VoxelComponents, VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine,
+    is_usable_spacing, memory_budget_bytes, quoted, spacing_ratio_error,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,

@@ -1,6 +1,6 @@
 //! Alternatives of the open file for menus, panels and the chooser.
 //!
-//! They are its series, arrays, channels, time steps and components.
+//! They are its series, arrays, channels, time steps, resolution levels and components.
 
 use crate::app::text;
 use chiaroscuro_volume::{

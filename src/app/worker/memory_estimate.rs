@@ -65,18 +65,23 @@ pub(crate) fn memory_checking_control(
     budget_bytes: u64,
     question: PendingMemoryDecision,
 ) -> LoadControl {
-    LoadControl::with_size_check(move |size| {
+    let estimate = move |size: &VolumeSize| {
         // A lost device is reported when the volume is displayed.
         let held = downsampled_dims(&context, size.dims, size.voxel_type).unwrap_or(size.dims);
         let room =
             AvailableMemory { budget_bytes, adapter_dims: held, shares_main_memory: context.is_software() };
-        let weighed = MemoryEstimate { size: *size, available: room };
+        MemoryEstimate { size: *size, available: room }
+    };
+    let estimate_level = estimate.clone();
+    LoadControl::with_size_check(move |size| {
+        let weighed = estimate(size);
         let is_well = weighed.fits_comfortably();
         if !is_well {
             question.set(weighed);
         }
         is_well
     })
+    .with_comfortable_size(move |size| estimate_level(size).fits_comfortably())
 }
 
 impl AvailableMemory {

@@ -48,6 +48,7 @@ impl FromStr for LayerArg {
                 "frame" => layer.choice.frame = number()?,
                 "series" => layer.choice.series = Some(value.to_owned()),
                 "array" => layer.choice.array = Some(value.to_owned()),
+                "level" => layer.choice.level = Some(value.to_owned()),
                 _ => layer.settings.push((key.to_owned(), value.to_owned())),
             }
         }

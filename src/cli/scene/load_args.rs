@@ -54,6 +54,9 @@ pub(crate) struct LoadArgs {
     /// Array to show, if a file holds several
     #[arg(long, value_name = "NAME")]
     array: Option<String>,
+    /// Resolution level to open, by number from 0, the finest, or by name, instead of the finest that fits into memory
+    #[arg(long, value_name = "NAME")]
+    level: Option<String>,
     /// Graphics adapter to draw with, counted from the fastest, which is 0
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     adapter: usize,
@@ -98,6 +101,7 @@ impl LoadArgs {
             channel: self.channel,
             series: self.series.clone(),
             array: self.array.clone(),
+            level: self.level.clone(),
             portion: self.portion(),
             ..VolumeChoice::default()
         };

@@ -1,5 +1,6 @@
 //! Registry of the supported formats, and detection of a file's format: by its first bytes, or else by its extension.
 
+mod arrays;
 mod cube;
 pub(super) mod dicom;
 mod fits;
@@ -9,7 +10,6 @@ mod mgh;
 mod mrc;
 mod nifti;
 mod nrrd;
-mod numpy;
 mod pictures;
 mod pvm;
 pub mod raw;
@@ -33,8 +33,8 @@ use pictures::{slices, tiff};
 /// All readers, those with the most specific signatures first.
 pub(super) const READERS: &[FormatReader] = &[
     nrrd::READER,
-    numpy::NPY,
-    numpy::NPZ,
+    arrays::numpy::NPY,
+    arrays::numpy::NPZ,
     pvm::READER,
     nifti::READER,
     metaimage::READER,
@@ -85,7 +85,7 @@ pub(super) fn detect_format(
     }
     // By extension, because an array archive may begin with an entry that is no array, or contain none at all.
     if has_extension(path, ".npz") && start.has_at(b"PK", 0) {
-        return FileFormat::Reader(&numpy::NPZ);
+        return FileFormat::Reader(&arrays::numpy::NPZ);
     }
     if let Some(format) = unsupported::by_content(path, start, input) {
         return FileFormat::Unsupported(format);

@@ -28,6 +28,9 @@ pub struct VolumeChoice {
     /// Key of the array of an archive, as in [`VolumeOffer::key`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub array: Option<String>,
+    /// Key of the resolution level, as in [`VolumeOffer::key`]; without one the finest that fits into memory is read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
     /// Portion of the volume that is read; `None` reads all voxels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub portion: Option<Portion>,
@@ -51,6 +54,7 @@ impl VolumeChoice {
             FileDimension::Channel => self.channel.map(|channel| channel.to_string()),
             FileDimension::Series => self.series.clone(),
             FileDimension::Array => self.array.clone(),
+            FileDimension::Level => self.level.clone(),
         }
     }
 
@@ -71,6 +75,7 @@ impl VolumeChoice {
             FileDimension::Channel => self.channel = number,
             FileDimension::Series => self.series = Some(key.to_owned()),
             FileDimension::Array => self.array = Some(key.to_owned()),
+            FileDimension::Level => self.level = Some(key.to_owned()),
         }
         self
     }
@@ -181,11 +186,11 @@ impl VolumeChoice {
         self.selects_nothing() && self.portion.is_none()
     }
 
-    /// Returns true if no component, frame, channel, series or array is selected.
+    /// Returns true if no component, frame, channel, series, array or level is selected.
     fn selects_nothing(&self) -> bool {
-        let Self { component, frame, channel, series, array, portion: _, .. } = self;
-        let numbers = [component, frame, channel];
-        numbers.iter().all(|said| said.is_none()) && series.is_none() && array.is_none()
+        let Self { component, frame, channel, series, array, level, portion: _, .. } = self;
+        [component, frame, channel].iter().all(|selected| selected.is_none())
+            && [series, array, level].iter().all(|selected| selected.is_none())
     }
 
     /// Fills unset parts of this choice from `other`: the selected volume as a whole, and the portion separately.

@@ -25,6 +25,8 @@ pub struct LoadControl {
     /// Time of the analysis after reading, in nanoseconds.
     analysis_ns: AtomicU64,
     size_check: SizeCheck,
+    /// Callback that says which sizes need no question, if there is one.
+    comfortable_size: SizeCheck,
     /// Files that were read: a header names others, and a slice brings its series.
     read_files: Mutex<BTreeSet<PathBuf>>,
     /// True if blocks are averaged while they are read although all voxels fit into memory; only tests set it.
@@ -60,6 +62,18 @@ impl LoadControl {
     /// chosen a portion.
     pub fn with_size_check(accepts: impl Fn(&VolumeSize) -> bool + Send + Sync + 'static) -> Self {
         Self { size_check: SizeCheck(Some(Box::new(accepts))), ..Self::default() }
+    }
+
+    /// Adds a callback that says, without asking anybody, whether a volume of a size fits well: of several resolution
+    /// levels the finest such is read.
+    #[must_use]
+    pub fn with_comfortable_size(self, fits: impl Fn(&VolumeSize) -> bool + Send + Sync + 'static) -> Self {
+        Self { comfortable_size: SizeCheck(Some(Box::new(fits))), ..self }
+    }
+
+    /// Returns true if a volume of this size fits well.
+    pub(super) fn is_size_comfortable(&self, size: &VolumeSize) -> bool {
+        self.comfortable_size.0.as_ref().is_none_or(|fits| fits(size))
     }
 
     pub(super) fn accepts_size(&self, size: &VolumeSize) -> bool {

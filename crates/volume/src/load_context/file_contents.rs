@@ -30,18 +30,19 @@ impl ChoiceAspect {
     }
 
     /// All aspects, in the order in which the user selects.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Dimension(FileDimension::Series),
         Self::Dimension(FileDimension::Array),
         Self::Dimension(FileDimension::Channel),
         Self::Dimension(FileDimension::Frame),
+        Self::Dimension(FileDimension::Level),
         Self::Component,
     ];
 
     /// Returns true if a volume takes over the look of another one that differs in this aspect: both show the same
     /// object with the same range of values.
     pub fn keeps_look(self) -> bool {
-        matches!(self, Self::Dimension(FileDimension::Frame) | Self::Component)
+        matches!(self, Self::Dimension(FileDimension::Frame | FileDimension::Level) | Self::Component)
     }
 
     /// Returns the command-line option that selects in this aspect.

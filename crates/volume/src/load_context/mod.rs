@@ -11,6 +11,7 @@ mod limits;
 mod memory_estimate;
 mod offer;
 mod portion;
+mod resolution_level;
 mod resolved_portion;
 
 pub use choice::VolumeChoice;
@@ -29,4 +30,5 @@ pub use limits::{is_usable_affine, is_usable_spacing, spacing_ratio_error};
 pub use memory_estimate::VolumeSize;
 pub use offer::{FileDimension, VolumeOffer};
 pub use portion::{Downsampling, Portion, VoxelRegion, VoxelSpan};
+pub use resolution_level::ResolutionLevel;
 pub use resolved_portion::ResolvedPortion;

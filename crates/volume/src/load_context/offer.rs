@@ -13,6 +13,8 @@ pub enum FileDimension {
     Series,
     /// Arrays in a single archive.
     Array,
+    /// Resolution levels of a single image, finest first.
+    Level,
 }
 
 impl FileDimension {
@@ -23,6 +25,7 @@ impl FileDimension {
             Self::Channel => "--channel",
             Self::Series => "--series",
             Self::Array => "--array",
+            Self::Level => "--level",
         }
     }
 
@@ -33,6 +36,7 @@ impl FileDimension {
             Self::Channel => "channels",
             Self::Series => "series",
             Self::Array => "arrays",
+            Self::Level => "resolution levels",
         }
     }
 }

@@ -19,6 +19,10 @@ pub(crate) fn row(aspect: ChoiceAspect) -> ControlText {
         ChoiceAspect::Dimension(FileDimension::Frame) => {
             control_text("Time step", "The time steps in the file: one is shown at a time")
         }
+        ChoiceAspect::Dimension(FileDimension::Level) => control_text(
+            "Resolution level",
+            "Copies of the image in several sizes: the finest that fits into memory is opened first",
+        ),
         ChoiceAspect::Component => control_text(
             "Component",
             "For voxels with several values: one of them, or one value computed from all",
@@ -33,6 +37,7 @@ pub(crate) fn title(aspect: ChoiceAspect) -> &'static str {
         ChoiceAspect::Dimension(FileDimension::Array) => "Choose an array",
         ChoiceAspect::Dimension(FileDimension::Channel) => "Choose a channel",
         ChoiceAspect::Dimension(FileDimension::Frame) => "Choose a time step",
+        ChoiceAspect::Dimension(FileDimension::Level) => "Choose a resolution level",
         ChoiceAspect::Component => "Choose a component",
     }
 }

@@ -7,8 +7,8 @@ use std::io::{self, Read, Seek as _, SeekFrom};
 
 use flate2::bufread::DeflateDecoder;
 
-use super::super::LoadError;
-use super::super::input::InputFile;
+use super::LoadError;
+use super::input::InputFile;
 use chiaroscuro_volume::{LoadContext, quoted};
 
 /// Signature of a local file header (4.3.7).

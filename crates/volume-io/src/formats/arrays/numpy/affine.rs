@@ -9,9 +9,9 @@ use glam::{DAffine3, DMat4, DVec3};
 
 use super::super::input::InputFile;
 use super::super::placement::GridPlacement;
+use super::super::zip::{ZipEntry, open_entry};
 use super::grid::NumpyGrid;
 use super::header::NumpyHeader;
-use super::zip::{ZipEntry, open_entry};
 use chiaroscuro_volume::{LoadContext, is_usable_affine, spacing_ratio_error};
 
 /// Name of the array, in any case of letters.

@@ -8,7 +8,6 @@ mod grid;
 mod header;
 #[cfg(test)]
 mod tests;
-mod zip;
 
 use std::io::Read as _;
 
@@ -20,22 +19,22 @@ use super::placement::{GridPlacement, VolumeParts};
 use super::reader::{FormatReader, TrailingData, VolumeSource};
 use super::samples::{ReadFault, VoxelLayout, is_corruption, skip_bytes};
 use super::voxels::ReadVoxels;
+use super::zip::{self, ZipDirectory, ZipEntry};
 use super::{FileDimension, LoadError, VolumeOffer};
 use affine::ArchiveAffine;
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{GridExtent, LoadContext, ValueMetadata, Volume, quoted};
 use grid::NumpyGrid;
 use header::{MAGIC, NumpyHeader};
-use zip::{ZipDirectory, ZipEntry};
 
-pub(super) const NPY: FormatReader = FormatReader {
+pub(crate) const NPY: FormatReader = FormatReader {
     name: "NumPy",
     extensions: &[".npy", ".npy.gz"],
     recognises: |start| start.has_at(MAGIC, 0),
     load: load_array,
 };
 
-pub(super) const NPZ: FormatReader = FormatReader {
+pub(crate) const NPZ: FormatReader = FormatReader {
     name: "NumPy archive",
     extensions: &[".npz"],
     recognises: |start| zip::begins_with_entry(start.stored(), ENDING),
