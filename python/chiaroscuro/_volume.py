@@ -63,6 +63,7 @@ class Volume:
         component: int | None = None,
         series: str | None = None,
         array: str | None = None,
+        level: int | str | None = None,
     ) -> None:
         if kind not in KINDS:
             raise InvalidArgument(f"kind: expected one of {', '.join(KINDS)}, found {kind!r}")
@@ -76,7 +77,7 @@ class Volume:
                 raise InvalidArgument("scale, translate, units and channel_axis belong to arrays; a file has its own")
             selection = {
                 "reduce": reduce, "channel": channel, "frame": frame, "component": component, "series": series,
-                "array": array,
+                "array": array, "level": None if level is None else str(level),
             }  # fmt: skip
             source = os.fspath(data)
             self._native = _native.NativeVolume.open(source, selection)

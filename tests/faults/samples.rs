@@ -29,7 +29,10 @@ fn ct_range() -> ValueRange {
 }
 
 fn reads_volume(path: &Path) -> bool {
-    open(path, &LoadOptions::default(), &LoadControl::new()).is_ok()
+    // Of several volumes, as the window opens it: the first.
+    let options = LoadOptions::default();
+    let options = LoadOptions { choice: options.choice.clone().with_first_as_fallback(), ..options };
+    open(path, &options, &LoadControl::new()).is_ok()
 }
 
 /// Reads a look from a session, a preset or a picture; returns true if it was accepted.
@@ -80,7 +83,7 @@ macro_rules! kept {
 }
 
 /// Valid files of other programs, which cannot be generated here in a few lines.
-const STORED_SAMPLES: [(&str, &[u8]); 43] = kept![
+const STORED_SAMPLES: [(&str, &[u8]); 45] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -124,6 +127,8 @@ const STORED_SAMPLES: [(&str, &[u8]); 43] = kept![
     "labels.mgz",
     "cube.fits",
     "units.fits.gz",
+    "levels.zarr.zip",
+    "shards.zarr.zip",
 ];
 
 /// Files of other programs, by their names.

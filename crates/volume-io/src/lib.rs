@@ -13,6 +13,7 @@
 
 mod formats;
 mod huge_pages;
+mod length_unit;
 mod neighbour;
 mod open;
 mod reading;

@@ -35,6 +35,8 @@ pub(super) const READERS: &[FormatReader] = &[
     nrrd::READER,
     arrays::numpy::NPY,
     arrays::numpy::NPZ,
+    arrays::zarr::ARCHIVE,
+    arrays::zarr::DOCUMENT,
     pvm::READER,
     nifti::READER,
     metaimage::READER,
@@ -84,8 +86,13 @@ pub(super) fn detect_format(
         return FileFormat::Reader(&raw::READER);
     }
     // By extension, because an array archive may begin with an entry that is no array, or contain none at all.
-    if has_extension(path, ".npz") && start.has_at(b"PK", 0) {
-        return FileFormat::Reader(&arrays::numpy::NPZ);
+    let archives = [&arrays::numpy::NPZ, &arrays::zarr::ARCHIVE];
+    let is_archive =
+        |reader: &&&FormatReader| reader.extensions.iter().any(|ending| has_extension(path, ending));
+    if start.has_at(b"PK", 0)
+        && let Some(reader) = archives.iter().find(is_archive)
+    {
+        return FileFormat::Reader(reader);
     }
     if let Some(format) = unsupported::by_content(path, start, input) {
         return FileFormat::Unsupported(format);

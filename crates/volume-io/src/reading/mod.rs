@@ -1,5 +1,6 @@
 //! Parts that the readers of all formats share: files, numbers, placement, and companion files.
 
+pub(super) mod chunk_codecs;
 pub(super) mod companion_path;
 pub(super) mod content;
 pub(super) mod input;

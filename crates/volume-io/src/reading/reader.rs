@@ -135,14 +135,8 @@ impl VolumeSource<'_> {
         dims: [u64; 3],
         name: impl Fn(usize) -> String,
     ) -> Result<usize, LoadError> {
-        if count > MAX_OFFERS {
-            return Err(context.limit_error(
-                dimension.option(),
-                format!("it holds {count} {}, {MAX_OFFERS} are allowed", dimension.plural()),
-                "check the header, or write fewer into one file",
-            ));
-        }
-        let offers = (0..count as usize).map(|at| VolumeOffer::with_number(at, &name(at), dims)).collect();
+        let count = checked_offer_count(context, dimension, count)?;
+        let offers = (0..count).map(|at| VolumeOffer::with_number(at, &name(at), dims)).collect();
         context.resolve_choice(&self.options.choice, dimension, offers)
     }
 
@@ -159,6 +153,25 @@ impl VolumeSource<'_> {
         let component = self.options.choice.resolve_component(components, is_color);
         ScalarReduction::require(context, component, components, is_color)
     }
+}
+
+/// Returns a number of volumes that differ along a dimension, if so many can be offered.
+///
+/// # Errors
+/// `Limit` for more than [`MAX_OFFERS`].
+pub(crate) fn checked_offer_count(
+    context: LoadContext<'_>,
+    dimension: FileDimension,
+    count: u64,
+) -> Result<usize, LoadError> {
+    if count <= MAX_OFFERS {
+        return Ok(count as usize);
+    }
+    Err(context.limit_error(
+        dimension.option(),
+        format!("it holds {count} {}, {MAX_OFFERS} are allowed", dimension.plural()),
+        "check the header, or write fewer into one file",
+    ))
 }
 
 /// First bytes of a file, as stored and inflated.

@@ -11,11 +11,9 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
             FormatSignature::Container(0, b"PK\x03\x04", b".zarray"),
             FormatSignature::Container(0, b"PK\x03\x04", b".zgroup"),
             FormatSignature::Container(0, b"PK\x03\x04", b"zarr.json"),
-            FormatSignature::BytesWithExtension(0, b"PK", &[".zarr.zip", ".ozx"]),
         ],
         extensions: &[],
-        advice: "save an array of it: python -c \"import zarr, numpy; \
-               numpy.save('OUT.npy', zarr.open(zarr.storage.ZipStore('IN.zip', mode='r'), mode='r')['0'][:])\"",
+        advice: "rename it to IN.zarr.zip, by which it is recognised, or unpack it and open the folder",
     },
     UnsupportedFormat {
         description: "a ZIP archive",

@@ -7,16 +7,6 @@ use super::UnsupportedFormat;
 /// Folder formats, each with files that only such a folder has.
 const FOLDERS: &[(&[&str], UnsupportedFormat)] = &[
     (
-        &[".zattrs", ".zgroup", ".zarray", ".zmetadata", "zarr.json"],
-        UnsupportedFormat {
-            description: "a Zarr folder, as OME-Zarr images are",
-            signatures: &[],
-            extensions: &[],
-            advice: "save an array of it: python -c \"import zarr, numpy; \
-                   numpy.save('OUT.npy', zarr.open('FOLDER', mode='r')['0'][:])\"",
-        },
-    ),
-    (
         &["attributes.json"],
         UnsupportedFormat {
             description: "an N5 folder",

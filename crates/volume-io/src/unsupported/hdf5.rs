@@ -109,13 +109,4 @@ pub(super) const FORMATS: &[UnsupportedFormat] = &[
         advice: "save one of its variables as an array: python -c \"import scipy.io, numpy; \
                numpy.save('OUT.npy', scipy.io.loadmat('IN.mat')['NAME'])\"",
     },
-    UnsupportedFormat {
-        description: "a part of a Zarr array",
-        signatures: &[FormatSignature::Test(|look| {
-            matches!(look.name.as_str(), ".zarray" | ".zgroup" | ".zattrs" | ".zmetadata" | "zarr.json")
-        })],
-        extensions: &[],
-        advice: "it belongs to the folder around it; save an array of that folder: python -c \"import zarr, numpy; \
-               numpy.save('OUT.npy', zarr.open('FOLDER', mode='r')['0'][:])\"",
-    },
 ];

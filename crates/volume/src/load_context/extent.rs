@@ -50,6 +50,12 @@ impl GridExtent {
         Self { wanted: kept, read: kept, ..Self::unchecked(kept.grid, voxel_type) }
     }
 
+    /// Returns the extent of only the box that is read, treated as a grid of its own.
+    pub fn restricted_to_box(self, voxel_type: VoxelType) -> Self {
+        let kept = self.read.relative_to_box();
+        Self { wanted: kept, read: kept, ..Self::unchecked(kept.grid, voxel_type) }
+    }
+
     /// Checks `dims`, which `field` gave, against zero, overflow and the budget, for a reader that keeps only the
     /// wanted voxels.
     ///

@@ -71,6 +71,12 @@ impl ResolvedPortion {
         Self { grid: with(self.grid, count), low, high, stride: with(self.stride, step), ..self }
     }
 
+    /// Returns this portion relative to a grid that consists only of its box.
+    pub(crate) fn relative_to_box(self) -> Self {
+        let edges = self.box_dims();
+        Self { grid: edges, low: [0; 3], high: edges, ..self }
+    }
+
     /// Copies the kept voxels of one slice into `kept`.
     pub fn copy_from_slice<T: Copy>(&self, slice: &[T], kept: &mut [T]) {
         let rows = (self.low[1]..self.high[1]).step_by(self.stride[1]);

@@ -1,7 +1,8 @@
 //! Formats that hold arrays of any number of dimensions, whose axes have to be interpreted.
 
 pub(super) mod numpy;
+pub(super) mod zarr;
 mod zip;
 
-use super::{Endian, FileDimension, LoadError, VolumeOffer};
+use super::{Endian, FileDimension, LoadControl, LoadError, LoadOptions, VolumeOffer};
 use super::{input, number, placement, reader, samples, voxels};

@@ -1,4 +1,4 @@
-//! Reader of ZIP archives in the variants that NumPy writes: entries that are stored or deflated.
+//! Reader of ZIP archives in the variants that NumPy and Zarr write: entries that are stored or deflated.
 //!
 //! After PKWARE's APPNOTE 6.3, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>; its sections are named
 //! below. Only the central directory counts. Sizes before the entries, or after them, may be missing.
@@ -47,13 +47,27 @@ pub(super) struct ZipEntry {
     stored_bytes: u64,
     /// Offset of its local header in the archive.
     at: u64,
+    /// Bytes of its stored content that are skipped.
+    skipped_bytes: u64,
 }
 
-/// Returns true if a file begins with an entry whose name has this extension.
-pub(super) fn begins_with_entry(start: &[u8], ending: &str) -> bool {
+impl ZipEntry {
+    /// Returns the rest of an entry that is not compressed.
+    fn after(&self, start: u64) -> Self {
+        Self {
+            bytes: self.bytes.saturating_sub(start),
+            stored_bytes: self.stored_bytes.saturating_sub(start),
+            skipped_bytes: start,
+            ..self.clone()
+        }
+    }
+}
+
+/// Returns the name of the entry with which a file begins; `None` if it begins with none.
+pub(super) fn first_entry(start: &[u8]) -> Option<&str> {
     let length = read_le(start, 26, 2) as usize;
-    let name = start.get(30..30 + length);
-    start.starts_with(LOCAL_HEADER) && name.is_some_and(|name| name.ends_with(ending.as_bytes()))
+    let name = start.get(30..30 + length).filter(|_| start.starts_with(LOCAL_HEADER))?;
+    std::str::from_utf8(name).ok()
 }
 
 /// Files in an archive, by its central directory.
@@ -115,7 +129,15 @@ pub(super) fn read_central_directory(
         }
         let checksum = read_le(line, 16, 4) as u32;
         let is_deflated = method == 8;
-        directory.entries.push(ZipEntry { name, bytes, checksum, is_deflated, stored_bytes, at });
+        directory.entries.push(ZipEntry {
+            name,
+            bytes,
+            checksum,
+            is_deflated,
+            stored_bytes,
+            at,
+            skipped_bytes: 0,
+        });
     }
     Ok(directory)
 }
@@ -132,13 +154,35 @@ pub(super) fn open_entry<'a>(
         return Err(context.bad_input_error("directory", why, HELP));
     }
     // The file name, and an extra field whose length may differ from that in the directory.
-    let skip = 30 + read_le(&head, 26, 2) + read_le(&head, 28, 2);
+    let skip = (30 + read_le(&head, 26, 2) + read_le(&head, 28, 2)).saturating_add(entry.skipped_bytes);
     input.seek(entry.at.saturating_add(skip)).map_err(|error| context.io_error(error))?;
     let stored = io::Read::by_ref(&mut input.reader).take(entry.stored_bytes);
     Ok(if entry.is_deflated {
         Box::new(DeflateDecoder::new(stored).take(entry.bytes))
     } else {
         Box::new(stored.take(entry.bytes))
+    })
+}
+
+/// Reads a part of an entry: `count` bytes from an offset in its content, fewer where it ends before.
+pub(super) fn read_entry_range(
+    context: LoadContext<'_>,
+    input: &mut InputFile,
+    entry: &ZipEntry,
+    start: u64,
+    count: u64,
+) -> Result<Vec<u8>, LoadError> {
+    // Within the content of an entry that is not compressed, a later part is an entry of its own.
+    let (part, skipped) = if entry.is_deflated { (entry.clone(), start) } else { (entry.after(start), 0) };
+    let mut content = open_entry(context, input, &part)?;
+    let mut read = || {
+        io::copy(&mut io::Read::by_ref(&mut content).take(skipped), &mut io::sink())?;
+        let mut bytes = Vec::new();
+        io::Read::by_ref(&mut content).take(count).read_to_end(&mut bytes).map(|_| bytes)
+    };
+    read().map_err(|error| {
+        let why = format!("the data of {} are broken: {error}", quoted(&entry.name));
+        context.bad_input_error("data", why, HELP)
     })
 }
 

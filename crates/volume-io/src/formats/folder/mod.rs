@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use super::arrays::zarr;
 use super::pictures::slices;
 use super::unsupported::unsupported_folder;
 use super::{LoadControl, LoadError, LoadOptions, dicom, nifti};
@@ -20,6 +21,9 @@ const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "bmp", "tif", "tiff"];
 /// given.
 pub(crate) fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {
     let context = LoadContext { operation: "open the folder", path };
+    if zarr::is_zarr_folder(path) {
+        return zarr::load_folder(path, options, control);
+    }
     if let Some(format) = unsupported_folder(path) {
         return Err(format.refusal(context));
     }

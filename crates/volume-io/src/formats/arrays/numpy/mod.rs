@@ -37,7 +37,7 @@ pub(crate) const NPY: FormatReader = FormatReader {
 pub(crate) const NPZ: FormatReader = FormatReader {
     name: "NumPy archive",
     extensions: &[".npz"],
-    recognises: |start| zip::begins_with_entry(start.stored(), ENDING),
+    recognises: |start| zip::first_entry(start.stored()).is_some_and(|name| name.ends_with(ENDING)),
     load: load_archive,
 };
 

@@ -3,7 +3,6 @@
 mod contiguous;
 pub(super) mod imagej;
 pub(super) mod imagej_channels;
-mod length_unit;
 pub(super) mod lsm;
 pub(super) mod lsm_channels;
 pub(super) mod ome;

@@ -2,7 +2,7 @@
 
 use super::super::file::TiffFile;
 use super::super::file::page::tag;
-use super::length_unit::{INCH_MM, millimetres};
+use crate::length_unit::{INCH_MM, millimetres};
 use crate::reading::placement::{GridPlacement, is_plausible_assumption};
 
 /// Placement by the name of a unit of length, and the distance between slices in it.

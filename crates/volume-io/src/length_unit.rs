@@ -1,10 +1,10 @@
-//! Units of length by their names in microscope software.
+//! Units of length by their names in the software of microscopes.
 
 /// Length of an inch in millimetres, the unit of the resolution of prints and screens.
-pub(super) const INCH_MM: f64 = 25.4;
+pub(crate) const INCH_MM: f64 = 25.4;
 
 /// Length of a unit in millimetres; `None` for any other text.
-pub(super) fn millimetres(unit: &str) -> Option<f64> {
+pub(crate) fn millimetres(unit: &str) -> Option<f64> {
     // The micro sign is also written as the Greek letter, and as an escape of Java.
     let unit = unit.trim().replace("\\u00B5", "µ").replace("\\u00b5", "µ").replace('μ', "µ");
     Some(match unit.as_str() {
