@@ -34,7 +34,7 @@ class Volume:
             ``mask``, ``labels``.
         channel_axis: axis of an array along which up to four channels lie, which are shown together.
         reduce: edge of blocks of voxels that are averaged while a file is read.
-        channel, frame, component, series, array: choice among what a file holds, as on the command line.
+        channel, frame, component, series, array, level: choice among what a file holds, as on the command line.
 
     Raises:
         UnreadableFile: the file is missing, damaged or of an unknown kind.
