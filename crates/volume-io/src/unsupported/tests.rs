@@ -190,10 +190,9 @@ fn names_tell_where_bytes_say_nothing() {
 #[test]
 fn folders_are_named_too() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, marks, words) in [
-        ("x.n5", ["attributes.json", "s0"], ["N5", "Fiji"]),
-        ("7", ["acqp", "method"], ["Bruker", "brkraw"]),
-    ] {
+    for (name, marks, words) in
+        [("x.n5", ["attributes.json", "s0"], ["N5", "Fiji"]), ("7", ["acqp", "method"], ["Bruker", "brkraw"])]
+    {
         let path = folder.path().join(name);
         std::fs::create_dir(&path).unwrap();
         for mark in marks {

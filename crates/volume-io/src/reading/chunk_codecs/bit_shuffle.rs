@@ -45,7 +45,7 @@ mod tests {
     fn shuffled_bits_return_to_their_elements() {
         for size in [1, 2, 4, 8] {
             let elements = 24;
-            let plain: Vec<u8> = (0..size * elements + 1).map(|at| (at * 151 % 253) as u8).collect();
+            let plain: Vec<u8> = (0..=size * elements).map(|at| (at * 151 % 253) as u8).collect();
             let mut shuffled = Vec::new();
             for byte in 0..size {
                 for bit in 0..8 {

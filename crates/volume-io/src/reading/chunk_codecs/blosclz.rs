@@ -1,4 +1,4 @@
-//! BloscLZ, the own compression of Blosc, a variant of FastLZ.
+//! Own compression of Blosc, `BloscLZ`: a variant of `FastLZ`.
 //!
 //! After the decoder of c-blosc 1.21 (`blosc/blosclz.c`): control bytes are followed by literals, or are copies of
 //! earlier bytes.

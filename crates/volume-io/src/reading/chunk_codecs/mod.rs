@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn shuffled_bytes_return_to_their_elements() {
         for size in [1, 2, 3, 4, 8, 16] {
-            let plain: Vec<u8> = (0..size * 7 + 1).map(|at| (at * 37 % 251) as u8).collect();
+            let plain: Vec<u8> = (0..=size * 7).map(|at| (at * 37 % 251) as u8).collect();
             let mut shuffled = Vec::new();
             for byte in 0..size {
                 shuffled.extend((0..7).map(|element| plain[element * size + byte]));

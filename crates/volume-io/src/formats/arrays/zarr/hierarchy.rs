@@ -74,7 +74,7 @@ impl<'a> Hierarchy<'a> {
         } else {
             Vec::new()
         };
-        if paths.is_empty() { self.choose_found() } else { self.choose_image(paths) }
+        if paths.is_empty() { self.choose_found() } else { self.choose_image(&paths) }
     }
 
     fn node(&self, path: &str) -> Result<Option<ZarrNode>, LoadError> {
@@ -107,8 +107,8 @@ impl<'a> Hierarchy<'a> {
     }
 
     /// Chooses one of several images by their paths.
-    fn choose_image(&self, paths: Vec<String>) -> Result<HierarchyEntry, LoadError> {
-        let offers: Vec<VolumeOffer> = paths.iter().cloned().take(MAX_OFFERS).map(offer).collect();
+    fn choose_image(&self, paths: &[String]) -> Result<HierarchyEntry, LoadError> {
+        let offers: Vec<VolumeOffer> = paths.iter().take(MAX_OFFERS).cloned().map(offer).collect();
         let chosen = self.context.resolve_choice(&self.options.choice, FileDimension::Array, offers)?;
         self.image_at(&paths[chosen])
     }

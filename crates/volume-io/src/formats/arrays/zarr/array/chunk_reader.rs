@@ -131,7 +131,8 @@ impl<'a> SlabReader<'a> {
 
     /// Skips bytes of the stream; chunks that hold nothing else are not read.
     pub(crate) fn skip(&mut self, count: u64) -> io::Result<()> {
-        self.position = self.position.saturating_add(count);
+        let beyond = || io::Error::from(io::ErrorKind::UnexpectedEof);
+        self.position = self.position.checked_add(count).ok_or_else(beyond)?;
         Ok(())
     }
 

@@ -1,7 +1,5 @@
 //! Codecs of a chunk: the order of axes and bytes, and compressions.
 
-use std::borrow::Cow;
-
 use super::Endian;
 use crate::reading::chunk_codecs::{
     bit_unshuffle, crc32c, decode_blosc, decode_bzip2, decode_gzip, decode_lz4_with_length, decode_zlib,
@@ -47,16 +45,16 @@ impl ByteCodec {
     }
 
     /// Decodes to at most `max_bytes`.
-    fn decode<'a>(self, bytes: Cow<'a, [u8]>, max_bytes: usize) -> Result<Cow<'a, [u8]>, String> {
-        let decoded = match self {
-            Self::Gzip => decode_gzip(&bytes, max_bytes),
-            Self::Zlib => decode_zlib(&bytes, max_bytes),
-            Self::Bzip2 => decode_bzip2(&bytes, max_bytes),
-            Self::Zstd => decode_zstd(&bytes, max_bytes),
-            Self::Blosc => decode_blosc(&bytes, max_bytes),
-            Self::Lz4 => decode_lz4_with_length(&bytes, max_bytes),
-            Self::Shuffle(size) => Ok(unshuffle(&bytes, size)),
-            Self::BitShuffle(size) => Ok(bit_unshuffle(&bytes, size)),
+    fn decode(self, bytes: &[u8], max_bytes: usize) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Gzip => decode_gzip(bytes, max_bytes),
+            Self::Zlib => decode_zlib(bytes, max_bytes),
+            Self::Bzip2 => decode_bzip2(bytes, max_bytes),
+            Self::Zstd => decode_zstd(bytes, max_bytes),
+            Self::Blosc => decode_blosc(bytes, max_bytes),
+            Self::Lz4 => decode_lz4_with_length(bytes, max_bytes),
+            Self::Shuffle(size) => Ok(unshuffle(bytes, size)),
+            Self::BitShuffle(size) => Ok(bit_unshuffle(bytes, size)),
             Self::Crc32c => {
                 let Some((data, sum)) = bytes.split_last_chunk::<4>() else {
                     return Err("it ends within its checksum".to_owned());
@@ -66,8 +64,7 @@ impl ByteCodec {
                 }
                 Ok(data.to_vec())
             }
-        };
-        decoded.map(Cow::Owned)
+        }
     }
 }
 
@@ -92,9 +89,9 @@ impl CodecPipeline {
         let most = |codec: usize| {
             if codec == 0 { chunk_bytes } else { chunk_bytes + chunk_bytes / 8 + MAX_OVERHEAD_BYTES }
         };
-        let mut bytes = Cow::Owned(stored);
+        let mut bytes = stored;
         for (at, codec) in self.byte_codecs.iter().enumerate().rev() {
-            bytes = codec.decode(bytes, most(at))?;
+            bytes = codec.decode(&bytes, most(at))?;
         }
         if bytes.len() != chunk_bytes {
             return Err(format!(
@@ -102,7 +99,7 @@ impl CodecPipeline {
                 bytes.len()
             ));
         }
-        Ok(bytes.into_owned())
+        Ok(bytes)
     }
 
     /// Maximum length of a stored chunk that has `chunk_bytes` when it is decoded.

@@ -57,17 +57,12 @@ impl Sharding {
         number: u64,
     ) -> Result<Option<ByteRange>, StoreError> {
         let known = indices.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned();
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let index = self.read_index(store, key)?.map(Arc::new);
-                indices
-                    .0
-                    .lock()
-                    .unwrap_or_else(PoisonError::into_inner)
-                    .insert(key.to_owned(), index.clone());
-                index
-            }
+        let index = if let Some(index) = known {
+            index
+        } else {
+            let index = self.read_index(store, key)?.map(Arc::new);
+            indices.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key.to_owned(), index.clone());
+            index
         };
         let place = index.and_then(|index| index.get(usize::try_from(number).ok()?).copied());
         Ok(place.filter(|place| *place != [ABSENT; 2]).map(|[at, length]| ByteRange::From(at, length)))
