@@ -4,7 +4,8 @@
 //! (`blosc/blosc.c`).
 
 use super::blosclz::decode_blosclz;
-use super::{bit_unshuffle, decode_lz4_block, decode_zlib, decode_zstd, unshuffle};
+use super::{STOPPED, bit_unshuffle, decode_lz4_block, decode_zlib, decode_zstd, unshuffle};
+use chiaroscuro_volume::CancelToken;
 
 /// Length of the header, in bytes.
 const HEADER_BYTES: usize = 16;
@@ -123,7 +124,11 @@ pub(crate) fn decode_blosc(chunk: &[u8], max_bytes: usize) -> Result<Vec<u8>, St
     let compression = header.compression()?;
     let blocks = header.bytes.div_ceil(header.block_bytes.max(1));
     let mut out = Vec::with_capacity(header.bytes);
+    let token = CancelToken::current();
     for block in 0..blocks {
+        if token.is_cancelled() {
+            return Err(STOPPED.to_owned());
+        }
         let block_bytes = header.block_bytes.min(header.bytes - block * header.block_bytes);
         let mut at = read_length(chunk, HEADER_BYTES + 4 * block)?;
         let streams = header.streams(block);

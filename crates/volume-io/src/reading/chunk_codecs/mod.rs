@@ -1,6 +1,6 @@
 //! Decoders of the compressed chunks of arrays, as Zarr and HDF5 store them.
 //!
-//! None of them makes more bytes than its caller expects, so that a bomb costs no more memory than an honest chunk.
+//! None of them makes more bytes than its caller expects, so that a bomb costs no more memory than an honest chunk. They poll [`CancelToken::current`](chiaroscuro_volume::CancelToken).
 //! Errors are the cause alone; the caller adds file, chunk and advice.
 
 mod bit_shuffle;
@@ -15,6 +15,12 @@ pub(crate) use blosc::decode_blosc;
 pub(crate) use checksum::crc32c;
 pub(crate) use lz4::{decode_lz4_block, decode_lz4_with_length};
 pub(crate) use stream::{decode_bzip2, decode_gzip, decode_zlib, decode_zstd};
+
+/// Bytes that are decompressed between two polls for cancellation.
+const PIECE_BYTES: usize = 1 << 20;
+
+/// Cause of a chunk that was not decoded because the work was cancelled; its caller reports that instead.
+const STOPPED: &str = "decoding was cancelled";
 
 /// Reverses the byte shuffle of elements of `size` bytes: all first bytes, all second bytes, and so on. Bytes after the
 /// last whole element are not shuffled.

@@ -1,6 +1,9 @@
 //! Compressed streams that are chunks: gzip, zlib, bzip2 and Zstandard.
 
-use std::io::{Read, Result as IoResult};
+use std::io::Read;
+
+use super::{PIECE_BYTES, STOPPED};
+use chiaroscuro_volume::CancelToken;
 
 /// Decompresses a gzip stream to at most `max_bytes`.
 ///
@@ -37,14 +40,24 @@ pub(crate) fn decode_zstd(bytes: &[u8], max_bytes: usize) -> Result<Vec<u8>, Str
     read_at_most(decoder, "Zstandard", max_bytes)
 }
 
-fn read_at_most(decoder: impl Read, name: &str, max_bytes: usize) -> Result<Vec<u8>, String> {
+/// Reads a stream to its end, in pieces between which the work on this thread can be cancelled.
+fn read_at_most(mut decoder: impl Read, name: &str, max_bytes: usize) -> Result<Vec<u8>, String> {
+    let token = CancelToken::current();
     // Streams state no size that could be trusted: memory grows as it is filled.
-    let mut out = Vec::with_capacity(max_bytes.min(1 << 20));
-    let read: IoResult<usize> = decoder.take(max_bytes as u64 + 1).read_to_end(&mut out);
-    match read {
-        Err(error) => Err(format!("the {name} data are broken: {error}")),
-        Ok(count) if count > max_bytes => Err(format!("the {name} data make more than {max_bytes} bytes")),
-        Ok(_) => Ok(out),
+    let mut out = Vec::with_capacity(max_bytes.min(PIECE_BYTES));
+    loop {
+        if token.is_cancelled() {
+            return Err(STOPPED.to_owned());
+        }
+        let piece = decoder.by_ref().take(PIECE_BYTES as u64).read_to_end(&mut out);
+        match piece {
+            Err(error) => return Err(format!("the {name} data are broken: {error}")),
+            Ok(_) if out.len() > max_bytes => {
+                return Err(format!("the {name} data make more than {max_bytes} bytes"));
+            }
+            Ok(PIECE_BYTES) => {}
+            Ok(_) => return Ok(out),
+        }
     }
 }
 

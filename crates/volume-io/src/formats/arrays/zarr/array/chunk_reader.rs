@@ -198,8 +198,11 @@ impl<'a> SlabReader<'a> {
                 (self.array.keys.key(&self.array.path, &shard), Some((sharding, number)))
             }
         };
-        let bytes =
-            self.read_chunk(&key, number).map_err(|error| error.into_load_error(self.context, &key))?;
+        let read = self.control.run(|| self.read_chunk(&key, number));
+        if self.control.is_cancelled() {
+            return Err(LoadError::Cancelled);
+        }
+        let bytes = read.map_err(|error| error.into_load_error(self.context, &key))?;
         Ok(LayerChunk { first, end, bytes })
     }
 
