@@ -6,7 +6,7 @@ use chiaroscuro::app::{App, WindowOptions};
 use chiaroscuro_scene::{LayerVisibility, LookRecord};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::volume_choice::write_npy;
 use crate::harness::{adjusted_window, click, picture, wait_until, wait_until_idle};
