@@ -60,7 +60,7 @@ fn window_of_three(folder: &Path, session: Option<&Path>) -> Harness<'static, Ap
 
 /// Waits until the last change is a step of the history.
 fn rest(harness: &mut Harness<'_, App>) {
-    harness.run_steps(40);
+    harness.run_steps(8);
     wait_until_idle(harness);
 }
 
