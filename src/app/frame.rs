@@ -129,7 +129,8 @@ impl eframe::App for App {
         self.opener(&ctx).cancel_files_by_key();
         self.drop_pictures_of_replaced();
         self.layout.leave_picture_only(&ctx);
-        if self.editor.update_corrections(&ctx) {
+        let has_other_fields = self.editor.update_fields();
+        if self.editor.update_corrections(&ctx) || has_other_fields {
             self.windows.contact_sheet.discard();
         }
         let is_opening = self.opening.is_opening();

@@ -197,6 +197,24 @@ impl Dataset {
         Self { fields: fields.map(|(_, field)| field.clone()).collect() }
     }
 
+    /// Replaces the further fields by others that were added to this dataset before, with its corrections of positions.
+    #[must_use]
+    pub fn with_further(&self, further: impl IntoIterator<Item = DatasetField>) -> Self {
+        let by = self.volume().corrections().of_grid();
+        // The first field has the same grid, so that what could be corrected for it can be for the others.
+        let placed = |field: DatasetField| {
+            let is_placed = *field.volume().corrections() == by;
+            if is_placed { field } else { field.corrected(&by).unwrap_or(field) }
+        };
+        let first = std::iter::once(self.field().clone());
+        Self { fields: first.chain(further.into_iter().map(placed)).take(MAX_FIELDS).collect() }
+    }
+
+    /// Returns the sources of the further fields.
+    pub fn further_origins(&self) -> impl Iterator<Item = &FieldOrigin> {
+        self.fields[1..].iter().filter_map(DatasetField::origin)
+    }
+
     /// Returns all fields, the first of which has the grid of the scene.
     pub fn fields(&self) -> &Arc<[DatasetField]> {
         &self.fields
@@ -231,5 +249,36 @@ impl Dataset {
     /// Returns the histogram of densities.
     pub fn histogram(&self) -> &Arc<Histogram> {
         self.field().histogram()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Samples;
+    use glam::DVec3;
+
+    fn ramp(name: &str, slope: u8) -> Volume {
+        let values = (0..64).map(|at| slope * at).collect();
+        Volume::with_spacing(name, [4; 3], DVec3::ONE, Samples::U8(values)).unwrap()
+    }
+
+    #[test]
+    fn further_fields_come_back_with_the_corrections_of_the_first() {
+        let first = Dataset::new(ramp("a", 1));
+        let all = first.with_field(&ramp("b", 2), "b").unwrap().with_field(&ramp("c", 3), "c").unwrap();
+        let names = |dataset: &Dataset| {
+            dataset.further_origins().map(|origin| origin.source.clone()).collect::<Vec<_>>()
+        };
+        let last = all.with_further([all.fields()[2].clone()]);
+        assert_eq!(names(&last), [PathBuf::from("c")]);
+        assert_eq!(
+            last.id(),
+            first.with_field(&ramp("c", 3), "c").unwrap().id(),
+            "as if b had never been added"
+        );
+        let by = Corrections { spacing: Some([2.0; 3]), ..Corrections::default() };
+        let back = last.corrected(&by).unwrap().with_further(all.fields()[1..].iter().cloned());
+        assert_eq!(back.id(), all.corrected(&by).unwrap().id());
     }
 }

@@ -115,8 +115,8 @@ impl Document {
             return Ok(None);
         }
         match made.and_then(|made| made.map_err(|err| err.to_string())) {
-            // Layers were added meanwhile, and are corrected, too, by another task.
-            Ok(made) if made.dataset.fields().len() != shown.fields().len() => Ok(None),
+            // Layers were added or removed meanwhile, and are corrected by another task.
+            Ok(made) if !made.dataset.further_origins().eq(shown.further_origins()) => Ok(None),
             Ok(made) => Ok(Some(self.use_corrected(made, now_s))),
             Err(err) => {
                 self.restore_corrections(shown);

@@ -11,15 +11,15 @@ use super::Document;
 use super::light_placement::LightPlacement;
 use crate::app::worker::jobs::{JobKind, JobSlot};
 use chiaroscuro_scene::{LabelTable, Settings, TransferFunction, VolumeLayer, first_look};
-use chiaroscuro_volume::{Dataset, KindName};
+use chiaroscuro_volume::{Dataset, FieldOrigin, KindName};
 
 /// Result of a pass over all voxels.
 #[derive(Debug)]
 enum KindTaskResult {
     /// First look for a kind of data.
     Look(Option<KindName>, Box<Settings>),
-    /// Transfer function and table of labels of a layer, by its index.
-    Transfer(usize, TransferFunction, LabelTable),
+    /// Transfer function and table of labels of a further volume, or of the first one.
+    Transfer(Option<Box<FieldOrigin>>, TransferFunction, LabelTable),
 }
 
 /// Kind of data as which the volume is treated, and the first looks for the other kinds.
@@ -51,7 +51,9 @@ impl KindOverride {
         let known = self.other_looks.iter().position(|(other, _)| *other == kind);
         let known = known.map(|at| self.other_looks.swap_remove(at).1);
         self.other_looks.push((before, defaults.clone()));
-        if let Some(look) = known {
+        if let Some(mut look) = known {
+            // Further layers show other volumes.
+            look.layers.replace_further(&defaults.layers);
             *defaults = look;
         }
     }
@@ -84,16 +86,17 @@ impl Document {
     ) -> io::Result<()> {
         let (Some(dataset), Some(facts)) = (dataset, self.selected_volume()) else { return Ok(()) };
         let (histogram, kind, index) = (Arc::clone(&facts.histogram), self.kind_override.kind, facts.layer);
+        let further = index.checked_sub(1).and_then(|at| self.further_volumes.get(at)).cloned().map(Box::new);
         let task = move || {
-            if index > 0
+            if further.is_some()
                 && let Some(VolumeLayer { transfer, labels, .. }) =
                     first_look::layer_of_field(&dataset, index)
             {
-                return KindTaskResult::Transfer(index, transfer, labels);
+                return KindTaskResult::Transfer(further, transfer, labels);
             }
             let volume = dataset.volume();
             KindTaskResult::Transfer(
-                0,
+                None,
                 first_look::transfer_for_kind(volume, &histogram, kind),
                 first_look::labels_for_kind(volume, kind),
             )
@@ -127,9 +130,11 @@ impl Document {
                 // The object was turned meanwhile.
                 self.treat_as(kind, dataset, ctx).map_err(|err| err.to_string())?;
             }
-            KindTaskResult::Transfer(index, transfer, labels) => {
-                let layer = self.settings.layer_at_mut(index);
-                (layer.transfer, layer.labels) = (transfer, labels);
+            KindTaskResult::Transfer(of, transfer, labels) => {
+                // The layer may have been removed meanwhile, or have another place.
+                if let Some(layer) = self.layer_of_volume_mut(of.as_deref()) {
+                    (layer.transfer, layer.labels) = (transfer, labels);
+                }
             }
         }
         Ok(false)

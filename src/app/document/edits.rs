@@ -17,13 +17,6 @@ impl Document {
         }
     }
 
-    /// Shows the layer that was added last no longer; the first one stays.
-    pub(crate) fn remove_last_layer(&mut self) {
-        let count = self.settings.layers.count();
-        self.settings.layers.truncate(count - 1);
-        self.clamp_selected_layer();
-    }
-
     /// Colours the visible values by a colour map, given by its index.
     pub(crate) fn use_colors(&mut self, at: usize, reversed: bool) {
         if let Some(map) = COLOR_MAPS.get(at) {

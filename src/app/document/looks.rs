@@ -65,9 +65,7 @@ impl Document {
         let Some(volume) = &self.volume else { return Vec::new() };
         let (source, choice) = (volume.source.clone(), volume.held.choice());
         let first = FieldOrigin { source, opened_id, choice };
-        let shown = volume.further.iter().map(|further| &further.origin);
-        let missing = self.recorded_layers.iter().skip(volume.further.len());
-        let further = shown.chain(missing).take(self.settings.layers.count() - 1);
+        let further = self.further_volumes.iter().take(self.settings.layers.count() - 1);
         std::iter::once(first).chain(further.cloned()).collect()
     }
 

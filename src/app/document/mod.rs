@@ -11,6 +11,7 @@ pub(super) mod data_kind;
 pub(super) mod easing;
 mod edits;
 pub(super) mod history;
+mod layers;
 pub(super) mod light_placement;
 pub(super) mod looks;
 mod orientation;
@@ -24,6 +25,7 @@ use self::auto_balance::AutoBalance;
 use self::corrections::CorrectionState;
 use self::data_kind::KindOverride;
 use self::history::History;
+use self::layers::SpareField;
 use self::light_placement::LightPlacement;
 use self::orientation::OrientationTasks;
 use self::outline::OutlineCache;
@@ -47,8 +49,11 @@ pub(crate) struct Document {
     pub selected_layer: usize,
     /// Layer and index of the material that is bright in the picture, while the pointer is over its box.
     pub highlighted_material: Option<(usize, usize)>,
-    /// Further volumes that the record of the look names; those that could not be opened stay in what is saved.
-    pub recorded_layers: Vec<FieldOrigin>,
+    /// Further volumes that the layers of the look show, in their order; those that could not be opened are the last
+    /// ones, and stay in what is saved.
+    pub further_volumes: Vec<FieldOrigin>,
+    /// Fields of layers that were removed or undone.
+    spare_fields: Vec<SpareField>,
     /// Undo history of the look.
     pub history: History,
     /// Session file of Ctrl+S, if there is one.
@@ -75,7 +80,8 @@ impl Default for Document {
             selected_light: 0,
             selected_layer: 0,
             highlighted_material: None,
-            recorded_layers: Vec::new(),
+            further_volumes: Vec::new(),
+            spare_fields: Vec::new(),
             history: History::default(),
             session: None,
             corrections: CorrectionState::default(),

@@ -11,7 +11,7 @@ use chiaroscuro_scene::{SavedContent, SavedEntry, Settings};
 
 /// Finished thumbnail of a kept item.
 struct KeptThumbnail {
-    /// Item that is shown, and content id of the volume.
+    /// Item that is shown, and content id of the volumes.
     key: (SavedContent, u64),
     /// Texture on the GPU; `None` if rendering failed.
     texture: Option<TextureHandle>,
@@ -74,7 +74,7 @@ impl KeptThumbnails {
         subject: ExportScene,
         ctx: &egui::Context,
     ) -> std::io::Result<()> {
-        let content_id = subject.dataset.volume().content_id();
+        let content_id = subject.dataset.id().content_id;
         let (sender, drawn) = mpsc::channel();
         let (wake, all) = (ctx.clone(), wanted.clone());
         let task = move |job: &JobControl| {

@@ -146,7 +146,7 @@ impl OuterPanels {
             return;
         }
         let editor = &mut *inputs.editor;
-        let id = editor.viewport.dataset().map(|dataset| dataset.volume().content_id());
+        let id = editor.viewport.dataset().map(|dataset| dataset.id().content_id);
         let missing = self.kept_strip.missing_thumbnails(&editor.document.settings, id);
         let Some(wanted) = missing else { return };
         if !inputs.opening.is_opening()

@@ -56,7 +56,7 @@ impl App {
             AppCommand::UseColors(at, reversed) => self.editor.document.use_colors(at, reversed),
             AppCommand::AddLayer => self.ask_file(FileDialogPurpose::AddLayer, frame, ctx),
             AppCommand::ShowTogether(aspect) => self.opener(ctx).add_all_of(aspect),
-            AppCommand::RemoveLayer => self.editor.document.remove_last_layer(),
+            AppCommand::RemoveLayer => self.editor.remove_layer(),
             AppCommand::ImportTransfer => self.ask_file(FileDialogPurpose::ImportTransfer, frame, ctx),
             AppCommand::ExportTransfer => self.ask_file(FileDialogPurpose::ExportTransfer, frame, ctx),
             AppCommand::InvertTransfer => self.editor.document.selected_layer_mut().transfer.mirror(),

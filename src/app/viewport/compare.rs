@@ -78,6 +78,14 @@ impl Compare {
         }
     }
 
+    /// Ends a comparison with a look of several layers: they name their volumes by place, and others are shown now.
+    pub(crate) fn leave_layered_looks(&mut self) {
+        let is_layered = |side: &ComparisonVariant| matches!(side, ComparisonVariant::Look(look) if look.layers.count() > 1);
+        if is_layered(&self.left) || is_layered(&self.right) {
+            *self = Self { divider: self.divider, ..Self::default() };
+        }
+    }
+
     /// Returns the looks to be rendered: the current one, or the left and the right one of a comparison.
     pub(crate) fn looks(&self, settings: &Settings) -> ComparedLooks {
         // Kept views and looks do not affect the picture.

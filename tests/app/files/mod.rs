@@ -5,6 +5,7 @@ mod export;
 mod export_marks;
 mod foreign_files;
 mod large_volumes;
+mod layer_removal;
 mod layers;
 mod opening;
 pub(crate) mod raw_import;

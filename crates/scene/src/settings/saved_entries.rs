@@ -111,6 +111,15 @@ impl SavedEntry {
         }
     }
 
+    /// Removes a further layer of a look that has it.
+    pub(super) fn remove_layer(&mut self, index: usize) {
+        if let SavedContent::Look(SavedLook(look)) = &mut self.what
+            && look.layers.get(index).is_some()
+        {
+            Arc::make_mut(look).layers.remove(index);
+        }
+    }
+
     /// Returns the camera if the entry is a view.
     pub(super) fn as_view_mut(&mut self) -> Option<&mut Camera> {
         match &mut self.what {

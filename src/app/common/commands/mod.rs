@@ -170,7 +170,7 @@ pub(crate) enum AppCommand {
     AddLayer,
     /// Show all channels or components of the open file together, as layers.
     ShowTogether(ChoiceAspect),
-    /// Show the volume that was added last no longer.
+    /// Show the volume of the selected layer no longer.
     RemoveLayer,
     /// Ask for a transfer function of another program.
     ImportTransfer,

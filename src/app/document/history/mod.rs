@@ -9,7 +9,7 @@ pub(crate) use self::steps::HistorySteps;
 use super::Document;
 use crate::app::text;
 use chiaroscuro_scene::Settings;
-use chiaroscuro_volume::{Corrections, KindName, Volume};
+use chiaroscuro_volume::{Corrections, FieldOrigin, KindName, Volume};
 
 /// Time without a change after which a step can be undone, in seconds.
 const SETTLE_S: f32 = 0.4;
@@ -21,6 +21,8 @@ pub(crate) struct HistoryStep {
     pub settings: Settings,
     /// Kind of data for which the first look was made, if not the volume's own.
     pub treated_as: Option<KindName>,
+    /// Volumes that the further layers show.
+    pub further_volumes: Vec<FieldOrigin>,
 }
 
 /// Undo history of the look.
@@ -160,11 +162,15 @@ impl History {
 impl Document {
     /// Returns the look as the history keeps it.
     pub(crate) fn history_step(&self) -> HistoryStep {
-        HistoryStep { settings: self.settings.clone(), treated_as: self.kind_override.kind() }
+        HistoryStep {
+            settings: self.settings.clone(),
+            treated_as: self.kind_override.kind(),
+            further_volumes: self.further_volumes.clone(),
+        }
     }
 
-    /// Takes one step back or forward; the values of the reset buttons follow. Returns true if the step has turned the
-    /// object.
+    /// Takes one step back or forward; the values of the reset buttons follow, and [`Self::update_fields`] shows the
+    /// volumes of the step. Returns true if the step has turned the object.
     pub(crate) fn take_step(&mut self, is_back: bool) -> bool {
         let mut step = self.history_step();
         if is_back {
@@ -173,7 +179,7 @@ impl Document {
             self.history.redo(&mut step);
         }
         let up = self.settings.camera.up;
-        self.settings = step.settings;
+        (self.settings, self.further_volumes) = (step.settings, step.further_volumes);
         self.kind_override.change(step.treated_as, &mut self.defaults);
         // The balance of the step is part of it.
         self.keep_balanced.accept(&self.settings);
@@ -188,7 +194,7 @@ impl Document {
         } else {
             let mut settings = self.settings.clone();
             settings.apply_corrections(Corrections::default(), volume);
-            History::with_previous(&HistoryStep { settings, treated_as: None })
+            History::with_previous(&HistoryStep { settings, ..self.history_step() })
         };
     }
 }
@@ -233,7 +239,7 @@ mod tests {
     }
 
     fn step(settings: &Settings) -> HistoryStep {
-        HistoryStep { settings: settings.clone(), treated_as: None }
+        HistoryStep { settings: settings.clone(), ..HistoryStep::default() }
     }
 
     /// Undoes or redoes a step of the settings.

@@ -232,7 +232,7 @@ fn with_automatic_lights(step: &HistoryStep, before: &HistoryStep, after: &Setti
         return step.clone();
     }
     let Settings { camera, kept, .. } = step.settings.clone();
-    HistoryStep { settings: Settings { camera, kept, ..after.clone() }, ..*step }
+    HistoryStep { settings: Settings { camera, kept, ..after.clone() }, ..step.clone() }
 }
 
 /// Returns true if two looks differ in the view and the saved views at most.

@@ -1,6 +1,6 @@
 //! Layers of the section "Data": the volumes that are shown together.
 
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, Button, Ui};
 
 use super::super::controls::{NumberRow, choice_row, color_button, row, switch_row};
 use super::PanelContext;
@@ -17,7 +17,7 @@ const STRENGTH: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// which only sharp borders of a scan have.
 const MAX_EDGES: f64 = 0.5;
 
-/// Shows a row for each layer, the settings of the selected one, and buttons that add a layer and remove the last.
+/// Shows a row for each layer, the settings of the selected one, and buttons that add a layer and remove it.
 pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFacts) {
     let PanelContext { settings, first_look, selected_layer, commands, .. } = panels;
     let count = settings.layers.count().min(volume.further.len() + 1);
@@ -55,10 +55,12 @@ pub(super) fn show(ui: &mut Ui, panels: &mut PanelContext<'_>, volume: &VolumeFa
         if ui.button(text::data::ADD_LAYER).on_hover_text(text::commands::ADD_LAYER).clicked() {
             commands.push(AppCommand::AddLayer);
         }
-        if count > 1
-            && ui.button(text::data::REMOVE_LAYER).on_hover_text(text::commands::REMOVE_LAYER).clicked()
-        {
-            commands.push(AppCommand::RemoveLayer);
+        if count > 1 {
+            let remove = ui.add_enabled(selected.layer > 0, Button::new(text::data::REMOVE_LAYER));
+            let remove = remove.on_hover_text(text::data::REMOVE_LAYER_TIP);
+            if remove.on_disabled_hover_text(text::data::FIRST_LAYER_STAYS).clicked() {
+                commands.push(AppCommand::RemoveLayer);
+            }
         }
     });
 }

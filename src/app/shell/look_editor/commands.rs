@@ -39,6 +39,14 @@ impl LookEditor {
         self.document.settings.volume.hidden_table.is_some()
     }
 
+    /// Removes the selected layer with its volume, unless it is the first one, whose grid the others have.
+    pub(crate) fn remove_layer(&mut self) {
+        match self.document.selected_layer {
+            0 => self.messages.note(text::data::FIRST_LAYER_STAYS),
+            index => self.document.remove_layer(index),
+        }
+    }
+
     /// Shows the volume in a render mode, and names it; a surface lies at `value`, if there is one.
     pub(crate) fn use_render_mode(&mut self, kind: RenderMode, value: Option<f64>) {
         let settings = &mut self.document.settings;

@@ -50,6 +50,16 @@ impl LookEditor {
         }
     }
 
+    /// Shows the volumes that the layers name, where layers were removed or an undo brought them back. Returns true if
+    /// others were shown.
+    pub(crate) fn update_fields(&mut self) -> bool {
+        let Some(shown) = self.viewport.dataset() else { return false };
+        let Some(dataset) = self.document.update_fields(&shown) else { return false };
+        self.viewport.compare.leave_layered_looks();
+        self.viewport.set_dataset(dataset);
+        true
+    }
+
     /// Starts correcting the volume as the settings say, and shows the result. Returns true if another volume is shown.
     pub(crate) fn update_corrections(&mut self, ctx: &egui::Context) -> bool {
         let now_s = ctx.input(|input| input.time);

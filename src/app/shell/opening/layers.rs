@@ -52,8 +52,10 @@ struct DatasetWithLayers {
     is_other: bool,
     /// File over which the dataset is better shown.
     base: Option<PathBuf>,
-    /// Looks of the volumes that were added, where they have their own.
-    looks: Vec<Option<VolumeLayer>>,
+    /// Number of fields that it had before.
+    known: usize,
+    /// Volumes that were to be added.
+    sources: Vec<LayerFile>,
 }
 
 impl LayerFile {
@@ -66,13 +68,14 @@ impl LayerFile {
 fn with_layers(
     dataset: Dataset,
     first: Settings,
-    sources: &[LayerFile],
+    sources: Vec<LayerFile>,
     options: &LoadOptions,
     may_be_base: bool,
 ) -> DatasetWithLayers {
-    let looks = sources.iter().map(|source| source.look.clone()).collect();
-    let mut added = DatasetWithLayers { dataset, first, failure: None, is_other: false, base: None, looks };
-    for LayerFile { path, choice, recorded_id, .. } in sources {
+    let known = dataset.fields().len();
+    let (failure, is_other, base) = (None, false, None);
+    let mut added = DatasetWithLayers { dataset, first, failure, is_other, base, known, sources };
+    for LayerFile { path, choice, recorded_id, .. } in &added.sources {
         let choice = choice.clone().with_first_as_fallback();
         let options = LoadOptions { choice, ..options.clone() };
         let volume = open(path, &options, &LoadControl::default()).map_err(|err| err.to_string());
@@ -120,8 +123,6 @@ impl VolumeOpener<'_> {
     pub(super) fn add_recorded_layers(&mut self, record: &LookRecord) {
         let file = record.file.as_deref().unwrap_or_else(|| Path::new(""));
         let recorded = record.volume.as_ref().map(|volume| volume.layers.as_slice()).unwrap_or_default();
-        self.editor.document.recorded_layers =
-            recorded.iter().map(|volume| volume.origin(file.parent())).collect();
         if recorded.is_empty() {
             return;
         }
@@ -134,6 +135,8 @@ impl VolumeOpener<'_> {
         if is_shown {
             return;
         }
+        self.editor.document.further_volumes =
+            recorded.iter().map(|volume| volume.origin(file.parent())).collect();
         // The user agreed to open the first volume from its folder.
         let trusted = shown.and_then(|volume| volume.source.parent()).map(Path::to_owned);
         let mut sources = Vec::new();
@@ -212,12 +215,12 @@ impl VolumeOpener<'_> {
             return self.editor.messages.note(text::messages::NO_VOLUME_FOR_LAYER);
         };
         let Some(path) = sources.first().map(|source| source.path.clone()) else { return };
-        // Fields whose layers were removed make room.
+        // Fields without a layer make room.
         let known = shown.with_fields_where(|index| index < kept);
         let (opened_id, options) = (shown.volume().opened_id(), self.state.loader.options().clone());
         let mut first = self.editor.document.defaults.clone();
         first.layers.truncate(kept);
-        let read = move |_: &Path| Ok(with_layers(known, first, &sources, &options, may_be_base));
+        let read = move |_: &Path| Ok(with_layers(known, first, sources, &options, may_be_base));
         self.read_file(ReadPurpose::Layer, &path, read, move |opener, read| match read {
             Ok(DatasetWithLayers { base: Some(base), failure: None, .. }) => opener.open_below(&base),
             Ok(added) => opener.show_layers(added, replaced, opened_id),
@@ -229,25 +232,36 @@ impl VolumeOpener<'_> {
     fn show_layers(&mut self, added: DatasetWithLayers, replaced: LayerReplacement, opened_id: u64) {
         let LayerReplacement { kept, has_looks, .. } = replaced;
         let shown = self.editor.viewport.dataset();
-        let DatasetWithLayers { dataset, first, failure, is_other, looks, .. } = added;
+        let DatasetWithLayers { dataset, first, failure, is_other, known, sources, .. } = added;
         let messages = &mut self.editor.messages;
+        // Corrections that were made meanwhile are made again, of all fields.
+        let Some(shown) = shown.filter(|shown| shown.volume().opened_id() == opened_id) else {
+            return messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
+        };
+        if !shown.further_origins().take(known - 1).eq(dataset.further_origins().take(known - 1)) {
+            // Layers were removed or undone meanwhile, and the new one has another place.
+            let kept = self.editor.document.settings.layers.count();
+            return self.add_layers(sources, LayerReplacement { kept, ..replaced });
+        }
         if let Some(why) = failure {
             messages.error(text::messages::LAYER_NOT_ADDED, why);
-        }
-        // Corrections that were made meanwhile are made again, of all fields.
-        if shown.is_none_or(|shown| shown.volume().opened_id() != opened_id) {
-            return messages.note(text::messages::LAYER_OF_OTHER_VOLUME);
         }
         if is_other {
             messages.note(text::opening::OTHER_VALUES);
         }
         let document = &mut self.editor.document;
-        if !has_looks {
+        document.keep_fields(&shown, &dataset);
+        if has_looks {
+            document.list_recorded_volumes(&dataset, self.ctx.input(|input| input.time));
+        } else {
+            document.further_volumes.truncate(kept - 1);
+            document.list_volumes_of(&dataset);
             document.settings.layers.truncate(kept);
         }
         // Changes by the user are kept.
         document.settings.take_layers(&first, &document.defaults);
         document.defaults = first;
+        let looks: Vec<_> = sources.into_iter().map(|source| source.look).collect();
         document.apply_layer_looks(kept, &looks);
         document.selected_layer = kept.min(dataset.fields().len() - 1);
         if let Some(facts) = &mut document.volume {

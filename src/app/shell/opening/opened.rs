@@ -64,22 +64,22 @@ impl VolumeOpener<'_> {
         let applied = self.apply_plan(plan, settings, session, &volume);
         self.editor.memory.add_recent(&source, &volume.contents().choice());
         self.editor.look_tasks.light_search.discard();
-        let facts = VolumeFacts::new(source, reading, &dataset);
-        self.editor.viewport.set_scene(renderer, dataset);
         let document = &mut self.editor.document;
-        document.volume = Some(facts);
-        document.recorded_layers.clear();
+        document.volume = Some(VolumeFacts::new(source, reading, &dataset));
+        document.start_layers(&dataset);
         // Treated as its own kind of data, with its own up axis.
         document.kind_override = KindOverride::default();
         document.drop_turns();
-        document.start_history(&volume);
         document.corrections = CorrectionState::new(stamp, document.settings.volume);
         let title = text::opening::title(document.volume_name());
+        self.editor.viewport.set_scene(renderer, dataset);
         self.state.has_opened = true;
         self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
         if let Some(record) = applied {
             self.add_recorded_layers(&record);
         }
+        // Volumes that a record names belong to its first step.
+        self.editor.document.start_history(&volume);
         self.add_layers_over();
     }
 

@@ -26,7 +26,12 @@ pub(crate) const LAYERS: [&str; 4] = ["Layer 1", "Layer 2", "Layer 3", "Layer 4"
 pub(crate) const ALL_LAYERS: ControlText =
     control_text("Layers", "Volumes that are shown together, such as a scan and its segmentation");
 pub(crate) const ADD_LAYER: &str = "Add…";
-pub(crate) const REMOVE_LAYER: &str = "Remove last";
+pub(crate) const REMOVE_LAYER: &str = "Remove";
+pub(crate) const REMOVE_LAYER_TIP: &str =
+    "Shows the volume of the selected layer no longer; no file is changed";
+/// Reason why the first layer is not removed.
+pub(crate) const FIRST_LAYER_STAYS: &str =
+    "The first layer stays, since the others lie on its grid: hide it, or open another volume";
 pub(crate) const LAYER_COLOR: &str = "Colour of the layer";
 pub(crate) const LAYER_VISIBILITY: ControlText =
     control_text("Layer is", "Presence of the layer in the picture and in its light");

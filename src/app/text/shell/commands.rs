@@ -14,7 +14,7 @@ pub(crate) fn open_scene(title: &str) -> String {
 
 pub(crate) const OPEN_FOLDER: &str = "Open folder…";
 pub(crate) const ADD_LAYER: &str = "Add volume as layer…";
-pub(crate) const REMOVE_LAYER: &str = "Remove last layer";
+pub(crate) const REMOVE_LAYER: &str = "Remove layer";
 pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
 pub(crate) const OPEN_DROPPED: &str = "Open dropped files";

@@ -180,6 +180,17 @@ impl VolumeLayers {
         }
     }
 
+    /// Removes a further layer; the first one stays. If it was the only one that was shown, the others are shown again.
+    pub fn remove(&mut self, index: usize) {
+        if !(1..self.0.len()).contains(&index) {
+            return;
+        }
+        if self.is_alone(index) && self.0[index].casts_shadows() {
+            self.show_alone(index, false);
+        }
+        self.0.remove(index);
+    }
+
     /// Keeps the first layers, at least one.
     pub fn truncate(&mut self, count: usize) {
         self.0.truncate(count.max(1));

@@ -208,6 +208,13 @@ impl Settings {
         }
     }
 
+    /// Removes a further layer, in saved looks, too: layers name their field by their place, which then is the one
+    /// before for all that follow.
+    pub fn remove_layer(&mut self, index: usize) {
+        self.layers.remove(index);
+        self.kept.iter_mut().for_each(|entry| entry.remove_layer(index));
+    }
+
     /// Replaces the range of values that is mapped to densities.
     #[must_use]
     pub fn with_range(mut self, range: DensityRange) -> Self {
@@ -247,6 +254,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SavedEntry;
 
     #[test]
     fn a_list_has_one_to_four_layers() {
@@ -257,5 +265,38 @@ mod tests {
         assert_eq!(layers(4).unwrap().count(), 4);
         let five = layers(5).unwrap_err().to_string();
         assert_eq!(five, "`layers` has 5 layers, and a picture shows 4 at most");
+    }
+
+    #[test]
+    fn a_removed_layer_leaves_the_others_as_they_are() {
+        let with = |edges: &[f64]| {
+            let layer = |&edges: &f64| VolumeLayer { edges, ..VolumeLayer::default() };
+            let layers = edges.iter().map(layer).collect::<Vec<_>>().try_into().unwrap();
+            Settings { layers, ..Settings::default() }
+        };
+        let mut settings = with(&[0.1, 0.2, 0.3]);
+        for (name, look) in [("all", &settings.clone()), ("first", &with(&[0.1]))] {
+            assert!(settings.save_entry(SavedEntry::look(name, look)));
+        }
+        settings.remove_layer(1);
+        let left = with(&[0.1, 0.3]).layers;
+        assert_eq!(settings.layers, left);
+        let saved = |at: usize| &settings.kept[at].as_look().unwrap().layers;
+        assert_eq!((saved(0), saved(1)), (&left, &with(&[0.1]).layers));
+        // The first one stays, and there is no third.
+        settings.remove_layer(0);
+        settings.remove_layer(2);
+        assert_eq!(settings.layers, left);
+    }
+
+    #[test]
+    fn others_are_shown_when_the_only_one_shown_is_removed() {
+        let hidden = |layers: &VolumeLayers| layers.iter().map(|layer| !layer.is_seen()).collect::<Vec<_>>();
+        let mut layers = VolumeLayers::try_from(vec![VolumeLayer::default(); 4]).unwrap();
+        layers.show_alone(1, true);
+        layers.remove(3);
+        assert_eq!(hidden(&layers), [true, false, true], "the others keep their presence");
+        layers.remove(1);
+        assert_eq!(hidden(&layers), [false, false]);
     }
 }

@@ -19,7 +19,7 @@ use super::schema_defaults::fill_in_defaults;
 use super::unknown_content;
 use crate::{AppliedSettings, ImageSpec, PresetError, Settings, VolumeLocation, apply_relative};
 use chiaroscuro_files::{MAX_LOOK_BYTES, with_provenance_mark};
-use chiaroscuro_volume::{Corrections, Dataset, DatasetField, FieldOrigin, ValueRanges, VolumeChoice};
+use chiaroscuro_volume::{Corrections, Dataset, FieldOrigin, ValueRanges, VolumeChoice};
 
 /// Name of the setting that belongs to a record's volume, and not to its look.
 const CORRECTIONS: &str = "volume";
@@ -97,7 +97,7 @@ impl VolumeRecord {
     /// Adds the further fields of a dataset, for a record that will be written to `folder`.
     #[must_use]
     pub fn with_layers_of(self, dataset: &Dataset, folder: Option<&Path>) -> Self {
-        self.with_layers(dataset.fields().iter().filter_map(DatasetField::origin), folder)
+        self.with_layers(dataset.further_origins(), folder)
     }
 
     /// Adds further volumes that are shown as layers, for a record that will be written to `folder`.
