@@ -1,0 +1,219 @@
+//! Filters through which chunks pass when they are written (section IV.A.2.l), and their reversal.
+
+mod fletcher32;
+mod lzf;
+
+use std::io::Read as _;
+
+use flate2::read::ZlibDecoder;
+
+use super::super::container::{FieldCursor, Parsed, text_before_zero};
+use chiaroscuro_files::sanitised;
+use chiaroscuro_volume::{LoadControl, LoadError};
+
+/// Bytes that are decompressed at a time, between two checks for cancellation.
+const PIECE_BYTES: usize = 1 << 20;
+
+/// Maximum number of filters of an array: each has a bit of a mask.
+const MAX_FILTERS: u8 = 32;
+
+/// Bytes that a filter may add to a chunk: a checksum.
+const ADDED_BYTES: usize = 64;
+
+/// Failure of a filter.
+#[derive(Debug)]
+pub(in super::super) enum FilterFault {
+    /// The bytes are not what the filter writes.
+    Broken(String),
+    /// The load was cancelled.
+    Stopped(LoadError),
+}
+
+impl From<String> for FilterFault {
+    fn from(why: String) -> Self {
+        Self::Broken(why)
+    }
+}
+
+/// Kinds of filters, by their registered numbers (<https://github.com/HDFGroup/hdf5_plugins>).
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum FilterKind {
+    Deflate,
+    Shuffle,
+    Fletcher32,
+    Lzf,
+    /// Filter that is not supported, by its name.
+    Other(String),
+}
+
+impl FilterKind {
+    fn from_number(number: u64, name: &str) -> Self {
+        let known = match number {
+            1 => return Self::Deflate,
+            2 => return Self::Shuffle,
+            3 => return Self::Fletcher32,
+            32000 => return Self::Lzf,
+            4 => "szip",
+            5 => "n-bit",
+            6 => "scale-offset",
+            307 => "bzip2",
+            32001 => "Blosc",
+            32004 => "LZ4",
+            32008 => "bitshuffle",
+            32013 => "ZFP",
+            32015 => "Zstandard",
+            32026 => "Blosc2",
+            _ => return Self::Other(format!("{number} {}", sanitised(name, 40)).trim_end().to_owned()),
+        };
+        Self::Other(known.to_owned())
+    }
+}
+
+/// Filter with its parameters.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct ChunkFilter {
+    kind: FilterKind,
+    parameters: Vec<u32>,
+}
+
+/// Filters of an array, in the order in which chunks pass them when they are written.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(in super::super) struct FilterPipeline {
+    filters: Vec<ChunkFilter>,
+}
+
+impl FilterPipeline {
+    /// Parses the message of an array.
+    pub(in super::super) fn parse(cursor: &mut FieldCursor<'_>) -> Parsed<Self> {
+        let (version, count) = (cursor.byte()?, cursor.byte()?);
+        if !(1..=2).contains(&version) || count > MAX_FILTERS {
+            return Err(format!("version {version} of {count} filters is not supported").into());
+        }
+        let is_old = version == 1;
+        cursor.take(if is_old { 6 } else { 0 })?;
+        let mut filters = Vec::new();
+        for _ in 0..count {
+            let number = cursor.number(2)?;
+            let name = if is_old || number >= 256 { cursor.number(2)? as usize } else { 0 };
+            cursor.take(2)?;
+            let parameters = cursor.number(2)? as usize;
+            let name = cursor.take(if is_old { name.next_multiple_of(8) } else { name })?;
+            let kind = FilterKind::from_number(number, &text_before_zero(name));
+            let values =
+                (0..parameters).map(|_| Ok(cursor.number(4)? as u32)).collect::<Parsed<Vec<u32>>>()?;
+            cursor.take(if is_old && parameters % 2 == 1 { 4 } else { 0 })?;
+            filters.push(ChunkFilter { kind, parameters: values });
+        }
+        Ok(Self { filters })
+    }
+
+    pub(in super::super) fn is_empty(&self) -> bool {
+        self.filters.is_empty()
+    }
+
+    /// Reason why chunks cannot be read, with what helps.
+    pub(in super::super) fn refusal(&self) -> Option<(String, String)> {
+        self.filters.iter().find_map(|filter| match &filter.kind {
+            FilterKind::Other(name) => Some((
+                format!("it is compressed by the filter {name}, which is not supported"),
+                "write it without filters: h5repack -f NONE IN OUT".to_owned(),
+            )),
+            _ => None,
+        })
+    }
+
+    /// Reverses the filters of a chunk that has `expected` bytes without them; the bits of `skipped` are filters that
+    /// it did not pass.
+    pub(in super::super) fn decode(
+        &self,
+        mut bytes: Vec<u8>,
+        expected: usize,
+        skipped: u32,
+        control: &LoadControl,
+    ) -> Result<Vec<u8>, FilterFault> {
+        let limit = expected.saturating_add(ADDED_BYTES);
+        for (at, filter) in self.filters.iter().enumerate().rev() {
+            if skipped >> at & 1 != 0 {
+                continue;
+            }
+            control.check().map_err(FilterFault::Stopped)?;
+            bytes = match &filter.kind {
+                FilterKind::Deflate => inflate(&bytes, limit, control)?,
+                FilterKind::Shuffle => {
+                    unshuffle(bytes, filter.parameters.first().map_or(1, |&size| size as usize))
+                }
+                FilterKind::Fletcher32 => fletcher32::verified(bytes)?,
+                FilterKind::Lzf => lzf::decode(&bytes, limit)?,
+                FilterKind::Other(name) => return Err(format!("the filter {name} is not supported").into()),
+            };
+        }
+        if bytes.len() < expected {
+            return Err(format!("{expected} bytes were expected, {} found", bytes.len()).into());
+        }
+        Ok(bytes)
+    }
+}
+
+/// Decompresses a zlib stream to at most `limit` bytes.
+fn inflate(bytes: &[u8], limit: usize, control: &LoadControl) -> Result<Vec<u8>, FilterFault> {
+    let mut decoder = ZlibDecoder::new(bytes);
+    let mut found = Vec::new();
+    loop {
+        control.check().map_err(FilterFault::Stopped)?;
+        let piece = PIECE_BYTES.min(limit - found.len());
+        let got = decoder.by_ref().take(piece as u64).read_to_end(&mut found);
+        match got {
+            Ok(0) => break,
+            Ok(_) => {}
+            Err(error) => return Err(format!("it cannot be decompressed: {error}").into()),
+        }
+    }
+    // One byte more than a chunk can have; the checksum at the end of the stream is read as well.
+    match decoder.read(&mut [0]) {
+        Ok(0) => Ok(found),
+        Ok(_) => Err(format!("it has more than the {limit} bytes that a chunk can have").into()),
+        Err(error) => Err(format!("it cannot be decompressed: {error}").into()),
+    }
+}
+
+/// Puts the bytes of each element together, of which first all first bytes were stored, then all second ones, and so
+/// on. Bytes beyond the last whole element stay at the end.
+fn unshuffle(bytes: Vec<u8>, size: usize) -> Vec<u8> {
+    let count = bytes.len().checked_div(size).unwrap_or(0);
+    if size < 2 || count < 2 {
+        return bytes;
+    }
+    let mut elements = vec![0; bytes.len()];
+    let whole = count * size;
+    for (at, plane) in bytes[..whole].chunks_exact(count).enumerate() {
+        for (element, &byte) in elements[at..whole].iter_mut().step_by(size).zip(plane) {
+            *element = byte;
+        }
+    }
+    elements[whole..].copy_from_slice(&bytes[whole..]);
+    elements
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_of_elements_are_put_together() {
+        assert_eq!(unshuffle(vec![1, 2, 3, 11, 12, 13, 9], 2), [1, 11, 2, 12, 3, 13, 9]);
+        assert_eq!(unshuffle(vec![1, 2, 3], 1), [1, 2, 3]);
+        assert_eq!(unshuffle(vec![1, 2, 3], 0), [1, 2, 3]);
+        assert_eq!(unshuffle(vec![1, 2, 3], 5), [1, 2, 3]);
+    }
+
+    #[test]
+    fn streams_expand_to_a_chunk_and_no_further() {
+        let control = LoadControl::new();
+        let packed = crate::tests::helpers::zlib(&[7; 5000]);
+        assert_eq!(inflate(&packed, 5000, &control).unwrap(), [7; 5000]);
+        assert!(
+            matches!(inflate(&packed, 4999, &control), Err(FilterFault::Broken(why)) if why.contains("4999"))
+        );
+        assert!(inflate(&packed[..packed.len() - 2], 5000, &control).is_err());
+    }
+}
