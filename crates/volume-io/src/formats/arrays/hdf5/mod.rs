@@ -25,7 +25,8 @@ pub(in super::super) const READER: FormatReader = FormatReader {
 /// Reader of the descriptions beside files of `BigDataViewer`.
 pub(in super::super) const DESCRIPTION: FormatReader = FormatReader {
     name: "BigDataViewer",
-    extensions: &[".xml"],
+    // Files of other programs have this extension as well: it is told by its content.
+    extensions: &[],
     recognises: |start| find(start.bytes(), b"<SpimData"),
     load: load_description,
 };

@@ -52,8 +52,13 @@ impl Hdf5Type {
             6 => Some(complex_number(cursor, class >> 4, (bits & 0xffff, size), depth)?),
             7 if bits & 0x0f == 0 => Some(Self::Reference),
             7 => Some(Self::Other("references to regions")),
-            // Named numbers, such as false and true.
-            8 => Some(Self::parse_nested(cursor, depth)?.0),
+            // Named numbers: of two names false and true, which programs store as signed bytes.
+            8 => Some(match Self::parse_nested(cursor, depth)?.0 {
+                Self::Number(FileNumberType::I8, endian) if bits & 0xffff == 2 => {
+                    Self::Number(FileNumberType::U8, endian)
+                }
+                named => named,
+            }),
             9 if bits & 0x0f == 1 => Some(Self::VariableText),
             9 => match Self::parse_nested(cursor, depth)?.0 {
                 Self::Reference => Some(Self::ReferenceList),

@@ -85,12 +85,9 @@ pub(super) fn load(
     let ArrayTree { arrays, mut refused } = ArrayTree::list(file, root)?;
     let mut candidates = Vec::new();
     for found in arrays {
-        let is_list = found.array.shape.len() < 2;
         match partial(ArrayCandidate::from_array(file, found, is_matlab))? {
             Ok(candidate) => candidates.extend(candidate),
-            // Lists beside volumes are no surprise.
-            Err(error) if !is_list || refused.is_empty() => refused.push(error),
-            Err(_) => {}
+            Err(error) => refused.push(error),
         }
     }
     let signal = partial(nexus::default_signal(file, root))?.unwrap_or_default();

@@ -136,7 +136,9 @@ mod tests {
 
     use super::*;
 
-    const CONTEXT: LoadContext<'_> = LoadContext { operation: "test", path: Path::new("a/t.xml") };
+    fn parse(text: &str) -> Result<BdvDescription, LoadError> {
+        BdvDescription::parse(LoadContext { operation: "test", path: Path::new("a/t.xml") }, text)
+    }
 
     #[test]
     fn setups_are_read() {
@@ -144,7 +146,7 @@ mod tests {
             <ImageLoader format=\"bdv.hdf5\"><hdf5 type=\"relative\"> t.h5 </hdf5></ImageLoader><ViewSetups><ViewSetup>\
             <id>3</id><name>GFP</name><size>4 5 6</size><voxelSize><unit>um</unit><size>0.5 0.5 2.0</size></voxelSize>\
             </ViewSetup><ViewSetup><id>x</id></ViewSetup></ViewSetups></SequenceDescription></SpimData>";
-        let found = BdvDescription::parse(CONTEXT, text).unwrap();
+        let found = parse(text).unwrap();
         assert_eq!((found.file.as_str(), found.setups.len()), ("t.h5", 1));
         let setup = found.setup(3).unwrap();
         assert_eq!(setup.name, "GFP");
@@ -166,7 +168,7 @@ mod tests {
                 "bdv.n5",
             ),
         ] {
-            let error = BdvDescription::parse(CONTEXT, text).unwrap_err().to_string();
+            let error = parse(text).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         }
     }

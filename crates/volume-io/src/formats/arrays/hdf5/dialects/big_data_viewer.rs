@@ -10,9 +10,15 @@ use super::array_tree::{object_at, partial};
 use super::bdv_xml::BdvDescription;
 use super::volume_read::{ChosenHdf5Volume, number_type, read_numbers};
 use crate::reading::input::stem;
+use crate::reading::number::FileNumberType;
 use crate::reading::placement::GridPlacement;
 use crate::reading::reader::VolumeSource;
-use chiaroscuro_volume::{FileDimension, LoadError, Modality, ValueMetadata, Volume, VolumeOffer};
+use chiaroscuro_volume::{
+    FileDimension, LoadError, Modality, ResolutionLevel, ValueMetadata, Volume, VolumeOffer, VoxelType,
+};
+
+/// Maximum number of levels.
+const MAX_LEVELS: usize = 64;
 
 /// Maximum number of setups, each of which is looked into.
 const MAX_SETUPS: usize = 4096;
@@ -65,15 +71,14 @@ pub(in super::super) fn load(
     let time =
         source.choose_numbered(context, FileDimension::Frame, times.len() as u64, grid, |_| String::new())?;
     let setup = &setups[chosen];
-    let levels = resolutions(file, &root, setup)?;
-    let level = 0;
-    let path = format!("{}/{setup}/{level}/cells", times[time]);
-    let array = cells(file, &root, &path)?;
-    let Some(dims) = dims_of(&array) else {
-        let why = format!("three dimensions were expected, it has {}", array.shape.len());
-        return Err(context.bad_input_error(&path, why, "check that the file is complete"));
-    };
-    let factors = levels.get(level).copied().unwrap_or([1.0; 3]);
+    let factors = resolutions(file, &root, setup)?;
+    let place = format!("{}/{setup}", times[time]);
+    let levels = levels(file, &root, &place)?;
+    let known: Vec<ResolutionLevel> = levels.iter().map(|(_, level)| level.clone()).collect();
+    let level = source.options.limits(source.control).choose_level(context, &known)?;
+    let (array, ResolutionLevel { dims, .. }) = &levels[level];
+    let (path, dims) = (format!("{place}/{level}/cells"), *dims);
+    let factors = factors.get(level).copied().unwrap_or([1.0; 3]);
     let placement = described
         .and_then(|described| described.setup(numbered(setup, 's')?))
         .map_or_else(GridPlacement::unknown, |setup| setup.placement(factors));
@@ -84,10 +89,34 @@ pub(in super::super) fn load(
         setup => chiaroscuro_files::sanitised(&format!("{} {setup}", stem(source.path)), 120),
     };
     let view = ArrayView { first: vec![0; 3], axes: [Some(2), Some(1), Some(0)], component_axis: None, dims };
-    let meant_number = number_type(&array).map(|(number, _)| unsigned(number));
+    let meant_number = number_type(array).map(|(number, _)| unsigned(number));
     let (components, scale, path) = ((1, false), [1.0, 0.0], path.as_str());
-    ChosenHdf5Volume { name, path, array: &array, view, components, placement, hints, scale, meant_number }
+    ChosenHdf5Volume { name, path, array, view, components, placement, hints, scale, meant_number }
         .load(source, file)
+}
+
+/// Arrays of the levels of a setup at a time step, finest first.
+fn levels(
+    file: &Hdf5File<'_>,
+    root: &Hdf5Object,
+    place: &str,
+) -> Result<Vec<(Hdf5Array, ResolutionLevel)>, LoadError> {
+    let group = object_at(file, root, place)?.ok_or_else(|| missing(file, place))?;
+    let links = group.links(file)?;
+    let count =
+        (0..MAX_LEVELS).take_while(|level| links.iter().any(|link| link.name == level.to_string())).count();
+    let level = |level| {
+        let path = format!("{place}/{level}/cells");
+        let array = cells(file, root, &path)?;
+        let Some(dims) = dims_of(&array) else {
+            let why = format!("three dimensions were expected, it has {}", array.shape.len());
+            return Err(file.context().bad_input_error(&path, why, "check that the file is complete"));
+        };
+        let number = number_type(&array).map(|(number, _)| unsigned(number));
+        let voxel_type = number.map_or(VoxelType::F64, FileNumberType::voxel_type);
+        Ok((array, ResolutionLevel { name: String::new(), dims, voxel_type }))
+    };
+    (0..count.max(1)).map(level).collect()
 }
 
 /// Voxels along x, y and z.
@@ -115,8 +144,8 @@ fn missing(file: &Hdf5File<'_>, path: &str) -> LoadError {
 fn resolutions(file: &Hdf5File<'_>, root: &Hdf5Object, setup: &str) -> Result<Vec<[f64; 3]>, LoadError> {
     let path = format!("{setup}/resolutions");
     let Some(object) = object_at(file, root, &path)? else { return Ok(Vec::new()) };
-    let read =
-        Hdf5Array::open(file, &object, &path).and_then(|array| read_numbers(file, (&path, &array), 3 * 64));
+    let read = Hdf5Array::open(file, &object, &path)
+        .and_then(|array| read_numbers(file, (&path, &array), 3 * MAX_LEVELS as u64));
     let numbers = partial(read)?.unwrap_or_default();
     Ok(numbers.as_chunks::<3>().0.to_vec())
 }

@@ -8,12 +8,15 @@ use super::super::container::{Hdf5Attribute, Hdf5File, Hdf5Object};
 use super::super::storage::{ArrayView, Hdf5Array};
 use super::array_tree::object_at;
 use super::coordinates::attribute_text;
-use super::volume_read::ChosenHdf5Volume;
+use super::volume_read::{ChosenHdf5Volume, number_type};
 use crate::reading::input::stem;
 use crate::reading::length_unit::millimetres;
 use crate::reading::placement::GridPlacement;
 use crate::reading::reader::VolumeSource;
-use chiaroscuro_volume::{FileDimension, LoadError, Modality, ValueMetadata, Volume, VolumeOffer, quoted};
+use chiaroscuro_volume::{
+    FileDimension, LoadError, Modality, ResolutionLevel, ValueMetadata, Volume, VolumeOffer, VoxelType,
+    quoted,
+};
 use glam::DVec3;
 
 /// Groups of the voxels, and of what is known about them.
@@ -28,6 +31,45 @@ const MAX_CHANNELS: usize = 1024;
 struct ImarisLevel {
     /// Path of its group.
     path: String,
+}
+
+/// Image of a channel and time step at one level.
+struct LevelImage {
+    path: String,
+    array: Hdf5Array,
+    /// Voxels without the padding.
+    dims: [u64; 3],
+}
+
+impl LevelImage {
+    /// Reads the description of the image in a group.
+    fn read(file: &Hdf5File<'_>, root: &Hdf5Object, path: &str) -> Result<Self, LoadError> {
+        let group = object_at(file, root, path)?.ok_or_else(|| missing(file, path))?;
+        let path = format!("{path}/Data");
+        let data = object_at(file, root, &path)?.ok_or_else(|| missing(file, &path))?;
+        let array = Hdf5Array::open(file, &data, &path)?;
+        let bad = |field: &str, why| {
+            let field = format!("{path}{field}");
+            file.context().bad_input_error(&field, why, "check that the file is complete")
+        };
+        let [depth, height, width] = array.shape[..] else {
+            return Err(bad("", format!("three dimensions were expected, it has {}", array.shape.len())));
+        };
+        let stored = [width, height, depth];
+        let dims = channel_dims(file, &group)?.unwrap_or(stored);
+        if (0..3).any(|at| dims[at] > stored[at]) {
+            let [x, y, z] = dims;
+            let why =
+                format!("{x} x {y} x {z} voxels were announced, {width} x {height} x {depth} are stored");
+            return Err(bad(", ImageSizeX", why));
+        }
+        Ok(Self { path, array, dims })
+    }
+
+    fn level(&self) -> ResolutionLevel {
+        let voxel_type = number_type(&self.array).map_or(VoxelType::F64, |(number, _)| number.voxel_type());
+        ResolutionLevel { name: String::new(), dims: self.dims, voxel_type }
+    }
 }
 
 /// Loads the chosen channel and time step.
@@ -66,27 +108,15 @@ pub(super) fn load(source: &mut VolumeSource<'_>, file: &Hdf5File<'_>) -> Result
     let count = times.len() as u64;
     let time = source.choose_numbered(context, FileDimension::Frame, count, dims, |_| String::new())?;
 
-    let path = format!("{}/TimePoint {}/Channel {}", level.path, times[time], channels[channel]);
-    let holder = group(&path)?;
-    let array = Hdf5Array::open(file, &group(&format!("{path}/Data"))?, &path)?;
-    let [depth, height, width] = array.shape[..] else {
-        let why = format!("three dimensions were expected, it has {}", array.shape.len());
-        return Err(context.bad_input_error(&path, why, "check that the file is complete"));
-    };
-    let stored = [width, height, depth];
-    let dims = channel_dims(file, &holder)?.or(image_dims(file, &image)?.filter(|_| levels.len() == 1));
-    let dims = dims.unwrap_or(stored);
-    if (0..3).any(|at| dims[at] > stored[at]) {
-        let [x, y, z] = dims;
-        let why = format!(
-            "an image of {x} x {y} x {z} voxels was announced, {width} x {height} x {depth} are stored"
-        );
-        return Err(context.bad_input_error(
-            &format!("{path}, ImageSizeX"),
-            why,
-            "check that the file is complete",
-        ));
-    }
+    let place = format!("TimePoint {}/Channel {}", times[time], channels[channel]);
+    let images = levels
+        .iter()
+        .map(|level| LevelImage::read(file, &root, &format!("{}/{place}", level.path)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let known: Vec<ResolutionLevel> = images.iter().map(LevelImage::level).collect();
+    let limits = source.options.limits(source.control);
+    let LevelImage { path, array, dims } = &images[limits.choose_level(context, &known)?];
+    let dims = *dims;
     let mut hints = ValueMetadata::default();
     hints.modality = Modality::LightMicroscopy;
     hints.set_acquisition(
@@ -99,8 +129,8 @@ pub(super) fn load(source: &mut VolumeSource<'_>, file: &Hdf5File<'_>) -> Result
     let view = ArrayView { first: vec![0; 3], axes: [Some(2), Some(1), Some(0)], component_axis: None, dims };
     let placement = placement(file, &image, dims)?;
     let components = (1, false);
-    let (scale, meant_number, path) = ([1.0, 0.0], None, path.as_str());
-    ChosenHdf5Volume { name, path, array: &array, view, components, placement, hints, scale, meant_number }
+    let (scale, meant_number) = ([1.0, 0.0], None);
+    ChosenHdf5Volume { name, path, array, view, components, placement, hints, scale, meant_number }
         .load(source, file)
 }
 
