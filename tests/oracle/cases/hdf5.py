@@ -24,6 +24,11 @@ STORAGE = {
     "deflate_grows_all": {"chunks": (2, 2, 2), "maxshape": (None, None, None), "compression": "gzip"},
     "shuffle": {"chunks": (2, 3, 2), "compression": "gzip", "shuffle": True, "fletcher32": True},
     "lzf": {"chunks": (2, 3, 4), "compression": "lzf", "shuffle": True},
+    "blosc_lz4": {"chunks": (2, 3, 4), **hdf5plugin.Blosc("lz4", 5, hdf5plugin.Blosc.SHUFFLE)},
+    "blosc_zstd": {"chunks": (2, 3, 4), **hdf5plugin.Blosc("zstd", 5, hdf5plugin.Blosc.BITSHUFFLE)},
+    "lz4": {"chunks": (2, 3, 4), **hdf5plugin.LZ4()},
+    "zstd": {"chunks": (2, 3, 4), **hdf5plugin.Zstd()},
+    "bzip2": {"chunks": (2, 3, 4), **hdf5plugin.BZip2()},
 }
 KINDS = ["uint8", ">u2", "int16", "float32", ">f4", "float64", ">i4", "uint64", "float16", "int8", "complex64", "int64"]
 
@@ -215,10 +220,8 @@ def refused(folder):
         layout[:] = h5py.VirtualSource("other.h5", "voxels", shape=(4, 5, 6))
         file.create_virtual_dataset("voxels", layout)
     for name, options in (
-        ("blosc", hdf5plugin.Blosc()),
         ("bitshuffle", hdf5plugin.Bitshuffle()),
-        ("lz4", hdf5plugin.LZ4()),
-        ("zstd", hdf5plugin.Zstd()),
+        ("blosc2", hdf5plugin.Blosc2()),
     ):
         with opened(folder / f"{name}.h5", newest=True) as file:
             file.create_dataset("voxels", data=np.zeros_like(voxels), chunks=(4, 20, 20), **options)

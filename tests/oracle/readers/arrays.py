@@ -1,6 +1,9 @@
 """Reader of HDF5 files by h5py and netCDF4, with the conventions of programs as docs/FORMATS.md describes them."""
 
 import h5py
+
+# Registers filters; before netCDF4, which brings a second HDF5 library.
+import hdf5plugin  # noqa: F401
 import netCDF4
 import numpy as np
 

@@ -1,4 +1,4 @@
-//! HDF5: arrays of any program, and volumes of Imaris, `BigDataViewer`, NeXus, NetCDF-4 and MATLAB.
+//! HDF5: arrays of any program, and volumes of Imaris, `BigDataViewer`, `NeXus`, `NetCDF`-4 and MATLAB.
 //!
 //! `container/` reads objects of a file, `storage/` the elements of its arrays, and `dialects/` knows where programs
 //! put volumes. Nothing leads out of the file: neither links to other files nor external storage are followed.
@@ -52,6 +52,7 @@ fn load(mut source: VolumeSource<'_>) -> Result<Volume, LoadError> {
 }
 
 /// Loads a volume of the HDF5 file that a description names.
+#[expect(clippy::needless_pass_by_value, reason = "as all readers are called")]
 fn load_description(source: VolumeSource<'_>) -> Result<Volume, LoadError> {
     let VolumeSource { path, options, control, .. } = source;
     let context = LoadContext { operation: "read the description of the volume", path };

@@ -50,7 +50,7 @@ impl Hdf5Type {
             4 => Some(Self::Other("bit fields")),
             5 => Some(Self::Other("opaque bytes")),
             6 => Some(complex_number(cursor, class >> 4, (bits & 0xffff, size), depth)?),
-            7 if bits & 0x0f == 0 => Some(Self::Reference),
+            7 if bits % 16 == 0 => Some(Self::Reference),
             7 => Some(Self::Other("references to regions")),
             // Named numbers: of two names false and true, which programs store as signed bytes.
             8 => Some(match Self::parse_nested(cursor, depth)?.0 {
@@ -59,7 +59,7 @@ impl Hdf5Type {
                 }
                 named => named,
             }),
-            9 if bits & 0x0f == 1 => Some(Self::VariableText),
+            9 if bits % 16 == 1 => Some(Self::VariableText),
             9 => match Self::parse_nested(cursor, depth)?.0 {
                 Self::Reference => Some(Self::ReferenceList),
                 _ => Some(Self::Other("lists of any length")),

@@ -77,11 +77,11 @@ impl<'a> FieldCursor<'a> {
     }
 
     /// Takes a signature of four letters.
-    pub(in super::super) fn require_signature(&mut self, signature: &[u8; 4]) -> Parsed<()> {
+    pub(in super::super) fn require_signature(&mut self, signature: [u8; 4]) -> Parsed<()> {
         if self.take(4)? == signature {
             return Ok(());
         }
-        Err(format!("the letters {} were expected at its beginning", String::from_utf8_lossy(signature))
+        Err(format!("the letters {} were expected at its beginning", String::from_utf8_lossy(&signature))
             .into())
     }
 }

@@ -74,7 +74,8 @@ fn parse_link(cursor: &mut FieldCursor<'_>) -> Parsed<Option<Hdf5Link>> {
         return Err(format!("version {version} of links is unknown").into());
     }
     let kind = if flags & 8 != 0 { cursor.byte()? } else { 0 };
-    cursor.take(if flags & 4 != 0 { 8 } else { 0 } + if flags & 0x10 != 0 { 1 } else { 0 })?;
+    let order = if flags & 4 != 0 { 8 } else { 0 };
+    cursor.take(order + usize::from(flags & 0x10 != 0))?;
     let length = cursor.number(1 << (flags & 3))?;
     let name = String::from_utf8_lossy(cursor.take_stored(length)?).into_owned();
     let target = match kind {
@@ -114,7 +115,7 @@ fn table_links(
             continue;
         }
         let (depth, children) = file.parse(&head, FIELD, |cursor| {
-            cursor.require_signature(b"TREE")?;
+            cursor.require_signature(*b"TREE")?;
             let (kind, depth) = (cursor.byte()?, cursor.byte()?);
             if kind != 0 || depth >= level {
                 return Err("a node of a tree has another kind or level than its parent states".into());

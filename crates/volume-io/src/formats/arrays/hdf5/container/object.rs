@@ -10,9 +10,11 @@ use chiaroscuro_volume::LoadError;
 
 const FIELD: &str = "object header";
 
-/// Maximum number of messages of an object, and of blocks of its header.
+/// Maximum number of messages of an object.
 const MAX_MESSAGES: usize = 1 << 16;
-const MAX_BLOCKS: usize = 1 << 12;
+
+/// Bytes of a block with one message.
+const MIN_BLOCK: u64 = 8;
 
 /// Number of the message types that are read (section IV.A.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +59,7 @@ impl Hdf5Object {
         let start = file.read_block(address, 4, FIELD)?;
         let mut object = Self { address, messages: Vec::new() };
         let is_new = start == b"OHDR";
-        let (body, length, has_order) = if is_new {
+        let (body, length, head) = if is_new {
             let prefix = file.read_block(
                 address,
                 34.min(file.length().saturating_sub(file.position(address))),
@@ -72,7 +74,7 @@ impl Hdf5Object {
                 cursor
                     .take(if flags & 0x20 != 0 { 16 } else { 0 } + if flags & 0x10 != 0 { 4 } else { 0 })?;
                 let length = cursor.number(1 << (flags & 3))?;
-                Ok(((prefix.len() - cursor.rest().len()) as u64, length, flags & 4 != 0))
+                Ok(((prefix.len() - cursor.rest().len()) as u64, length, if flags & 4 != 0 { 6 } else { 4 }))
             })?
         } else {
             let prefix = file.read_block(address, 12, FIELD)?;
@@ -82,19 +84,20 @@ impl Hdf5Object {
                     return Err(format!("version {version} is unknown, 1 and 2 are supported").into());
                 }
                 cursor.take(7)?;
-                Ok((16, cursor.number(4)?, false))
+                Ok((16, cursor.number(4)?, 8))
             })?
         };
         let mut blocks = VecDeque::from([(address.saturating_add(body), length, false)]);
-        let mut read = 0;
+        let mut read = 0u64;
         while let Some((at, length, is_continuation)) = blocks.pop_front() {
-            read += 1;
-            if read > MAX_BLOCKS {
+            // Blocks share no bytes, so that all together are not longer than the file.
+            read += length.max(MIN_BLOCK);
+            if read > file.length() {
                 return Err(file.broken(FIELD, "an object header continues in circles"));
             }
             let bytes = file.read_block(at, length, FIELD)?;
             let found = file.parse(&bytes, FIELD, |cursor| {
-                if is_new { new_messages(cursor, has_order, is_continuation) } else { old_messages(cursor) }
+                if is_new { new_messages(cursor, head, is_continuation) } else { old_messages(cursor) }
             })?;
             for message in found {
                 if message.kind == MessageKind::CONTINUATION {
@@ -184,18 +187,18 @@ fn old_messages(cursor: &mut FieldCursor<'_>) -> Parsed<Vec<HeaderMessage>> {
     Ok(found)
 }
 
-/// Messages of a block of a header in version 2; after the first block each has a signature and a checksum.
+/// Messages of a block of a header in version 2, each with `head` bytes before its data; after the first block each has a
+/// signature and a checksum.
 fn new_messages(
     cursor: &mut FieldCursor<'_>,
-    has_order: bool,
+    head: usize,
     is_continuation: bool,
 ) -> Parsed<Vec<HeaderMessage>> {
     let mut checksum = 0;
     if is_continuation {
-        cursor.require_signature(b"OCHK")?;
+        cursor.require_signature(*b"OCHK")?;
         checksum = 4;
     }
-    let head = if has_order { 6 } else { 4 };
     let mut found = Vec::new();
     while cursor.rest().len() >= head + checksum {
         let (kind, length) = (cursor.byte()?, cursor.number(2)?);

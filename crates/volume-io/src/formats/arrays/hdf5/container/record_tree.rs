@@ -39,7 +39,7 @@ impl RecordTree {
         let count = 22 + file.widths().address + file.widths().length;
         let bytes = file.read_block(address, count as u64, FIELD)?;
         let tree = file.parse(&bytes, FIELD, |cursor| {
-            cursor.require_signature(b"BTHD")?;
+            cursor.require_signature(*b"BTHD")?;
             cursor.byte()?;
             let kind = cursor.byte()?;
             let (node_bytes, record_bytes, depth) = (cursor.number(4)?, cursor.number(2)?, cursor.number(2)?);
@@ -83,7 +83,7 @@ impl RecordTree {
             let length = records.saturating_mul(self.record_bytes as u64).saturating_add(6 + children);
             let bytes = file.read_block(address, length, FIELD)?;
             let (records, below) = file.parse(&bytes, FIELD, |cursor| {
-                cursor.require_signature(if depth == 0 { b"BTLF" } else { b"BTIN" })?;
+                cursor.require_signature(if depth == 0 { *b"BTLF" } else { *b"BTIN" })?;
                 cursor.take(2)?;
                 let held = cursor.take(records as usize * self.record_bytes)?;
                 let mut below = Vec::new();

@@ -173,7 +173,7 @@ fn load_candidate(
     volume.load(source, file)
 }
 
-/// Unsigned number type of the same size: NetCDF before version 4 had none.
+/// Unsigned number type of the same size: `NetCDF` before version 4 had none.
 pub(super) fn unsigned(number: FileNumberType) -> FileNumberType {
     match number {
         FileNumberType::I8 => FileNumberType::U8,

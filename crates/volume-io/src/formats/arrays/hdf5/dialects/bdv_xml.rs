@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use roxmltree::Node;
 
+use crate::length_unit::millimetres;
 use crate::reading::companion_path;
 use crate::reading::input::InputFile;
-use crate::reading::length_unit::millimetres;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_files::{sanitised, xml};
 use chiaroscuro_volume::{LoadContext, LoadControl, LoadError, quoted};

@@ -1,10 +1,10 @@
-//! Coordinates along the dimensions of an array: spacing, position and unit, as NetCDF, NeXus and others state them.
+//! Coordinates along the dimensions of an array: spacing, position and unit, as `NetCDF`, `NeXus` and others state them.
 
 use super::super::container::{Hdf5Attribute, Hdf5File, Hdf5Object, MessageKind};
 use super::super::storage::Hdf5Array;
 use super::array_tree::partial;
 use super::volume_read::read_numbers;
-use crate::reading::length_unit::millimetres;
+use crate::length_unit::millimetres;
 use crate::reading::placement::GridPlacement;
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{LoadError, is_usable_spacing};

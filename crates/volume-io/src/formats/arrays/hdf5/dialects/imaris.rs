@@ -9,8 +9,8 @@ use super::super::storage::{ArrayView, Hdf5Array};
 use super::array_tree::object_at;
 use super::coordinates::attribute_text;
 use super::volume_read::{ChosenHdf5Volume, number_type};
+use crate::length_unit::millimetres;
 use crate::reading::input::stem;
-use crate::reading::length_unit::millimetres;
 use crate::reading::placement::GridPlacement;
 use crate::reading::reader::VolumeSource;
 use chiaroscuro_volume::{

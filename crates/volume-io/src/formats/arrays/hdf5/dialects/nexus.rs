@@ -1,6 +1,6 @@
-//! NeXus: the array that a file means to be shown, and the coordinates along its dimensions.
+//! `NeXus`: the array that a file means to be shown, and the coordinates along its dimensions.
 //!
-//! After <https://manual.nexusformat.org/datarules.html>: attributes `default` lead from the root to a group NXdata,
+//! After <https://manual.nexusformat.org/datarules.html>: attributes `default` lead from the root to a group `NXdata`,
 //! whose attribute `signal` names the array, and `axes` its coordinates.
 
 use super::super::container::{Hdf5File, Hdf5Object, LinkTarget};
@@ -21,7 +21,7 @@ pub(super) struct NexusSignal {
     pub(super) coordinates: Vec<Option<AxisCoordinates>>,
 }
 
-/// Finds the array that a file means to be shown; `None` if it is no NeXus file, or names none.
+/// Finds the array that a file means to be shown; `None` if it is no `NeXus` file, or names none.
 pub(super) fn default_signal(
     file: &Hdf5File<'_>,
     root: &Hdf5Object,

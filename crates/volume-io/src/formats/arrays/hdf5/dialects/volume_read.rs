@@ -9,7 +9,7 @@ use crate::reading::reader::VolumeSource;
 use crate::reading::rescale::rescale;
 use crate::reading::samples::VoxelLayout;
 use crate::reading::voxels::ValueMapping;
-use chiaroscuro_volume::{GridExtent, LoadError, Samples, ValueMetadata, Volume, with_samples};
+use chiaroscuro_volume::{GridExtent, LoadError, ValueMetadata, Volume};
 
 /// Chosen volume of a file.
 pub(super) struct ChosenHdf5Volume<'a> {
@@ -106,10 +106,5 @@ pub(super) fn read_numbers(
     let stored = VoxelEncoding::scalar(number, endian);
     let extent = GridExtent::unchecked(dims.map(|n| n as usize), stored.voxel_type());
     let read = read_view(file, (path, array), &view, (&stored, extent), (&ValueMapping::identity(None), 0))?;
-    Ok(numbers_of(&read.samples))
-}
-
-#[expect(clippy::cast_lossless, trivial_numeric_casts, reason = "one of the eight types is f64 already")]
-fn numbers_of(samples: &Samples) -> Vec<f64> {
-    with_samples!(samples, values => values.iter().map(|&value| value as f64).collect())
+    Ok((0..read.samples.len()).map(|at| read.samples.value(at)).collect())
 }

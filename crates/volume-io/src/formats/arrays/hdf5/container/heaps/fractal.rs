@@ -1,6 +1,6 @@
 //! Fractal heap (section III.G): blocks that double in size from row to row of a table, addressed by one offset.
 
-use super::super::Hdf5File;
+use super::super::{FieldCursor, Hdf5File};
 use chiaroscuro_volume::LoadError;
 
 const FIELD: &str = "fractal heap";
@@ -27,7 +27,7 @@ impl FractalHeap {
         let count = 22 + 12 * file.widths().length + 3 * file.widths().address;
         let bytes = file.read_block(address, count as u64, FIELD)?;
         file.parse(&bytes, FIELD, |cursor| {
-            cursor.require_signature(b"FRHP")?;
+            cursor.require_signature(*b"FRHP")?;
             cursor.take(3)?;
             if cursor.number(2)? != 0 {
                 return Err("compressed heaps are not supported".into());
@@ -100,7 +100,7 @@ impl FractalHeap {
             let head = 5 + width + self.offset_bytes as u64;
             let entry = (row * self.table_width + column).saturating_mul(width).saturating_add(head);
             let bytes = file.read_block(block.saturating_add(entry), width, FIELD)?;
-            block = file.parse(&bytes, FIELD, |cursor| cursor.present_address())?;
+            block = file.parse(&bytes, FIELD, FieldCursor::present_address)?;
             // Larger blocks are tables again.
             rows = if row < direct_rows {
                 0

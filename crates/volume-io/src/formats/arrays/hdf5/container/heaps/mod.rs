@@ -19,7 +19,7 @@ impl LocalHeap {
         let count = 8 + 2 * file.widths().length + file.widths().address;
         let head = file.read_block(address, count as u64, FIELD)?;
         let (length, at) = file.parse(&head, FIELD, |cursor| {
-            cursor.require_signature(b"HEAP")?;
+            cursor.require_signature(*b"HEAP")?;
             cursor.take(4)?;
             let length = cursor.length()?;
             cursor.length()?;
@@ -35,7 +35,7 @@ pub(super) fn global_object(file: &Hdf5File<'_>, address: u64, index: u64) -> Re
     let width = file.widths().length;
     let head = file.read_block(address, 8 + width as u64, FIELD)?;
     let length = file.parse(&head, FIELD, |cursor| {
-        cursor.require_signature(b"GCOL")?;
+        cursor.require_signature(*b"GCOL")?;
         cursor.take(4)?;
         cursor.length()
     })?;

@@ -36,7 +36,7 @@ pub(super) fn chunks(
     let head = file.read_block(header, 8 + width + file.widths().length as u64, FIELD)?;
     let record = index.record_bytes(file, grid);
     let (page_bits, count, block) = file.parse(&head, FIELD, |cursor| {
-        cursor.require_signature(b"FAHD")?;
+        cursor.require_signature(*b"FAHD")?;
         cursor.take(2)?;
         let (found, page_bits) = (usize::from(cursor.byte()?), cursor.byte()?);
         if found != record || page_bits > 32 {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::super::container::Hdf5File;
+use super::super::super::container::{FieldCursor, Hdf5File};
 use super::arrays::LastBlock;
 use super::{ChunkGrid, ChunkIndex, FIELD, StoredChunk};
 use chiaroscuro_volume::LoadError;
@@ -67,7 +67,7 @@ impl ArrayHeader {
         let width = file.widths().address as u64;
         let head = file.read_block(address, 12 + 6 * file.widths().length as u64 + width, FIELD)?;
         file.parse(&head, FIELD, |cursor| {
-            cursor.require_signature(b"EAHD")?;
+            cursor.require_signature(*b"EAHD")?;
             cursor.take(2)?;
             let found = usize::from(cursor.byte()?);
             if found != record {
@@ -125,7 +125,7 @@ impl ArrayHeader {
         let direct_blocks = 2 * (self.pointers - 1);
         let address_at = |at: u64| {
             let bytes = file.read_block(at, self.width, FIELD)?;
-            file.parse(&bytes, FIELD, |cursor| cursor.address())
+            file.parse(&bytes, FIELD, FieldCursor::address)
         };
         let pages = if records > self.page { records / self.page } else { 0 };
         let block = if group < direct_groups {
@@ -156,7 +156,7 @@ impl ArrayHeader {
             let pointers = head.saturating_add(blocks_in_group.saturating_mul(bits));
             let bytes =
                 bytes.get(pointers.saturating_add(of * self.width) as usize..).unwrap_or_default().to_vec();
-            file.parse(&bytes, FIELD, |cursor| cursor.address())?
+            file.parse(&bytes, FIELD, FieldCursor::address)?
         };
         let Some(block) = block else { return Ok(None) };
         let first = block.saturating_add(6 + self.width + self.offset_width);

@@ -56,7 +56,7 @@ pub(super) fn old_chunks(
         }
         let head = file.read_block(node, 8, FIELD)?;
         let (depth, children) = file.parse(&head, FIELD, |cursor| {
-            cursor.require_signature(b"TREE")?;
+            cursor.require_signature(*b"TREE")?;
             let (kind, depth) = (cursor.byte()?, cursor.byte()?);
             if kind != 1 || depth >= level {
                 return Err("a node of a tree has another kind or level than its parent states".into());

@@ -26,7 +26,9 @@ fn checksum(data: &[u8]) -> u32 {
         second = fold(second + first);
     };
     pairs.for_each(|pair| add(u32::from(pair[0]) << 8 | u32::from(pair[1])));
-    rest.iter().for_each(|&byte| add(u32::from(byte) << 8));
+    if let Some(&byte) = rest.first() {
+        add(u32::from(byte) << 8);
+    }
     fold(second) << 16 | fold(first)
 }
 

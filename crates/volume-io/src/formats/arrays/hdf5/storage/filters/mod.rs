@@ -1,13 +1,15 @@
 //! Filters through which chunks pass when they are written (section IV.A.2.l), and their reversal.
 
 mod fletcher32;
+mod lz4_blocks;
 mod lzf;
 
 use std::io::Read as _;
 
-use flate2::read::ZlibDecoder;
+use flate2::bufread::ZlibDecoder;
 
 use super::super::container::{FieldCursor, Parsed, text_before_zero};
+use crate::reading::chunk_codecs::{decode_blosc, decode_bzip2, decode_zstd, unshuffle};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{LoadControl, LoadError};
 
@@ -42,6 +44,10 @@ enum FilterKind {
     Shuffle,
     Fletcher32,
     Lzf,
+    Blosc,
+    Lz4,
+    Zstd,
+    Bzip2,
     /// Filter that is not supported, by its name.
     Other(String),
 }
@@ -52,16 +58,16 @@ impl FilterKind {
             1 => return Self::Deflate,
             2 => return Self::Shuffle,
             3 => return Self::Fletcher32,
+            307 => return Self::Bzip2,
             32000 => return Self::Lzf,
+            32001 => return Self::Blosc,
+            32004 => return Self::Lz4,
+            32015 => return Self::Zstd,
             4 => "szip",
             5 => "n-bit",
             6 => "scale-offset",
-            307 => "bzip2",
-            32001 => "Blosc",
-            32004 => "LZ4",
             32008 => "bitshuffle",
             32013 => "ZFP",
-            32015 => "Zstandard",
             32026 => "Blosc2",
             _ => return Self::Other(format!("{number} {}", sanitised(name, 40)).trim_end().to_owned()),
         };
@@ -140,10 +146,14 @@ impl FilterPipeline {
             bytes = match &filter.kind {
                 FilterKind::Deflate => inflate(&bytes, limit, control)?,
                 FilterKind::Shuffle => {
-                    unshuffle(bytes, filter.parameters.first().map_or(1, |&size| size as usize))
+                    unshuffle(&bytes, filter.parameters.first().map_or(1, |&size| size as usize))
                 }
                 FilterKind::Fletcher32 => fletcher32::verified(bytes)?,
                 FilterKind::Lzf => lzf::decode(&bytes, limit)?,
+                FilterKind::Blosc => decode_blosc(&bytes, limit)?,
+                FilterKind::Lz4 => lz4_blocks::decode(&bytes, limit)?,
+                FilterKind::Zstd => decode_zstd(&bytes, limit)?,
+                FilterKind::Bzip2 => decode_bzip2(&bytes, limit)?,
                 FilterKind::Other(name) => return Err(format!("the filter {name} is not supported").into()),
             };
         }
@@ -176,35 +186,9 @@ fn inflate(bytes: &[u8], limit: usize, control: &LoadControl) -> Result<Vec<u8>,
     }
 }
 
-/// Puts the bytes of each element together, of which first all first bytes were stored, then all second ones, and so
-/// on. Bytes beyond the last whole element stay at the end.
-fn unshuffle(bytes: Vec<u8>, size: usize) -> Vec<u8> {
-    let count = bytes.len().checked_div(size).unwrap_or(0);
-    if size < 2 || count < 2 {
-        return bytes;
-    }
-    let mut elements = vec![0; bytes.len()];
-    let whole = count * size;
-    for (at, plane) in bytes[..whole].chunks_exact(count).enumerate() {
-        for (element, &byte) in elements[at..whole].iter_mut().step_by(size).zip(plane) {
-            *element = byte;
-        }
-    }
-    elements[whole..].copy_from_slice(&bytes[whole..]);
-    elements
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bytes_of_elements_are_put_together() {
-        assert_eq!(unshuffle(vec![1, 2, 3, 11, 12, 13, 9], 2), [1, 11, 2, 12, 3, 13, 9]);
-        assert_eq!(unshuffle(vec![1, 2, 3], 1), [1, 2, 3]);
-        assert_eq!(unshuffle(vec![1, 2, 3], 0), [1, 2, 3]);
-        assert_eq!(unshuffle(vec![1, 2, 3], 5), [1, 2, 3]);
-    }
 
     #[test]
     fn streams_expand_to_a_chunk_and_no_further() {
