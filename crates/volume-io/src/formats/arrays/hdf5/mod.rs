@@ -15,7 +15,7 @@ use chiaroscuro_volume::{LoadContext, LoadError, Volume};
 use container::{Hdf5File, SIGNATURE};
 use dialects::BdvDescription;
 
-pub(in super::super) const READER: FormatReader = FormatReader {
+pub(crate) const READER: FormatReader = FormatReader {
     name: "HDF5",
     extensions: &[".h5", ".hdf5", ".hdf", ".he5", ".ims", ".nxs", ".nc", ".nc4", ".mat"],
     recognises: is_hdf5,
@@ -23,7 +23,7 @@ pub(in super::super) const READER: FormatReader = FormatReader {
 };
 
 /// Reader of the descriptions beside files of `BigDataViewer`.
-pub(in super::super) const DESCRIPTION: FormatReader = FormatReader {
+pub(crate) const DESCRIPTION: FormatReader = FormatReader {
     name: "BigDataViewer",
     // Files of other programs have this extension as well: it is told by its content.
     extensions: &[],

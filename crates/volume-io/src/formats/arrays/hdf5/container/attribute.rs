@@ -3,7 +3,7 @@
 use super::Hdf5File;
 use super::dataspace::parse_dataspace;
 use super::datatype::Hdf5Type;
-use super::field_cursor::{FieldCursor, Parsed, text_before_zero};
+use super::field_cursor::{FieldCursor, ParseResult, text_before_zero};
 use super::heaps::{FractalHeap, global_object};
 use super::object::{Hdf5Object, MessageKind, shared_message};
 use super::record_tree::RecordTree;
@@ -21,8 +21,8 @@ const MAX_TEXT: usize = 4096;
 
 /// Attribute of an object: a name with one value or several.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Hdf5Attribute {
-    pub(in super::super) name: String,
+pub(crate) struct Hdf5Attribute {
+    pub(crate) name: String,
     element_type: Hdf5Type,
     element_bytes: usize,
     data: Vec<u8>,
@@ -35,7 +35,7 @@ impl Hdf5Attribute {
     }
 
     /// Numbers of the attribute; none if it holds something else.
-    pub(in super::super) fn numbers(&self) -> Vec<f64> {
+    pub(crate) fn numbers(&self) -> Vec<f64> {
         match self.element_type {
             Hdf5Type::Number(number, endian) if number.bytes() == self.element_bytes => {
                 self.elements().map(|bytes| number.value(bytes, endian)).collect()
@@ -45,7 +45,7 @@ impl Hdf5Attribute {
     }
 
     /// Texts of the attribute; none if it holds something else.
-    pub(in super::super) fn texts(&self, file: &Hdf5File<'_>) -> Result<Vec<String>, LoadError> {
+    pub(crate) fn texts(&self, file: &Hdf5File<'_>) -> Result<Vec<String>, LoadError> {
         match self.element_type {
             Hdf5Type::Text => {
                 Ok(self.elements().map(|bytes| sanitised(&text_before_zero(bytes), MAX_TEXT)).collect())
@@ -61,7 +61,7 @@ impl Hdf5Attribute {
     }
 
     /// Text of the attribute, of all its elements together: Imaris writes single letters.
-    pub(in super::super) fn text(&self, file: &Hdf5File<'_>) -> Result<String, LoadError> {
+    pub(crate) fn text(&self, file: &Hdf5File<'_>) -> Result<String, LoadError> {
         if self.element_type == Hdf5Type::Text && self.element_bytes == 1 {
             return Ok(sanitised(&text_before_zero(&self.data), MAX_TEXT));
         }
@@ -69,7 +69,7 @@ impl Hdf5Attribute {
     }
 
     /// Addresses of objects, in one list for each element.
-    pub(in super::super) fn references(&self, file: &Hdf5File<'_>) -> Result<Vec<Vec<u64>>, LoadError> {
+    pub(crate) fn references(&self, file: &Hdf5File<'_>) -> Result<Vec<Vec<u64>>, LoadError> {
         let width = file.widths().address;
         let addresses = |bytes: &[u8]| {
             let address = |bytes: &[u8]| file.parse(bytes, FIELD, |cursor| cursor.number(width));
@@ -96,33 +96,35 @@ fn sequence(file: &Hdf5File<'_>, element: &[u8], width: usize) -> Result<Vec<u8>
     Ok(bytes)
 }
 
-/// Returns the attributes of an object.
-pub(super) fn attributes(file: &Hdf5File<'_>, object: &Hdf5Object) -> Result<Vec<Hdf5Attribute>, LoadError> {
-    let mut messages: Vec<Vec<u8>> =
-        object.own_messages(MessageKind::ATTRIBUTE).take(MAX_ATTRIBUTES).map(<[u8]>::to_vec).collect();
-    for info in object.own_messages(MessageKind::ATTRIBUTE_INFO) {
-        let places = file.parse(info, FIELD, |cursor| {
-            cursor.byte()?;
-            let flags = cursor.byte()?;
-            cursor.take(if flags & 1 != 0 { 2 } else { 0 })?;
-            Ok((cursor.address()?, cursor.address()?))
-        })?;
-        let (Some(heap), Some(tree)) = places else { continue };
-        let heap = FractalHeap::open(file, heap)?;
-        let records =
-            RecordTree::open(file, tree)?.records(file, MAX_ATTRIBUTES, &|_| std::cmp::Ordering::Equal)?;
-        for record in records {
-            messages.extend(heap.object(file, record.get(..8).unwrap_or_default())?);
+impl Hdf5Object {
+    /// Returns the attributes of the object; those that are damaged are left out.
+    pub(crate) fn attributes(&self, file: &Hdf5File<'_>) -> Result<Vec<Hdf5Attribute>, LoadError> {
+        let mut messages: Vec<Vec<u8>> =
+            self.own_messages(MessageKind::ATTRIBUTE).take(MAX_ATTRIBUTES).map(<[u8]>::to_vec).collect();
+        for info in self.own_messages(MessageKind::ATTRIBUTE_INFO) {
+            let places = file.parse(info, FIELD, |cursor| {
+                cursor.byte()?;
+                let flags = cursor.byte()?;
+                cursor.take(if flags & 1 != 0 { 2 } else { 0 })?;
+                Ok((cursor.address()?, cursor.address()?))
+            })?;
+            let (Some(heap), Some(tree)) = places else { continue };
+            let heap = FractalHeap::open(file, heap)?;
+            let records = RecordTree::open(file, tree)?
+                .records(file, MAX_ATTRIBUTES, &|_| std::cmp::Ordering::Equal)?;
+            for record in records {
+                messages.extend(heap.object(file, record.get(..8).unwrap_or_default())?);
+            }
         }
-    }
-    let mut found = Vec::new();
-    for message in messages {
-        // A damaged attribute is no reason to refuse the voxels.
-        if let Ok(parts) = AttributeParts::parse(&mut FieldCursor::new(&message, file.widths())) {
-            found.extend(parts.into_attribute(file)?);
+        let mut found = Vec::new();
+        for message in messages {
+            // A damaged attribute is no reason to refuse the voxels.
+            if let Ok(parts) = AttributeParts::parse(&mut FieldCursor::new(&message, file.widths())) {
+                found.extend(parts.into_attribute(file)?);
+            }
         }
+        Ok(found)
     }
-    Ok(found)
 }
 
 /// Parts of an attribute's message.
@@ -135,7 +137,7 @@ struct AttributeParts<'a> {
 }
 
 impl<'a> AttributeParts<'a> {
-    fn parse(cursor: &mut FieldCursor<'a>) -> Parsed<Self> {
+    fn parse(cursor: &mut FieldCursor<'a>) -> ParseResult<Self> {
         let (version, flags) = (cursor.byte()?, cursor.byte()?);
         if !(1..=3).contains(&version) {
             return Err(format!("version {version} of attributes is unknown").into());
@@ -167,7 +169,7 @@ impl<'a> AttributeParts<'a> {
             let count = shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
             let bytes = count.saturating_mul(element_bytes as u64);
             let data = FieldCursor::new(self.data, file.widths()).take_stored(bytes)?.to_vec();
-            Parsed::Ok(Hdf5Attribute { name: self.name.clone(), element_type, element_bytes, data })
+            ParseResult::Ok(Hdf5Attribute { name: self.name.clone(), element_type, element_bytes, data })
         };
         Ok(read().ok())
     }

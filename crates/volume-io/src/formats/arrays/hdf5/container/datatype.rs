@@ -1,6 +1,6 @@
 //! Datatypes (section IV.A.2.d): those that can be voxels, and those of attributes that are read.
 
-use super::field_cursor::{FieldCursor, Parsed};
+use super::field_cursor::{FieldCursor, ParseResult};
 use crate::Endian;
 use crate::reading::number::FileNumberType;
 
@@ -9,7 +9,7 @@ const MAX_DEPTH: usize = 8;
 
 /// Type of the elements of an array or attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) enum Hdf5Type {
+pub(crate) enum Hdf5Type {
     /// Numbers in a byte order.
     Number(FileNumberType, Endian),
     /// Complex numbers: two numbers each.
@@ -28,11 +28,11 @@ pub(in super::super) enum Hdf5Type {
 
 impl Hdf5Type {
     /// Parses a datatype; returns it with the bytes of an element.
-    pub(in super::super) fn parse(cursor: &mut FieldCursor<'_>) -> Parsed<(Self, usize)> {
+    pub(crate) fn parse(cursor: &mut FieldCursor<'_>) -> ParseResult<(Self, usize)> {
         Self::parse_nested(cursor, MAX_DEPTH)
     }
 
-    fn parse_nested(cursor: &mut FieldCursor<'_>, depth: usize) -> Parsed<(Self, usize)> {
+    fn parse_nested(cursor: &mut FieldCursor<'_>, depth: usize) -> ParseResult<(Self, usize)> {
         let Some(depth) = depth.checked_sub(1) else { return Err("types are nested too deep".into()) };
         let class = cursor.byte()?;
         let bits = cursor.number(3)?;
@@ -80,7 +80,7 @@ fn whole_number(
     cursor: &mut FieldCursor<'_>,
     size: usize,
     is_signed: bool,
-) -> Parsed<Option<FileNumberType>> {
+) -> ParseResult<Option<FileNumberType>> {
     let (first_bit, bits) = (cursor.number(2)?, cursor.number(2)?);
     if first_bit != 0 || bits as usize != size.saturating_mul(8) {
         return Ok(None);
@@ -99,7 +99,7 @@ fn whole_number(
 }
 
 /// Floating-point type of IEEE 754.
-fn real_number(cursor: &mut FieldCursor<'_>, size: usize) -> Parsed<Option<FileNumberType>> {
+fn real_number(cursor: &mut FieldCursor<'_>, size: usize) -> ParseResult<Option<FileNumberType>> {
     let (first_bit, bits) = (cursor.number(2)?, cursor.number(2)?);
     let parts = cursor.take(4)?;
     let bias = cursor.number(4)?;
@@ -118,7 +118,7 @@ fn complex_number(
     version: u8,
     (members, size): (u64, usize),
     depth: usize,
-) -> Parsed<Hdf5Type> {
+) -> ParseResult<Hdf5Type> {
     let other = Hdf5Type::Other("records");
     if members != 2 {
         return Ok(other);

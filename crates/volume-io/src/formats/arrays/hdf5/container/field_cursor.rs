@@ -4,80 +4,80 @@
 use std::borrow::Cow;
 
 /// Result of parsing a part of a block, with the reason of a failure in words.
-pub(in super::super) type Parsed<T> = Result<T, Cow<'static, str>>;
+pub(crate) type ParseResult<T> = Result<T, Cow<'static, str>>;
 
 /// Widths of addresses and lengths in a file, in bytes: 2, 4 or 8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) struct FieldWidths {
-    pub(in super::super) address: usize,
-    pub(in super::super) length: usize,
+pub(crate) struct FieldWidths {
+    pub(crate) address: usize,
+    pub(crate) length: usize,
 }
 
 /// Position in the bytes of a block.
 #[derive(Debug, Clone)]
-pub(in super::super) struct FieldCursor<'a> {
+pub(crate) struct FieldCursor<'a> {
     rest: &'a [u8],
     widths: FieldWidths,
 }
 
 impl<'a> FieldCursor<'a> {
-    pub(in super::super) fn new(bytes: &'a [u8], widths: FieldWidths) -> Self {
+    pub(crate) fn new(bytes: &'a [u8], widths: FieldWidths) -> Self {
         Self { rest: bytes, widths }
     }
 
     /// Returns the bytes that were not taken yet.
-    pub(in super::super) fn rest(&self) -> &'a [u8] {
+    pub(crate) fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
     /// Takes the next bytes.
-    pub(in super::super) fn take(&mut self, count: usize) -> Parsed<&'a [u8]> {
+    pub(crate) fn take(&mut self, count: usize) -> ParseResult<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(count).ok_or("it ends too early")?;
         self.rest = rest;
         Ok(taken)
     }
 
     /// Takes the next bytes, whose number is stored in the file.
-    pub(in super::super) fn take_stored(&mut self, count: u64) -> Parsed<&'a [u8]> {
+    pub(crate) fn take_stored(&mut self, count: u64) -> ParseResult<&'a [u8]> {
         self.take(usize::try_from(count).unwrap_or(usize::MAX))
     }
 
     /// Takes a number of at most eight bytes.
-    pub(in super::super) fn number(&mut self, width: usize) -> Parsed<u64> {
+    pub(crate) fn number(&mut self, width: usize) -> ParseResult<u64> {
         Ok(self.take(width)?.iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte)))
     }
 
-    pub(in super::super) fn byte(&mut self) -> Parsed<u8> {
+    pub(crate) fn byte(&mut self) -> ParseResult<u8> {
         Ok(self.take(1)?[0])
     }
 
     /// Takes a length.
-    pub(in super::super) fn length(&mut self) -> Parsed<u64> {
+    pub(crate) fn length(&mut self) -> ParseResult<u64> {
         self.number(self.widths.length)
     }
 
     /// Takes a length; `None` for the one that stands for no limit, in which all bits are set.
-    pub(in super::super) fn optional_length(&mut self) -> Parsed<Option<u64>> {
+    pub(crate) fn optional_length(&mut self) -> ParseResult<Option<u64>> {
         self.optional_number(self.widths.length)
     }
 
     /// Takes an address; `None` for the one that stands for nothing, in which all bits are set.
-    pub(in super::super) fn address(&mut self) -> Parsed<Option<u64>> {
+    pub(crate) fn address(&mut self) -> ParseResult<Option<u64>> {
         self.optional_number(self.widths.address)
     }
 
-    fn optional_number(&mut self, width: usize) -> Parsed<Option<u64>> {
+    fn optional_number(&mut self, width: usize) -> ParseResult<Option<u64>> {
         let is_said = self.rest.iter().take(width).any(|&byte| byte != 0xff);
         self.number(width).map(|number| is_said.then_some(number))
     }
 
     /// Takes an address that must stand for something.
-    pub(in super::super) fn present_address(&mut self) -> Parsed<u64> {
+    pub(crate) fn present_address(&mut self) -> ParseResult<u64> {
         self.address()?.ok_or_else(|| "an address is missing".into())
     }
 
     /// Takes a signature of four letters.
-    pub(in super::super) fn require_signature(&mut self, signature: [u8; 4]) -> Parsed<()> {
+    pub(crate) fn require_signature(&mut self, signature: [u8; 4]) -> ParseResult<()> {
         if self.take(4)? == signature {
             return Ok(());
         }
@@ -87,7 +87,7 @@ impl<'a> FieldCursor<'a> {
 }
 
 /// Text up to the first zero byte.
-pub(in super::super) fn text_before_zero(bytes: &[u8]) -> String {
+pub(crate) fn text_before_zero(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     String::from_utf8_lossy(&bytes[..end]).into_owned()
 }

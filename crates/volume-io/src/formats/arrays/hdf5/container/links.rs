@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use super::Hdf5File;
-use super::field_cursor::{FieldCursor, Parsed, text_before_zero};
+use super::field_cursor::{FieldCursor, ParseResult, text_before_zero};
 use super::heaps::{FractalHeap, LocalHeap};
 use super::object::{Hdf5Object, MessageKind};
 use super::record_tree::RecordTree;
@@ -17,7 +17,7 @@ const MAX_LINKS: usize = 1 << 18;
 
 /// Target of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) enum LinkTarget {
+pub(crate) enum LinkTarget {
     /// Object at an address.
     Object(u64),
     /// Path within the file.
@@ -28,47 +28,49 @@ pub(in super::super) enum LinkTarget {
 
 /// Link of a group to a member.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) struct Hdf5Link {
-    pub(in super::super) name: String,
-    pub(in super::super) target: LinkTarget,
+pub(crate) struct Hdf5Link {
+    pub(crate) name: String,
+    pub(crate) target: LinkTarget,
 }
 
-/// Returns the links of a group.
-pub(super) fn links(file: &Hdf5File<'_>, group: &Hdf5Object) -> Result<Vec<Hdf5Link>, LoadError> {
-    let mut found = Vec::new();
-    for table in group.own_messages(MessageKind::SYMBOL_TABLE) {
-        let places =
-            file.parse(table, FIELD, |cursor| Ok((cursor.present_address()?, cursor.present_address()?)))?;
-        table_links(file, places, &mut found)?;
-    }
-    for message in group.own_messages(MessageKind::LINK) {
-        found.extend(file.parse(message, FIELD, parse_link)?);
-    }
-    for info in group.own_messages(MessageKind::LINK_INFO) {
-        let places = file.parse(info, FIELD, |cursor| {
-            cursor.byte()?;
-            let flags = cursor.byte()?;
-            cursor.take(if flags & 1 != 0 { 8 } else { 0 })?;
-            Ok((cursor.address()?, cursor.address()?))
-        })?;
-        let (Some(heap), Some(tree)) = places else { continue };
-        let heap = FractalHeap::open(file, heap)?;
-        let mut records = RecordTree::open(file, tree)?.records(file, MAX_LINKS, &|_| Ordering::Equal)?;
-        // Each record has a hash of the name, by which it is sorted, before the place in the heap.
-        for record in &mut records {
-            let id = record.get(4..).unwrap_or_default();
-            if let Some(message) = heap.object(file, id)? {
-                found.extend(file.parse(&message, FIELD, parse_link)?);
-            }
+impl Hdf5Object {
+    /// Returns the links of a group, in the order of the file; none for other objects.
+    pub(crate) fn links(&self, file: &Hdf5File<'_>) -> Result<Vec<Hdf5Link>, LoadError> {
+        let mut found = Vec::new();
+        for table in self.own_messages(MessageKind::SYMBOL_TABLE) {
+            let places = file
+                .parse(table, FIELD, |cursor| Ok((cursor.present_address()?, cursor.present_address()?)))?;
+            table_links(file, places, &mut found)?;
         }
-        found.sort_by(|one, other| one.name.cmp(&other.name));
+        for message in self.own_messages(MessageKind::LINK) {
+            found.extend(file.parse(message, FIELD, parse_link)?);
+        }
+        for info in self.own_messages(MessageKind::LINK_INFO) {
+            let places = file.parse(info, FIELD, |cursor| {
+                cursor.byte()?;
+                let flags = cursor.byte()?;
+                cursor.take(if flags & 1 != 0 { 8 } else { 0 })?;
+                Ok((cursor.address()?, cursor.address()?))
+            })?;
+            let (Some(heap), Some(tree)) = places else { continue };
+            let heap = FractalHeap::open(file, heap)?;
+            let mut records = RecordTree::open(file, tree)?.records(file, MAX_LINKS, &|_| Ordering::Equal)?;
+            // Each record has a hash of the name, by which it is sorted, before the place in the heap.
+            for record in &mut records {
+                let id = record.get(4..).unwrap_or_default();
+                if let Some(message) = heap.object(file, id)? {
+                    found.extend(file.parse(&message, FIELD, parse_link)?);
+                }
+            }
+            found.sort_by(|one, other| one.name.cmp(&other.name));
+        }
+        found.truncate(MAX_LINKS);
+        Ok(found)
     }
-    found.truncate(MAX_LINKS);
-    Ok(found)
 }
 
 /// Parses a link message (section IV.A.2.g); `None` for links of a kind that only some programs know.
-fn parse_link(cursor: &mut FieldCursor<'_>) -> Parsed<Option<Hdf5Link>> {
+fn parse_link(cursor: &mut FieldCursor<'_>) -> ParseResult<Option<Hdf5Link>> {
     let (version, flags) = (cursor.byte()?, cursor.byte()?);
     if version != 1 {
         return Err(format!("version {version} of links is unknown").into());
@@ -129,7 +131,7 @@ fn table_links(
                 cursor.length()?;
                 Ok((cursor.present_address()?, depth))
             };
-            (0..children).map(child).collect::<Parsed<Vec<_>>>()
+            (0..children).map(child).collect::<ParseResult<Vec<_>>>()
         })?;
         below.reverse();
         waiting.append(&mut below);
@@ -138,7 +140,7 @@ fn table_links(
 }
 
 /// Parses an entry of a symbol table (section III.C).
-fn parse_entry(cursor: &mut FieldCursor<'_>, heap: &LocalHeap) -> Parsed<Hdf5Link> {
+fn parse_entry(cursor: &mut FieldCursor<'_>, heap: &LocalHeap) -> ParseResult<Hdf5Link> {
     let name = heap.text(cursor.present_address()?)?;
     let object = cursor.address()?;
     let cache = cursor.number(4)?;
@@ -153,7 +155,7 @@ fn parse_entry(cursor: &mut FieldCursor<'_>, heap: &LocalHeap) -> Parsed<Hdf5Lin
 
 impl LocalHeap {
     /// Text at an offset of the heap.
-    fn text(&self, at: u64) -> Parsed<String> {
+    fn text(&self, at: u64) -> ParseResult<String> {
         let bytes = usize::try_from(at).ok().and_then(|at| self.bytes.get(at..));
         Ok(text_before_zero(bytes.ok_or("a name lies beyond its heap")?))
     }

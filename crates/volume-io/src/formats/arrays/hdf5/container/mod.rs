@@ -25,7 +25,7 @@ use chiaroscuro_volume::LoadContext;
 use chiaroscuro_volume::{LoadControl, LoadError};
 pub(super) use dataspace::{Dataspace, parse_dataspace};
 pub(super) use datatype::Hdf5Type;
-pub(super) use field_cursor::{FieldCursor, FieldWidths, Parsed, text_before_zero};
+pub(super) use field_cursor::{FieldCursor, FieldWidths, ParseResult, text_before_zero};
 pub(super) use links::{Hdf5Link, LinkTarget};
 pub(super) use object::{Hdf5Object, MessageKind};
 pub(super) use record_tree::RecordTree;
@@ -152,7 +152,7 @@ impl<'a> Hdf5File<'a> {
         &self,
         bytes: &'b [u8],
         field: &str,
-        parse: impl FnOnce(&mut FieldCursor<'b>) -> Parsed<T>,
+        parse: impl FnOnce(&mut FieldCursor<'b>) -> ParseResult<T>,
     ) -> Result<T, LoadError> {
         let parsed = parse(&mut FieldCursor::new(bytes, self.widths()));
         parsed.map_err(|why| self.broken(field, format!("the {field} is broken: {why}")))

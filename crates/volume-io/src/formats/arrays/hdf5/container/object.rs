@@ -3,9 +3,7 @@
 use std::collections::VecDeque;
 
 use super::Hdf5File;
-use super::attribute::{Hdf5Attribute, attributes};
-use super::field_cursor::{FieldCursor, Parsed};
-use super::links::{Hdf5Link, links};
+use super::field_cursor::{FieldCursor, ParseResult};
 use chiaroscuro_volume::LoadError;
 
 const FIELD: &str = "object header";
@@ -18,22 +16,22 @@ const MIN_BLOCK: u64 = 8;
 
 /// Number of the message types that are read (section IV.A.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) struct MessageKind(u16);
+pub(crate) struct MessageKind(u16);
 
 impl MessageKind {
-    pub(in super::super) const DATASPACE: Self = Self(0x01);
-    pub(in super::super) const LINK_INFO: Self = Self(0x02);
-    pub(in super::super) const DATATYPE: Self = Self(0x03);
-    pub(in super::super) const OLD_FILL_VALUE: Self = Self(0x04);
-    pub(in super::super) const FILL_VALUE: Self = Self(0x05);
-    pub(in super::super) const LINK: Self = Self(0x06);
-    pub(in super::super) const EXTERNAL_FILES: Self = Self(0x07);
-    pub(in super::super) const LAYOUT: Self = Self(0x08);
-    pub(in super::super) const FILTERS: Self = Self(0x0b);
-    pub(in super::super) const ATTRIBUTE: Self = Self(0x0c);
+    pub(crate) const DATASPACE: Self = Self(0x01);
+    pub(crate) const LINK_INFO: Self = Self(0x02);
+    pub(crate) const DATATYPE: Self = Self(0x03);
+    pub(crate) const OLD_FILL_VALUE: Self = Self(0x04);
+    pub(crate) const FILL_VALUE: Self = Self(0x05);
+    pub(crate) const LINK: Self = Self(0x06);
+    pub(crate) const EXTERNAL_FILES: Self = Self(0x07);
+    pub(crate) const LAYOUT: Self = Self(0x08);
+    pub(crate) const FILTERS: Self = Self(0x0b);
+    pub(crate) const ATTRIBUTE: Self = Self(0x0c);
     const CONTINUATION: Self = Self(0x10);
-    pub(in super::super) const SYMBOL_TABLE: Self = Self(0x11);
-    pub(in super::super) const ATTRIBUTE_INFO: Self = Self(0x15);
+    pub(crate) const SYMBOL_TABLE: Self = Self(0x11);
+    pub(crate) const ATTRIBUTE_INFO: Self = Self(0x15);
 }
 
 /// Message of an object header.
@@ -47,15 +45,15 @@ struct HeaderMessage {
 
 /// Object of a file: a group, a dataset or a named datatype.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Hdf5Object {
+pub(crate) struct Hdf5Object {
     /// Address of its header, which identifies it.
-    pub(in super::super) address: u64,
+    pub(crate) address: u64,
     messages: Vec<HeaderMessage>,
 }
 
 impl Hdf5Object {
     /// Reads the header at an address.
-    pub(in super::super) fn read(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
+    pub(crate) fn read(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
         let start = file.read_block(address, 4, FIELD)?;
         let mut object = Self { address, messages: Vec::new() };
         let is_new = start == b"OHDR";
@@ -114,12 +112,12 @@ impl Hdf5Object {
     }
 
     /// Returns true if the header has a message of a kind.
-    pub(in super::super) fn has(&self, kind: MessageKind) -> bool {
+    pub(crate) fn has(&self, kind: MessageKind) -> bool {
         self.messages.iter().any(|message| message.kind == kind)
     }
 
     /// Returns true if the object is an array.
-    pub(in super::super) fn is_dataset(&self) -> bool {
+    pub(crate) fn is_dataset(&self) -> bool {
         self.has(MessageKind::DATASPACE) && self.has(MessageKind::LAYOUT)
     }
 
@@ -130,7 +128,7 @@ impl Hdf5Object {
     }
 
     /// Returns the data of the first message of a kind, also where they are shared with another object.
-    pub(in super::super) fn message(
+    pub(crate) fn message(
         &self,
         file: &Hdf5File<'_>,
         kind: MessageKind,
@@ -141,16 +139,6 @@ impl Hdf5Object {
         } else {
             Ok(Some(found.data.clone()))
         }
-    }
-
-    /// Returns the attributes of the object; those that are damaged are left out.
-    pub(in super::super) fn attributes(&self, file: &Hdf5File<'_>) -> Result<Vec<Hdf5Attribute>, LoadError> {
-        attributes(file, self)
-    }
-
-    /// Returns the links of a group, in the order of the file; none for other objects.
-    pub(in super::super) fn links(&self, file: &Hdf5File<'_>) -> Result<Vec<Hdf5Link>, LoadError> {
-        links(file, self)
     }
 }
 
@@ -175,7 +163,7 @@ pub(super) fn shared_message(
 }
 
 /// Messages of a block of a header in version 1.
-fn old_messages(cursor: &mut FieldCursor<'_>) -> Parsed<Vec<HeaderMessage>> {
+fn old_messages(cursor: &mut FieldCursor<'_>) -> ParseResult<Vec<HeaderMessage>> {
     let mut found = Vec::new();
     while cursor.rest().len() >= 8 {
         let (kind, length) = (cursor.number(2)?, cursor.number(2)?);
@@ -193,7 +181,7 @@ fn new_messages(
     cursor: &mut FieldCursor<'_>,
     head: usize,
     is_continuation: bool,
-) -> Parsed<Vec<HeaderMessage>> {
+) -> ParseResult<Vec<HeaderMessage>> {
     let mut checksum = 0;
     if is_continuation {
         cursor.require_signature(*b"OCHK")?;

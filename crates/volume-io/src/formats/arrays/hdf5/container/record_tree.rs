@@ -16,11 +16,11 @@ type TreeRange<'a> = dyn Fn(&[u8]) -> Ordering + 'a;
 
 /// Tree of records that are sorted.
 #[derive(Debug, Clone)]
-pub(in super::super) struct RecordTree {
+pub(crate) struct RecordTree {
     /// Type of its records.
-    pub(in super::super) kind: u8,
+    pub(crate) kind: u8,
     node_bytes: u64,
-    pub(in super::super) record_bytes: usize,
+    pub(crate) record_bytes: usize,
     depth: u16,
     root: Option<u64>,
     root_records: u64,
@@ -35,7 +35,7 @@ struct TreeNode {
 
 impl RecordTree {
     /// Reads the header of a tree.
-    pub(in super::super) fn open(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
+    pub(crate) fn open(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
         let count = 22 + file.widths().address + file.widths().length;
         let bytes = file.read_block(address, count as u64, FIELD)?;
         let tree = file.parse(&bytes, FIELD, |cursor| {
@@ -61,7 +61,7 @@ impl RecordTree {
     }
 
     /// Returns the wanted records in their order, at most `limit`.
-    pub(in super::super) fn records(
+    pub(crate) fn records(
         &self,
         file: &Hdf5File<'_>,
         limit: usize,

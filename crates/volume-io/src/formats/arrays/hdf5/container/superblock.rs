@@ -1,11 +1,11 @@
 //! Superblock (section II.A): versions, widths of fields, and the address of the root group.
 
 use super::Hdf5File;
-use super::field_cursor::{FieldCursor, FieldWidths, Parsed};
+use super::field_cursor::{FieldCursor, FieldWidths, ParseResult};
 use chiaroscuro_volume::LoadError;
 
 /// Signature at the beginning of a superblock.
-pub(in super::super) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+pub(crate) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Longest user block before the superblock that is looked behind; longer ones are not written.
 const MAX_USER_BLOCK: u64 = 1 << 20;
@@ -47,7 +47,7 @@ impl Superblock {
         ))
     }
 
-    fn parse(cursor: &mut FieldCursor<'_>, base: u64) -> Parsed<Self> {
+    fn parse(cursor: &mut FieldCursor<'_>, base: u64) -> ParseResult<Self> {
         cursor.take(SIGNATURE.len())?;
         let version = cursor.byte()?;
         if version > 3 {

@@ -16,16 +16,16 @@ const HELP: &str = "export it again with BigDataViewer, or open the HDF5 file";
 
 /// Setup of a description: a channel, angle or tile.
 #[derive(Debug, Clone, PartialEq)]
-pub(in super::super) struct BdvSetup {
+pub(crate) struct BdvSetup {
     number: u32,
-    pub(in super::super) name: String,
+    pub(crate) name: String,
     /// Voxel size along x, y and z, and its unit in millimetres.
     voxel_size: Option<([f64; 3], Option<f64>)>,
 }
 
 impl BdvSetup {
     /// Placement of a level that is coarser by some factors.
-    pub(in super::super) fn placement(&self, factors: [f64; 3]) -> GridPlacement {
+    pub(crate) fn placement(&self, factors: [f64; 3]) -> GridPlacement {
         let Some((size, unit)) = self.voxel_size else { return GridPlacement::unknown() };
         let size: [f64; 3] = std::array::from_fn(|at| size[at] * factors[at] * unit.unwrap_or(1.0));
         match unit {
@@ -37,15 +37,15 @@ impl BdvSetup {
 
 /// Description of an HDF5 file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(in super::super) struct BdvDescription {
+pub(crate) struct BdvDescription {
     /// Name of the HDF5 file.
-    pub(in super::super) file: String,
+    pub(crate) file: String,
     setups: Vec<BdvSetup>,
 }
 
 impl BdvDescription {
     /// Reads the description in a file.
-    pub(in super::super) fn read(context: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
+    pub(crate) fn read(context: LoadContext<'_>, control: &LoadControl) -> Result<Self, LoadError> {
         let input = InputFile::open(context)?;
         control.record_read(context.path);
         let mut text = Vec::new();
@@ -77,18 +77,18 @@ impl BdvDescription {
     }
 
     /// Returns a setup by its number.
-    pub(in super::super) fn setup(&self, number: u32) -> Option<&BdvSetup> {
+    pub(crate) fn setup(&self, number: u32) -> Option<&BdvSetup> {
         self.setups.iter().find(|setup| setup.number == number)
     }
 
     /// Path of the HDF5 file, which must lie beside the description.
-    pub(in super::super) fn path(&self, context: LoadContext<'_>) -> Result<PathBuf, LoadError> {
+    pub(crate) fn path(&self, context: LoadContext<'_>) -> Result<PathBuf, LoadError> {
         companion_path::resolve(context, "hdf5", &self.file)
     }
 }
 
 /// Reads the description beside an HDF5 file, if there is one of the same name that can be read.
-pub(in super::super) fn read_beside(
+pub(crate) fn read_beside(
     context: LoadContext<'_>,
     control: &LoadControl,
 ) -> Result<Option<BdvDescription>, LoadError> {

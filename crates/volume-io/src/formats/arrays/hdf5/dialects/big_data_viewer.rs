@@ -24,7 +24,7 @@ const MAX_LEVELS: usize = 64;
 const MAX_SETUPS: usize = 4096;
 
 /// Returns true if a group has the name of a time step.
-pub(in super::super) fn is_time_step(name: &str) -> bool {
+pub(crate) fn is_time_step(name: &str) -> bool {
     numbered(name, 't').is_some() && name.len() >= 6
 }
 
@@ -35,7 +35,7 @@ fn numbered(name: &str, letter: char) -> Option<u32> {
 }
 
 /// Loads the chosen setup and time step.
-pub(in super::super) fn load(
+pub(crate) fn load(
     source: &mut VolumeSource<'_>,
     file: &Hdf5File<'_>,
     described: Option<&BdvDescription>,

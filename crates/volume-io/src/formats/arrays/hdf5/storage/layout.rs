@@ -1,6 +1,6 @@
 //! Layouts of an array's elements (section IV.A.2.i).
 
-use super::super::container::{FieldCursor, Parsed};
+use super::super::container::{FieldCursor, ParseResult};
 use super::chunk_index::ChunkIndex;
 
 /// Largest slice that is read at once, in bytes, where elements lie one after another.
@@ -8,7 +8,7 @@ const SLICE_BYTES: u64 = 16 << 20;
 
 /// Layout of an array's elements.
 #[derive(Debug, Clone)]
-pub(in super::super) enum DataLayout {
+pub(crate) enum DataLayout {
     /// Elements in the header.
     Compact(Vec<u8>),
     /// Elements one after another; without an address where nothing was written.
@@ -21,7 +21,10 @@ pub(in super::super) enum DataLayout {
 
 impl DataLayout {
     /// Parses the message of an array with the given shape and bytes of an element.
-    pub(super) fn parse(cursor: &mut FieldCursor<'_>, (shape, element): (&[u64], usize)) -> Parsed<Self> {
+    pub(super) fn parse(
+        cursor: &mut FieldCursor<'_>,
+        (shape, element): (&[u64], usize),
+    ) -> ParseResult<Self> {
         let version = cursor.byte()?;
         match version {
             1 | 2 => Self::parse_old(cursor, (shape, element)),
@@ -54,7 +57,7 @@ impl DataLayout {
         }
     }
 
-    fn parse_old(cursor: &mut FieldCursor<'_>, array: (&[u64], usize)) -> Parsed<Self> {
+    fn parse_old(cursor: &mut FieldCursor<'_>, array: (&[u64], usize)) -> ParseResult<Self> {
         let (rank, class) = (usize::from(cursor.byte()?), cursor.byte()?);
         cursor.take(5)?;
         let address = if class == 0 { None } else { cursor.address()? };
@@ -100,12 +103,12 @@ fn chunk_shape(
     rank: usize,
     width: usize,
     (array, element): (&[u64], usize),
-) -> Parsed<Vec<u64>> {
+) -> ParseResult<Vec<u64>> {
     if rank != array.len() + 1 || !(1..=8).contains(&width) {
         let found = rank.saturating_sub(1);
         return Err(format!("chunks of {found} dimensions for an array of {}", array.len()).into());
     }
-    let mut shape = (0..rank).map(|_| cursor.number(width)).collect::<Parsed<Vec<u64>>>()?;
+    let mut shape = (0..rank).map(|_| cursor.number(width)).collect::<ParseResult<Vec<u64>>>()?;
     let size = shape.pop().unwrap_or(0);
     if size != element as u64 {
         return Err(format!("chunks of elements of {size} bytes, where they have {element}").into());

@@ -7,7 +7,7 @@ mod layout;
 mod slab_reader;
 
 use super::container::{
-    Dataspace, FieldCursor, Hdf5File, Hdf5Object, Hdf5Type, MessageKind, Parsed, parse_dataspace,
+    Dataspace, FieldCursor, Hdf5File, Hdf5Object, Hdf5Type, MessageKind, ParseResult, parse_dataspace,
 };
 use chiaroscuro_volume::LoadError;
 use filters::FilterPipeline;
@@ -79,7 +79,7 @@ impl Hdf5Array {
 fn fill_value(file: &Hdf5File<'_>, object: &Hdf5Object, name: &str) -> Result<Option<Vec<u8>>, LoadError> {
     let sized = |cursor: &mut FieldCursor<'_>| {
         let size = cursor.number(4)?;
-        Parsed::Ok(Some(cursor.take_stored(size)?.to_vec()))
+        ParseResult::Ok(Some(cursor.take_stored(size)?.to_vec()))
     };
     if let Some(message) = object.message(file, MessageKind::FILL_VALUE)? {
         return file.parse(&message, name, |cursor| {

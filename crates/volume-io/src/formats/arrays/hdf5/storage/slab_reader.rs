@@ -28,20 +28,20 @@ const MAX_EMPTY_CHUNKS: u64 = 1 << 20;
 
 /// Volume in an array.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) struct ArrayView {
+pub(crate) struct ArrayView {
     /// First element along each dimension of the array; those of other dimensions than the following select.
-    pub(in super::super) first: Vec<u64>,
+    pub(crate) first: Vec<u64>,
     /// Dimension of the array along x, y and z; `None` where the volume has one voxel.
-    pub(in super::super) axes: [Option<usize>; 3],
+    pub(crate) axes: [Option<usize>; 3],
     /// Dimension of the components of a voxel.
-    pub(in super::super) component_axis: Option<usize>,
+    pub(crate) component_axis: Option<usize>,
     /// Voxels along x, y and z.
-    pub(in super::super) dims: [u64; 3],
+    pub(crate) dims: [u64; 3],
 }
 
 /// Reads the selected voxels of a volume in an array. `name` is that of the array, for messages; `mapping` and `budget`
 /// as for other readers.
-pub(in super::super) fn read_view(
+pub(crate) fn read_view(
     file: &Hdf5File<'_>,
     (name, array): (&str, &Hdf5Array),
     view: &ArrayView,
@@ -79,7 +79,7 @@ pub(in super::super) fn read_view(
     let part = ResolvedPortion { grid, low: [0, 0, low], high: [width, height, high], ..needed.read };
     let boxed = GridExtent { wanted: part, read: part, ..GridExtent::unchecked(grid, stored.voxel_type()) };
     let slices: Vec<usize> = kept.slices().collect();
-    let mut reader = SlabReader::new(file, (name, array), view, stored, (kept, slices), budget_bytes)?;
+    let mut reader = BoxSlabReader::new(file, (name, array), view, stored, (kept, slices), budget_bytes)?;
     let read = stored.read_values(&mut reader, None, boxed, mapping, file.control());
     let layout = VoxelLayout { extent, voxel_type: stored.voxel_type(), endian: stored.endian };
     match (read, reader.failed) {
@@ -96,11 +96,7 @@ pub(in super::super) fn read_view(
 }
 
 /// Byte of the file at which the voxels of a volume begin that lie there one after another; `None` for others.
-pub(in super::super) fn contiguous_start(
-    file: &Hdf5File<'_>,
-    array: &Hdf5Array,
-    view: &ArrayView,
-) -> Option<u64> {
+pub(crate) fn contiguous_start(file: &Hdf5File<'_>, array: &Hdf5Array, view: &ArrayView) -> Option<u64> {
     let DataLayout::Contiguous { address: Some(address) } = array.layout else { return None };
     let ArrayView { first, axes, component_axis, dims } = view;
     // Volume's dimensions, fastest first, must be the fastest of the array, and whole.
@@ -123,7 +119,7 @@ pub(in super::super) fn contiguous_start(
 }
 
 /// Reader of the boxes of all needed slices, one after another.
-struct SlabReader<'a, 'f> {
+struct BoxSlabReader<'a, 'f> {
     file: &'a Hdf5File<'f>,
     name: &'a str,
     array: &'a Hdf5Array,
@@ -150,7 +146,7 @@ struct SlabReader<'a, 'f> {
     failed: Option<LoadError>,
 }
 
-impl<'a, 'f> SlabReader<'a, 'f> {
+impl<'a, 'f> BoxSlabReader<'a, 'f> {
     fn new(
         file: &'a Hdf5File<'f>,
         (name, array): (&'a str, &'a Hdf5Array),
@@ -352,7 +348,7 @@ impl<'a, 'f> SlabReader<'a, 'f> {
     }
 }
 
-impl Read for SlabReader<'_, '_> {
+impl Read for BoxSlabReader<'_, '_> {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         loop {
             if let Some(slice) = self.ready.last_mut() {

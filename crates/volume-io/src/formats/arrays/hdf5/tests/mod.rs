@@ -1,6 +1,5 @@
 //! Tests of the reader of HDF5 files, on files that h5py and netCDF4 wrote; `tests/oracle/` compares their voxels.
 
-
 mod mutations;
 
 use std::path::{Path, PathBuf};

@@ -10,7 +10,7 @@ const MAX_DEPTH: usize = 64;
 
 /// Heap of links or attributes.
 #[derive(Debug)]
-pub(in super::super) struct FractalHeap {
+pub(crate) struct FractalHeap {
     /// Width of the offset and of the length in an object's place, in bytes.
     offset_bytes: usize,
     length_bytes: usize,
@@ -23,7 +23,7 @@ pub(in super::super) struct FractalHeap {
 
 impl FractalHeap {
     /// Reads the header of a heap.
-    pub(in super::super) fn open(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
+    pub(crate) fn open(file: &Hdf5File<'_>, address: u64) -> Result<Self, LoadError> {
         let count = 22 + 12 * file.widths().length + 3 * file.widths().address;
         let bytes = file.read_block(address, count as u64, FIELD)?;
         file.parse(&bytes, FIELD, |cursor| {
@@ -58,11 +58,7 @@ impl FractalHeap {
     }
 
     /// Reads an object by its place; `None` for those that are too large to be in the heap.
-    pub(in super::super) fn object(
-        &self,
-        file: &Hdf5File<'_>,
-        place: &[u8],
-    ) -> Result<Option<Vec<u8>>, LoadError> {
+    pub(crate) fn object(&self, file: &Hdf5File<'_>, place: &[u8]) -> Result<Option<Vec<u8>>, LoadError> {
         let (flags, offset, length) = file.parse(place, FIELD, |cursor| {
             let flags = cursor.byte()?;
             Ok(match flags >> 4 & 3 {

@@ -6,34 +6,34 @@ mod trees;
 
 use std::ops::Range;
 
-use super::super::container::{FieldCursor, Hdf5File, Parsed};
+use super::super::container::{FieldCursor, Hdf5File, ParseResult};
 use chiaroscuro_volume::LoadError;
 
 pub(super) const FIELD: &str = "chunk index";
 
 /// Chunk that is stored in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) struct StoredChunk {
+pub(crate) struct StoredChunk {
     /// Position in the grid of chunks, slowest dimension first.
-    pub(in super::super) place: Vec<u64>,
-    pub(in super::super) address: u64,
+    pub(crate) place: Vec<u64>,
+    pub(crate) address: u64,
     /// Bytes in the file; `None` where they are those of a chunk without filters.
-    pub(in super::super) bytes: Option<u64>,
+    pub(crate) bytes: Option<u64>,
     /// Filters that were left out for this chunk, one bit each.
-    pub(in super::super) skipped_filters: u32,
+    pub(crate) skipped_filters: u32,
 }
 
 /// Grid of an array's chunks.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct ChunkGrid<'a> {
+pub(crate) struct ChunkGrid<'a> {
     /// Shape of the array.
-    pub(in super::super) array: &'a [u64],
+    pub(crate) array: &'a [u64],
     /// Lengths to which its dimensions may grow; `None` without a limit.
-    pub(in super::super) limits: &'a [Option<u64>],
+    pub(crate) limits: &'a [Option<u64>],
     /// Shape of a chunk, none of its lengths 0.
-    pub(in super::super) chunk: &'a [u64],
+    pub(crate) chunk: &'a [u64],
     /// Bytes of a chunk without filters.
-    pub(in super::super) chunk_bytes: u64,
+    pub(crate) chunk_bytes: u64,
 }
 
 impl ChunkGrid<'_> {
@@ -48,7 +48,7 @@ impl ChunkGrid<'_> {
     }
 
     /// Places of the chunks in a box of the grid, in order.
-    pub(in super::super) fn places(range: &[Range<u64>]) -> impl Iterator<Item = Vec<u64>> {
+    pub(crate) fn places(range: &[Range<u64>]) -> impl Iterator<Item = Vec<u64>> {
         let first = range.iter().map(|range| range.start).collect::<Vec<u64>>();
         let is_empty = range.iter().any(Range::is_empty);
         std::iter::successors((!is_empty).then_some(first), move |place| {
@@ -84,7 +84,7 @@ enum IndexKind {
 
 /// Index of an array's chunks.
 #[derive(Debug, Clone)]
-pub(in super::super) struct ChunkIndex {
+pub(crate) struct ChunkIndex {
     kind: IndexKind,
     /// Address of the index, or of the chunks; `None` where nothing was written.
     address: Option<u64>,
@@ -104,7 +104,7 @@ impl ChunkIndex {
     }
 
     /// Parses the rest of a layout of version 4 or 5, after the shape of chunks.
-    pub(super) fn parse(cursor: &mut FieldCursor<'_>, version: u8, flags: u8) -> Parsed<Self> {
+    pub(super) fn parse(cursor: &mut FieldCursor<'_>, version: u8, flags: u8) -> ParseResult<Self> {
         let kind = match cursor.byte()? {
             1 if flags & 2 != 0 => IndexKind::Single(Some((cursor.length()?, cursor.number(4)? as u32))),
             1 => IndexKind::Single(None),
@@ -195,7 +195,7 @@ impl ChunkIndex {
         cursor: &mut FieldCursor<'_>,
         grid: &ChunkGrid<'_>,
         place: Vec<u64>,
-    ) -> Parsed<Option<StoredChunk>> {
+    ) -> ParseResult<Option<StoredChunk>> {
         let address = cursor.address()?;
         let (mut bytes, mut skipped_filters) = (None, 0);
         if self.are_filtered {

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::super::super::container::{FieldCursor, Hdf5File, Parsed, RecordTree};
+use super::super::super::container::{FieldCursor, Hdf5File, ParseResult, RecordTree};
 use super::{ChunkGrid, ChunkIndex, FIELD, StoredChunk};
 use chiaroscuro_volume::LoadError;
 
@@ -19,9 +19,9 @@ struct ChunkKey {
 }
 
 /// Parses a key: bytes, filters, and offsets in elements, of which the last is that of bytes in an element.
-fn parse_key(cursor: &mut FieldCursor<'_>, chunk: &[u64]) -> Parsed<ChunkKey> {
+fn parse_key(cursor: &mut FieldCursor<'_>, chunk: &[u64]) -> ParseResult<ChunkKey> {
     let (bytes, skipped_filters) = (cursor.number(4)?, cursor.number(4)? as u32);
-    let place = chunk.iter().map(|&n| Ok(cursor.number(8)? / n)).collect::<Parsed<Vec<u64>>>()?;
+    let place = chunk.iter().map(|&n| Ok(cursor.number(8)? / n)).collect::<ParseResult<Vec<u64>>>()?;
     cursor.take(8)?;
     Ok(ChunkKey { bytes, skipped_filters, place })
 }

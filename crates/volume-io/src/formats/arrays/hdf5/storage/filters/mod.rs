@@ -8,7 +8,7 @@ use std::io::Read as _;
 
 use flate2::bufread::ZlibDecoder;
 
-use super::super::container::{FieldCursor, Parsed, text_before_zero};
+use super::super::container::{FieldCursor, ParseResult, text_before_zero};
 use crate::reading::chunk_codecs::{decode_blosc, decode_bzip2, decode_zstd, unshuffle};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{LoadControl, LoadError};
@@ -24,7 +24,7 @@ const ADDED_BYTES: usize = 64;
 
 /// Failure of a filter.
 #[derive(Debug)]
-pub(in super::super) enum FilterFault {
+pub(crate) enum FilterFault {
     /// The bytes are not what the filter writes.
     Broken(String),
     /// The load was cancelled.
@@ -84,13 +84,13 @@ struct ChunkFilter {
 
 /// Filters of an array, in the order in which chunks pass them when they are written.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(in super::super) struct FilterPipeline {
+pub(crate) struct FilterPipeline {
     filters: Vec<ChunkFilter>,
 }
 
 impl FilterPipeline {
     /// Parses the message of an array.
-    pub(in super::super) fn parse(cursor: &mut FieldCursor<'_>) -> Parsed<Self> {
+    pub(crate) fn parse(cursor: &mut FieldCursor<'_>) -> ParseResult<Self> {
         let (version, count) = (cursor.byte()?, cursor.byte()?);
         if !(1..=2).contains(&version) || count > MAX_FILTERS {
             return Err(format!("version {version} of {count} filters is not supported").into());
@@ -106,19 +106,19 @@ impl FilterPipeline {
             let name = cursor.take(if is_old { name.next_multiple_of(8) } else { name })?;
             let kind = FilterKind::from_number(number, &text_before_zero(name));
             let values =
-                (0..parameters).map(|_| Ok(cursor.number(4)? as u32)).collect::<Parsed<Vec<u32>>>()?;
+                (0..parameters).map(|_| Ok(cursor.number(4)? as u32)).collect::<ParseResult<Vec<u32>>>()?;
             cursor.take(if is_old && parameters % 2 == 1 { 4 } else { 0 })?;
             filters.push(ChunkFilter { kind, parameters: values });
         }
         Ok(Self { filters })
     }
 
-    pub(in super::super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.filters.is_empty()
     }
 
     /// Reason why chunks cannot be read, with what helps.
-    pub(in super::super) fn refusal(&self) -> Option<(String, String)> {
+    pub(crate) fn refusal(&self) -> Option<(String, String)> {
         self.filters.iter().find_map(|filter| match &filter.kind {
             FilterKind::Other(name) => Some((
                 format!("it is compressed by the filter {name}, which is not supported"),
@@ -130,7 +130,7 @@ impl FilterPipeline {
 
     /// Reverses the filters of a chunk that has `expected` bytes without them; the bits of `skipped` are filters that
     /// it did not pass.
-    pub(in super::super) fn decode(
+    pub(crate) fn decode(
         &self,
         mut bytes: Vec<u8>,
         expected: usize,
