@@ -294,9 +294,11 @@ impl<'a, 'f> BoxSlabReader<'a, 'f> {
             let read = batch.iter().map(|chunk| self.read_chunk(chunk)).collect::<Result<Vec<_>, _>>()?;
             let (array, control, expected) = (self.array, self.file.control(), self.block_bytes);
             let decode = |(bytes, chunk): (Vec<u8>, &StoredChunk)| {
-                array.filters.decode(bytes, expected, chunk.skipped_filters, control)
+                control.run(|| array.filters.decode(bytes, expected, chunk.skipped_filters, control))
             };
             let decoded: Vec<_> = read.into_par_iter().zip(batch).map(decode).collect();
+            // Chunks whose decoding was cancelled are not broken.
+            control.check()?;
             for (decoded, chunk) in decoded.into_iter().zip(batch) {
                 let bytes = decoded.map_err(|fault| match fault {
                     FilterFault::Stopped(error) => error,

@@ -4,17 +4,10 @@ mod fletcher32;
 mod lz4_blocks;
 mod lzf;
 
-use std::io::Read as _;
-
-use flate2::bufread::ZlibDecoder;
-
 use super::super::container::{FieldCursor, ParseResult, text_before_zero};
-use crate::reading::chunk_codecs::{decode_blosc, decode_bzip2, decode_zstd, unshuffle};
+use crate::reading::chunk_codecs::{decode_blosc, decode_bzip2, decode_zlib, decode_zstd, unshuffle};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_volume::{LoadControl, LoadError};
-
-/// Bytes that are decompressed at a time, between two checks for cancellation.
-const PIECE_BYTES: usize = 1 << 20;
 
 /// Maximum number of filters of an array: each has a bit of a mask.
 const MAX_FILTERS: u8 = 32;
@@ -144,7 +137,7 @@ impl FilterPipeline {
             }
             control.check().map_err(FilterFault::Stopped)?;
             bytes = match &filter.kind {
-                FilterKind::Deflate => inflate(&bytes, limit, control)?,
+                FilterKind::Deflate => decode_zlib(&bytes, limit)?,
                 FilterKind::Shuffle => {
                     unshuffle(&bytes, filter.parameters.first().map_or(1, |&size| size as usize))
                 }
@@ -161,43 +154,5 @@ impl FilterPipeline {
             return Err(format!("{expected} bytes were expected, {} found", bytes.len()).into());
         }
         Ok(bytes)
-    }
-}
-
-/// Decompresses a zlib stream to at most `limit` bytes.
-fn inflate(bytes: &[u8], limit: usize, control: &LoadControl) -> Result<Vec<u8>, FilterFault> {
-    let mut decoder = ZlibDecoder::new(bytes);
-    let mut found = Vec::new();
-    loop {
-        control.check().map_err(FilterFault::Stopped)?;
-        let piece = PIECE_BYTES.min(limit - found.len());
-        let got = decoder.by_ref().take(piece as u64).read_to_end(&mut found);
-        match got {
-            Ok(0) => break,
-            Ok(_) => {}
-            Err(error) => return Err(format!("it cannot be decompressed: {error}").into()),
-        }
-    }
-    // One byte more than a chunk can have; the checksum at the end of the stream is read as well.
-    match decoder.read(&mut [0]) {
-        Ok(0) => Ok(found),
-        Ok(_) => Err(format!("it has more than the {limit} bytes that a chunk can have").into()),
-        Err(error) => Err(format!("it cannot be decompressed: {error}").into()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn streams_expand_to_a_chunk_and_no_further() {
-        let control = LoadControl::new();
-        let packed = crate::tests::helpers::zlib(&[7; 5000]);
-        assert_eq!(inflate(&packed, 5000, &control).unwrap(), [7; 5000]);
-        assert!(
-            matches!(inflate(&packed, 4999, &control), Err(FilterFault::Broken(why)) if why.contains("4999"))
-        );
-        assert!(inflate(&packed[..packed.len() - 2], 5000, &control).is_err());
     }
 }
