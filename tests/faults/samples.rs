@@ -83,7 +83,7 @@ macro_rules! kept {
 }
 
 /// Valid files of other programs, which cannot be generated here in a few lines.
-const STORED_SAMPLES: [(&str, &[u8]); 45] = kept![
+const STORED_SAMPLES: [(&str, &[u8]); 50] = kept![
     "packed.nrrd",
     "digits.nrrd",
     "appended.vti",
@@ -129,6 +129,11 @@ const STORED_SAMPLES: [(&str, &[u8]); 45] = kept![
     "units.fits.gz",
     "levels.zarr.zip",
     "shards.zarr.zip",
+    "chunks.h5",
+    "trees.h5",
+    "growing.h5",
+    "held.mat",
+    "signal.nxs",
 ];
 
 /// Files of other programs, by their names.

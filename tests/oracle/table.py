@@ -60,6 +60,15 @@ def length(vectors):
     return np.sqrt((vectors.astype(float) ** 2).sum(axis=-1)).astype(np.float32)
 
 
+def components(voxels, choice, is_color):
+    """Reduces voxels of several components to the displayed values."""
+    if "component" in choice:
+        return voxels[..., int(choice["component"])]
+    if voxels.shape[-1] == 1:
+        return voxels[..., 0]
+    return luminance(voxels) if is_color else length(voxels)
+
+
 def held(voxels):
     """Converts voxels to one of the eight types of volumes, little-endian."""
     voxels = np.asarray(voxels)

@@ -10,14 +10,15 @@ from pathlib import Path
 import numpy as np
 
 import readers
-from cases import astronomy, dicom, freesurfer, grids, medical, microscopy, phantom
+from cases import astronomy, dicom, freesurfer, grids, hdf5, medical, microscopy, phantom
 from table import row, save
 
 HERE = Path(__file__).parent
 WRITTEN = HERE / "written"
 
-# Size in bytes of the largest file that is committed.
+# Size in bytes of the largest file that is committed; HDF5 keeps metadata in blocks of about 2 KiB.
 MOST_BYTES = 4096
+MOST_HDF5_BYTES = 11 * 1024
 
 
 def main():
@@ -26,7 +27,7 @@ def main():
     WRITTEN.mkdir()
     cases = [
         case
-        for module in (medical, dicom, microscopy, grids, freesurfer, astronomy)
+        for module in (medical, dicom, microscopy, grids, freesurfer, astronomy, hdf5)
         for case in module.cases(WRITTEN)
     ]
     rows = []
@@ -41,7 +42,11 @@ def main():
         rows.append(row(name, choice, reading))
     save(HERE / "written.tsv", rows, ["Written by write.py, and read by the libraries that readers/ uses."])
     phantom.write(HERE / "phantom")
-    large = [path.name for path in HERE.rglob("*/*") if path.is_file() and path.stat().st_size > MOST_BYTES]
+    shutil.rmtree(HERE / "refused", ignore_errors=True)
+    (HERE / "refused").mkdir()
+    hdf5.refused(HERE / "refused")
+    most = lambda path: MOST_HDF5_BYTES if path.name.startswith("hdf5_") or path.parent.name == "refused" else MOST_BYTES
+    large = [path.name for path in HERE.rglob("*/*") if path.is_file() and path.stat().st_size > most(path)]
     large = [name for name in large if not name.endswith((".py", ".pyc"))]
     if large:
         sys.exit(f"larger than {MOST_BYTES} bytes: {large}")

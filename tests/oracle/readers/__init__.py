@@ -17,23 +17,27 @@ import SimpleITK
 import tifffile
 from PIL import Image
 
-from readers import dicoms, grids, research
-from table import BODY, VOXELS, WORLD, Reading, columns, from_lps, held, length, luminance, rescaled, spaced, unknown
+from readers import arrays, dicoms, grids, research
+from table import (
+    BODY,
+    VOXELS,
+    WORLD,
+    Reading,
+    columns,
+    components,
+    from_lps,
+    held,
+    luminance,
+    rescaled,
+    spaced,
+    unknown,
+)
 
 
 def choice_of(text):
     """Parses a choice such as `--frame 1 --channel 0` into names and numbers."""
     words = (text or "").split()
     return {name.removeprefix("--"): value for name, value in zip(words[::2], words[1::2])}
-
-
-def components(voxels, choice, is_color):
-    """Reduces voxels of several components to the displayed values."""
-    if "component" in choice:
-        return voxels[..., int(choice["component"])]
-    if voxels.shape[-1] == 1:
-        return voxels[..., 0]
-    return luminance(voxels) if is_color else length(voxels)
 
 
 def read_nrrd(path, choice):
@@ -266,6 +270,7 @@ READERS = {
     (".npy", ".npz"): read_numpy,
     (".mgh", ".mgz"): research.read_mgh,
     (".fits", ".fits.gz"): research.read_fits,
+    (".h5", ".xml", ".ims", ".nc", ".nxs", ".mat"): arrays.read_hdf5,
     (".cube",): grids.read_cube,
     (".pvm",): grids.read_pvm,
     (".raw", ".dat", ".ini", ".ivf"): grids.read_described,

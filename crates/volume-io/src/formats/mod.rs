@@ -35,6 +35,8 @@ pub(super) const READERS: &[FormatReader] = &[
     nrrd::READER,
     arrays::numpy::NPY,
     arrays::numpy::NPZ,
+    arrays::hdf5::READER,
+    arrays::hdf5::DESCRIPTION,
     arrays::zarr::ARCHIVE,
     arrays::zarr::DOCUMENT,
     pvm::READER,

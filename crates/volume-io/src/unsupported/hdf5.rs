@@ -1,81 +1,23 @@
-//! HDF5 and the formats based on it, and older or similar array formats.
-//!
-//! After the HDF5 file format specification 3.0, section II.A: the signature is at byte 0, 512, 1024 and so on.
+//! Array formats that are older than HDF5 or similar to it, and MINC 2, which is based on it.
 
 use super::UnsupportedFormat;
-use super::signature::{FormatSignature, InspectedFile};
+use super::signature::FormatSignature;
+use chiaroscuro_volume::{LoadContext, LoadError};
 
-const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Format of MINC 2, which is recognised by the reader of HDF5 files.
+const MINC_2: UnsupportedFormat = UnsupportedFormat {
+    description: "a MINC 2 file (HDF5)",
+    signatures: &[],
+    extensions: &[],
+    advice: "convert it: mnc2nii IN.mnc OUT.nii, or mri_convert IN.mnc OUT.nii.gz",
+};
 
-/// Returns true if a file is HDF5, possibly after a user block, which mostly has 512 bytes.
-fn is_hdf5(look: &InspectedFile) -> bool {
-    let places = [0, 512, 1024, 2048, 4096].into_iter();
-    look.has_at(0, SIGNATURE)
-        || places.filter_map(|at| look.stored.get(at..)).any(|rest| rest.starts_with(SIGNATURE))
-}
-
-/// Returns true if a file is HDF5 and contains one of the names, or has one of the extensions.
-fn hdf5_containing(look: &InspectedFile, names: &[&[u8]], endings: &[&str]) -> bool {
-    is_hdf5(look)
-        && (names.iter().any(|name| look.contains(name))
-            || endings.iter().any(|ending| look.name.ends_with(ending)))
+/// Error for a MINC 2 file.
+pub(crate) fn minc_2_refusal(context: LoadContext<'_>) -> LoadError {
+    MINC_2.refusal(context)
 }
 
 pub(super) const FORMATS: &[UnsupportedFormat] = &[
-    UnsupportedFormat {
-        description: "a MATLAB 7.3 file (HDF5)",
-        signatures: &[FormatSignature::Test(|look| is_hdf5(look) && look.has_at(0, b"MATLAB"))],
-        extensions: &[],
-        advice: "save one of its variables as an array: python -c \"import h5py, numpy; \
-               numpy.save('OUT.npy', h5py.File('IN.mat')['NAME'][()])\"",
-    },
-    UnsupportedFormat {
-        description: "an Imaris file (HDF5)",
-        signatures: &[FormatSignature::Test(|look| {
-            hdf5_containing(look, &[b"DataSetInfo", b"ImarisDataSet"], &[".ims"])
-        })],
-        extensions: &[],
-        advice: "convert it with Bio-Formats: bfconvert IN.ims OUT.ome.tif, or open it in Fiji and save it as TIFF",
-    },
-    UnsupportedFormat {
-        description: "a MINC 2 file (HDF5)",
-        signatures: &[FormatSignature::Test(|look| hdf5_containing(look, &[b"minc-2.0"], &[".mnc"]))],
-        extensions: &[],
-        advice: "convert it: mnc2nii IN.mnc OUT.nii, or mri_convert IN.mnc OUT.nii.gz",
-    },
-    UnsupportedFormat {
-        description: "an HDF5 file of BigDataViewer",
-        signatures: &[FormatSignature::Test(|look| hdf5_containing(look, &[b"t00000"], &[]))],
-        extensions: &[],
-        advice: "save one of its volumes as an array: python -c \"import h5py, numpy; \
-               numpy.save('OUT.npy', h5py.File('IN.h5')['t00000/s00/0/cells'][()])\", or export it with BigDataViewer \
-               in Fiji",
-    },
-    UnsupportedFormat {
-        description: "a NeXus file (HDF5)",
-        signatures: &[FormatSignature::Test(|look| {
-            hdf5_containing(look, &[b"NX_class"], &[".nxs", ".nx", ".nexus"])
-        })],
-        extensions: &[],
-        advice: "list its arrays with h5ls -r IN.nxs, and save one: python -c \"import h5py, numpy; \
-               numpy.save('OUT.npy', h5py.File('IN.nxs')['entry/data/data'][()])\"",
-    },
-    UnsupportedFormat {
-        description: "a NetCDF-4 file (HDF5)",
-        signatures: &[FormatSignature::Test(|look| {
-            hdf5_containing(look, &[b"_NCProperties", b"_Netcdf4"], &[".nc", ".nc4", ".cdf"])
-        })],
-        extensions: &[],
-        advice: "list its variables with ncdump -h IN.nc, and save one as an array: python -c \"import xarray, numpy; \
-               numpy.save('OUT.npy', xarray.open_dataset('IN.nc')['NAME'].values)\"",
-    },
-    UnsupportedFormat {
-        description: "an HDF5 file",
-        signatures: &[FormatSignature::Test(is_hdf5)],
-        extensions: &[],
-        advice: "list its arrays with h5ls -r IN.h5, and save one: python -c \"import h5py, numpy; \
-               numpy.save('OUT.npy', h5py.File('IN.h5')['NAME'][()])\"",
-    },
     UnsupportedFormat {
         description: "a MINC 1 file (NetCDF)",
         signatures: &[

@@ -22,6 +22,7 @@ use super::reading::input::InputFile;
 use super::reading::reader::FileStart;
 use chiaroscuro_volume::{LoadContext, LoadError};
 pub(crate) use folders::unsupported_folder;
+pub(crate) use hdf5::minc_2_refusal;
 use signature::{FormatSignature, InspectedFile};
 
 /// Format that is recognised but not supported.

@@ -47,18 +47,9 @@ fn example(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -
 
 /// One sample of each format that is recognised by content.
 fn files() -> Vec<UnsupportedSample> {
-    const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
     const ZIP: &[u8] = b"PK\x03\x04";
     let stl = [&[b'x'; 80][..], &2u32.to_le_bytes(), &[1; 100]].concat();
     vec![
-        example("HDF5", file(HDF5), &["HDF5", "h5py"]),
-        example("HDF5 behind a block", with(b"mine", 512, HDF5), &["HDF5", "h5py"]),
-        example("NetCDF-4", with(HDF5, 900, b"_NCProperties"), &["NetCDF-4", "xarray"]),
-        example("NeXus", with(HDF5, 900, b"NX_class"), &["NeXus", "h5py"]),
-        example("Imaris", with(HDF5, 900, b"DataSetInfo"), &["Imaris", "bfconvert"]),
-        example("MINC 2", with(HDF5, 900, b"minc-2.0"), &["MINC 2", "mnc2nii"]),
-        example("BigDataViewer", with(HDF5, 900, b"t00000"), &["BigDataViewer", "h5py"]),
-        example("MATLAB 7.3", with(b"MATLAB 7.3 MAT-file", 512, HDF5), &["MATLAB 7.3", "h5py"]),
         example("MATLAB 5", file(b"MATLAB 5.0 MAT-file, Platform"), &["MATLAB", "scipy.io"]),
         example("NetCDF", file(b"CDF\x01\0\0"), &["NetCDF", "xarray"]),
         example("MINC 1", with(b"CDF\x01", 300, b"MINC standard variable"), &["MINC 1", "mnc2nii"]),

@@ -1,5 +1,6 @@
 //! Formats that hold arrays of any number of dimensions, whose axes have to be interpreted.
 
+pub(super) mod hdf5;
 pub(super) mod numpy;
 pub(super) mod zarr;
 mod zip;
