@@ -1,7 +1,7 @@
 """Zarr and OME-Zarr as zarr-python writes them: voxels, spacing and choices are equal.
 
-Written files, 114 in all: two versions of the format, all number types, all codecs, chunks that do not divide the array,
-shards, orders of axes and bytes.
+More than a hundred files: two versions of the format, all number types, all codecs, chunks that do not divide the
+array, shards, orders of axes and bytes.
 """
 
 import itertools

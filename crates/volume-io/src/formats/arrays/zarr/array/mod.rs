@@ -31,7 +31,7 @@ const MAX_DIMENSIONS: usize = 32;
 pub(super) enum ZarrNode {
     /// Group, with its attributes.
     Group(Value),
-    /// Array.
+    /// Array with its metadata.
     Array(Box<ZarrArray>),
 }
 
