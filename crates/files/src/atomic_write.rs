@@ -103,8 +103,8 @@ fn check_replaceable(found: &std::fs::Metadata) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// Returns the folder that contains a file.
-fn parent_folder(path: &Path) -> &Path {
+/// Returns the folder that contains a file or folder.
+pub(super) fn parent_folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -7,15 +7,21 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Prefix and suffix of the names of temporary files.
+/// Prefix and suffix of the names of temporary files and folders.
 const PREFIX: &str = ".chiaroscuro-";
 const SUFFIX: &str = ".part";
+
+/// Suffix of the names of temporary folders, which ends in that of files.
+pub(super) const FOLDER_SUFFIX: &str = ".folder.part";
 
 /// Maximum number of directory entries that are searched for abandoned files: takes a hundredth of a second.
 const MAX_ENTRIES: usize = 10_000;
 
 /// Age since the last write at which a temporary file counts as abandoned, on systems without file locks.
 const ABANDONED_AFTER: Duration = Duration::from_hours(24);
+
+/// Number of attempts to remove a folder to which another thread adds files.
+const MAX_REMOVALS: usize = 16;
 
 /// Longest wait of a terminating process for the list of files.
 const TERMINATION_WAIT: Duration = Duration::from_millis(500);
@@ -64,7 +70,7 @@ impl TemporaryFile {
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let file = builder.tempfile_in(folder)?;
-        TEMPORARY_FILES.lock().unwrap_or_else(PoisonError::into_inner).push(file.path().to_owned());
+        list(file.path());
         Ok(Self { file })
     }
 
@@ -107,9 +113,33 @@ pub fn unnamed_file() -> std::io::Result<File> {
     tempfile::tempfile()
 }
 
+/// Adds a file or folder to the list.
+pub(super) fn list(path: &Path) {
+    TEMPORARY_FILES.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+}
+
 /// Removes a file from the list. Dropped files stay in it, which is harmless, since their names are not reused.
-fn unlist(path: &Path) {
+pub(super) fn unlist(path: &Path) {
     TEMPORARY_FILES.lock().unwrap_or_else(PoisonError::into_inner).retain(|known| known != path);
+}
+
+/// Removes a temporary file, or a temporary folder with its files, to which other threads may still add some.
+fn remove_file_or_folder(path: &Path) {
+    if std::fs::remove_file(path).is_ok() || !is_temporary_folder(path) {
+        return;
+    }
+    for _ in 0..MAX_REMOVALS {
+        if std::fs::remove_dir_all(path).is_ok() {
+            return;
+        }
+    }
+}
+
+/// Returns true for a folder, none behind a link, of a name that only temporary folders have.
+fn is_temporary_folder(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let is_named = name.starts_with(PREFIX) && name.ends_with(FOLDER_SUFFIX);
+    is_named && std::fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
 /// Removes the temporary files of this process: for termination and panics.
@@ -117,9 +147,9 @@ pub fn remove_own_temporary_files() {
     let begin = Instant::now();
     while begin.elapsed() < TERMINATION_WAIT {
         match TEMPORARY_FILES.try_lock() {
-            Ok(mut files) => return files.drain(..).for_each(|file| drop(std::fs::remove_file(file))),
+            Ok(mut files) => return files.drain(..).for_each(|file| remove_file_or_folder(&file)),
             Err(std::sync::TryLockError::Poisoned(files)) => {
-                return files.into_inner().drain(..).for_each(|file| drop(std::fs::remove_file(file)));
+                return files.into_inner().drain(..).for_each(|file| remove_file_or_folder(&file));
             }
             Err(std::sync::TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(5)),
         }
@@ -133,13 +163,14 @@ pub fn remove_abandoned_temporary_files(folder: &Path) {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         let is_one = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
-        if is_one && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        let is_fit = |kind: std::fs::FileType| kind.is_file() || is_temporary_folder(&entry.path());
+        if is_one && entry.file_type().is_ok_and(is_fit) {
             remove_if_abandoned(&entry.path());
         }
     }
 }
 
-/// Removes a file if no process is writing it any more.
+/// Removes a file or folder if no process is writing it any more.
 fn remove_if_abandoned(path: &Path) {
     let Ok(file) = File::open(path) else { return };
     let locked =
@@ -155,7 +186,7 @@ fn remove_if_abandoned(path: &Path) {
     };
     if is_abandoned {
         // Removed while it is locked: a process that has just created it is waiting, and will find it gone.
-        std::fs::remove_file(path).ok();
+        remove_file_or_folder(path);
     }
 }
 

@@ -5,6 +5,7 @@
 mod pictures;
 mod video;
 mod volumes;
+mod zarr;
 
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom};
@@ -12,6 +13,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+
+pub(super) use zarr::other_file_in_hierarchy;
 
 use super::open_regular;
 use crate::provenance::{MAX_LOOK_BYTES, PROVENANCE_MARK};
@@ -27,8 +30,11 @@ const MAX_PARTS: usize = 1 << 16;
 const MAX_JSON_BYTES: u64 = 2 * MAX_LOOK_BYTES as u64;
 
 /// Returns true if a file was written by this program or is empty, so that nothing is lost by replacing it. A file
-/// that cannot be read counts as another program's.
+/// that cannot be read counts as another program's. Of folders, those of images are known, to which nothing was added.
 pub fn is_written_by_us(path: &Path) -> bool {
+    if path.is_dir() {
+        return zarr::is_own_folder(path);
+    }
     open_regular(path).is_ok_and(|file| has_mark(BufReader::new(file)).unwrap_or(false))
 }
 
@@ -53,6 +59,7 @@ fn has_mark(mut file: BufReader<File>) -> std::io::Result<bool> {
         [0x5c, 1, 0, 0, ..] | [0x1c, 2, 0, 0, ..] => volumes::nifti(file),
         [0x1f, 0x8b, ..] => volumes::gzip(file),
         [b'I', b'I', 42 | 43, 0, ..] => volumes::tiff(file),
+        [b'P', b'K', 3, 4, ..] => zarr::archive(file),
         _ => has_json_mark(file),
     }
 }
