@@ -7,7 +7,8 @@ use crate::program::ProgramFolder;
 use crate::volumes::{attached, gzipped, header};
 
 /// File extensions of all output formats.
-const EXTENSIONS: [&str; 8] = ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti"];
+const EXTENSIONS: [&str; 11] =
+    ["nrrd", "mha", "nii", "nii.gz", "tif", "tiff", "npy", "vti", "ome.zarr", "ozx", "zarr.zip"];
 
 fn info_json(folder: &ProgramFolder, file: &str) -> Value {
     serde_json::from_str(&folder.run_successfully(&format!("info {file} --json"))).expect("valid JSON")
@@ -155,6 +156,31 @@ fn unwritable_outputs_are_refused() {
             folder.run_successfully(&format!("convert ct.nrrd o.{ending}"));
         }
     }
+}
+
+#[test]
+fn folders_are_replaced_with_care() {
+    let folder = ProgramFolder::new();
+    folder.run_successfully("convert builtin:sphere:16 a.ome.zarr");
+    folder.run_successfully("convert a.ome.zarr b.nrrd");
+    for (args, words) in [
+        ("a.ome.zarr a.ome.zarr --force", "would replace"),
+        ("a.ome.zarr/zarr.json a.ome.zarr --force", "would replace"),
+        ("a.ome.zarr/0 a.ome.zarr --force", "would replace"),
+        ("b.nrrd - --format ome.zarr", "is a folder"),
+    ] {
+        let said = folder.run_failing(&format!("convert {args}"), 2);
+        assert!(said.contains(words), "{args}: {said}");
+    }
+    folder.write("a.ome.zarr/zarr.json", "{}");
+    let said = folder.run_failing("convert b.nrrd a.ome.zarr", 2);
+    assert!(said.contains("--force"), "{said}");
+    folder.run_successfully("convert b.nrrd a.ome.zarr --force");
+    folder.write("a.ome.zarr/notes.txt", "mine");
+    folder.run_failing("convert b.nrrd a.ome.zarr", 2);
+    let said = folder.run_failing("convert b.nrrd a.ome.zarr --force", 6);
+    assert!(said.contains("other files"), "{said}");
+    assert_eq!(folder.read("a.ome.zarr/notes.txt"), b"mine");
 }
 
 /// Inputs are never replaced: besides the input file itself, data files that a header names, and the other files of a

@@ -55,9 +55,14 @@ fn volumes_of_ours_are_known() {
     // Includes an axis too long for NIfTI-1.
     let long = Samples::U8((0..40_000).map(|at| at as u8).collect());
     let long = Volume::with_spacing("t", [40_000, 1, 1], glam::DVec3::ONE, long).unwrap();
-    for (name, volume) in [("a.nrrd", &volume), ("a.mha", &volume), ("a.nii", &volume), ("b.nii", &long)]
-        .into_iter()
-        .chain([("a.tif", &volume), ("a.vti", &volume), ("a.nii.gz", &volume), ("a.npy", &volume)])
+    for (name, volume) in
+        [("a.nrrd", &volume), ("a.mha", &volume), ("a.nii", &volume), ("b.nii", &long)].into_iter().chain([
+            ("a.tif", &volume),
+            ("a.vti", &volume),
+            ("a.nii.gz", &volume),
+            ("a.npy", &volume),
+            ("a.ozx", &volume),
+        ])
     {
         let path = folder.path().join(name);
         let format = VolumeFormat::from_path(&path).unwrap();

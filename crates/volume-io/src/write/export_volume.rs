@@ -1,12 +1,16 @@
 //! Volume in the orientation and number type of an export, without a copy of its voxels.
 
 use std::io::{Result, Write};
+use std::ops::Range;
 
 use glam::DAffine3;
+use rayon::prelude::*;
 
 use super::number_conversion::{ConvertError, NumberConversion, NumberRequest, append_number};
 use super::reorientation::GridReorientation;
-use chiaroscuro_volume::{AnatomicalAxes, Samples, ValueMeaning, ValueMetadata, Volume, VoxelType};
+use chiaroscuro_volume::{
+    AnatomicalAxes, Samples, SpacingUnit, ValueMeaning, ValueMetadata, Volume, VoxelType,
+};
 
 /// Volume to be exported. Its voxels are reoriented and converted while they are written.
 #[derive(Debug, Clone)]
@@ -131,6 +135,21 @@ impl<'a> ExportVolume<'a> {
         !self.is_anatomical() && self.world_from_index == DAffine3::from_mat3(straight)
     }
 
+    /// Returns true if the axes of the grid have the directions of those of the world.
+    pub(super) fn is_axis_aligned(&self) -> bool {
+        self.world_from_index.matrix3 == glam::DMat3::from_diagonal(self.spacing_mm().into())
+    }
+
+    /// Unit in which lengths are stated.
+    pub(super) fn length_unit(&self) -> SpacingUnit {
+        self.volume.length_unit()
+    }
+
+    /// Returns true if the numbers that are written are labels.
+    pub(super) fn is_label_map(&self) -> bool {
+        self.volume.is_label_map() && !self.numbers.is_rescaled()
+    }
+
     /// Number type that is written.
     pub fn voxel_type(&self) -> VoxelType {
         self.numbers.voxel_type
@@ -162,6 +181,21 @@ impl<'a> ExportVolume<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Encodes slices as [`Self::write_voxels`] does, several at a time.
+    pub(super) fn slices(&self, range: Range<usize>) -> Vec<Vec<u8>> {
+        let slice = |z: usize| {
+            let mut bytes = Vec::with_capacity(self.dims[0] * self.dims[1] * self.voxel_type().bytes());
+            for y in 0..self.dims[1] as isize {
+                self.append_row(
+                    self.first_index + y * self.strides[1] + z as isize * self.strides[2],
+                    &mut bytes,
+                );
+            }
+            bytes
+        };
+        range.into_par_iter().map(slice).collect()
     }
 
     /// Appends the row that begins at a voxel of the volume.

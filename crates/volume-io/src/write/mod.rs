@@ -1,7 +1,7 @@
 //! Export of volumes to other programs: a format for each file name extension, with the metadata that it supports.
 //!
 //! Voxels are reoriented and converted row by row while they are written, so that no copy of the volume is kept in
-//! memory.
+//! memory. `ome_zarr` writes volumes in several resolutions, also slab by slab.
 
 mod export_volume;
 mod metaimage;
@@ -9,6 +9,7 @@ mod nifti;
 mod npy;
 mod nrrd;
 mod number_conversion;
+mod ome_zarr;
 mod reorientation;
 #[cfg(test)]
 mod tests;
@@ -22,8 +23,11 @@ use glam::{DAffine3, DMat3, DVec3};
 
 pub use export_volume::ExportVolume;
 pub use number_conversion::{ConvertError, NumberRequest};
+pub use ome_zarr::{OmeZarrWriter, PyramidSpec, SLAB_SLICES};
 
-use chiaroscuro_files::{WriteError, rename_into_place, temporary_file_for};
+use chiaroscuro_files::{
+    WriteError, check_folder_writable, check_writable, rename_into_place, temporary_file_for,
+};
 use chiaroscuro_volume::{Volume, VoxelType};
 
 /// File format for exported volumes.
@@ -43,12 +47,25 @@ pub enum VolumeFormat {
     Npy,
     /// VTK image data in XML.
     Vti,
+    /// OME-Zarr: a folder with the image in several resolutions.
+    OmeZarr,
+    /// OME-Zarr in a ZIP archive.
+    OmeZarrArchive,
 }
 
 impl VolumeFormat {
     /// All formats, the most useful first.
-    pub const ALL: [Self; 7] =
-        [Self::Nrrd, Self::MetaImage, Self::NiftiGzip, Self::Nifti, Self::Tiff, Self::Npy, Self::Vti];
+    pub const ALL: [Self; 9] = [
+        Self::Nrrd,
+        Self::MetaImage,
+        Self::NiftiGzip,
+        Self::Nifti,
+        Self::Tiff,
+        Self::Npy,
+        Self::Vti,
+        Self::OmeZarr,
+        Self::OmeZarrArchive,
+    ];
 
     /// File name extensions, without the dot; the first one names the format.
     pub const fn extensions(self) -> &'static [&'static str] {
@@ -60,6 +77,8 @@ impl VolumeFormat {
             Self::Tiff => &["tif", "tiff"],
             Self::Npy => &["npy"],
             Self::Vti => &["vti"],
+            Self::OmeZarr => &["ome.zarr", "zarr"],
+            Self::OmeZarrArchive => &["ozx", "zarr.zip"],
         }
     }
 
@@ -75,6 +94,21 @@ impl VolumeFormat {
         matches!(self, Self::Nrrd | Self::MetaImage)
     }
 
+    /// Returns true if the format is a folder, which is no file for standard output.
+    pub const fn is_folder(self) -> bool {
+        matches!(self, Self::OmeZarr)
+    }
+
+    /// Returns true if a volume of the format is always compressed.
+    pub const fn is_always_compressed(self) -> bool {
+        matches!(self, Self::NiftiGzip) || self.is_pyramid()
+    }
+
+    /// Returns true if the format is written slab by slab, in several resolutions, by [`OmeZarrWriter`].
+    pub const fn is_pyramid(self) -> bool {
+        matches!(self, Self::OmeZarr | Self::OmeZarrArchive)
+    }
+
     /// Lists the known metadata of a volume that the format cannot store.
     pub fn unsupported_metadata(self, volume: &ExportVolume<'_>) -> Vec<&'static str> {
         let hints = volume.hints();
@@ -88,55 +122,70 @@ impl VolumeFormat {
             Self::Npy => (volume.has_unknown_scale(), straight),
             // Axes are stored, but not their anatomical directions.
             Self::Vti => (is_known, true),
+            Self::OmeZarr | Self::OmeZarrArchive => (true, volume.is_axis_aligned()),
         };
         let (padding, unit) = match self {
             Self::Nrrd | Self::MetaImage | Self::Tiff => (true, true),
-            Self::Nifti | Self::NiftiGzip | Self::Npy | Self::Vti => (false, false),
+            Self::Nifti | Self::NiftiGzip | Self::Npy | Self::Vti | Self::OmeZarr | Self::OmeZarrArchive => {
+                (false, false)
+            }
         };
         let known = [
             (scale || self == Self::Npy, "the fact that the voxel size is unknown"),
             (scale || self != Self::Npy, "the voxel size"),
             (place, "the position and axis directions"),
-            (self != Self::Vti || !volume.is_anatomical(), "the orientation of a body"),
+            (
+                (self != Self::Vti && !self.is_pyramid()) || !volume.is_anatomical(),
+                "the orientation of a body",
+            ),
             (padding || hints.padding.is_none(), "the padding value"),
             (unit || volume.unit().is_none(), "the unit of the values"),
-            (self == Self::Nrrd || hints.labels.is_empty(), "names and colours of labels"),
+            (
+                self == Self::Nrrd || self.is_pyramid() || hints.labels.is_empty(),
+                "names and colours of labels",
+            ),
         ];
         known.into_iter().filter(|(is_kept, _)| !is_kept).map(|(_, what)| what).collect()
     }
 
-    fn write(
-        self,
-        out: &mut dyn Write,
-        volume: &ExportVolume<'_>,
-        is_compressed: bool,
-    ) -> std::io::Result<()> {
-        match self {
-            Self::Nrrd => nrrd::write(out, volume, is_compressed),
-            Self::MetaImage => metaimage::write(out, volume, is_compressed),
-            Self::Nifti => nifti::write(out, volume, false),
-            Self::NiftiGzip => nifti::write(out, volume, true),
-            Self::Tiff => tiff::write(out, volume),
-            Self::Npy => npy::write(out, volume),
-            Self::Vti => vti::write(out, volume),
-        }
+    /// Checks that a volume can be written under a name, before the work that is to be written begins. With
+    /// `replaces_others`, a folder of another program is replaced, if it is one of Zarr.
+    ///
+    /// # Errors
+    /// Under the conditions of [`write_volume`].
+    pub fn check_writable(self, path: &Path, replaces_others: bool) -> Result<(), WriteError> {
+        if self.is_folder() { check_folder_writable(path, replaces_others) } else { check_writable(path) }
     }
 }
 
-/// Writes a volume atomically.
+/// Writes a volume atomically. A folder is replaced only if this program wrote all of it.
 ///
 /// # Errors
-/// Under the conditions of [`write_atomically`](chiaroscuro_files::write_atomically).
+/// Under the conditions of [`write_atomically`](chiaroscuro_files::write_atomically) and
+/// [`check_folder_writable`].
 pub fn write_volume(
     path: &Path,
     format: VolumeFormat,
     volume: &ExportVolume<'_>,
     is_compressed: bool,
 ) -> Result<(), WriteError> {
+    type EncodeVolume = fn(&mut dyn Write, &ExportVolume<'_>, bool) -> std::io::Result<()>;
+    let encode: EncodeVolume = match format {
+        VolumeFormat::Nrrd => nrrd::write,
+        VolumeFormat::MetaImage => metaimage::write,
+        VolumeFormat::Nifti => |out, volume, _| nifti::write(out, volume, false),
+        VolumeFormat::NiftiGzip => |out, volume, _| nifti::write(out, volume, true),
+        VolumeFormat::Tiff => |out, volume, _| tiff::write(out, volume),
+        VolumeFormat::Npy => |out, volume, _| npy::write(out, volume),
+        VolumeFormat::Vti => |out, volume, _| vti::write(out, volume),
+        VolumeFormat::OmeZarr | VolumeFormat::OmeZarrArchive => {
+            return ome_zarr::write(path, format, volume, false);
+        }
+    };
     let mut file = temporary_file_for(path)?;
     let failed = WriteError::io_error_for(path);
     let mut out = BufWriter::new(&mut file);
-    format.write(&mut out, volume, is_compressed).and_then(|()| out.flush()).map_err(&failed)?;
+    encode(&mut out, volume, is_compressed).and_then(|()| out.flush()).map_err(&failed)?;
     drop(out);
     rename_into_place(file, path)
 }

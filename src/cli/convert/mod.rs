@@ -1,5 +1,7 @@
 //! Command `chiaroscuro convert`: writes a volume in another file format.
 
+mod by_slabs;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -7,11 +9,15 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, finish_output, open_destination, warn_line};
 use super::scene::{LoadArgs, control_with_size_warning, parse_voxel_type};
-use chiaroscuro_files::check_writable;
-use chiaroscuro_volume::{AnatomicalAxes, ErrorExplanation, LoadError, ValueRange, VoxelType};
+use chiaroscuro_files::is_written_by_us;
+use chiaroscuro_volume::{
+    AnatomicalAxes, ErrorExplanation, LoadControl, LoadError, ValueRange, Volume, VoxelType,
+};
 use chiaroscuro_volume_io::{
     open,
-    write::{ConvertError, ExportVolume, NumberRequest, VolumeFormat, write_volume},
+    write::{
+        ConvertError, ExportVolume, NumberRequest, OmeZarrWriter, PyramidSpec, VolumeFormat, write_volume,
+    },
 };
 
 /// Name that stands for standard output.
@@ -24,7 +30,10 @@ const STANDARD_OUTPUT: &str = "-";
 pub(super) struct ConvertArgs {
     #[arg(help = "Volume: a file, a folder of slices, or builtin:NAME[:N]")]
     input: PathBuf,
-    #[arg(help = "File to write: .nrrd, .mha, .nii, .nii.gz, .tif, .npy or .vti; - is standard output")]
+    #[arg(
+        help = "File to write: .nrrd, .mha, .nii, .nii.gz, .tif, .npy, .vti, .ozx or .zarr.zip, or folder: .ome.zarr; \
+                  - is standard output"
+    )]
     output: PathBuf,
     /// Format of standard output, as a file extension such as nii.gz; NRRD if it is not given
     #[arg(long, value_name = "EXTENSION", value_parser = parse_format)]
@@ -42,10 +51,10 @@ pub(super) struct ConvertArgs {
     /// of the 48
     #[arg(long, value_name = "LETTERS")]
     orient: Option<AnatomicalAxes>,
-    /// Compress the voxels in .nrrd (gzip) or .mha (zlib); .nii.gz is always compressed
+    /// Compress the voxels in .nrrd (gzip) or .mha (zlib); .nii.gz and OME-Zarr are always compressed
     #[arg(long)]
     compress: bool,
-    /// Replace files that were not written by this program
+    /// Replace files that were not written by this program, and folders of Zarr
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -105,13 +114,80 @@ impl ConvertArgs {
                 )));
             }
         };
-        if self.compress && !format.may_be_compressed() && format != VolumeFormat::NiftiGzip {
+        if is_standard_output && format.is_folder() {
+            return Err(CliError::Usage(format!(
+                "--format: .{} is a folder, which cannot be written to standard output; choose .{}, an archive of it \
+                 (command line, --format)",
+                format.extensions()[0],
+                VolumeFormat::OmeZarrArchive.extensions()[0]
+            )));
+        }
+        if self.compress && !format.may_be_compressed() && !format.is_always_compressed() {
             return Err(CliError::Usage(format!(
                 "--compress: .{} files are not compressed; choose .nrrd, .mha or .nii.gz (command line, --compress)",
                 format.extensions()[0]
             )));
         }
         Ok(format)
+    }
+
+    fn number_request(&self) -> NumberRequest {
+        NumberRequest { voxel_type: self.written_type, rescaled: self.rescale, padding: self.padding }
+    }
+
+    /// Rejects an output folder that would take the place of another program's, which it may with `--force`.
+    fn check_folder(&self, format: VolumeFormat) -> Result<(), CliError> {
+        if self.force || !format.is_folder() || !self.output.is_dir() || is_written_by_us(&self.output) {
+            return Ok(());
+        }
+        Err(CliError::Usage(format!(
+            "{} exists already, and was not written by this program alone; choose another name, or use --force",
+            self.output.display()
+        )))
+    }
+
+    /// Rejects an output that would replace a file that was read: a header may refer to other files, a slice or folder
+    /// belongs to a series, and an output folder may hold the input.
+    fn check_inputs(&self, control: &LoadControl) -> Result<(), CliError> {
+        let read = control.read_files();
+        check_overwrites(
+            &read.iter().map(PathBuf::as_path).collect::<Vec<_>>(),
+            &[&self.output],
+            self.force,
+        )?;
+        let Ok(folder) = self.output.canonicalize() else { return Ok(()) };
+        let is_inside = |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input.starts_with(&folder));
+        match read.iter().find(is_inside) {
+            Some(input) => Err(CliError::Usage(format!(
+                "{} would replace {}, which is read; choose another name",
+                self.output.display(),
+                input.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes a volume that was read; returns the metadata that the format does not store.
+    fn write(
+        &self,
+        format: VolumeFormat,
+        output: &Path,
+        volume: &Volume,
+    ) -> Result<Vec<&'static str>, CliError> {
+        let refused = |err: ConvertError| self.usage(&err);
+        let mut outgoing =
+            ExportVolume::new(volume).with_number_type(&self.number_request()).map_err(refused)?;
+        if let Some(headings) = self.orient {
+            outgoing = outgoing.reoriented(headings).map_err(refused)?;
+        }
+        if format.is_pyramid() {
+            let mut writer = OmeZarrWriter::new(output, format, PyramidSpec::new(&outgoing), self.force)?;
+            writer.write_slab(&outgoing)?;
+            writer.finish()?;
+        } else {
+            write_volume(output, format, &outgoing, self.compress)?;
+        }
+        Ok(format.unsupported_metadata(&outgoing))
     }
 }
 
@@ -138,22 +214,20 @@ fn with_own_option_names(error: LoadError) -> LoadError {
 pub(super) fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let format = args.output_format()?;
     check_overwrites(&[&args.input], &[&args.output], args.force)?;
+    args.check_folder(format)?;
     let output = open_destination(&args.output, format.extensions()[0])?;
     // Checked before the input is read, which may take long.
-    check_writable(output.path())?;
+    format.check_writable(output.path(), args.force)?;
     let control = control_with_size_warning(&args.input);
-    let volume = open(&args.input, &args.load.load_options()?, &control).map_err(with_own_option_names)?;
-    // A header may refer to other files, and a slice or folder belongs to a series.
-    let read = control.read_files();
-    check_overwrites(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output], args.force)?;
-    let wish = NumberRequest { voxel_type: args.written_type, rescaled: args.rescale, padding: args.padding };
-    let refused = |err: ConvertError| args.usage(&err);
-    let mut outgoing = ExportVolume::new(&volume).with_number_type(&wish).map_err(refused)?;
-    if let Some(headings) = args.orient {
-        outgoing = outgoing.reoriented(headings).map_err(refused)?;
-    }
-    write_volume(output.path(), format, &outgoing, args.compress)?;
-    let lost = format.unsupported_metadata(&outgoing);
+    let opened = open(&args.input, &args.load.load_options()?, &control).map_err(with_own_option_names);
+    let lost = match opened {
+        Err(limit @ LoadError::Limit(_)) => by_slabs::convert(args, format, output.path(), limit, &control)?,
+        opened => {
+            let volume = opened?;
+            args.check_inputs(&control)?;
+            args.write(format, output.path(), &volume)?
+        }
+    };
     if !lost.is_empty() {
         warn_line(&format!(
             "warning: .{} does not store {}; .nrrd does",
