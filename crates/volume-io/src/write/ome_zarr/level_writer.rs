@@ -64,8 +64,10 @@ pub(super) struct LevelWriter {
     /// Path of the array.
     path: String,
     grid: ChunkGrid,
-    /// Bytes of a voxel of which nothing is stored.
-    fill: Vec<u8>,
+    /// Bytes of a voxel.
+    voxel_bytes: usize,
+    /// Chunk of voxels of which nothing is stored.
+    empty_chunk: Vec<u8>,
     /// Slices of the layer that is not complete yet.
     pending: Vec<u8>,
     /// Slices that were written.
@@ -74,17 +76,19 @@ pub(super) struct LevelWriter {
 }
 
 impl LevelWriter {
-    pub(super) fn new(path: String, grid: ChunkGrid, fill: Vec<u8>) -> Self {
+    /// Creates a writer; `fill` are the bytes of a voxel of which nothing is stored.
+    pub(super) fn new(path: String, grid: ChunkGrid, fill: &[u8]) -> Self {
         let counts = grid.counts();
         let [width, height] = [0, 1].map(|axis| counts[axis].div_ceil(grid.shard_chunks[axis]));
         let index = vec![ABSENT; grid.shard_chunks.iter().product()];
         let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
         let shards = places.map(|at| OpenShard { at, length: 0, index: index.clone() }).collect();
-        Self { path, grid, fill, pending: Vec::new(), written: 0, shards }
+        let empty_chunk = fill.repeat(grid.chunk.iter().product());
+        Self { path, grid, voxel_bytes: fill.len(), empty_chunk, pending: Vec::new(), written: 0, shards }
     }
 
     fn row_bytes(&self) -> usize {
-        self.grid.dims[0] * self.fill.len()
+        self.grid.dims[0] * self.voxel_bytes
     }
 
     fn slice_bytes(&self) -> usize {
@@ -165,13 +169,13 @@ impl LevelWriter {
 
     /// Gathers the voxels of a chunk of a layer; `None` if nothing need be stored of them.
     fn gather_chunk(&self, layer: &[u8], at: [usize; 2]) -> Option<Vec<u8>> {
-        let [width, height, depth] = self.grid.chunk;
-        let voxel_bytes = self.fill.len();
+        let [width, height, _] = self.grid.chunk;
+        let voxel_bytes = self.voxel_bytes;
         let [nx, ny, _] = self.grid.dims;
         let [x, y] = [at[0] * width, at[1] * height];
         let row_bytes = (nx - x).min(width) * voxel_bytes;
         let rows = (ny - y).min(height);
-        let mut chunk = self.fill.repeat(width * height * depth);
+        let mut chunk = self.empty_chunk.clone();
         for (z, slice) in layer.chunks_exact(self.slice_bytes()).enumerate() {
             for row in 0..rows {
                 let from = (y + row) * self.row_bytes() + x * voxel_bytes;
@@ -179,8 +183,7 @@ impl LevelWriter {
                 chunk[to..to + row_bytes].copy_from_slice(&slice[from..from + row_bytes]);
             }
         }
-        let is_empty = chunk.chunks_exact(voxel_bytes).all(|voxel| voxel == self.fill);
-        (!is_empty).then_some(chunk)
+        (chunk != self.empty_chunk).then_some(chunk)
     }
 }
 

@@ -62,9 +62,9 @@ mod tests {
         assert_eq!(stack, [[1000, 800, 60], [500, 400, 60], [250, 200, 60], [125, 100, 30]]);
         // A long axis of long voxels is halved when the others are as long, or cannot be halved any more.
         assert_eq!(dims([2, 1, 200], [1.0, 1.0, 9.0]), [[2, 1, 200], [1, 1, 200], [1, 1, 100]]);
-        let levels = plan_levels([300, 300, 300], [1.0, 1.4, 2.0], [10.0, 0.0, -1.0]);
-        assert_eq!((levels[1].block, levels[1].spacing), ([2, 2, 1], [2.0, 2.8, 2.0]));
-        assert_eq!(levels[1].translation, [10.5, 0.7, -1.0]);
-        assert_eq!((levels[2].block, levels[2].translation), ([2, 2, 2], [11.5, 2.1, 0.0]));
+        let levels = plan_levels([300, 300, 300], [1.0, 1.25, 2.0], [10.0, 0.0, -1.0]);
+        assert_eq!((levels[1].block, levels[1].spacing), ([2, 2, 1], [2.0, 2.5, 2.0]));
+        assert_eq!(levels[1].translation, [10.5, 0.625, -1.0]);
+        assert_eq!((levels[2].block, levels[2].translation), ([2, 2, 2], [11.5, 1.875, 0.0]));
     }
 }

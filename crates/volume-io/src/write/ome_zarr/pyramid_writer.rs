@@ -31,7 +31,7 @@ impl<S: HierarchySink> PyramidWriter<S> {
         for (number, level) in planned.iter().enumerate() {
             let grid = ChunkGrid::new(level.dims);
             sink.append(&format!("{number}/zarr.json"), &metadata::array_document(&spec, &grid))?;
-            levels.push(LevelWriter::new(number.to_string(), grid, spec.fill()));
+            levels.push(LevelWriter::new(number.to_string(), grid, &spec.fill()));
         }
         let averager = |(fine, coarse): (&PyramidLevel, &PyramidLevel)| SliceAverager {
             voxel_type: spec.voxel_type,
