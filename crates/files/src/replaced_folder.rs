@@ -16,8 +16,9 @@ use crate::program_mark::{is_written_by_us, other_file_in_hierarchy};
 /// at that moment.
 const REPLACED_SUFFIX: &str = ".replaced";
 
-/// Checks that a folder can be written under a name, before the work that is to be written begins. A folder of that
-/// name is replaced if this program wrote all of it; with `replaces_others` any hierarchy of Zarr is.
+/// Checks that a folder can be written under a name, before the work that is to be written begins.
+///
+/// A folder of that name is replaced if this program wrote all of it; with `replaces_others` any hierarchy of Zarr is.
 ///
 /// # Errors
 /// When the name belongs to something that must not be replaced, or the folder above it cannot be written to.
@@ -68,11 +69,8 @@ pub fn rename_folder_into_place(
 /// Returns true if there is a folder of that name, which may be replaced, and false if there is nothing.
 fn check_replaceable(path: &Path, replaces_others: bool) -> Result<bool, WriteError> {
     let unfit = |what| Err(WriteError::Unsupported { what, path: path.to_owned() });
-    let found = match std::fs::symlink_metadata(path) {
-        Ok(found) => found,
-        // Problems of the folder above show when a folder is created in it.
-        Err(_) => return Ok(false),
-    };
+    // Problems of the folder above show when a folder is created in it.
+    let Ok(found) = std::fs::symlink_metadata(path) else { return Ok(false) };
     if found.is_symlink() {
         return unfit("it is a link; choose the name of the folder itself");
     }

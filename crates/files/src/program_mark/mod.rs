@@ -29,8 +29,10 @@ const MAX_PARTS: usize = 1 << 16;
 /// Length of the longest JSON that is examined, in bytes: reports and looks are shorter.
 const MAX_JSON_BYTES: u64 = 2 * MAX_LOOK_BYTES as u64;
 
-/// Returns true if a file was written by this program or is empty, so that nothing is lost by replacing it. A file
-/// that cannot be read counts as another program's. Of folders, those of images are known, to which nothing was added.
+/// Returns true if a file was written by this program or is empty, so that nothing is lost by replacing it.
+///
+/// A file that cannot be read counts as another program's. Of folders, those of Zarr are known, to which nobody has
+/// added anything.
 pub fn is_written_by_us(path: &Path) -> bool {
     if path.is_dir() {
         return zarr::is_own_folder(path);

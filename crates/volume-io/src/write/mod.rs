@@ -148,8 +148,9 @@ impl VolumeFormat {
         known.into_iter().filter(|(is_kept, _)| !is_kept).map(|(_, what)| what).collect()
     }
 
-    /// Checks that a volume can be written under a name, before the work that is to be written begins. With
-    /// `replaces_others`, a folder of another program is replaced, if it is one of Zarr.
+    /// Checks that a volume can be written under a name, before the work that is to be written begins.
+    ///
+    /// With `replaces_others`, a folder of another program is replaced, if it is one of Zarr.
     ///
     /// # Errors
     /// Under the conditions of [`write_volume`].

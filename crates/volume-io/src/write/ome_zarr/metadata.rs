@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::PyramidSpec;
 use super::level_writer::ChunkGrid;
-use super::pyramid_levels::PyramidLevel;
+use super::pyramid_levels::LevelGrid;
 use chiaroscuro_files::provenance_mark;
 use chiaroscuro_volume::{FileLabelTable, SpacingUnit, VoxelType};
 
@@ -20,13 +20,13 @@ fn slowest_first<T: Copy>([x, y, z]: [T; 3]) -> [T; 3] {
 }
 
 /// Encodes the document of the group, with the attributes of the image and the program mark.
-pub(super) fn group_document(spec: &PyramidSpec, levels: &[PyramidLevel]) -> Vec<u8> {
+pub(super) fn group_document(spec: &PyramidSpec, levels: &[LevelGrid]) -> Vec<u8> {
     let axis = |name: &str| match spec.unit.map(unit_name) {
         Some(unit) => json!({"name": name, "type": "space", "unit": unit}),
         None => json!({"name": name, "type": "space"}),
     };
     let axes = ["z", "y", "x"].map(axis);
-    let dataset = |(number, level): (usize, &PyramidLevel)| {
+    let dataset = |(number, level): (usize, &LevelGrid)| {
         json!({"path": number.to_string(), "coordinateTransformations": [
             {"type": "scale", "scale": slowest_first(level.spacing)},
             {"type": "translation", "translation": slowest_first(level.translation)},

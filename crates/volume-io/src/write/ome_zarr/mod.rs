@@ -32,8 +32,9 @@ pub use pyramid_spec::PyramidSpec;
 /// Slices that are taken from a volume at a time: a layer of chunks of the finest level.
 pub const SLAB_SLICES: usize = level_writer::CHUNK_EDGE;
 
-/// Writer of an image that is fed slab by slab. Nothing has its final name before [`Self::finish`]; dropping it leaves
-/// nothing.
+/// Writer of an image that is fed slab by slab.
+///
+/// Nothing has its final name before [`Self::finish`]; dropping it leaves nothing.
 #[derive(Debug)]
 pub struct OmeZarrWriter {
     path: PathBuf,
@@ -46,13 +47,15 @@ pub struct OmeZarrWriter {
 enum PyramidDestination {
     /// Folder, which may replace one of another program.
     Folder { replaces_others: bool },
-    /// ZIP archive.
+    /// ZIP archive of the folder.
     Archive,
 }
 
 impl OmeZarrWriter {
-    /// Creates a writer of an image, as the format says: a folder or an archive. A folder of that name is replaced if
-    /// this program wrote all of it; with `replaces_others` any hierarchy of Zarr is.
+    /// Creates a writer of an image, as the format says: a folder or an archive.
+    ///
+    /// A folder of that name is replaced if this program wrote all of it; with `replaces_others` any hierarchy of Zarr
+    /// is.
     ///
     /// # Errors
     /// When nothing can be written there.

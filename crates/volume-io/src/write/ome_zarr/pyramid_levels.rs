@@ -8,7 +8,7 @@ const MAX_HALVED_RATIO: f64 = 1.5;
 
 /// Grid of a resolution level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PyramidLevel {
+pub(super) struct LevelGrid {
     /// Voxels along x, y, z.
     pub(super) dims: [usize; 3],
     /// Voxels of the finer level that make one, along x, y, z; 1 for the finest level.
@@ -19,7 +19,7 @@ pub(super) struct PyramidLevel {
     pub(super) translation: [f64; 3],
 }
 
-impl PyramidLevel {
+impl LevelGrid {
     /// Returns the next coarser level, in which axes are halved; `None` for the coarsest.
     fn coarser(&self) -> Option<Self> {
         let Self { dims, spacing, translation, .. } = *self;
@@ -42,9 +42,9 @@ impl PyramidLevel {
 }
 
 /// Returns the levels of a pyramid, the finest first.
-pub(super) fn plan_levels(dims: [usize; 3], spacing: [f64; 3], translation: [f64; 3]) -> Vec<PyramidLevel> {
-    let finest = PyramidLevel { dims, block: [1; 3], spacing, translation };
-    std::iter::successors(Some(finest), PyramidLevel::coarser).collect()
+pub(super) fn plan_levels(dims: [usize; 3], spacing: [f64; 3], translation: [f64; 3]) -> Vec<LevelGrid> {
+    let finest = LevelGrid { dims, block: [1; 3], spacing, translation };
+    std::iter::successors(Some(finest), LevelGrid::coarser).collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::PyramidSpec;
 use super::hierarchy_sink::HierarchySink;
 use super::level_writer::{ChunkGrid, LevelWriter};
 use super::metadata;
-use super::pyramid_levels::{PyramidLevel, plan_levels};
+use super::pyramid_levels::{LevelGrid, plan_levels};
 use super::slab_samples::SliceAverager;
 
 /// Writer of a pyramid into a sink.
@@ -33,7 +33,7 @@ impl<S: HierarchySink> PyramidWriter<S> {
             sink.append(&format!("{number}/zarr.json"), &metadata::array_document(&spec, &grid))?;
             levels.push(LevelWriter::new(number.to_string(), grid, &spec.fill()));
         }
-        let averager = |(fine, coarse): (&PyramidLevel, &PyramidLevel)| SliceAverager {
+        let averager = |(fine, coarse): (&LevelGrid, &LevelGrid)| SliceAverager {
             voxel_type: spec.voxel_type,
             slice_dims: [fine.dims[0], fine.dims[1]],
             block: coarse.block,
