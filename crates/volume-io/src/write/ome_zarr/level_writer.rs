@@ -19,7 +19,7 @@ const ABSENT: [u64; 2] = [u64::MAX; 2];
 
 /// Grid of chunks and shards of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ChunkGrid {
+pub(super) struct ShardGrid {
     /// Voxels of the array along x, y, z.
     pub(super) dims: [usize; 3],
     /// Voxels of a chunk along x, y, z.
@@ -28,7 +28,7 @@ pub(super) struct ChunkGrid {
     pub(super) shard_chunks: [usize; 3],
 }
 
-impl ChunkGrid {
+impl ShardGrid {
     /// Creates the grid of an array of so many voxels; chunks are no longer than the array.
     pub(super) fn new(dims: [usize; 3]) -> Self {
         let chunk = dims.map(|n| n.min(CHUNK_EDGE));
@@ -63,7 +63,7 @@ struct OpenShard {
 pub(super) struct LevelWriter {
     /// Path of the array.
     path: String,
-    grid: ChunkGrid,
+    grid: ShardGrid,
     /// Bytes of a voxel.
     voxel_bytes: usize,
     /// Chunk of voxels of which nothing is stored.
@@ -77,7 +77,7 @@ pub(super) struct LevelWriter {
 
 impl LevelWriter {
     /// Creates a writer; `fill` are the bytes of a voxel of which nothing is stored.
-    pub(super) fn new(path: String, grid: ChunkGrid, fill: &[u8]) -> Self {
+    pub(super) fn new(path: String, grid: ShardGrid, fill: &[u8]) -> Self {
         let counts = grid.counts();
         let [width, height] = [0, 1].map(|axis| counts[axis].div_ceil(grid.shard_chunks[axis]));
         let index = vec![ABSENT; grid.shard_chunks.iter().product()];

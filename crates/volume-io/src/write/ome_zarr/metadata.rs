@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::PyramidSpec;
-use super::level_writer::ChunkGrid;
+use super::level_writer::ShardGrid;
 use super::pyramid_levels::LevelGrid;
 use chiaroscuro_files::provenance_mark;
 use chiaroscuro_volume::{FileLabelTable, SpacingUnit, VoxelType};
@@ -47,7 +47,7 @@ pub(super) fn group_document(spec: &PyramidSpec, levels: &[LevelGrid]) -> Vec<u8
 }
 
 /// Encodes the document of the array of a level.
-pub(super) fn array_document(spec: &PyramidSpec, grid: &ChunkGrid) -> Vec<u8> {
+pub(super) fn array_document(spec: &PyramidSpec, grid: &ShardGrid) -> Vec<u8> {
     let bytes_codec = match spec.voxel_type.bytes() {
         1 => json!({"name": "bytes"}),
         _ => json!({"name": "bytes", "configuration": {"endian": "little"}}),

@@ -4,7 +4,7 @@ use std::io::{Error, Result};
 
 use super::PyramidSpec;
 use super::hierarchy_sink::HierarchySink;
-use super::level_writer::{ChunkGrid, LevelWriter};
+use super::level_writer::{LevelWriter, ShardGrid};
 use super::metadata;
 use super::pyramid_levels::{LevelGrid, plan_levels};
 use super::slab_samples::SliceAverager;
@@ -29,7 +29,7 @@ impl<S: HierarchySink> PyramidWriter<S> {
         sink.append("zarr.json", &metadata::group_document(&spec, &planned))?;
         let mut levels = Vec::new();
         for (number, level) in planned.iter().enumerate() {
-            let grid = ChunkGrid::new(level.dims);
+            let grid = ShardGrid::new(level.dims);
             sink.append(&format!("{number}/zarr.json"), &metadata::array_document(&spec, &grid))?;
             levels.push(LevelWriter::new(number.to_string(), grid, &spec.fill()));
         }

@@ -252,7 +252,8 @@ fn samples_for_other_readers() {
     hints.labels.insert(3, "nucleus", Some([1.0, 0.0, 0.2]));
     let labels = Volume::with_spacing("labels", [301, 67, 259], DVec3::ONE, Samples::U16(numbers)).unwrap();
     write("labels", &labels.with_metadata(hints));
-    let numbers = (0..600 * 520 * 515).map(|at: usize| if at.is_multiple_of(999_983) { 7 } else { 0 }).collect();
+    let numbers =
+        (0..600 * 520 * 515).map(|at: usize| if at.is_multiple_of(999_983) { 7 } else { 0 }).collect();
     write("sparse", &Volume::with_spacing("s", [600, 520, 515], DVec3::ONE, Samples::U8(numbers)).unwrap());
     write("bone", &chiaroscuro_volume::synthetic::builtin("bone", Some(256)).unwrap());
 }
