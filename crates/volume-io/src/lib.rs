@@ -30,8 +30,8 @@ pub use neighbour::neighbour_volume;
 pub use open::open;
 
 use chiaroscuro_volume::{
-    ContentsRecorder, FileContents, LoadContext, LoadControl, LoadError, ReadContext, Volume, VolumeChoice,
-    memory_budget_bytes,
+    ContentsRecorder, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ReadContext, Volume,
+    VolumeChoice, memory_budget_bytes,
 };
 use formats::{FileFormat, READERS, detect_format, folder};
 use reading::input::{FileChangeGuard, InputFile};
@@ -94,9 +94,10 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         // Cancellation takes precedence over the result.
         control.check()?;
         let volume = volume?;
-        LoadContext { operation: "open the volume", path }
-            .reject_unsupported_choice(&options.choice, &watch)?;
+        let context = LoadContext { operation: "open the volume", path };
+        context.reject_unsupported_choice(&options.choice, &watch)?;
         let volume = volume.with_contents(FileContents { portion, ..watch.contents() });
+        let volume = with_level_remark(context, volume, &options.choice);
         Ok::<_, LoadError>((watch.was_averaged_while_reading() && volume.is_label_map(), volume))
     };
     match read(false)? {
@@ -105,6 +106,20 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         (true, _) => read(true).map(|(_, volume)| volume),
         (false, volume) => Ok(volume),
     }
+}
+
+/// Adds a remark to a volume if it is not the finest level of its image, and the user has chosen none.
+fn with_level_remark(context: LoadContext<'_>, volume: Volume, choice: &VolumeChoice) -> Volume {
+    let levels = volume.contents().alternatives_in(FileDimension::Level);
+    let coarse = levels.filter(|levels| levels.selected > 0 && choice.level.is_none());
+    let Some([x, y, z]) = coarse.and_then(|levels| levels.offers[0].dims) else { return volume };
+    let remark = format!(
+        "it is shown coarsely: its finest level, of {x} x {y} x {z} voxels, does not fit into memory and on the graphics \
+         adapter; a region of it does (--level 0 --region)"
+    );
+    context.warn(&remark);
+    let remarks = [volume.remarks(), &[remark]].concat();
+    volume.with_remarks(remarks)
 }
 
 fn load_watched(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result<Volume, LoadError> {

@@ -102,14 +102,13 @@ pub(super) fn convert(
                 "its slices, which are read in parts, have different number types; choose one with --type";
             return Err(args.usage(&why));
         }
-        let writer = match &mut writer {
-            Some(writer) => writer,
-            None => {
-                let spec = PyramidSpec::new(&part).with_whole(z.len(), &overview);
-                writer.insert(OmeZarrWriter::new(output, format, spec, args.force)?)
-            }
-        };
-        writer.write_slab(&part)?;
+        if writer.is_none() {
+            let spec = PyramidSpec::new(&part).with_whole(z.len(), &overview);
+            writer = Some(OmeZarrWriter::new(output, format, spec, args.force)?);
+        }
+        if let Some(writer) = &mut writer {
+            writer.write_slab(&part)?;
+        }
     }
     match writer {
         Some(writer) => writer.finish()?,

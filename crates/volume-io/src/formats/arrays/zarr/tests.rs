@@ -139,6 +139,24 @@ fn channels_times_and_levels_are_chosen() {
 }
 
 #[test]
+fn a_coarser_level_is_opened_where_the_finest_does_not_fit_and_that_is_said() {
+    let store = TestStore::new();
+    store.array("0", &[16, 16, 16], &[16, 16, 16]);
+    store.array("1", &[8, 8, 8], &[8, 8, 8]);
+    store.write_json(
+        ".zattrs",
+        &json!({"multiscales": [{"axes": axes("zyx"), "datasets": [{"path": "0"}, {"path": "1"}]}]}),
+    );
+    // The finest has 4096 bytes of voxels.
+    let options = LoadOptions { memory_budget_bytes: 4000, ..LoadOptions::default() };
+    let volume = crate::load(&store.root, &options, &LoadControl::new()).unwrap();
+    assert_eq!((volume.dims(), volume.contents().choice().level.as_deref()), ([8; 3], Some("1")));
+    let remarks = volume.remarks().join("; ");
+    assert!(remarks.contains("finest level, of 16 x 16 x 16 voxels"), "{remarks}");
+    assert!(store.load(nothing()).unwrap().remarks().iter().all(|remark| !remark.contains("coarsely")));
+}
+
+#[test]
 fn only_chunks_of_the_region_are_read() {
     let store = image();
     // Broken chunks of other levels, channels and places are not noticed.
