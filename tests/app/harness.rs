@@ -1,6 +1,7 @@
 //! Headless test harness of the window: creating it, waiting, pointer and key events, and reading its picture.
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use chiaroscuro::app::{App, WindowOptions, wgpu_setup};
@@ -135,6 +136,15 @@ pub(crate) fn wait_until(harness: &mut Harness<'_, App>, what: &str, condition: 
         assert!(start.elapsed() < WAIT_TIMEOUT, "{what}: errors {:?}", harness.state().errors());
         std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+/// Keeps files from being read until the guard is dropped. One test at a time does so: injected faults belong to the
+/// process, in which tests run beside each other.
+pub(crate) fn block_file_tasks() -> impl Sized {
+    static TURN: Mutex<()> = Mutex::new(());
+    let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    // Fields are dropped in their order: files are read again before the next test has its turn.
+    (App::block_file_tasks(), turn)
 }
 
 pub(crate) fn wait_until_idle(harness: &mut Harness<'_, App>) {

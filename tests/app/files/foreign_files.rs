@@ -8,7 +8,7 @@ use eframe::egui::{self, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{adjusted_window, click, wait_until, wait_until_idle, window};
+use crate::harness::{adjusted_window, block_file_tasks, click, wait_until, wait_until_idle, window};
 
 /// Longest frame while a file is read, on a machine that is busy with other tests.
 const LONGEST_FRAME: Duration = Duration::from_secs(5);
@@ -45,7 +45,7 @@ fn a_transfer_function_is_imported_while_the_window_goes_on() {
     let path = write_file(folder.path(), "red.itf", &inviwo_transfer_function(""));
     let mut harness = window();
     let ctx = harness.ctx.clone();
-    let held = App::block_file_tasks();
+    let held = block_file_tasks();
     harness.state_mut().import_transfer(&path, &ctx);
     harness.run_steps(2);
     assert_eq!(harness.state().file_being_read(), Some(path.as_path()));
@@ -71,7 +71,7 @@ fn reading_is_cancelled_by_escape_and_by_the_button() {
     let ctx = harness.ctx.clone();
     let before = harness.state().settings().layer().transfer.clone();
     for by_key in [true, false] {
-        let held = App::block_file_tasks();
+        let held = block_file_tasks();
         harness.state_mut().import_transfer(&path, &ctx);
         harness.run_steps(2);
         if by_key {
@@ -135,7 +135,7 @@ fn looks_that_are_named_at_the_start_are_read_while_the_window_goes_on() {
     assert!(harness.state().shows_start() && harness.state().errors().len() == 1);
     // If the wait for the session is cancelled, the volume opens without it.
     let source = Some(crate::harness::SCENE.into());
-    let held = App::block_file_tasks();
+    let held = block_file_tasks();
     let options = WindowOptions { source, session: Some(session), ..WindowOptions::default() };
     let mut harness = crate::harness::automatic_window(options);
     wait_until(&mut harness, "the session is read", |app| app.file_being_read().is_some());

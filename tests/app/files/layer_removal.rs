@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::volume_choice::write_npy;
-use crate::harness::{adjusted_window, click, picture, wait_until, wait_until_idle};
+use crate::harness::{adjusted_window, block_file_tasks, click, picture, wait_until, wait_until_idle};
 
 /// Names of the volumes, in the order in which they are opened.
 const NAMES: [&str; 3] = ["first", "second", "third"];
@@ -177,7 +177,7 @@ fn a_layer_that_is_read_while_another_is_removed_is_added_to_the_rest() {
     let mut harness = window_of_three(folder.path(), None);
     let look = harness.state().settings().layers.clone();
     select(&mut harness, "second");
-    let held = App::block_file_tasks();
+    let held = block_file_tasks();
     let ctx = harness.ctx.clone();
     harness.state_mut().add_layer(Path::new("builtin:sphere:16"), &ctx);
     harness.run_steps(2);
