@@ -10,10 +10,16 @@ use super::output::print_line;
 use super::scene::{LoadArgs, NO_TABLE, apply_command_line_corrections, open_for_overview};
 use chiaroscuro_render::{bytes_with_one_light, downsampled_volume};
 use chiaroscuro_scene::first_look;
-use chiaroscuro_volume::{CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume};
+use chiaroscuro_volume::{
+    CountedLabel, DataKind, Dataset, SpacingUnit, ValueMetadata, ValueRange, Volume, VolumeAlternatives,
+    VolumeOffer,
+};
 
 /// Percentiles of the values that are listed.
 const PERCENTILES: [u32; 7] = [1, 5, 25, 50, 75, 95, 99];
+
+/// Maximum number of volumes of a file that are listed in the text output; JSON has all of them.
+const LISTED_ALTERNATIVES: usize = 8;
 
 /// Maximum number of labels in the text output; JSON has all of them.
 const LISTED_LABELS: usize = 20;
@@ -49,6 +55,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     let facts = json!({
         "name": volume.name(),
         "format": volume.contents().format,
+        "alternatives": volume.contents().alternatives.iter().map(alternatives_json).collect::<Vec<_>>(),
         "dims": volume.dims(),
         "file_dims": volume.contents().grid.unwrap_or_else(|| volume.file_dims()),
         "portion": portion,
@@ -85,6 +92,9 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     if let Some([x, y, z]) = volume.contents().grid.filter(|_| !portion.is_whole()) {
         print_line(&format!("  read         {} {x} × {y} × {z}", portion.in_words()))?;
     }
+    for line in volume.contents().alternatives.iter().filter_map(alternatives_line) {
+        print_line(&line)?;
+    }
     print_line(&spacing_line(&volume))?;
     print_line(&format!("  values       {low} … {high}"))?;
     print_line(&format!("  robust range {} … {}", shown.low, shown.high))?;
@@ -111,6 +121,28 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), CliError> {
     }
     print_line(&format!("  memory       {} MiB on the GPU with one light", gpu_bytes >> 20))?;
     Ok(())
+}
+
+/// Formats the volumes of a file among which one was opened, for the text output.
+fn alternatives_line(several: &VolumeAlternatives) -> Option<String> {
+    let name = several.dimension.option().trim_start_matches('-');
+    let opened = several.offers.get(several.selected)?;
+    let mut listed: Vec<String> =
+        several.offers.iter().take(LISTED_ALTERNATIVES).map(VolumeOffer::to_string).collect();
+    if several.offers.len() > LISTED_ALTERNATIVES {
+        listed.push(format!("and {} more", several.offers.len() - LISTED_ALTERNATIVES));
+    }
+    Some(format!("  {name:<12} {opened} of: {}", listed.join(", ")))
+}
+
+/// Returns the volumes of a file among which one was opened, for machine-readable output.
+fn alternatives_json(several: &VolumeAlternatives) -> Value {
+    let offer = |offer: &VolumeOffer| json!({"key": offer.key, "name": offer.name, "dims": offer.dims});
+    json!({
+        "option": several.dimension.option(),
+        "selected": several.selected,
+        "offers": several.offers.iter().map(offer).collect::<Vec<_>>(),
+    })
 }
 
 /// Formats the voxel spacing in a suitable unit, for the text output.

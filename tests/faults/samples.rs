@@ -29,7 +29,7 @@ fn ct_range() -> ValueRange {
 }
 
 fn reads_volume(path: &Path) -> bool {
-    // Of several volumes, as the window opens it: the first.
+    // The first of several volumes is read, as in the window.
     let options = LoadOptions::default();
     let options = LoadOptions { choice: options.choice.clone().with_first_as_fallback(), ..options };
     open(path, &options, &LoadControl::new()).is_ok()

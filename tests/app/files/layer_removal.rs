@@ -70,6 +70,13 @@ fn select(harness: &mut Harness<'_, App>, name: &str) {
     harness.run_steps(3);
 }
 
+/// Removes a layer, as a step of the history.
+fn remove(harness: &mut Harness<'_, App>, name: &str) {
+    select(harness, name);
+    click(harness, "Remove");
+    rest(harness);
+}
+
 fn press(harness: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     rest(harness);
@@ -97,10 +104,8 @@ fn a_middle_layer_is_removed_undone_redone_and_stays_away_in_sessions() {
     let session = folder.path().join("session.json");
     let mut harness = window_of_three(folder.path(), Some(&session));
     let (all, look) = (picture(&mut harness), harness.state().settings().clone());
-    select(&mut harness, "second");
-    click(&mut harness, "Remove");
-    rest(&mut harness);
-    // What is left has the look that it had.
+    remove(&mut harness, "second");
+    // The other layers keep their looks.
     assert_eq!(harness.state().volume_names(), ["first", "third"]);
     let mut expected = look.clone();
     expected.remove_layer(1);
@@ -154,9 +159,7 @@ fn removed_layers_make_room_and_come_back_in_their_order() {
     write_boxes(folder.path());
     let mut harness = window_of_three(folder.path(), None);
     let all = picture(&mut harness);
-    select(&mut harness, "second");
-    click(&mut harness, "Remove");
-    rest(&mut harness);
+    remove(&mut harness, "second");
     add(&mut harness, folder.path(), "second");
     rest(&mut harness);
     assert_eq!(harness.state().volume_names(), ["first", "third", "second"]);
@@ -198,9 +201,7 @@ fn layers_come_back_to_a_volume_that_was_corrected_meanwhile() {
     write_boxes(folder.path());
     let mut harness = window_of_three(folder.path(), None);
     let all = picture(&mut harness);
-    select(&mut harness, "second");
-    click(&mut harness, "Remove");
-    rest(&mut harness);
+    remove(&mut harness, "second");
     click(&mut harness, "Corrections");
     harness.run_steps(8);
     harness.get_by_label("Flip x").scroll_to_me();

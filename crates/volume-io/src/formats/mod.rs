@@ -88,12 +88,9 @@ pub(super) fn detect_format(
         return FileFormat::Reader(&raw::READER);
     }
     // By extension, because an array archive may begin with an entry that is no array, or contain none at all.
-    let archives = [&arrays::numpy::NPZ, &arrays::zarr::ARCHIVE];
-    let is_archive =
-        |reader: &&&FormatReader| reader.extensions.iter().any(|ending| has_extension(path, ending));
-    if start.has_at(b"PK", 0)
-        && let Some(reader) = archives.iter().find(is_archive)
-    {
+    let archives = [&arrays::numpy::NPZ, &arrays::zarr::ARCHIVE].into_iter();
+    let archive = archives.filter(|_| start.has_at(b"PK", 0)).find(|reader| reader.has_extension_of(path));
+    if let Some(reader) = archive {
         return FileFormat::Reader(reader);
     }
     if let Some(format) = unsupported::by_content(path, start, input) {
@@ -115,7 +112,7 @@ fn by_content(start: &FileStart) -> Option<&'static FormatReader> {
 }
 
 fn by_extension(path: &Path) -> Option<&'static FormatReader> {
-    READERS.iter().find(|reader| reader.extensions.iter().any(|ending| has_extension(path, ending)))
+    READERS.iter().find(|reader| reader.has_extension_of(path))
 }
 
 /// Returns true if the extension is that of raw voxels.
@@ -128,6 +125,13 @@ pub fn supported_extensions() -> Vec<&'static str> {
     let mut all: Vec<&str> = READERS.iter().flat_map(|reader| reader.extensions).copied().collect();
     all.dedup();
     all
+}
+
+impl FormatReader {
+    /// Returns true if a file has one of the format's extensions.
+    fn has_extension_of(&self, path: &Path) -> bool {
+        self.extensions.iter().any(|ending| has_extension(path, ending))
+    }
 }
 
 /// Returns true if the file name ends in `ending` (lower case), ignoring case.

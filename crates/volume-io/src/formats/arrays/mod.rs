@@ -2,6 +2,7 @@
 
 pub(super) mod hdf5;
 pub(super) mod numpy;
+mod volume_axes;
 pub(super) mod zarr;
 mod zip;
 

@@ -47,20 +47,6 @@ pub(super) struct ZipEntry {
     stored_bytes: u64,
     /// Offset of its local header in the archive.
     at: u64,
-    /// Bytes of its stored content that are skipped.
-    skipped_bytes: u64,
-}
-
-impl ZipEntry {
-    /// Returns the rest of an entry that is not compressed.
-    fn after(&self, start: u64) -> Self {
-        Self {
-            bytes: self.bytes.saturating_sub(start),
-            stored_bytes: self.stored_bytes.saturating_sub(start),
-            skipped_bytes: start,
-            ..self.clone()
-        }
-    }
 }
 
 /// Returns the name of the entry with which a file begins; `None` if it begins with none.
@@ -129,15 +115,7 @@ pub(super) fn read_central_directory(
         }
         let checksum = read_le(line, 16, 4) as u32;
         let is_deflated = method == 8;
-        directory.entries.push(ZipEntry {
-            name,
-            bytes,
-            checksum,
-            is_deflated,
-            stored_bytes,
-            at,
-            skipped_bytes: 0,
-        });
+        directory.entries.push(ZipEntry { name, bytes, checksum, is_deflated, stored_bytes, at });
     }
     Ok(directory)
 }
@@ -148,20 +126,35 @@ pub(super) fn open_entry<'a>(
     input: &'a mut InputFile,
     entry: &ZipEntry,
 ) -> Result<Box<dyn Read + 'a>, LoadError> {
-    let head = read_at(input, entry.at, 30).map_err(|error| context.io_error(error))?;
+    open_entry_at(context, input, entry, 0)
+}
+
+/// Opens the content of an entry from an offset; of entries that are not compressed, nothing before it is read.
+fn open_entry_at<'a>(
+    context: LoadContext<'_>,
+    input: &'a mut InputFile,
+    entry: &ZipEntry,
+    start: u64,
+) -> Result<Box<dyn Read + 'a>, LoadError> {
+    let io = |error| context.io_error(error);
+    let head = read_at(input, entry.at, 30).map_err(io)?;
     if !head.starts_with(LOCAL_HEADER) || head.len() < 30 {
         let why = format!("{} is not where the directory of the archive says", quoted(&entry.name));
         return Err(context.bad_input_error("directory", why, HELP));
     }
     // The file name, and an extra field whose length may differ from that in the directory.
-    let skip = (30 + read_le(&head, 26, 2) + read_le(&head, 28, 2)).saturating_add(entry.skipped_bytes);
-    input.seek(entry.at.saturating_add(skip)).map_err(|error| context.io_error(error))?;
+    let content = entry.at.saturating_add(30 + read_le(&head, 26, 2) + read_le(&head, 28, 2));
+    if !entry.is_deflated {
+        input.seek(content.saturating_add(start)).map_err(io)?;
+        let rest = entry.bytes.min(entry.stored_bytes).saturating_sub(start);
+        return Ok(Box::new(io::Read::by_ref(&mut input.reader).take(rest)));
+    }
+    input.seek(content).map_err(io)?;
     let stored = io::Read::by_ref(&mut input.reader).take(entry.stored_bytes);
-    Ok(if entry.is_deflated {
-        Box::new(DeflateDecoder::new(stored).take(entry.bytes))
-    } else {
-        Box::new(stored.take(entry.bytes))
-    })
+    let mut inflated = DeflateDecoder::new(stored).take(entry.bytes);
+    io::copy(&mut io::Read::by_ref(&mut inflated).take(start), &mut io::sink())
+        .map_err(|error| broken_data_error(context, entry, &error))?;
+    Ok(Box::new(inflated))
 }
 
 /// Reads a part of an entry: `count` bytes from an offset in its content, fewer where it ends before.
@@ -172,18 +165,15 @@ pub(super) fn read_entry_range(
     start: u64,
     count: u64,
 ) -> Result<Vec<u8>, LoadError> {
-    // Within the content of an entry that is not compressed, a later part is an entry of its own.
-    let (part, skipped) = if entry.is_deflated { (entry.clone(), start) } else { (entry.after(start), 0) };
-    let mut content = open_entry(context, input, &part)?;
-    let mut read = || {
-        io::copy(&mut io::Read::by_ref(&mut content).take(skipped), &mut io::sink())?;
-        let mut bytes = Vec::new();
-        io::Read::by_ref(&mut content).take(count).read_to_end(&mut bytes).map(|_| bytes)
-    };
-    read().map_err(|error| {
-        let why = format!("the data of {} are broken: {error}", quoted(&entry.name));
-        context.bad_input_error("data", why, HELP)
-    })
+    let content = open_entry_at(context, input, entry, start)?;
+    let mut bytes = Vec::new();
+    let read = content.take(count).read_to_end(&mut bytes);
+    read.map_err(|error| broken_data_error(context, entry, &error))?;
+    Ok(bytes)
+}
+
+fn broken_data_error(context: LoadContext<'_>, entry: &ZipEntry, error: &io::Error) -> LoadError {
+    context.bad_input_error("data", format!("the data of {} are broken: {error}", quoted(&entry.name)), HELP)
 }
 
 /// Finds the central directory; returns its offset and its length.

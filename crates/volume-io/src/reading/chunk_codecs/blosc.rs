@@ -140,7 +140,7 @@ pub(crate) fn decode_blosc(chunk: &[u8], max_bytes: usize) -> Result<Vec<u8>, St
             let stream = at.checked_add(length).and_then(|end| chunk.get(at..end));
             let stream = stream.ok_or_else(|| format!("block {block} reaches beyond the Blosc chunk"))?;
             at += length;
-            // What cannot be compressed is stored.
+            // Streams that compression would not shorten are stored as they are.
             if length == stream_bytes {
                 plain.extend_from_slice(stream);
             } else {

@@ -1,16 +1,10 @@
 //! Interpretation of the axes of a NumPy array: the three fastest are a volume, those before count volumes.
 
 use super::super::number::FileNumberType;
+use super::super::volume_axes::{VolumeAxes, has_color_axis, is_likely_table};
 use super::super::{Endian, FileDimension, LoadError};
 use super::header::NumpyHeader;
 use chiaroscuro_volume::{LoadContext, quoted};
-
-/// Axis of an array: its index in the shape, and its length.
-#[derive(Debug, Clone, Copy)]
-struct NumpyAxis {
-    index: usize,
-    length: u64,
-}
 
 /// Array as one or several volumes.
 #[derive(Debug, PartialEq, Eq)]
@@ -38,38 +32,25 @@ impl NumpyGrid {
             )
         })?;
         // Slowest first, as in the file.
-        let mut axes: Vec<NumpyAxis> =
-            header.shape.iter().enumerate().map(|(index, &length)| NumpyAxis { index, length }).collect();
+        let shape = &header.shape;
+        let mut axes: Vec<usize> = (0..shape.len()).collect();
         if header.is_fortran {
             axes.reverse();
         }
-        let is_color = number == FileNumberType::U8
-            && axes.len() > 3
-            && matches!(axes.last(), Some(NumpyAxis { length: 3 | 4, .. }));
+        let is_color = has_color_axis(number, axes.iter().map(|&axis| shape[axis]));
         if is_color {
-            components = axes.pop().map_or(1, |axis| axis.length) as usize;
+            components = axes.pop().map_or(1, |axis| shape[axis]) as usize;
         }
-        while axes.len() > 3 {
-            let Some(single) = axes.iter().position(|axis| axis.length == 1) else { break };
-            axes.remove(single);
-        }
-        let count = axes.len();
-        let lengths: Vec<u64> = axes.iter().map(|axis| axis.length).collect();
-        let (outer, dims) = match lengths[..] {
-            [y, x] => (vec![], [x, y, 1]),
-            [z, y, x] => (vec![], [x, y, z]),
-            [frames, z, y, x] => (vec![(FileDimension::Frame, frames)], [x, y, z]),
-            [frames, channels, z, y, x] => {
-                (vec![(FileDimension::Frame, frames), (FileDimension::Channel, channels)], [x, y, z])
-            }
-            _ => {
-                return Err(context.bad_input_error(
-                    "shape",
-                    format!("an array of {count} axes is not a volume"),
-                    "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
-                ));
-            }
-        };
+        let VolumeAxes { outer, axes } = VolumeAxes::from_axes(shape, axes, false).map_err(|count| {
+            context.bad_input_error(
+                "shape",
+                format!("an array of {count} axes is not a volume"),
+                "save an array of two or three axes (z, y, x), or of four or five: time, channel, z, y, x",
+            )
+        })?;
+        let outer: Vec<(FileDimension, u64)> =
+            outer.iter().map(|axis| (axis.dimension, axis.count)).collect();
+        let dims = axes.map(|axis| axis.map_or(1, |axis| shape[axis]));
         if let Some((dimension, _)) = outer.iter().find(|(_, count)| *count == 0) {
             return Err(context.bad_input_error(
                 "shape",
@@ -77,20 +58,14 @@ impl NumpyGrid {
                 "every axis must have at least one element",
             ));
         }
-        let mut indices = axes.iter().rev().map(|axis| axis.index);
-        let array_axes = std::array::from_fn(|_| indices.next());
-        Ok(Self { outer, dims, array_axes, number, endian, components, is_color })
+        Ok(Self { outer, dims, array_axes: axes, number, endian, components, is_color })
     }
 }
 
 impl NumpyGrid {
-    /// True for arrays that are likely no image, given the number of their axes: two axes, one of them shorter than
-    /// 16, are an affine, a matrix or a list of points; more axes that end in 2 by 2 to 4 by 4 are a list of
-    /// matrices.
+    /// Returns true if the array, which has so many axes, is likely no image.
     pub(super) fn is_likely_table(&self, axes: usize) -> bool {
-        const MIN_PIXELS: u64 = 16;
-        let [x, y, _] = self.dims;
-        if axes == 2 { x < MIN_PIXELS || y < MIN_PIXELS } else { x == y && (2..=4).contains(&x) }
+        is_likely_table([self.dims[0], self.dims[1]], axes == 2)
     }
 }
 

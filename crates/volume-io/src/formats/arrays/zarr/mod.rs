@@ -78,10 +78,7 @@ fn load_store(
     control: &LoadControl,
 ) -> Result<Volume, LoadError> {
     let HierarchyEntry { path, image } = Hierarchy::new(context, store, options, control).choose()?;
-    let image = match image {
-        Some(image) => image,
-        None => OmeImage::of_array(),
-    };
+    let image = image.unwrap_or_else(OmeImage::without_metadata);
     let levels = read_levels(context, store, &path, &image)?;
     let sizes: Vec<ResolutionLevel> = levels.iter().map(ImageLevel::size).collect();
     let chosen = if sizes.len() > 1 { options.limits(control).choose_level(context, &sizes)? } else { 0 };
@@ -90,9 +87,9 @@ fn load_store(
     let indices = level.choose_indices(context, options, &image, dims)?;
     let channel = level.axis(AxisRole::Channel).and_then(|axis| image.channels.get(indices[axis] as usize));
     let stored = level.array.encoding();
-    let field = join(&join(&path, &level.path), "shape");
     let limits = options.limits(control);
-    let extent = GridExtent::checked(context, &field, dims, stored.voxel_type(), limits)?;
+    let extent =
+        GridExtent::checked(context, &join(&level.path, "shape"), dims, stored.voxel_type(), limits)?;
     let part = ArrayBox { axes: level.spatial_axes(), indices, low: extent.read.low, high: extent.read.high };
     let mut slabs = SlabReader::new(
         context,
@@ -134,6 +131,9 @@ fn volume_name(file: &Path, path: &str) -> String {
 
 /// Resolution level of the image that is opened.
 struct ImageLevel {
+    /// Name below the image.
+    name: String,
+    /// Path of the array in the hierarchy.
     path: String,
     array: ZarrArray,
     /// Axes, slowest first, one for each of the array.
@@ -151,11 +151,10 @@ fn read_levels(
 ) -> Result<Vec<ImageLevel>, LoadError> {
     let mut levels = Vec::new();
     for OmeLevel { path: name, scales } in &image.levels {
-        let at = join(path, name);
-        let at = at.trim_end_matches('/');
-        let Some(ZarrNode::Array(array)) = ZarrNode::read(context, store, at)? else {
+        let at = if name.is_empty() { path.to_owned() } else { join(path, name) };
+        let Some(ZarrNode::Array(array)) = ZarrNode::read(context, store, &at)? else {
             return Err(context.bad_input_error(
-                at,
+                &at,
                 "no array is there, although the image names it as a level",
                 HELP,
             ));
@@ -168,12 +167,13 @@ fn read_levels(
         let axes = axes.unwrap_or_else(|| ome::axes_by_position(count));
         if axes.len() != count || count < 2 {
             return Err(context.bad_input_error(
-                &join(at, "shape"),
+                &join(&at, "shape"),
                 format!("an array of {count} axes was found, where {} were expected", axes.len().max(2)),
                 "check the metadata of the image against its arrays",
             ));
         }
-        levels.push(ImageLevel { path: name.clone(), array: *array, axes, scales: scales.clone() });
+        let (name, scales) = (name.clone(), scales.clone());
+        levels.push(ImageLevel { name, path: at, array: *array, axes, scales });
     }
     levels.sort_by_key(|level| std::cmp::Reverse(level.voxels()));
     Ok(levels)
@@ -200,7 +200,7 @@ impl ImageLevel {
 
     fn size(&self) -> ResolutionLevel {
         let voxel_type = self.array.encoding().voxel_type();
-        ResolutionLevel { name: self.path.clone(), dims: self.dims(), voxel_type }
+        ResolutionLevel { name: self.name.clone(), dims: self.dims(), voxel_type }
     }
 
     /// Index along each axis that is none of space, by the user's choice.
@@ -243,14 +243,13 @@ impl ImageLevel {
     /// Placement of the grid by scales and units; of unknown scale without units.
     fn placement(&self) -> GridPlacement {
         let Some(scale) = self.scales_mm(1.0, |axis| axis.scale) else { return GridPlacement::unknown() };
-        let placement = GridPlacement::from_spacing(scale);
-        let unit = self.axis(AxisRole::X).and_then(|axis| self.axes[axis].unit_mm);
-        let Some(unit) = unit else { return placement.with_unknown_scale() };
-        let mut placement = placement.with_length_unit(unit);
-        let translation = self.scales_mm(0.0, |axis| axis.translation).map_or(DVec3::ZERO, DVec3::from);
-        placement.world_from_index.translation =
-            if translation.is_finite() { translation } else { DVec3::ZERO };
-        placement
+        let translation = self.scales_mm(0.0, |axis| axis.translation).map(DVec3::from);
+        let mut placement = GridPlacement::from_spacing(scale);
+        placement.world_from_index.translation = translation.filter(|at| at.is_finite()).unwrap_or_default();
+        match self.axis(AxisRole::X).and_then(|axis| self.axes[axis].unit_mm) {
+            Some(unit_mm) => placement.with_length_unit(unit_mm),
+            None => placement.with_unknown_scale(),
+        }
     }
 
     /// Numbers of the axes x, y and z in millimetres, or without units as they are; `other` where there is no axis.

@@ -89,7 +89,7 @@ impl Hdf5Object {
         let mut read = 0u64;
         while let Some((at, length, is_continuation)) = blocks.pop_front() {
             // Blocks share no bytes, so that all together are not longer than the file.
-            read += length.max(MIN_BLOCK);
+            read = read.saturating_add(length.max(MIN_BLOCK));
             if read > file.length() {
                 return Err(file.broken(FIELD, "an object header continues in circles"));
             }

@@ -72,7 +72,7 @@ pub(crate) fn read_view(
     }
     let kept = extent.read;
     let needed = extent.restricted_to_slices(stored.voxel_type());
-    // Of each slice only the box is handed on.
+    // Only the box of each slice is handed on.
     let [width, height, _] = kept.box_dims();
     let grid = [width, height, needed.read.grid[2]];
     let ([_, _, low], [_, _, high]) = (needed.read.low, needed.read.high);

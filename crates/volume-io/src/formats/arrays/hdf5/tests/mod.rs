@@ -112,6 +112,6 @@ fn only_chunks_of_the_region_are_read() {
     };
     let corner = Portion { region: "0:1,0:1,0:1".parse().ok(), ..Portion::default() };
     let (whole, part) = (pieces(None), pieces(Some(corner)));
-    // Of 12 chunks one is read and decoded.
+    // One of 12 chunks is read and decoded.
     assert!(part + 22 <= whole, "{part} of {whole}");
 }

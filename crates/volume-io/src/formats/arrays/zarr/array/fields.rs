@@ -3,8 +3,12 @@
 use serde_json::Value;
 
 use super::super::LoadError;
-use super::MAX_DIMENSIONS;
+use super::data_type::encode_fill;
+use super::{Endian, FileNumberType, MAX_DIMENSIONS};
 use chiaroscuro_volume::{LoadContext, quoted};
+
+/// Advice for metadata that are broken.
+pub(super) const HELP: &str = "check the metadata, or write the array again";
 
 /// Document of metadata, for errors about its fields.
 #[derive(Clone, Copy)]
@@ -35,6 +39,15 @@ impl MetadataDocument<'_> {
         quoted(value.as_str().unwrap_or(&value.to_string()))
     }
 
+    /// Parses the fill value, as one element of the array.
+    pub(super) fn fill_value(&self, number: FileNumberType, endian: Endian) -> Result<Vec<u8>, LoadError> {
+        let value = &self.value["fill_value"];
+        encode_fill(value, number, endian).ok_or_else(|| {
+            let why = format!("{} is no number of the array's type", Self::text(value));
+            self.error("fill_value", why, HELP)
+        })
+    }
+
     /// Parses an array of lengths: `count` of them, where that is known, all above 0 if they are those of chunks.
     pub(super) fn lengths(
         &self,
@@ -59,7 +72,7 @@ impl MetadataDocument<'_> {
                         "{expected}whole numbers from {smallest} were expected, {} was found",
                         Self::text(value)
                     ),
-                    "check the metadata, or write the array again",
+                    HELP,
                 )
             })
     }

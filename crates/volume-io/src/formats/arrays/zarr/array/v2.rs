@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::super::store::join;
 use super::codec_pipeline::{ByteCodec, CodecPipeline, SUPPORTED_CODECS};
-use super::data_type::{ElementType, SUPPORTED_TYPES, encode_fill};
+use super::data_type::{ElementType, SUPPORTED_TYPES};
 use super::fields::MetadataDocument;
 use super::{ChunkKeys, Endian, LoadError, ZarrArray};
 use chiaroscuro_volume::LoadContext;
@@ -42,11 +42,7 @@ pub(super) fn parse_array(
             document.unsupported("compressor", &what, SUPPORTED_CODECS)
         })?);
     }
-    let fill = &metadata["fill_value"];
-    let fill = encode_fill(fill, element.number, endian).ok_or_else(|| {
-        let why = format!("{} is no number of the array's type", MetadataDocument::text(fill));
-        document.error("fill_value", why, "check the metadata, or write the array again")
-    })?;
+    let fill = document.fill_value(element.number, endian)?;
     let separator = metadata["dimension_separator"].as_str().and_then(|text| text.chars().next());
     let names = attributes["_ARRAY_DIMENSIONS"].as_array().cloned().unwrap_or_default();
     Ok(ZarrArray {

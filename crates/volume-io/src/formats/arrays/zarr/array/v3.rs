@@ -4,13 +4,11 @@ use serde_json::Value;
 
 use super::super::store::join;
 use super::codec_pipeline::{ByteCodec, CodecPipeline, SUPPORTED_CODECS};
-use super::data_type::{ElementType, SUPPORTED_TYPES, encode_fill};
-use super::fields::MetadataDocument;
+use super::data_type::{ElementType, SUPPORTED_TYPES};
+use super::fields::{HELP, MetadataDocument};
 use super::sharding::{IndexPlace, Sharding};
 use super::{ChunkKeys, Endian, FileNumberType, LoadError, ZarrArray, ZarrNode};
 use chiaroscuro_volume::LoadContext;
-
-const HELP: &str = "check the metadata, or write the array again";
 
 /// Parses the metadata of a group or an array.
 pub(super) fn parse_node(
@@ -55,11 +53,7 @@ fn parse_array(document: MetadataDocument<'_>, path: &str) -> Result<ZarrArray, 
     })?;
     let codecs = CodecList { document, number: element.number, axes: shape.len() };
     let (pipeline, sharding) = codecs.parse("codecs", &metadata["codecs"], &outer_shape)?;
-    let fill = &metadata["fill_value"];
-    let fill = encode_fill(fill, element.number, pipeline.endian).ok_or_else(|| {
-        let why = format!("{} is no number of the array's type", MetadataDocument::text(fill));
-        document.error("fill_value", why, HELP)
-    })?;
+    let fill = document.fill_value(element.number, pipeline.endian)?;
     let encoding = &metadata["chunk_key_encoding"];
     let separator = encoding["configuration"]["separator"].as_str().and_then(|text| text.chars().next());
     let keys = match encoding["name"].as_str() {

@@ -24,7 +24,6 @@ const MAX_LEVELS: usize = 64;
 /// Image in several resolutions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OmeImage {
-    pub(super) name: String,
     /// Axes, slowest first; empty where the metadata do not describe them.
     pub(super) axes: Vec<ImageAxis>,
     pub(super) levels: Vec<OmeLevel>,
@@ -48,16 +47,10 @@ pub(super) fn ome_attributes(attributes: &Value) -> &Value {
 }
 
 impl OmeImage {
-    /// Image of a single array without the metadata of one.
-    pub(super) fn of_array() -> Self {
+    /// Creates an image of a single array, of which no metadata of an image are known.
+    pub(super) fn without_metadata() -> Self {
         let level = OmeLevel { path: String::new(), scales: Vec::new() };
-        Self {
-            name: String::new(),
-            axes: Vec::new(),
-            levels: vec![level],
-            channels: Vec::new(),
-            labels: None,
-        }
+        Self { axes: Vec::new(), levels: vec![level], channels: Vec::new(), labels: None }
     }
 
     /// Parses the attributes of a group; `None` if it is no image.
@@ -90,10 +83,8 @@ impl OmeImage {
                 "check the metadata, or write the image again",
             ));
         }
-        let name = image["name"].as_str().filter(|name| !name.is_empty() && *name != "/");
         let label = &attributes["image-label"];
         Ok(Some(Self {
-            name: name.unwrap_or_default().to_owned(),
             axes,
             levels,
             channels: channels::parse_channels(&attributes["omero"]["channels"]),

@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Read as _, Seek as _, SeekFrom};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use super::{ByteRange, MAX_CHILDREN, Store, StoreError, join, resolve_range};
+use super::{ByteRange, MAX_CHILDREN, Store, StoreError, resolve_range};
 
 /// Folder with a Zarr hierarchy. Links below it are not followed: they could lead anywhere.
 #[derive(Debug)]
@@ -23,22 +23,22 @@ impl FolderStore {
 
     /// Returns true if a key names a file; an error where it, or a folder above it, is a link.
     fn is_file(&self, key: &str) -> Result<bool, StoreError> {
-        let mut end = 0;
-        while let Some(slash) = key[end..].find('/') {
-            let folder = &key[..end + slash];
-            let is_checked =
-                self.checked_folders.lock().unwrap_or_else(PoisonError::into_inner).contains(folder);
-            if !is_checked {
-                let Some(metadata) = self.entry(folder)? else { return Ok(false) };
-                if !metadata.is_dir() {
-                    return Ok(false);
-                }
-                let mut checked = self.checked_folders.lock().unwrap_or_else(PoisonError::into_inner);
-                checked.insert(folder.to_owned());
-            }
-            end += slash + 1;
+        let folder = key.rsplit_once('/').map_or("", |(folder, _)| folder);
+        Ok(self.is_folder(folder)? && self.entry(key)?.is_some_and(|metadata| metadata.is_file()))
+    }
+
+    /// Returns true if a key names a folder; an error where it, or one above it, is a link.
+    fn is_folder(&self, key: &str) -> Result<bool, StoreError> {
+        let checked = || self.checked_folders.lock().unwrap_or_else(PoisonError::into_inner);
+        if key.is_empty() || checked().contains(key) {
+            return Ok(true);
         }
-        Ok(self.entry(key)?.is_some_and(|metadata| metadata.is_file()))
+        let above = key.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let is_folder = self.is_folder(above)? && self.entry(key)?.is_some_and(|metadata| metadata.is_dir());
+        if is_folder {
+            checked().insert(key.to_owned());
+        }
+        Ok(is_folder)
     }
 
     /// Metadata of a file or folder; `None` if there is none, an error where it is a link.
@@ -80,7 +80,7 @@ impl Store for FolderStore {
     }
 
     fn children(&self, key: &str) -> Result<Vec<String>, StoreError> {
-        if !key.is_empty() && !self.is_folder(key)? {
+        if !self.is_folder(key)? {
             return Ok(Vec::new());
         }
         let mut names = Vec::new();
@@ -94,13 +94,5 @@ impl Store for FolderStore {
         }
         names.sort();
         Ok(names)
-    }
-}
-
-impl FolderStore {
-    fn is_folder(&self, key: &str) -> Result<bool, StoreError> {
-        // As a folder above a file of any name.
-        self.is_file(&join(key, "."))?;
-        Ok(self.checked_folders.lock().unwrap_or_else(PoisonError::into_inner).contains(key))
     }
 }
