@@ -19,6 +19,7 @@ mod open;
 mod reading;
 #[cfg(test)]
 mod tests;
+mod time_steps;
 mod unsupported;
 pub mod write;
 
@@ -28,6 +29,7 @@ use std::sync::Arc;
 pub use formats::{RawFormat, RawGuess, RawLayout, raw, supported_extensions};
 pub use neighbour::neighbour_volume;
 pub use open::open;
+pub use time_steps::TimeSteps;
 
 use chiaroscuro_volume::{
     ContentsRecorder, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ReadContext, Volume,

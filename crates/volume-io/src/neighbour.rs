@@ -53,6 +53,11 @@ pub fn neighbour_volume(
     }
 }
 
+/// Lists the files of a folder in natural order; hidden ones are left out.
+pub(super) fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
+    entries(folder, false)
+}
+
 /// Lists the files of a folder, or its folders, in natural order; hidden ones are left out.
 fn entries(folder: &Path, are_folders: bool) -> Vec<PathBuf> {
     let found = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MAX_ENTRIES);

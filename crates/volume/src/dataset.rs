@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{
-    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, Volume, VolumeChoice, VolumeError,
-    VolumeId, VoxelMask,
+    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, ValueRanges, Volume, VolumeChoice,
+    VolumeError, VolumeId, VoxelMask,
 };
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
@@ -47,6 +47,17 @@ pub enum AddFieldError {
     #[error(
         "the two volumes do not meet: no voxel of one lies inside the other; check the positions in their files"
     )]
+    Apart,
+}
+
+/// Reason why another time step cannot be shown.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StepError {
+    /// Corrections of the open volume do not apply to the step.
+    #[error("the corrections of the open volume do not apply to the step: {0}")]
+    Correction(#[from] VolumeError),
+    /// Boxes of the step and of a volume that is shown with it have no point in common.
+    #[error("a volume that is shown with the step does not meet it; remove its layer")]
     Apart,
 }
 
@@ -162,6 +173,64 @@ impl Dataset {
         let corrected =
             |(index, field): (usize, &DatasetField)| field.corrected(if index == 0 { by } else { &of_grid });
         Ok(Self { fields: self.fields.iter().enumerate().map(corrected).collect::<Result<_, _>>()? })
+    }
+
+    /// Returns the dataset with another time step of the same object, with the corrections, the ranges of values and the kind
+    /// of data that this one has, so that it looks the same. Fields of which no step is given stay.
+    ///
+    /// # Arguments
+    /// * `first`: step of the first field, as it was opened.
+    /// * `further`: steps of further fields, each with the index of its field.
+    ///
+    /// # Errors
+    /// Fails like [`Volume::corrected`], and if further fields do not meet the grid of the first.
+    pub fn with_step(
+        &self,
+        first: &Volume,
+        mut further: Vec<(usize, Volume)>,
+    ) -> Result<Self, StepError> {
+        let shown = self.volume();
+        let by = shown.corrections();
+        let mut fields = vec![DatasetField::new(first.corrected(by)?.with_look_of(shown))];
+        for (index, field) in self.fields.iter().enumerate().skip(1) {
+            let volume = field.volume();
+            let step = further.iter().position(|(at, _)| *at == index).map(|at| further.swap_remove(at).1);
+            let Some(step) = step else {
+                if volume.has_grid_of(fields[0].volume()) {
+                    fields.push(field.clone());
+                } else {
+                    let placed = volume.on_grid_of(fields[0].volume()).ok_or(StepError::Apart)?;
+                    fields.push(Self::step_of_field(field, placed, field.origin.clone()));
+                }
+                continue;
+            };
+            let (opened_id, choice) = (step.opened_id(), step.contents().choice());
+            let origin = field.origin().map(|origin| FieldOrigin { opened_id, choice, ..origin.clone() });
+            // Grids are compared as they were opened, and corrected together.
+            let placed = step.on_grid_of(first).ok_or(StepError::Apart)?.corrected(&by.of_grid())?;
+            fields.push(Self::step_of_field(field, placed, origin.map(Arc::new)));
+        }
+        Ok(Self { fields: fields.into() })
+    }
+
+    /// Creates another time step of a field, from a volume on the grid of the first.
+    fn step_of_field(shown: &DatasetField, step: Volume, origin: Option<Arc<FieldOrigin>>) -> DatasetField {
+        DatasetField { origin, ..DatasetField::new(step.with_look_of(shown.volume())) }
+    }
+
+    /// Returns the dataset with other ranges of values of its first field, as those of all time steps; densities represent
+    /// the robust one, unless they represent labels.
+    #[must_use]
+    pub fn with_ranges(&self, ranges: ValueRanges) -> Self {
+        let field = self.field();
+        let volume = field.volume().as_ref().clone().with_ranges(ranges);
+        let first = DatasetField { volume: Arc::new(volume), ..field.clone() };
+        let shown = match field.volume().density_mapping() {
+            DensityMapping::Range(_) => DensityMapping::Range(ranges.robust),
+            DensityMapping::Labels => DensityMapping::Labels,
+        };
+        let first = first.with_density_mapping(shown);
+        Self { fields: std::iter::once(first).chain(self.fields[1..].iter().cloned()).collect() }
     }
 
     /// Creates a dataset of volumes on one grid, the first of which is the one of the scene; at most [`MAX_FIELDS`] of
@@ -280,5 +349,24 @@ mod tests {
         let by = Corrections { spacing: Some([2.0; 3]), ..Corrections::default() };
         let back = last.corrected(&by).unwrap().with_further(all.fields()[1..].iter().cloned());
         assert_eq!(back.id(), all.corrected(&by).unwrap().id());
+    }
+    #[test]
+    fn time_steps_look_like_the_volume_that_is_shown() {
+        let spaced = Corrections { spacing: Some([2.0; 3]), ..Corrections::default() };
+        let shown = Dataset::new(ramp("a", 4)).with_field(&ramp("b", 2), "b").unwrap();
+        let shown = shown.with_field(&ramp("c", 3), "c").unwrap().corrected(&spaced).unwrap();
+        let step = shown.with_step(&ramp("a1", 1), vec![(2, ramp("c1", 2))]).unwrap();
+        assert_eq!(step.volume().ranges(), shown.volume().ranges(), "a darker step stays darker");
+        assert_eq!(step.volume().density_mapping(), shown.volume().density_mapping());
+        assert_eq!(step.volume().density_of(63.0), 0.25);
+        assert_eq!(step.volume().corrections(), &spaced);
+        assert!(Arc::ptr_eq(step.fields()[1].volume(), shown.fields()[1].volume()), "of another file");
+        let origins: Vec<_> = step.further_origins().map(|origin| origin.opened_id).collect();
+        assert_eq!(origins, [ramp("b", 2).opened_id(), ramp("c1", 2).opened_id()]);
+        assert_ne!(step.id().content_id, shown.id().content_id);
+        let back = step.with_step(&ramp("a", 4), vec![(2, ramp("c", 3))]).unwrap();
+        assert_eq!(back.id(), shown.id());
+        let bright = ValueRanges::without_outliers(crate::ValueRange::new(0.0, 504.0));
+        assert_eq!(shown.with_ranges(bright).volume().density_of(252.0), 0.5);
     }
 }

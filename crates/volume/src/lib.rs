@@ -28,7 +28,7 @@ mod volume;
 pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
 pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
-pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin};
+pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin, StepError};
 pub use histogram::changes::ChangeHistogram;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use label_cells::CellOccupancy;

@@ -71,6 +71,13 @@ impl ValueRanges {
         Self { all, robust: all }
     }
 
+    /// Returns the ranges that hold these and others, as of several time steps.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        let union = |a: ValueRange, b: ValueRange| ValueRange::new(a.low.min(b.low), a.high.max(b.high));
+        Self { all: union(self.all, other.all), robust: union(self.robust, other.robust) }
+    }
+
     /// Finds the robust range of values that span `all`.
     #[cfg(test)]
     fn from_samples(samples: &Samples, all: ValueRange) -> Self {

@@ -1,7 +1,7 @@
 //! Mapping from voxel values or labels to densities.
 
 use super::{LabelSet, Volume};
-use crate::ValueRange;
+use crate::{ValueRange, ValueRanges};
 use crate::values::samples::with_samples;
 
 /// Quantity that densities from 0 to 1 represent.
@@ -25,6 +25,21 @@ impl Volume {
         let mut volume = self.clone();
         volume.voxels.density_mapping = shown;
         volume
+    }
+
+    /// Returns a time step of the object that another volume shows, which looks as that one does: with the kind of data, the
+    /// ranges of values and the quantity that densities represent there, whatever its own values are.
+    #[must_use]
+    pub(crate) fn with_look_of(mut self, shown: &Self) -> Self {
+        self.voxels = self.voxels.with_look_of(&shown.voxels);
+        self.with_density_mapping(shown.density_mapping())
+    }
+
+    /// Returns a volume with the same voxels that counts as having other ranges of values, as those of all time steps.
+    #[must_use]
+    pub fn with_ranges(mut self, ranges: ValueRanges) -> Self {
+        self.voxels.statistics.ranges = ranges;
+        self
     }
 
     /// Returns the quantity that densities represent: the robust range, unless changed by

@@ -103,6 +103,12 @@ impl VoxelData {
         }
     }
 
+    /// Takes the kind of data and the ranges of other values, of which these are another time step.
+    pub(super) fn with_look_of(self, shown: &Self) -> Self {
+        let VoxelStatistics { ranges, kind, .. } = shown.statistics.clone();
+        Self { statistics: VoxelStatistics { ranges, kind, ..self.statistics }, ..self }
+    }
+
     /// Takes the samples out, without a copy unless other volumes share them.
     pub(super) fn take_samples(&mut self) -> Samples {
         Arc::unwrap_or_clone(std::mem::replace(&mut self.samples, Arc::new(Samples::U8(Vec::new()))))

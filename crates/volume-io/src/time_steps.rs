@@ -1,0 +1,246 @@
+//! Steps of a time series: those that one file holds, or files of a folder that are numbered.
+
+use std::path::{Path, PathBuf};
+
+use super::neighbour::files_of_folder;
+use super::{LoadOptions, open};
+use chiaroscuro_files::natural_sort_key;
+use chiaroscuro_volume::{
+    FileContents, FileDimension, LoadControl, LoadError, ValueRanges, Volume, VolumeChoice, VolumeOffer,
+};
+
+/// Time steps of one object, at least two, in their order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TimeSteps {
+    source: StepSource,
+    /// Choice in all other aspects, such as channel and resolution level.
+    choice: VolumeChoice,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum StepSource {
+    /// Steps of one file or folder.
+    File { path: PathBuf, offers: Vec<VolumeOffer> },
+    /// Files with one step each.
+    Files(Vec<PathBuf>),
+}
+
+impl TimeSteps {
+    /// Returns the time steps of a file that is open; `None` if it holds only one.
+    pub fn from_contents(path: &Path, contents: &FileContents) -> Option<Self> {
+        let offers = contents.alternatives_in(FileDimension::Frame)?.offers.clone();
+        let source = StepSource::File { path: path.to_owned(), offers };
+        Some(Self { source, choice: contents.choice() })
+    }
+
+    /// Returns the files of a folder whose names differ from that of `path` in one number alone, the last in the name, in
+    /// the order of these numbers; `None` if there is no other. `choice` selects in each.
+    pub fn from_numbered_files(path: &Path, choice: VolumeChoice) -> Option<Self> {
+        let path = std::path::absolute(path).ok()?;
+        let wanted = NumberedName::parse(&path)?;
+        let mut files: Vec<PathBuf> = files_of_folder(path.parent()?)
+            .into_iter()
+            .filter(|file| NumberedName::parse(file).is_some_and(|name| name.is_of_same_series(&wanted)))
+            .collect();
+        files.sort_by_cached_key(|file| natural_sort_key(&file_name(file)));
+        (files.len() > 1).then_some(Self { source: StepSource::Files(files), choice })
+    }
+
+    /// Returns the number of steps, at least two.
+    pub fn count(&self) -> usize {
+        match &self.source {
+            StepSource::File { offers, .. } => offers.len(),
+            StepSource::Files(files) => files.len(),
+        }
+    }
+
+    /// Returns the index of the step that a volume shows, of its path and choice.
+    pub fn index_of(&self, path: &Path, choice: &VolumeChoice) -> Option<usize> {
+        match &self.source {
+            StepSource::File { path: own, offers } => {
+                let key = choice.selected_key(FileDimension::Frame).filter(|_| own == path)?;
+                offers.iter().position(|offer| offer.key == key)
+            }
+            StepSource::Files(files) => {
+                let path = std::path::absolute(path).ok()?;
+                files.iter().position(|file| *file == path)
+            }
+        }
+    }
+
+    /// Returns the name of a step: that in the file, or the name of its file; empty if it has none.
+    pub fn name(&self, index: usize) -> String {
+        match &self.source {
+            StepSource::File { offers, .. } => offers.get(index).map_or_else(String::new, |o| o.name.clone()),
+            StepSource::Files(files) => files.get(index).map_or_else(String::new, |file| file_name(file)),
+        }
+    }
+
+    /// Returns the file of a step; of a step that does not exist, that of the last.
+    pub fn path(&self, index: usize) -> &Path {
+        match &self.source {
+            StepSource::File { path, .. } => path,
+            StepSource::Files(files) => &files[index.min(files.len() - 1)],
+        }
+    }
+
+    /// Returns the choice by which a step is opened.
+    pub fn choice(&self, index: usize) -> VolumeChoice {
+        match &self.source {
+            StepSource::File { offers, .. } => match offers.get(index) {
+                Some(offer) => self.choice.clone().with_selected(FileDimension::Frame, &offer.key),
+                None => self.choice.clone(),
+            },
+            StepSource::Files(_) => self.choice.clone(),
+        }
+    }
+
+    /// Opens the volume of a step.
+    ///
+    /// # Errors
+    /// Fails like [`open`].
+    pub fn open(
+        &self,
+        index: usize,
+        options: &LoadOptions,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        self.open_with(index, self.choice(index), options, control)
+    }
+
+    /// Opens the volume of a step as another choice says in all aspects but time, as another channel.
+    ///
+    /// # Errors
+    /// Fails like [`open`].
+    pub fn open_with(
+        &self,
+        index: usize,
+        other: VolumeChoice,
+        options: &LoadOptions,
+        control: &LoadControl,
+    ) -> Result<Volume, LoadError> {
+        let choice = VolumeChoice { frame: self.choice(index).frame, ..other };
+        open(self.path(index), &LoadOptions { choice, ..options.clone() }, control)
+    }
+
+    /// Returns the ranges of values of all steps: of at most `most` of them, which are spread evenly and include the first
+    /// and the last. `progress` is called with the number of steps that are done, and their total.
+    ///
+    /// # Errors
+    /// Fails like [`open`].
+    pub fn ranges(
+        &self,
+        most: usize,
+        options: &LoadOptions,
+        control: &LoadControl,
+        mut progress: impl FnMut(usize, usize),
+    ) -> Result<ValueRanges, LoadError> {
+        let (last, count) = (self.count() - 1, self.count().min(most.max(2)));
+        let mut all: Option<ValueRanges> = None;
+        for at in 0..count {
+            let own = self.open(at * last / (count - 1), options, control)?.ranges();
+            all = Some(all.map_or(own, |all| all.union(own)));
+            progress(at + 1, count);
+        }
+        Ok(all.unwrap_or(ValueRanges::UNIT))
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Name of a file around its last number.
+#[derive(Debug, PartialEq, Eq)]
+struct NumberedName {
+    before: String,
+    after: String,
+}
+
+impl NumberedName {
+    /// Splits the name of a file at its last number, which is not part of the extension; `None` if it has no number.
+    fn parse(path: &Path) -> Option<Self> {
+        let name = file_name(path);
+        // Extensions such as `.h5`, `.nii.gz` and `.v3draw` begin at the first dot after which there is a letter.
+        let extension = name.match_indices('.').find(|(at, _)| {
+            *at > 0 && name[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic())
+        });
+        let stem = &name[..extension.map_or(name.len(), |(at, _)| at)];
+        let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
+        let begin = stem[..end].rfind(|c: char| !c.is_ascii_digit());
+        let begin = begin.map_or(0, |at| at + stem[at..].chars().next().map_or(1, char::len_utf8));
+        Some(Self { before: name[..begin].to_owned(), after: name[end..].to_owned() })
+    }
+
+    /// Returns true if two files of one folder differ in their number alone.
+    fn is_of_same_series(&self, other: &Self) -> bool {
+        self == other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nrrd(values: &[u8]) -> Vec<u8> {
+        let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 {}\nencoding: raw\n\n", values.len());
+        [header.as_bytes(), values].concat()
+    }
+
+    #[test]
+    fn names_are_split_at_their_last_number() {
+        let split = |name: &str| {
+            NumberedName::parse(Path::new(name)).map(|name| (name.before, name.after)).unwrap_or_default()
+        };
+        let wanted = |before: &str, after: &str| (before.to_owned(), after.to_owned());
+        assert_eq!(split("t001.nrrd"), wanted("t", ".nrrd"));
+        assert_eq!(split("fish2_t12_raw.nii.gz"), wanted("fish2_t", "_raw.nii.gz"));
+        assert_eq!(split("t1.v3draw"), wanted("t", ".v3draw"));
+        assert_eq!(split("0.5ns_7.h5"), wanted("0.5ns_", ".h5"));
+        assert_eq!(split("é3"), wanted("é", ""));
+        assert_eq!(split("2024"), wanted("", ""));
+        assert_eq!(NumberedName::parse(Path::new("head.h5")), None);
+    }
+
+    #[test]
+    fn numbered_files_are_steps_in_the_order_of_their_numbers() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, value) in [("t10.nrrd", 30), ("t2.nrrd", 20), ("t1.nrrd", 10), ("u1.nrrd", 99), ("t1.txt", 0)] {
+            std::fs::write(folder.path().join(name), nrrd(&[value, value + 1])).unwrap();
+        }
+        let open = folder.path().join("t2.nrrd");
+        let steps = TimeSteps::from_numbered_files(&open, VolumeChoice::default()).unwrap();
+        assert_eq!((0..steps.count()).map(|at| steps.name(at)).collect::<Vec<_>>(), [
+            "t1.nrrd", "t2.nrrd", "t10.nrrd"
+        ]);
+        assert_eq!(steps.index_of(&open, &VolumeChoice::default()), Some(1));
+        let (options, control) = (LoadOptions::default(), LoadControl::new());
+        let volume = steps.open(2, &options, &control).unwrap();
+        assert_eq!(volume.value_range().low, 30.0);
+        let mut counts = Vec::new();
+        let all = steps.ranges(9, &options, &control, |done, of| counts.push((done, of))).unwrap();
+        assert_eq!((all.all.low, all.all.high), (10.0, 31.0));
+        assert_eq!(counts, [(1, 3), (2, 3), (3, 3)]);
+        assert!(TimeSteps::from_numbered_files(&folder.path().join("u1.nrrd"), VolumeChoice::default()).is_none());
+    }
+
+    #[test]
+    fn steps_of_a_file_keep_its_other_choices() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("steps.nrrd");
+        let header = "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 3\nencoding: raw\nkinds: domain domain domain time\n\n";
+        let values: Vec<u8> = (0..24).collect();
+        std::fs::write(&file, [header.as_bytes(), &values].concat()).unwrap();
+        let choice = VolumeChoice { frame: Some(1), ..VolumeChoice::default() };
+        let (options, control) = (LoadOptions { choice, ..LoadOptions::default() }, LoadControl::new());
+        let volume = open(&file, &options, &control).unwrap();
+        let steps = TimeSteps::from_contents(&file, volume.contents()).unwrap();
+        assert_eq!((steps.count(), steps.index_of(&file, &volume.contents().choice())), (3, Some(1)));
+        let third = steps.open(2, &options, &control).unwrap();
+        assert_eq!((third.value_range().low, third.contents().choice().frame), (16.0, Some(2)));
+        assert_eq!(steps.index_of(&file, &third.contents().choice()), Some(2));
+        let single = open(&file, &LoadOptions { choice: steps.choice(0), ..options }, &control).unwrap();
+        assert_eq!(single.value_range().high, 7.0);
+        assert_eq!(TimeSteps::from_contents(&file, &FileContents::default()), None);
+    }
+}
