@@ -11,6 +11,7 @@ use crate::thresholds::{F16_STEP, REFILLED, SPOILED};
 mod bit_exactness;
 mod needed_blocks;
 mod recomputes;
+mod spare_volumes;
 mod warm_up;
 
 const SIZE: [u32; 2] = [64, 48];

@@ -18,7 +18,7 @@ use crate::volume::presence::PresenceTextures;
 use crate::volume::reused_textures::ReusedTextures;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
-use chiaroscuro_scene::{LayerComposition, Settings, SheetOrder};
+use chiaroscuro_scene::{LayerComposition, LightVolumeResolution, Settings, SheetOrder};
 use chiaroscuro_volume::{Dataset, Observer};
 
 /// Inputs for finding or creating the products of a picture.
@@ -134,6 +134,26 @@ impl LoadedVolume {
     pub(crate) fn has_voxel_type_of(&self, dataset: &Dataset) -> bool {
         let voxel_type = |dataset: &Dataset| dataset.volume().samples().voxel_type();
         voxel_type(&self.dataset) == voxel_type(dataset)
+    }
+
+    /// Returns true if all volumes of light that a picture looks up are complete; those of lights may have the resolution
+    /// for previews.
+    pub(crate) fn has_light_of(&self, keys: &FrameKeys, preview: Option<LightVolumeResolution>) -> bool {
+        let is_combined = keys
+            .combined
+            .as_ref()
+            .is_some_and(|key| self.combined.as_ref().is_some_and(|known| known.is_valid_for(key)));
+        let has_light = |full: &LightKey| {
+            let coarse = preview.map(|resolution| full.for_preview(resolution));
+            let is_it = |key: &LightKey| key == full || Some(key) == coarse.as_ref();
+            self.lights.iter().any(|known| known.is_complete() && is_it(known.key()))
+        };
+        let has_sky = |key: &SkyKey| self.skies.iter().any(|known| known.is_complete() && known.key() == key);
+        let has_bounces =
+            |key: &BouncesKey| self.bounces.iter().any(|known| known.is_complete() && known.key() == key);
+        (is_combined || keys.lights.iter().flatten().all(has_light))
+            && keys.sky.as_ref().is_none_or(has_sky)
+            && keys.bounces.as_ref().is_none_or(has_bounces)
     }
 
     /// Updates the tables to a key. Returns the number of tables baked.

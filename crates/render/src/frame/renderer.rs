@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::caches::spare_volumes::SpareVolumes;
 use super::double_buffer::DoubleBuffer;
 use super::loaded_volume::LoadedVolume;
 use super::report::{RenderReport, RenderedPicture};
@@ -20,6 +21,8 @@ pub struct Renderer {
     pub(crate) tools: GpuTools,
     /// Volume on the GPU, by content and shown values; complete when it is uploaded.
     pub(crate) loaded: Option<CacheEntry<VolumeKey, LoadedVolume>>,
+    /// Volumes of other time steps.
+    pub(crate) spare_volumes: SpareVolumes,
     pub(crate) targets: DoubleBuffer,
     /// Number of times that the light volume of each light in the settings was filled.
     pub(crate) fill_counts: Vec<u64>,
@@ -47,6 +50,7 @@ impl Renderer {
         Ok(Self {
             tools: GpuTools::new(context, shaders)?,
             loaded: None,
+            spare_volumes: SpareVolumes::default(),
             targets: DoubleBuffer::new(context)?,
             fill_counts: Vec::new(),
             picture_count: 0,
@@ -165,9 +169,17 @@ impl Renderer {
         }
     }
 
+    /// Sets the memory that volumes of other time steps may take beside the one that is shown, in bytes. They stay on the
+    /// GPU with their light; at first it is 0, and none stays.
+    pub fn set_spare_volume_bytes(&mut self, bytes: u64) {
+        self.spare_volumes.set_budget(bytes);
+        self.tools.pool.drop_bind_groups();
+    }
+
     /// Drops everything on the GPU. After an error, products may not match their keys. Also frees the most memory.
     pub fn drop_all(&mut self) {
         self.loaded = None;
+        self.spare_volumes.clear();
         self.tools.pool.clear();
         self.targets.invalidate();
         // Pending work may still report errors about dropped resources.

@@ -82,7 +82,7 @@ impl Renderer {
     /// Returns the current size of the renderer's textures and buffers on the GPU, in bytes.
     pub fn gpu_bytes(&self) -> u64 {
         let loaded = self.loaded.as_ref().map_or(0, |loaded| loaded.product.bytes());
-        self.targets.bytes() + self.tools.pool.bytes() + loaded
+        self.targets.bytes() + self.tools.pool.bytes() + loaded + self.spare_volumes.bytes()
     }
 
     /// Returns the size of all attenuation volumes and the combined one, in bytes.

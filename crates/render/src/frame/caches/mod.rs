@@ -5,3 +5,4 @@ mod lookup_reach;
 pub(super) mod placement;
 pub(super) mod scattered_light_volumes;
 pub(super) mod sky_volumes;
+pub(super) mod spare_volumes;

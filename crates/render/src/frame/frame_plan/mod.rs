@@ -53,6 +53,22 @@ impl Renderer {
         })
     }
 
+    /// Returns true if the volume of a picture is on the GPU, shown or as a spare one, with the volumes of all its lights
+    /// and of its sky, so that it is drawn by the eye pass alone.
+    pub fn is_prepared(&self, dataset: &Dataset, request: &RenderRequest, options: &RenderOptions) -> bool {
+        let request = with_resolved_labels(request.clone(), dataset);
+        let keys = FrameKeys::new(&request, options);
+        let shown = self
+            .loaded
+            .as_ref()
+            .filter(|shown| shown.is_valid_for(&keys.volume) && shown.product.has_voxel_type_of(dataset));
+        let volume = match shown {
+            Some(shown) => Some(&shown.product),
+            None => self.spare_volumes.find(&keys.volume, dataset),
+        };
+        volume.is_some_and(|volume| volume.has_light_of(&keys, request.preview_resolution))
+    }
+
     /// Starts a picture: finds stale products and lists the steps.
     ///
     /// # Errors
@@ -89,7 +105,14 @@ impl Renderer {
             Some(known) if known.is_valid_for(&keys.volume) && known.product.has_voxel_type_of(dataset) => {
                 known
             }
-            other => self.load_volume(other, dataset, &request, &keys, &mut steps)?,
+            other => match self.spare_volumes.exchange(other, &keys.volume, dataset) {
+                Some(known)
+                    if known.is_valid_for(&keys.volume) && known.product.has_voxel_type_of(dataset) =>
+                {
+                    known
+                }
+                other => self.load_volume(other, dataset, &request, &keys, &mut steps)?,
+            },
         };
         if needs_density_pyramid(&request.settings)
             && loaded.product.volume.begin_pyramid(&self.tools.context)?
