@@ -73,6 +73,7 @@ impl eframe::App for App {
             windows: &mut self.windows,
             layout: &mut self.layout,
             facts: &facts,
+            time_series: &mut self.time_series,
             commands: &mut commands,
             shows_start,
         };
@@ -128,6 +129,7 @@ impl eframe::App for App {
         );
         self.opener(&ctx).cancel_files_by_key();
         self.drop_pictures_of_replaced();
+        self.update_time_series(&ctx);
         self.layout.leave_picture_only(&ctx);
         let has_other_fields = self.editor.update_fields();
         if self.editor.update_corrections(&ctx) || has_other_fields {
@@ -171,6 +173,15 @@ impl eframe::App for App {
 }
 
 impl App {
+    /// Reads and shows the time steps that the user wants to see.
+    fn update_time_series(&mut self, ctx: &egui::Context) {
+        let options = self.opening.loader.options().clone();
+        if self.time_series.update(&mut self.editor, &options, ctx) {
+            self.windows.contact_sheet.discard();
+            ctx.request_repaint();
+        }
+    }
+
     /// Shows the start screen in place of the picture, with the messages over it.
     fn show_start(&mut self, ui: &mut egui::Ui, commands: &mut Vec<AppCommand>) {
         self.editor.report_notices();
@@ -208,6 +219,7 @@ impl App {
             context: self.editor.viewport.context(),
             picture_size: self.picture.available_size(),
             is_idle: !self.opening.is_opening() && self.editor.is_complete(),
+            step_count: self.editor.series.as_ref().map_or(0, |series| series.steps.count() as u32),
         };
         let requests = self.windows.scene_tools().map(|tool| tool.show(ctx, &scene));
         for request in requests.into_iter().flatten() {

@@ -46,6 +46,7 @@ use self::shell::opening::{OpeningState, VolumeOpener};
 use self::shell::picture_area::PictureTools;
 use self::shell::start_screen::{StartScreen, WindowOccupation};
 use self::shell::status_file::StatusFile;
+use self::shell::time_series::TimeSeries;
 use self::shell::tool_windows::{AppDialogs, ToolWindows};
 use self::start::window_device::WindowDevice;
 use self::worker::jobs::Jobs;
@@ -78,6 +79,8 @@ pub struct App {
     /// Graphics device that draws the window.
     device: WindowDevice,
     status_file: StatusFile,
+    /// Time steps of the open volume, and their playback.
+    time_series: Box<TimeSeries>,
     /// Screen with the built-in scenes and recent files, while no volume is open; boxed, as it would make the frame of
     /// the constructor too large.
     start_screen: Box<StartScreen>,
@@ -115,7 +118,7 @@ impl App {
     /// The start screen is idle as soon as it is open.
     pub fn is_idle(&self) -> bool {
         let is_shown = self.editor.is_complete() && !self.editor.is_changing();
-        !self.opening.is_opening() && (is_shown || self.start_screen.is_open())
+        !self.opening.is_opening() && !self.time_series.is_busy() && (is_shown || self.start_screen.is_open())
     }
 
     /// Returns true while a requested look is computed on another thread: for another kind of data, or for the object
@@ -157,6 +160,7 @@ impl App {
             self.panels.recent_pictures.clear();
             self.windows.contact_sheet.discard();
             self.panels.kept_strip.reset();
+            self.time_series.reset(self.editor.document.volume.as_ref());
         }
     }
 
@@ -252,6 +256,11 @@ impl App {
         }
         fault::set_faults(vec![fault::InjectedFault::HeldFiles]);
         HeldFilesGuard
+    }
+
+    /// Returns the index of the time step that is shown, and the number of steps; `None` if the open volume is alone.
+    pub fn time_step(&self) -> Option<(usize, usize)> {
+        self.time_series.shown_of()
     }
 
     /// Returns the names of the volumes that are open, in the order of their layers.

@@ -6,7 +6,8 @@ use super::neighbour::files_of_folder;
 use super::{LoadOptions, open};
 use chiaroscuro_files::natural_sort_key;
 use chiaroscuro_volume::{
-    FileContents, FileDimension, LoadControl, LoadError, ValueRanges, Volume, VolumeChoice, VolumeOffer,
+    Dataset, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ValueRanges, Volume,
+    VolumeChoice, VolumeOffer,
 };
 
 /// Time steps of one object, at least two, in their order.
@@ -123,6 +124,46 @@ impl TimeSteps {
         open(self.path(index), &LoadOptions { choice, ..options.clone() }, control)
     }
 
+    /// Opens the dataset of a step, with the look of the one that is shown: with its corrections, its ranges of values and
+    /// its further fields, of which those that the same steps have are read as well ([`Dataset::with_step`]).
+    ///
+    /// `fit` changes a volume as the one that is shown was changed to fit on the graphics adapter.
+    ///
+    /// # Errors
+    /// Fails like [`open`], and if the step cannot be shown in the place of the other.
+    pub fn open_like(
+        &self,
+        index: usize,
+        shown: &Dataset,
+        (options, control): (&LoadOptions, &LoadControl),
+        fit: &dyn Fn(Volume) -> Volume,
+    ) -> Result<Dataset, LoadError> {
+        let first = fit(self.open(index, options, control)?);
+        let shown_choice = shown.volume().contents().choice();
+        let mut further = Vec::new();
+        for (at, field) in shown.fields().iter().enumerate().skip(1) {
+            let origin = field.origin().filter(|origin| {
+                // Another step of the file that is shown with this one stays.
+                origin.choice.frame == shown_choice.frame && self.has_steps_of(&origin.source)
+            });
+            if let Some(origin) = origin {
+                further.push((at, fit(self.open_with(index, origin.choice.clone(), options, control)?)));
+            }
+        }
+        shown.with_step(&first, further).map_err(|err| {
+            let context = LoadContext { operation: "show the time step", path: self.path(index) };
+            context.bad_input_error("time step", err.to_string(), "open it as a volume of its own")
+        })
+    }
+
+    /// Returns true if a file is one of those that have the steps.
+    fn has_steps_of(&self, source: &Path) -> bool {
+        match &self.source {
+            StepSource::File { path, .. } => path == source,
+            StepSource::Files(files) => std::path::absolute(source).is_ok_and(|path| files.contains(&path)),
+        }
+    }
+
     /// Returns the ranges of values of all steps: of at most `most` of them, which are spread evenly and include the first
     /// and the last. `progress` is called with the number of steps that are done, and their total.
     ///
@@ -162,9 +203,9 @@ impl NumberedName {
     fn parse(path: &Path) -> Option<Self> {
         let name = file_name(path);
         // Extensions such as `.h5`, `.nii.gz` and `.v3draw` begin at the first dot after which there is a letter.
-        let extension = name.match_indices('.').find(|(at, _)| {
-            *at > 0 && name[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic())
-        });
+        let extension = name
+            .match_indices('.')
+            .find(|(at, _)| *at > 0 && name[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic()));
         let stem = &name[..extension.map_or(name.len(), |(at, _)| at)];
         let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
         let begin = stem[..end].rfind(|c: char| !c.is_ascii_digit());
@@ -183,7 +224,8 @@ mod tests {
     use super::*;
 
     fn nrrd(values: &[u8]) -> Vec<u8> {
-        let header = format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 {}\nencoding: raw\n\n", values.len());
+        let header =
+            format!("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 {}\nencoding: raw\n\n", values.len());
         [header.as_bytes(), values].concat()
     }
 
@@ -205,14 +247,17 @@ mod tests {
     #[test]
     fn numbered_files_are_steps_in_the_order_of_their_numbers() {
         let folder = tempfile::tempdir().unwrap();
-        for (name, value) in [("t10.nrrd", 30), ("t2.nrrd", 20), ("t1.nrrd", 10), ("u1.nrrd", 99), ("t1.txt", 0)] {
+        for (name, value) in
+            [("t10.nrrd", 30), ("t2.nrrd", 20), ("t1.nrrd", 10), ("u1.nrrd", 99), ("t1.txt", 0)]
+        {
             std::fs::write(folder.path().join(name), nrrd(&[value, value + 1])).unwrap();
         }
         let open = folder.path().join("t2.nrrd");
         let steps = TimeSteps::from_numbered_files(&open, VolumeChoice::default()).unwrap();
-        assert_eq!((0..steps.count()).map(|at| steps.name(at)).collect::<Vec<_>>(), [
-            "t1.nrrd", "t2.nrrd", "t10.nrrd"
-        ]);
+        assert_eq!(
+            (0..steps.count()).map(|at| steps.name(at)).collect::<Vec<_>>(),
+            ["t1.nrrd", "t2.nrrd", "t10.nrrd"]
+        );
         assert_eq!(steps.index_of(&open, &VolumeChoice::default()), Some(1));
         let (options, control) = (LoadOptions::default(), LoadControl::new());
         let volume = steps.open(2, &options, &control).unwrap();
@@ -221,7 +266,9 @@ mod tests {
         let all = steps.ranges(9, &options, &control, |done, of| counts.push((done, of))).unwrap();
         assert_eq!((all.all.low, all.all.high), (10.0, 31.0));
         assert_eq!(counts, [(1, 3), (2, 3), (3, 3)]);
-        assert!(TimeSteps::from_numbered_files(&folder.path().join("u1.nrrd"), VolumeChoice::default()).is_none());
+        assert!(
+            TimeSteps::from_numbered_files(&folder.path().join("u1.nrrd"), VolumeChoice::default()).is_none()
+        );
     }
 
     #[test]
@@ -239,8 +286,13 @@ mod tests {
         let third = steps.open(2, &options, &control).unwrap();
         assert_eq!((third.value_range().low, third.contents().choice().frame), (16.0, Some(2)));
         assert_eq!(steps.index_of(&file, &third.contents().choice()), Some(2));
-        let single = open(&file, &LoadOptions { choice: steps.choice(0), ..options }, &control).unwrap();
+        let single = LoadOptions { choice: steps.choice(0), ..options.clone() };
+        let single = open(&file, &single, &control).unwrap();
         assert_eq!(single.value_range().high, 7.0);
         assert_eq!(TimeSteps::from_contents(&file, &FileContents::default()), None);
+        let shown = Dataset::new(volume);
+        let like = steps.open_like(0, &shown, (&options, &control), &|volume| volume).unwrap();
+        assert_eq!(like.volume().ranges(), shown.volume().ranges());
+        assert_eq!(like.volume().samples().value(0), 0.0);
     }
 }

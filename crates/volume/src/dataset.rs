@@ -184,11 +184,7 @@ impl Dataset {
     ///
     /// # Errors
     /// Fails like [`Volume::corrected`], and if further fields do not meet the grid of the first.
-    pub fn with_step(
-        &self,
-        first: &Volume,
-        mut further: Vec<(usize, Volume)>,
-    ) -> Result<Self, StepError> {
+    pub fn with_step(&self, first: &Volume, mut further: Vec<(usize, Volume)>) -> Result<Self, StepError> {
         let shown = self.volume();
         let by = shown.corrections();
         let mut fields = vec![DatasetField::new(first.corrected(by)?.with_look_of(shown))];

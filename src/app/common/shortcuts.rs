@@ -16,7 +16,7 @@ const fn control(key: Key, command: AppCommand) -> (KeyboardShortcut, AppCommand
 }
 
 /// Shortcuts with their commands, in the order in which help shows them.
-pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 49] = [
+pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 50] = [
     // Shortcuts with Shift come first: egui lets Shift pass where it is not required.
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O), AppCommand::OpenFolder),
     control(Key::O, AppCommand::OpenDialog),
@@ -30,6 +30,7 @@ pub(crate) const SHORTCUTS: [(KeyboardShortcut, AppCommand); 49] = [
     control(Key::Q, AppCommand::Quit),
     (KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), AppCommand::Redo),
     control(Key::Z, AppCommand::Undo),
+    plain(Key::Y, AppCommand::TogglePlayback),
     plain(Key::R, AppCommand::ResetView),
     plain(Key::F, AppCommand::FrameAll),
     plain(Key::Num1, AppCommand::LookFrom(StandardView::MinusY)),

@@ -13,6 +13,7 @@ use crate::app::persistence::RecentThumbnails;
 use crate::app::shell::look_editor::LookEditor;
 use crate::app::shell::opening::OpeningState;
 use crate::app::shell::picture_area::PictureTools;
+use crate::app::shell::time_series::TimeSeries;
 use crate::app::shell::tool_windows::ToolWindows;
 use crate::app::shell::{menu, status};
 use crate::app::transfer_editor::TransferEditor;
@@ -45,6 +46,8 @@ pub(crate) struct OuterPanelInputs<'a> {
     pub layout: &'a mut WindowLayout,
     /// Statistics and state of the renderer.
     pub facts: &'a RendererStatus,
+    /// Time steps of the open volume.
+    pub time_series: &'a mut TimeSeries,
     /// Queue of the commands that the user issues.
     pub commands: &'a mut Vec<AppCommand>,
     /// True while the start screen is in place of the picture, whose panels are then hidden.
@@ -78,6 +81,7 @@ impl OuterPanels {
         if inputs.layout.kept && inputs.editor.document.volume.is_some() {
             self.kept_strip.show(ui, &mut inputs.editor.document.settings, inputs.commands);
         }
+        inputs.time_series.show_bar(ui);
         dock::reserve_space(ui);
         inputs.layout.observe_tools(ui.ctx(), inputs.windows);
     }

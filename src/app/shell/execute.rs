@@ -12,7 +12,7 @@ use crate::app::windows::contact_sheet::ContactSheetKind;
 use crate::app::windows::file_dialogs::FileDialogPurpose;
 use crate::app::{App, text};
 use chiaroscuro_scene::{CutShapeKind, RenderMode};
-use chiaroscuro_volume::ChoiceAspect;
+use chiaroscuro_volume::{ChoiceAspect, FileDimension};
 
 impl App {
     /// Executes a command of the user.
@@ -31,6 +31,9 @@ impl App {
             AppCommand::ShowChooser(aspect) => self.windows.show_chooser(aspect, &mut self.editor),
             AppCommand::StepChoice(aspect, is_forward) => self.step_choice(aspect, is_forward, ctx),
             AppCommand::OpenChoice(choice, keeps_look) => self.opener(ctx).open_choice(&choice, keeps_look),
+            AppCommand::TogglePlayback => self.toggle_playback(ctx),
+            AppCommand::UseNumberedFiles => self.use_numbered_files(),
+            AppCommand::MeasureSeriesRange => self.time_series.ask_for_range(),
             AppCommand::Subsample(thinning) => self.opener(ctx).reload_subsampled(thinning),
             AppCommand::ReopenLast => self.opener(ctx).reopen_last(),
             AppCommand::CancelOpening => self.cancel_files(ctx),
@@ -143,9 +146,30 @@ impl App {
     /// Opens the next or the previous volume of the open file.
     fn step_choice(&mut self, aspect: ChoiceAspect, is_forward: bool, ctx: &egui::Context) {
         let keeps_look = self.windows.volume_chooser.keeps_look(aspect);
+        let is_step = aspect == ChoiceAspect::Dimension(FileDimension::Frame) && keeps_look;
+        if is_step && self.time_series.step(is_forward) {
+            return;
+        }
         let mut opener = self.opener(ctx);
         if let Some(choice) = opener.neighbour_choice(aspect, is_forward) {
             opener.open_choice(&choice, keeps_look);
+        }
+    }
+
+    /// Plays the time steps of the open volume, or stops at the one that is shown.
+    fn toggle_playback(&mut self, ctx: &egui::Context) {
+        if self.time_series.steps().is_none() {
+            return self.use_numbered_files();
+        }
+        let plays = !self.time_series.is_playing();
+        self.time_series.set_playing(plays, ctx.input(|input| input.time));
+    }
+
+    /// Shows the numbered files beside the open one as time steps.
+    fn use_numbered_files(&mut self) {
+        let volume = self.editor.document.volume.as_ref();
+        if !volume.is_some_and(|volume| self.time_series.use_numbered_files(volume)) {
+            self.editor.messages.note(text::time_series::NO_SERIES);
         }
     }
 

@@ -11,4 +11,5 @@ mod recent_files;
 pub(super) mod start_screen;
 pub(super) mod status;
 pub(super) mod status_file;
+pub(super) mod time_series;
 pub(super) mod tool_windows;

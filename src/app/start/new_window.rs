@@ -162,6 +162,7 @@ impl App {
             device: WindowDevice::new(painter, window_context, storage, legacy),
             status_file: StatusFile::from_environment(),
             start_screen: Box::default(),
+            time_series: Box::default(),
         })
     }
 }

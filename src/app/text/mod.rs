@@ -24,7 +24,7 @@ pub(super) use self::panels::{
 pub(super) use self::shell::{
     change_descriptions, commands, menu, messages, opening, persistence, start_screen, status,
 };
-pub(super) use self::viewport::{comparison, cut_handles, picture, probe};
+pub(super) use self::viewport::{comparison, cut_handles, picture, probe, time_series};
 pub(super) use self::windows::{
     chooser, contact_sheet, export, files, foreign_path, help, large_volume, light_volume, palette_synonyms,
     raw, slices,

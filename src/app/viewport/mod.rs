@@ -26,7 +26,7 @@ use eframe::egui::{self, ColorImage};
 
 use self::compare::Compare;
 pub(super) use self::renderer_status::{LightCost, RendererActivity, RendererStatus};
-use super::worker::mailbox::{FinishedFrame, RefinementHold};
+use super::worker::mailbox::{FinishedFrame, RefinementHold, UpcomingSteps};
 use super::worker::quality::QualityLevel;
 use super::worker::render_thread::RenderThread;
 use super::worker::request::{ComparedLooks, FrameRequest, RenderScene};
@@ -75,6 +75,8 @@ pub(super) struct ComparedPicture {
 pub(super) struct Viewport {
     /// Time budget for a frame during interaction, in milliseconds; `None` for the adapter's default.
     pub frame_ms: Option<f64>,
+    /// Time for drawing a time step while a series plays, in milliseconds, in place of the budget for a frame.
+    pub step_ms: Option<f64>,
     /// Comparison of two looks in one picture.
     pub compare: Compare,
     context: GpuContext,
@@ -116,6 +118,7 @@ impl Viewport {
         let thread = RenderThread::start(context.clone(), ctx.clone())?;
         Ok(Self {
             frame_ms: None,
+            step_ms: None,
             compare: Compare::default(),
             context,
             window,
@@ -156,6 +159,11 @@ impl Viewport {
             (None, None, None, false);
         self.balance_ticket = None;
         self.pending_requests.clear();
+    }
+
+    /// Names the time steps that may be shown next, for the render thread to prepare.
+    pub(super) fn prepare_steps(&self, upcoming: UpcomingSteps) {
+        self.thread.prepare_steps(upcoming);
     }
 
     /// Delays the full-quality picture while the look is about to change automatically.
@@ -254,7 +262,7 @@ impl Viewport {
         if self.fading.is_some() {
             ctx.request_repaint();
         }
-        self.thread.set_frame_ms(self.frame_ms);
+        self.thread.set_frame_ms(self.step_ms.or(self.frame_ms));
         let mut longest_wait = Duration::ZERO;
         if self.frame_request.as_ref() != Some(&frame_request) {
             longest_wait = if self.context.is_software() { SOFTWARE_PREVIEW_WAIT } else { PREVIEW_WAIT };

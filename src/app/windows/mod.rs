@@ -38,6 +38,8 @@ pub(crate) struct ToolScene<'a> {
     pub picture_size: [u32; 2],
     /// True when the scene is idle, so that a light volume filled now will be used.
     pub is_idle: bool,
+    /// Number of time steps of which the open volume is one; 0 if it is alone.
+    pub step_count: u32,
 }
 
 /// Request of a tool to the window.

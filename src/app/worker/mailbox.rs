@@ -73,6 +73,17 @@ pub(crate) enum RefinementHold {
     AtOnce,
 }
 
+/// Time steps that may be shown next, in the order in which they are prepared.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct UpcomingSteps {
+    /// Datasets of the steps.
+    pub(crate) datasets: Vec<Dataset>,
+    /// True if the volume is one of several time steps that are shown one after the other.
+    pub(crate) is_series: bool,
+    /// True while the series plays: steps get the light that there is time for, and otherwise that of full quality.
+    pub(crate) is_playing: bool,
+}
+
 /// Messages between the window and the render thread.
 #[derive(Default)]
 pub(crate) struct Mailbox {
@@ -80,6 +91,8 @@ pub(crate) struct Mailbox {
     /// New dataset, for the renderer of the present scene.
     pub(crate) dataset: Option<Dataset>,
     pub(crate) frame_request: Option<FrameRequest>,
+    /// Time steps that may be shown next, if others are than before.
+    pub(crate) upcoming: Option<UpcomingSteps>,
     pub(crate) closed: bool,
     /// Time budget per frame during interaction, in milliseconds; `None` for the adapter's default.
     pub(crate) frame_ms: Option<f64>,
@@ -102,6 +115,7 @@ impl Mailbox {
             || self.scene.is_some()
             || self.dataset.is_some()
             || self.frame_request.is_some()
+            || self.upcoming.is_some()
             || is_taken
     }
 }

@@ -28,6 +28,17 @@ impl MissingLightVolumes {
     pub(crate) fn new(last_full: Option<&FrameKeys>, full: &FrameKeys, sky_intensity: f64) -> Self {
         // The first look has filled all of them.
         let Some(last_full) = last_full else { return Self::NONE };
+        Self::between(last_full, full, sky_intensity)
+    }
+
+    /// Counts the light volumes of a picture of which none is filled, as of another time step.
+    pub(crate) fn all_of(full: &FrameKeys, sky_intensity: f64) -> Self {
+        let lights = full.lights.iter().map(|_| None).collect();
+        let none = FrameKeys { lights, combined: None, sky: None, bounces: None, ..full.clone() };
+        Self::between(&none, full, sky_intensity)
+    }
+
+    fn between(last_full: &FrameKeys, full: &FrameKeys, sky_intensity: f64) -> Self {
         let lights = full.count_lights_missing_in(last_full);
         let is_sky_missing = full.sky.is_some() && full.sky != last_full.sky;
         let with_open_sky = is_sky_missing && sky_intensity <= WEAK_SKY;

@@ -167,6 +167,15 @@ impl RenderSchedule {
         }
     }
 
+    /// Returns the last request, if nothing is to be drawn now.
+    pub(super) fn request_at_rest(&self) -> Option<&FrameRequest> {
+        let is_at_rest = matches!(self.due(), NextRender::OnMailboxChange)
+            && self.next_scene.is_none()
+            && self.next_dataset.is_none()
+            && !self.is_closed;
+        self.frame_request.as_ref().filter(|_| is_at_rest)
+    }
+
     /// Returns true if nothing is to be drawn, now or soon.
     pub(super) fn is_idle(&self) -> bool {
         matches!(self.due(), NextRender::OnMailboxChange)

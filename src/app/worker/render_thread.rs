@@ -10,7 +10,7 @@ use eframe::egui;
 
 use super::jobs::panic_message;
 use super::mailbox::{
-    BalanceRequest, FinishedFrame, Mailbox, RefinementHold, RenderStatistics, SharedMailbox,
+    BalanceRequest, FinishedFrame, Mailbox, RefinementHold, RenderStatistics, SharedMailbox, UpcomingSteps,
 };
 use super::render_worker::RenderWorker;
 use super::request::{FrameRequest, RenderScene};
@@ -72,6 +72,12 @@ impl RenderThread {
         let mut mailbox = self.shared.mailbox();
         (mailbox.dataset, mailbox.frame_request, mailbox.frame) = (Some(dataset), None, None);
         (mailbox.balance_request, mailbox.balance_result) = (None, None);
+        self.shared.changed.notify_one();
+    }
+
+    /// Names the time steps that may be shown next, which are prepared while nothing is to be drawn.
+    pub(crate) fn prepare_steps(&self, upcoming: UpcomingSteps) {
+        self.shared.mailbox().upcoming = Some(upcoming);
         self.shared.changed.notify_one();
     }
 

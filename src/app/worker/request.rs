@@ -99,6 +99,23 @@ pub(crate) struct RenderScene {
     pub dataset: Dataset,
 }
 
+impl RenderScene {
+    /// Returns the renderer's request for a look at a quality level.
+    pub(super) fn request(
+        &self,
+        settings: &Settings,
+        size: [u32; 2],
+        quality: QualityLevel,
+    ) -> RenderRequest {
+        RenderRequest {
+            volume: self.dataset.id(),
+            settings: quality.settings(settings, &self.dataset.volume().scene(), size),
+            size: quality.size(size),
+            preview_resolution: quality.light_resolution,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -217,3 +217,21 @@ fn bare_voxels_that_begin_like_another_format_are_read_where_they_are_described(
     }
     assert!(super::unsupported_folder(Path::new("nowhere")).is_none());
 }
+
+/// Returns the row of a format in the table of docs/FORMATS.md.
+fn documented_row(format: &super::UnsupportedFormat) -> String {
+    let name = format.description.trim_start_matches("an ").trim_start_matches("a ");
+    let mut letters = name.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    let endings: Vec<String> = format.extensions.iter().map(|ending| format!("`{ending}`")).collect();
+    let advice = format.advice.replace('|', "\\|");
+    format!("| {first}{} | {} | {advice} |", letters.as_str(), endings.join(" "))
+}
+
+#[test]
+fn the_documentation_names_every_refused_format_with_its_extensions_and_what_helps() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/FORMATS.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let missing: Vec<String> = super::all().map(documented_row).filter(|row| !text.contains(row)).collect();
+    assert!(missing.is_empty(), "docs/FORMATS.md lacks these rows:\n{}", missing.join("\n"));
+}

@@ -1,8 +1,8 @@
 //! Mapping from voxel values or labels to densities.
 
 use super::{LabelSet, Volume};
-use crate::{ValueRange, ValueRanges};
 use crate::values::samples::with_samples;
+use crate::{ValueRange, ValueRanges};
 
 /// Quantity that densities from 0 to 1 represent.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -50,6 +50,12 @@ pub(crate) enum AppCommand {
     StepChoice(ChoiceAspect, bool),
     /// Open another volume of the open file; `true` keeps the look.
     OpenChoice(Box<VolumeChoice>, bool),
+    /// Play the time steps of the open volume, or stop at the one that is shown.
+    TogglePlayback,
+    /// Show the numbered files beside the open one as time steps.
+    UseNumberedFiles,
+    /// Read the range of values of all time steps, and use it.
+    MeasureSeriesRange,
     /// Read the open volume again with another subsampling.
     Subsample(Downsampling),
     /// Cancel opening and reading files.
@@ -227,6 +233,9 @@ pub(crate) fn searchable_commands() -> Vec<AppCommand> {
         AppCommand::OpenPath,
         AppCommand::NextFile,
         AppCommand::PreviousFile,
+        AppCommand::TogglePlayback,
+        AppCommand::UseNumberedFiles,
+        AppCommand::MeasureSeriesRange,
         AppCommand::ReopenLast,
         AppCommand::SaveSettings,
         AppCommand::LoadSettings,

@@ -113,6 +113,9 @@ impl LookEditor {
 
     /// Keeps the picture as bright as without shadows, if the setting is on and no file is opened or read.
     pub(crate) fn update_balance(&mut self, is_opening: bool, ctx: &egui::Context) {
+        if self.plays_steps {
+            return self.viewport.hold_refinement(RefinementHold::AtOnce);
+        }
         let now_s = ctx.input(|input| input.time);
         let (held, busy, has_its_volume) =
             (is_user_active(ctx), self.look_tasks.balance.is_running(), !is_opening && !self.is_correcting());

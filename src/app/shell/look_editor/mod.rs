@@ -18,7 +18,7 @@ use crate::app::persistence::PersistentState;
 use crate::app::shell::messages::MessageLog;
 use crate::app::text;
 use crate::app::viewport::Viewport;
-use crate::app::windows::export::ExportScene;
+use crate::app::windows::export::{ExportScene, ReadableSeries};
 use crate::app::windows::file_dialogs;
 use crate::app::worker::request::ComparedLooks;
 use chiaroscuro_scene::{LookRecord, Settings};
@@ -34,6 +34,10 @@ pub(crate) struct LookEditor {
     pub messages: MessageLog,
     /// Tasks whose results change the look.
     pub look_tasks: LookTasks,
+    /// Time series of which the open volume is one step, if it is.
+    pub series: Option<ReadableSeries>,
+    /// True while the series plays: pictures stay previews, and nothing about the look changes automatically.
+    pub plays_steps: bool,
     /// Longest time from the first picture to the movement of its lights, in seconds.
     pub light_search_limit_s: f64,
     /// State that outlives a run.
@@ -48,6 +52,8 @@ impl LookEditor {
             viewport,
             messages: MessageLog::default(),
             look_tasks: LookTasks::default(),
+            series: None,
+            plays_steps: false,
             light_search_limit_s: SEARCH_LIMIT_S,
             memory,
         }
@@ -192,6 +198,7 @@ impl LookEditor {
             source: self.document.volume.as_ref().map_or_else(PathBuf::new, |volume| volume.source.clone()),
             selected_light: self.document.selected_light,
             outline: self.document.outline(self.viewport.dataset().as_ref()),
+            series: self.series.clone(),
         })
     }
 }

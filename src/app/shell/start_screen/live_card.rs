@@ -130,6 +130,7 @@ fn render_sweep(
         source: PathBuf::from(format!("builtin:{volume}")),
         selected_light: 0,
         outline: None,
+        series: None,
     };
     if job.token().is_cancelled() {
         return Ok(());

@@ -17,6 +17,9 @@ pub(crate) const ADD_LAYER: &str = "Add volume as layer…";
 pub(crate) const REMOVE_LAYER: &str = "Remove layer";
 pub(crate) const NEXT_FILE: &str = "Next file of the folder";
 pub(crate) const PREVIOUS_FILE: &str = "Previous file of the folder";
+pub(crate) const TOGGLE_PLAYBACK: &str = "Play or pause time steps";
+pub(crate) const USE_NUMBERED_FILES: &str = "Show numbered files as time steps";
+pub(crate) const MEASURE_SERIES_RANGE: &str = "Use the range of all time steps";
 pub(crate) const OPEN_DROPPED: &str = "Open dropped files";
 pub(crate) const OPEN_PATH: &str = "Open path…";
 /// Name of the command, and title of the submenu of built-in volumes.

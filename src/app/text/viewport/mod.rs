@@ -4,3 +4,4 @@ pub(crate) mod comparison;
 pub(crate) mod cut_handles;
 pub(crate) mod picture;
 pub(crate) mod probe;
+pub(crate) mod time_series;

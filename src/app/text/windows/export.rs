@@ -28,6 +28,14 @@ pub(crate) const TURNTABLE: ControlText =
 pub(crate) const LIGHT_TURN: ControlText =
     control_text("Light turntable", "The selected light goes once around the vertical axis");
 
+pub(crate) const TIME_SERIES: ControlText =
+    control_text("Time series", "All time steps of the open volume, one after the other");
+
+/// Number of frames of a time series.
+pub(crate) fn steps(count: u32) -> String {
+    format!("{count} time steps")
+}
+
 /// File formats of a picture, with their tooltips.
 pub(crate) const PNG: ControlText = control_text("PNG", "For papers, slides and the web");
 pub(crate) const PNG_16: ControlText = control_text(

@@ -292,6 +292,7 @@ mod tests {
             source: "builtin:sphere:8".into(),
             selected_light: 0,
             outline: None,
+            series: None,
         };
         let mut sheet = ContactSheetWindow::default();
         let ask = |sheet: &mut ContactSheetWindow, subject: Option<&ExportScene>| {

@@ -14,10 +14,11 @@ use crate::app::worker::jobs::JobProgress;
 use chiaroscuro_media::{AnimationFormat, PictureFormat, frame_names};
 use chiaroscuro_scene::{Annotations, MAX_IMAGE_EDGE, MAX_SAMPLES_PER_EDGE, PixelFormat};
 
-const EXPORT_KINDS: [(ExportKind, ControlText); 3] = [
+const EXPORT_KINDS: [(ExportKind, ControlText); 4] = [
     (ExportKind::Still, text::export::STILL),
     (ExportKind::Turntable, text::export::TURNTABLE),
     (ExportKind::LightTurntable, text::export::LIGHT_TURN),
+    (ExportKind::TimeSeries, text::export::TIME_SERIES),
 ];
 
 /// File formats of a picture, with their extensions.
@@ -41,6 +42,10 @@ const EXTENSIONS: [&str; 5] = ["png", "apng", "exr", "gif", "mp4"];
 impl SceneTool for ExportWindow {
     fn show(&mut self, ctx: &egui::Context, scene: &ToolScene<'_>) -> Option<ToolRequest> {
         let is_anatomical = scene.volume.is_some_and(|volume| volume.is_anatomical);
+        self.step_count = scene.step_count;
+        if self.step_count == 0 && self.kind == ExportKind::TimeSeries {
+            self.set_kind(ExportKind::Still);
+        }
         let mut request = None;
         let mut open = self.open;
         let tool =
@@ -51,6 +56,9 @@ impl SceneTool for ExportWindow {
         tool.show_dialog(ctx, &mut open, |ui| {
             ui.horizontal(|ui| {
                 for (kind, ControlText { name, tooltip: tip }) in EXPORT_KINDS {
+                    if kind == ExportKind::TimeSeries && self.step_count == 0 {
+                        continue;
+                    }
                     if ui.selectable_label(self.kind == kind, name).on_hover_text(tip).clicked() {
                         self.set_kind(kind);
                     }
@@ -163,7 +171,7 @@ impl ExportWindow {
     fn target_exists(&self) -> bool {
         let path = Path::new(self.path.trim());
         let is_folder = self.kind != ExportKind::Still && self.animation_format() == AnimationFormat::Folder;
-        path.is_file() || is_folder && frame_names(path, self.frames).iter().any(|name| name.exists())
+        path.is_file() || is_folder && frame_names(path, self.frame_count()).iter().any(|name| name.exists())
     }
 
     /// Asks whether the file may be replaced; returns true if the user agrees.
@@ -248,13 +256,17 @@ impl ExportWindow {
     /// Rows for the number of frames of a turntable, its frame rate and its file format.
     fn turntable_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            let field = egui::DragValue::new(&mut self.frames)
-                .range(2..=3600)
-                .suffix(text::export::TURN_PICTURES_UNIT);
-            ui.name_inputs(text::export::FRAMES, |ui| ui.add(field));
+            if self.kind == ExportKind::TimeSeries {
+                ui.label(text::export::steps(self.step_count));
+            } else {
+                let field = egui::DragValue::new(&mut self.frames)
+                    .range(2..=3600)
+                    .suffix(text::export::TURN_PICTURES_UNIT);
+                ui.name_inputs(text::export::FRAMES, |ui| ui.add(field));
+            }
             let field = egui::DragValue::new(&mut self.rate).range(1..=120).suffix(text::export::RATE_UNIT);
             ui.name_inputs(text::export::RATE, |ui| ui.add(field));
-            ui.weak(text::export::seconds(f64::from(self.frames) / f64::from(self.rate.max(1))));
+            ui.weak(text::export::seconds(f64::from(self.frame_count()) / f64::from(self.rate.max(1))));
         });
         ui.horizontal(|ui| {
             for (format, ControlText { name, tooltip: tip }, ending) in ANIMATION_FORMATS {

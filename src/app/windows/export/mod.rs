@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
-pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, settings_for_kept};
+pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, ReadableSeries, settings_for_kept};
 use crate::app::text;
 use crate::app::worker::jobs::{JobControl, JobKind, JobProgress, JobSlot};
 use chiaroscuro_media::{AnimationFormat, AnimationSpec};
@@ -27,6 +27,8 @@ enum ExportKind {
     Turntable,
     /// A turntable of the selected light.
     LightTurntable,
+    /// An animation of all time steps.
+    TimeSeries,
 }
 
 /// Progress of an export whose window is closed.
@@ -49,6 +51,8 @@ pub(crate) struct ExportWindow {
     kind: ExportKind,
     frames: u32,
     rate: u16,
+    /// Number of time steps of the open volume; 0 if it is alone.
+    step_count: u32,
     /// File that the user has agreed to replace.
     replaceable: Option<PathBuf>,
     /// True while the user is asked whether the file may be replaced.
@@ -70,6 +74,7 @@ impl Default for ExportWindow {
             kind: ExportKind::Still,
             frames: 72,
             rate: 24,
+            step_count: 0,
             replaceable: None,
             asks_to_replace: false,
             started: Instant::now(),
@@ -159,6 +164,11 @@ impl ExportWindow {
         Some(result)
     }
 
+    /// Returns the number of frames of the animation.
+    fn frame_count(&self) -> u32 {
+        if self.kind == ExportKind::TimeSeries { self.step_count } else { self.frames }
+    }
+
     /// Starts to render and write the export.
     pub(crate) fn start(&mut self, subject: ExportScene, ctx: &egui::Context) -> Result<(), String> {
         self.replaceable = None;
@@ -169,11 +179,16 @@ impl ExportWindow {
             }
             ExportKind::Turntable => None,
             ExportKind::LightTurntable => Some(subject.selected_light),
+            ExportKind::TimeSeries => None,
         };
         let transparent = image_spec.transparent && self.animation_format() != AnimationFormat::Mp4;
         let animation_spec =
-            AnimationSpec { size: image_spec.size, frames: self.frames, rate: self.rate, transparent };
+            AnimationSpec { size: image_spec.size, frames: self.frame_count(), rate: self.rate, transparent };
         let marks = image_spec.marks;
+        if self.kind == ExportKind::TimeSeries {
+            return self
+                .run(ctx, move |job| worker::export_series(&subject, (&animation_spec, marks), path, job));
+        }
         self.run(ctx, move |job| {
             worker::export_turntable(&subject, light, (&animation_spec, marks), path, job)
         })

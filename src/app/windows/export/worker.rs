@@ -15,12 +15,14 @@ use chiaroscuro_media::{
 };
 use chiaroscuro_render::{
     BandProgress, GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary,
+    downsample_to_fit,
 };
 use chiaroscuro_scene::{
     Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
 };
-use chiaroscuro_volume::{Dataset, Volume};
+use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, Volume};
+use chiaroscuro_volume_io::{LoadOptions, TimeSteps};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
@@ -43,6 +45,36 @@ pub(crate) struct ExportScene {
     pub selected_light: usize,
     /// Outline of the visible object, if it is known.
     pub outline: Option<Arc<ObjectOutline>>,
+    /// Time series of which the open volume is one step, if it is.
+    pub series: Option<ReadableSeries>,
+}
+
+/// Time steps, with what is needed to read them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReadableSeries {
+    /// Steps, one of which is open.
+    pub steps: Arc<TimeSteps>,
+    /// Options by which the open one was read.
+    pub options: LoadOptions,
+}
+
+impl ReadableSeries {
+    /// Reads a step, with the look of the one that is shown, and averaged as that one if it had to be.
+    pub(crate) fn read(
+        &self,
+        index: usize,
+        shown: &Dataset,
+        (context, token): (&GpuContext, &CancelToken),
+    ) -> Result<Dataset, String> {
+        let control = LoadControl::with_token(token.clone());
+        let is_averaged = shown.volume().dims() != shown.volume().file_dims();
+        let fit = |volume: Volume| {
+            let fitting = is_averaged.then(|| downsample_to_fit(context, volume.clone()));
+            fitting.and_then(Result::ok).unwrap_or(volume)
+        };
+        let read = self.steps.open_like(index, shown, (&self.options, &control), &fit);
+        read.map_err(|err| err.to_string())
+    }
 }
 
 /// Outcome of an export that did not fail.
@@ -181,6 +213,36 @@ pub(crate) fn export_still(
     };
     write_picture(&path, image_spec, Some(&record), &mut rows)
         .map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
+}
+
+/// Renders and writes an animation of all time steps.
+pub(crate) fn export_series(
+    subject: &ExportScene,
+    (animation_spec, marks): (&AnimationSpec, Annotations),
+    path: PathBuf,
+    job: &JobControl,
+) -> Result<ExportOutcome, String> {
+    let Some(series) = &subject.series else { return Err(text::time_series::NO_SERIES.to_owned()) };
+    let mut worker = ExportWorker::new(subject)?;
+    let folder = AnimationFormat::record_folder(&path);
+    let image_spec =
+        ImageSpec { transparent: animation_spec.transparent, marks, ..ImageSpec::new(animation_spec.size) };
+    let mut write = || {
+        let mut file = Animation::create(&path, animation_spec)?;
+        for step in 0..animation_spec.frames {
+            report_progress(job, step, animation_spec.frames)?;
+            let index = step as usize;
+            let read = series.read(index, &subject.dataset, (&subject.context, job.token()));
+            let dataset = read.map_err(ExportEnd::Failed)?;
+            let subject =
+                ExportScene { dataset, source: series.steps.path(index).to_owned(), ..subject.clone() };
+            let shown = worker.render(&subject, &subject.settings, &image_spec).map_err(ExportEnd::Failed)?;
+            file.add(&shown, &worker.picture_record(&subject, &subject.settings, &image_spec, folder))?;
+        }
+        file.finish()?;
+        Ok(())
+    };
+    write().map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
 }
 
 /// Renders and writes an animation, in which a light or else the camera turns once around.

@@ -22,6 +22,8 @@ pub(crate) enum JobKind {
     ReadFile,
     SavedThumbnails,
     SceneCard,
+    SeriesRange,
+    TimeStep,
     VolumeThumbnail,
     WarmUp,
 }
@@ -49,6 +51,8 @@ impl JobKind {
             Self::ReadFile => "file",
             Self::SavedThumbnails => "kept",
             Self::SceneCard => "scene-card",
+            Self::SeriesRange => "series-range",
+            Self::TimeStep => "time-step",
             Self::VolumeThumbnail => "preview",
             Self::WarmUp => "warm-up",
         }

@@ -4,11 +4,14 @@
 //! moment, and antialiased edges after another one. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
 //! something else is requested.
 
+mod preparation;
+
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+use self::preparation::StepPreparation;
 use super::brightness::BrightnessTracker;
 use super::difference::PictureDifference;
 use super::mailbox::{BalanceRequest, FinishedFrame, RenderStatistics, SharedMailbox};
@@ -56,6 +59,7 @@ pub(super) struct RenderWorker {
     /// Last request that was rendered at full quality: its light volumes are probably still cached.
     last_full_request: Option<(RenderRequest, FrameKeys)>,
     last_progress: Instant,
+    preparation: StepPreparation,
 }
 
 impl RenderWorker {
@@ -69,6 +73,7 @@ impl RenderWorker {
             scene: None,
             last_full_request: None,
             last_progress: Instant::now(),
+            preparation: StepPreparation::default(),
         }
     }
 
@@ -82,8 +87,12 @@ impl RenderWorker {
                 scene.renderer.drop_all();
                 self.last_full_request = None;
             }
+            // Without the memory of the steps that were prepared, the picture may succeed.
+            let is_tried_again = result.is_err() && !lost && self.stop_preparing(&mut scene);
             self.scene = Some(scene);
-            if let Err(err) = result {
+            if let Err(err) = result
+                && !is_tried_again
+            {
                 self.agenda.mark_failed();
                 self.report(err);
                 if lost {
@@ -105,6 +114,7 @@ impl RenderWorker {
                 self.controller.reset();
                 self.brightness.reset();
                 self.last_full_request = None;
+                self.preparation = StepPreparation::default();
                 self.scene = Some(scene);
             }
             if let Some(dataset) = self.agenda.take_dataset()
@@ -115,6 +125,7 @@ impl RenderWorker {
                 scene.dataset = dataset;
             }
             self.measure_balance();
+            self.prepare_upcoming();
             let due = if self.scene.is_some() { self.agenda.due() } else { NextRender::OnMailboxChange };
             let rest = match due {
                 NextRender::Now(purpose, frame_request) => {
@@ -164,6 +175,9 @@ impl RenderWorker {
                 RenderStatistics { gpu_bytes: scene.renderer.gpu_bytes(), ..RenderStatistics::default() };
         }
         self.agenda.read(&mut mailbox);
+        if let Some(upcoming) = mailbox.upcoming.take() {
+            self.preparation = StepPreparation::new(upcoming);
+        }
         self.controller.set_frame_ms(mailbox.frame_ms);
     }
 
@@ -198,7 +212,7 @@ impl RenderWorker {
         let FrameRequest { looks, size, .. } = frame_request;
         for quality in [frame_request.final_quality(), QualityLevel::FULL] {
             let is_drawn = |settings: &Settings| {
-                let request = renderer_request(scene, settings, *size, quality);
+                let request = scene.request(settings, *size, quality);
                 scene.renderer.is_drawn(&request, &self.options(quality, settings))
             };
             if is_drawn(&looks.left) && looks.right.as_ref().is_none_or(is_drawn) {
@@ -210,7 +224,11 @@ impl RenderWorker {
         let pixels = if looks.right.is_some() { [2 * width, height] } else { *size };
         let last_full_keys = self.last_full_request.as_ref().map(|(_, keys)| keys);
         let sky_intensity = looks.left.sky.intensity;
-        let missing = MissingLightVolumes::new(last_full_keys, frame_request.keys(), sky_intensity);
+        let missing = if last_full_keys.is_none() && self.lacks_light_of_step(scene, frame_request) {
+            MissingLightVolumes::all_of(frame_request.keys(), sky_intensity)
+        } else {
+            MissingLightVolumes::new(last_full_keys, frame_request.keys(), sky_intensity)
+        };
         self.controller.preview_level(pixels, missing)
     }
 
@@ -234,7 +252,7 @@ impl RenderWorker {
         is_left: bool,
     ) -> Result<Option<RenderedLook>, GpuError> {
         let RenderTask { frame_request, purpose, quality } = task;
-        let request = renderer_request(scene, settings, frame_request.size, *quality);
+        let request = scene.request(settings, frame_request.size, *quality);
         let mut options = self.options(*quality, settings);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
@@ -374,21 +392,5 @@ impl RenderWorker {
         self.shared.mailbox().error = Some(err);
         self.shared.finished.notify_one();
         self.ctx.request_repaint();
-    }
-}
-
-/// Returns the renderer's request for a look at a quality level.
-fn renderer_request(
-    scene: &RenderScene,
-    settings: &Settings,
-    size: [u32; 2],
-    quality: QualityLevel,
-) -> RenderRequest {
-    let volume = scene.dataset.volume();
-    RenderRequest {
-        volume: scene.dataset.id(),
-        settings: quality.settings(settings, &volume.scene(), size),
-        size: quality.size(size),
-        preview_resolution: quality.light_resolution,
     }
 }

@@ -1,5 +1,7 @@
 //! Tests of volumes that are shown with the open one as layers.
 
+mod removal;
+
 use std::path::Path;
 use std::sync::Arc;
 

@@ -8,7 +8,7 @@ use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use super::volume_choice::write_npy;
+use crate::files::volume_choice::write_npy;
 use crate::harness::{adjusted_window, block_file_tasks, click, picture, wait_until, wait_until_idle};
 
 /// Names of the volumes, in the order in which they are opened.
