@@ -6,7 +6,7 @@ use chiaroscuro_files::WriteError;
 use chiaroscuro_media::{EnvironmentMapError, ExportError, ReadPictureError};
 use chiaroscuro_render::GpuError;
 use chiaroscuro_scene::PresetError;
-use chiaroscuro_volume::{AddFieldError, LoadError, LoadErrorKind};
+use chiaroscuro_volume::{AddFieldError, LoadError, LoadErrorKind, StepError};
 
 /// Reason for the failure of a command.
 #[derive(Debug, thiserror::Error)]
@@ -76,6 +76,17 @@ pub enum CliError {
         /// Reason why it is not.
         source: AddFieldError,
     },
+    /// A time step of a series could not be read or shown.
+    #[error("time step {step}: {source}")]
+    TimeStep {
+        /// Number of the step in the series, from 0, and its name if it has one.
+        step: String,
+        /// Cause of the failure.
+        source: Box<Self>,
+    },
+    /// A time step does not go together with the volumes that are shown.
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// Corrections would leave no valid volume.
     #[error("{path} could not be corrected ({by}): {why}; choose other values of `volume.…`")]
     InvalidCorrection {
@@ -119,7 +130,9 @@ impl CliError {
             | Self::Replay { .. }
             | Self::UntrustedVolumePath { .. }
             | Self::InvalidCorrection { .. }
+            | Self::Step(_)
             | Self::Layer { .. } => 3,
+            Self::TimeStep { source, .. } => source.exit_code(),
             // Regions are only ever given on the command line.
             Self::Load(err) if err.is_about("--region") => 2,
             Self::Load(err) => match err.kind() {

@@ -1,6 +1,7 @@
 //! Command line: arguments become the same [`Settings`](chiaroscuro_scene::Settings) and go to the same renderer as
 //! in the window.
 
+mod animation;
 mod bench;
 mod compare;
 mod convert;
@@ -14,7 +15,6 @@ mod process;
 mod render;
 mod replay;
 mod scene;
-mod turntable;
 
 use std::path::{Path, PathBuf};
 
@@ -100,7 +100,9 @@ enum CliCommand {
     /// Render a picture to a PNG or EXR file
     Render(render::RenderArgs),
     /// Render an animation of one turn of the camera or of a light
-    Turntable(turntable::TurntableArgs),
+    Turntable(animation::TurntableArgs),
+    /// Render an animation of the time steps of a volume
+    TimeSeries(animation::TimeSeriesArgs),
     /// Render an exported picture again from its embedded settings, and compare the two
     Replay(replay::ReplayArgs),
     /// Render several looks side by side, and print the distance of each from the first
@@ -161,7 +163,8 @@ pub fn main(open_window: impl FnOnce(ViewerRequest) -> Result<(), CliError>) -> 
     process::listen_for_signals(TERMINATION_ACTIONS);
     let result = process::start_thread_pool().and_then(|()| match args.command {
         Some(CliCommand::Render(args)) => render::run(&args),
-        Some(CliCommand::Turntable(args)) => turntable::run(&args),
+        Some(CliCommand::Turntable(args)) => animation::run_turntable(&args),
+        Some(CliCommand::TimeSeries(args)) => animation::run_time_series(&args),
         Some(CliCommand::Replay(args)) => replay::run(&args),
         Some(CliCommand::Compare(args)) => compare::run(&args),
         Some(CliCommand::LightVolume(args)) => light_volume::run(&args),

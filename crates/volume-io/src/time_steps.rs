@@ -164,6 +164,12 @@ impl TimeSteps {
         }
     }
 
+    /// Returns the indices of at most `most` steps, which are spread evenly and include the first and the last.
+    pub fn spread_indices(&self, most: usize) -> impl ExactSizeIterator<Item = usize> + use<> {
+        let (last, count) = (self.count() - 1, self.count().min(most.max(2)));
+        (0..count).map(move |at| at * last / (count - 1))
+    }
+
     /// Returns the ranges of values of all steps: of at most `most` of them, which are spread evenly and include the first
     /// and the last. `progress` is called with the number of steps that are done, and their total.
     ///
@@ -176,12 +182,13 @@ impl TimeSteps {
         control: &LoadControl,
         mut progress: impl FnMut(usize, usize),
     ) -> Result<ValueRanges, LoadError> {
-        let (last, count) = (self.count() - 1, self.count().min(most.max(2)));
+        let indices = self.spread_indices(most);
+        let count = indices.len();
         let mut all: Option<ValueRanges> = None;
-        for at in 0..count {
-            let own = self.open(at * last / (count - 1), options, control)?.ranges();
+        for (done, index) in indices.enumerate() {
+            let own = self.open(index, options, control)?.ranges();
             all = Some(all.map_or(own, |all| all.union(own)));
-            progress(at + 1, count);
+            progress(done + 1, count);
         }
         Ok(all.unwrap_or(ValueRanges::UNIT))
     }
@@ -266,6 +273,7 @@ mod tests {
         let all = steps.ranges(9, &options, &control, |done, of| counts.push((done, of))).unwrap();
         assert_eq!((all.all.low, all.all.high), (10.0, 31.0));
         assert_eq!(counts, [(1, 3), (2, 3), (3, 3)]);
+        assert_eq!(steps.spread_indices(2).collect::<Vec<_>>(), [0, 2]);
         assert!(
             TimeSteps::from_numbered_files(&folder.path().join("u1.nrrd"), VolumeChoice::default()).is_none()
         );

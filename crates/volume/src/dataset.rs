@@ -79,6 +79,16 @@ impl DatasetField {
         }
     }
 
+    /// Counts as having other ranges of values; densities represent the robust one, unless they represent labels.
+    fn with_ranges(&self, ranges: ValueRanges) -> Self {
+        let volume = self.volume.as_ref().clone().with_ranges(ranges);
+        let shown = match volume.density_mapping() {
+            DensityMapping::Range(_) => DensityMapping::Range(ranges.robust),
+            DensityMapping::Labels => DensityMapping::Labels,
+        };
+        Self { volume: Arc::new(volume), ..self.clone() }.with_density_mapping(shown)
+    }
+
     /// Hides voxels by a mask, with the cells that are left.
     fn with_mask(&self, mask: Option<&Arc<VoxelMask>>) -> Self {
         if self.volume.mask().is_none() && mask.is_none() {
@@ -218,15 +228,16 @@ impl Dataset {
     /// the robust one, unless they represent labels.
     #[must_use]
     pub fn with_ranges(&self, ranges: ValueRanges) -> Self {
-        let field = self.field();
-        let volume = field.volume().as_ref().clone().with_ranges(ranges);
-        let first = DatasetField { volume: Arc::new(volume), ..field.clone() };
-        let shown = match field.volume().density_mapping() {
-            DensityMapping::Range(_) => DensityMapping::Range(ranges.robust),
-            DensityMapping::Labels => DensityMapping::Labels,
+        self.with_ranges_of(0, ranges)
+    }
+
+    /// Returns the dataset with other ranges of values of the field with this index, as [`Self::with_ranges`] does.
+    #[must_use]
+    pub fn with_ranges_of(&self, index: usize, ranges: ValueRanges) -> Self {
+        let changed = |(at, field): (usize, &DatasetField)| {
+            if at == index { field.with_ranges(ranges) } else { field.clone() }
         };
-        let first = first.with_density_mapping(shown);
-        Self { fields: std::iter::once(first).chain(self.fields[1..].iter().cloned()).collect() }
+        Self { fields: self.fields.iter().enumerate().map(changed).collect() }
     }
 
     /// Creates a dataset of volumes on one grid, the first of which is the one of the scene; at most [`MAX_FIELDS`] of
@@ -364,5 +375,9 @@ mod tests {
         assert_eq!(back.id(), shown.id());
         let bright = ValueRanges::without_outliers(crate::ValueRange::new(0.0, 504.0));
         assert_eq!(shown.with_ranges(bright).volume().density_of(252.0), 0.5);
+        let second = shown.with_ranges_of(1, bright);
+        assert_eq!(second.fields()[1].volume().density_of(126.0), 0.25);
+        assert_eq!(second.volume().ranges(), shown.volume().ranges(), "those of the other fields stay");
+        assert_eq!(second.further_origins().count(), 2);
     }
 }

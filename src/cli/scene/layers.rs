@@ -7,7 +7,7 @@ use super::open_with_size_warning;
 use crate::cli::CliError;
 use chiaroscuro_scene::{Settings, set_value};
 use chiaroscuro_volume::{
-    Dataset, FileContents, FileDimension, MAX_FIELDS, VolumeAlternatives, VolumeChoice,
+    Dataset, FileContents, FileDimension, MAX_FIELDS, Volume, VolumeAlternatives, VolumeChoice,
 };
 use chiaroscuro_volume_io::LoadOptions;
 
@@ -62,6 +62,15 @@ impl LayerArg {
         &self.source
     }
 
+    /// Returns the layer with the time step of an opened volume, if it is of the same file and names none itself.
+    pub(super) fn at_step_of(&self, source: &Path, opened: &Volume) -> Self {
+        let mut layer = self.clone();
+        if layer.choice.frame.is_none() && is_same_file(&layer.source, source) {
+            layer.choice.frame = opened.contents().choice().frame;
+        }
+        layer
+    }
+
     /// Applies the settings of the layer, which is the one at `index`.
     pub(super) fn apply_to(&self, settings: Settings, index: usize) -> Result<Settings, CliError> {
         self.settings.iter().try_fold(settings, |settings, (key, value)| {
@@ -71,14 +80,32 @@ impl LayerArg {
     }
 }
 
+/// Time steps of a file that one picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ShownSteps {
+    /// Few steps are shown together, as channels are.
+    Several,
+    /// One step is shown, as a frame of an animation does.
+    One,
+}
+
+/// Returns true if two paths lead to the same file.
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
 /// Opens the volumes of layers, and adds them to a dataset.
 pub(super) fn with_layers(dataset: Dataset, layers: &[LayerArg]) -> Result<Dataset, CliError> {
     layers.iter().try_fold(dataset, |dataset, layer| add_layer(&dataset, &layer.source, &layer.choice))
 }
 
-/// Adds the channels of a file that are not shown to a dataset, the components of its voxels, or its few time steps, as
-/// far as there is room.
-pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Dataset, CliError> {
+/// Adds the channels of a file that are not shown to a dataset, the components of its voxels, or its few time steps if
+/// several of them are shown, as far as there is room.
+pub(super) fn with_all_channels(
+    source: &Path,
+    dataset: &Dataset,
+    steps: ShownSteps,
+) -> Result<Dataset, CliError> {
     let held = dataset.volume().contents();
     let unmatched = held.alternatives.iter().find_map(|several| {
         several.unmatched_selection.as_ref().map(|said| (several.dimension.option(), said))
@@ -87,7 +114,7 @@ pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Data
         let why = format!("{option}: {} has no {said:?}", source.display());
         return Err(CliError::Usage(why));
     }
-    let choices = other_channels(held);
+    let choices = other_channels(held, steps);
     if choices.is_empty() {
         let why = format!("--all-channels: {} has a single channel; leave this option out", source.display());
         return Err(CliError::Usage(why));
@@ -97,8 +124,9 @@ pub(super) fn with_all_channels(source: &Path, dataset: &Dataset) -> Result<Data
     rest.clone().try_fold(first, |dataset, choice| add_layer(&dataset, source, choice))
 }
 
-/// Returns the choices of the channels that are not shown, or else of the components, or else of the time steps.
-fn other_channels(held: &FileContents) -> Vec<VolumeChoice> {
+/// Returns the choices of the channels that are not shown, or else of the components, or else of the time steps that
+/// are shown together.
+fn other_channels(held: &FileContents, steps: ShownSteps) -> Vec<VolumeChoice> {
     let shown = held.choice();
     let others_in = |several: &VolumeAlternatives| {
         let others = several.offers.iter().enumerate().filter(|(at, _)| *at != several.selected);
@@ -110,7 +138,7 @@ fn other_channels(held: &FileContents) -> Vec<VolumeChoice> {
         let others = (0..components.count).filter(|at| Some(*at) != components.selected);
         others.map(|at| VolumeChoice { component: Some(at), ..shown.clone() }).collect()
     } else {
-        let frames = held.alternatives_in(FileDimension::Frame);
+        let frames = held.alternatives_in(FileDimension::Frame).filter(|_| steps == ShownSteps::Several);
         frames.filter(|frames| frames.offers.len() <= MAX_FIELDS).map_or_else(Vec::new, others_in)
     }
 }

@@ -9,7 +9,9 @@ use super::{downsampled_to_fit, open_with_size_warning};
 use crate::cli::CliError;
 use crate::cli::process::StageTimes;
 use chiaroscuro_render::{GpuContext, OpeningTimes};
-use chiaroscuro_volume::{Downsampling, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType};
+use chiaroscuro_volume::{
+    Downsampling, FileDimension, LoadError, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType,
+};
 use chiaroscuro_volume_io::{Endian, LoadOptions, RawFormat};
 
 /// Arguments for reading a volume.
@@ -128,6 +130,29 @@ impl LoadArgs {
         choice: Option<&VolumeChoice>,
         times: &mut StageTimes,
     ) -> Result<(Volume, GpuContext), CliError> {
+        self.open_by(source, choice, times, |options| Ok(open_with_size_warning(source, options)?))
+    }
+
+    /// Loads like [`Self::open`], and of a file that holds several time steps the one with this number, unless the
+    /// arguments name another.
+    pub(crate) fn open_step(
+        &self,
+        source: &Path,
+        choice: Option<&VolumeChoice>,
+        step: usize,
+    ) -> Result<(Volume, GpuContext), CliError> {
+        let read = |options: &LoadOptions| read_step(source, options, step);
+        self.open_by(source, choice, &mut StageTimes::from_now(), read)
+    }
+
+    /// Loads a volume by a function, and opens the adapter beside it.
+    fn open_by(
+        &self,
+        source: &Path,
+        choice: Option<&VolumeChoice>,
+        times: &mut StageTimes,
+        read: impl FnOnce(&LoadOptions) -> Result<Volume, CliError>,
+    ) -> Result<(Volume, GpuContext), CliError> {
         let mut options = self.load_options()?;
         if let Some(choice) = choice {
             options.choice = options.choice.with_fallback(choice);
@@ -138,7 +163,7 @@ impl LoadArgs {
         let begin = Instant::now();
         let (whole, read_ms, context) = std::thread::scope(|scope| {
             let context = scope.spawn(|| GpuContext::headless_on(self.adapter));
-            let whole = open_with_size_warning(source, &options);
+            let whole = read(&options);
             let read_ms = begin.elapsed().as_secs_f64() * 1000.0;
             (whole, read_ms, context.join())
         });
@@ -149,6 +174,36 @@ impl LoadArgs {
         times.add_parallel("instance", instance_ms);
         times.add_parallel("device", device_ms);
         Ok((downsampled_to_fit(source, whole, &context)?, context))
+    }
+}
+
+/// Reads the time step with this number of a file that holds several, unless the options select one.
+fn read_step(source: &Path, options: &LoadOptions, step: usize) -> Result<Volume, CliError> {
+    if options.choice.frame.is_some() {
+        return Ok(open_with_size_warning(source, options)?);
+    }
+    let mut options = options.clone();
+    if options.choice.fall_back_to_first {
+        // Readers do not ask then.
+        options.choice.frame = Some(step);
+    }
+    let missing = |count: usize| {
+        let (path, last) = (source.display(), count.saturating_sub(1));
+        CliError::Usage(format!(
+            "--steps: {path} holds the time steps 0 to {last}, and there is no step {step}; give steps among them"
+        ))
+    };
+    let volume = match open_with_size_warning(source, &options) {
+        Err(LoadError::Several { dimension: FileDimension::Frame, offers, .. }) => {
+            let offer = offers.get(step).ok_or_else(|| missing(offers.len()))?;
+            options.choice = options.choice.with_selected(FileDimension::Frame, &offer.key);
+            open_with_size_warning(source, &options)?
+        }
+        read => read?,
+    };
+    match volume.contents().alternatives_in(FileDimension::Frame) {
+        Some(steps) if steps.unmatched_selection.is_some() => Err(missing(steps.offers.len())),
+        _ => Ok(volume),
     }
 }
 

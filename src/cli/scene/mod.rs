@@ -18,8 +18,8 @@ pub(super) use self::corrections::{apply_command_line_corrections, apply_correct
 pub(super) use self::decompression_warning::{
     control_with_size_warning, open_for_overview, open_with_size_warning,
 };
-pub(super) use self::layers::add_layer;
-use self::layers::{LayerArg, with_all_channels, with_layers};
+use self::layers::{LayerArg, ShownSteps, with_all_channels, with_layers};
+pub(super) use self::layers::{add_layer, is_same_file};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
 pub(super) use self::look::SceneLook;
 use self::look::{OverriddenParts, SuggestedLook, suggested_look};
@@ -36,7 +36,7 @@ use chiaroscuro_scene::{
     set_value,
 };
 use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume, VolumeChoice};
-use chiaroscuro_volume_io::open;
+use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Path of the setting for the floor's height.
 const FLOOR_HEIGHT: &str = "floor.height";
@@ -151,7 +151,21 @@ impl SceneArgs {
     pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
         let (volume, context) = self.look.load.open(&self.file, self.look.first_choice().as_ref(), times)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
-        Ok((self.look.with_layers(&self.file, dataset)?, context))
+        Ok((self.look.with_layers(&self.file, dataset, ShownSteps::Several)?, context))
+    }
+
+    /// Loads like [`Self::load`], and of a file that holds several time steps the one with this number, unless the
+    /// arguments name another.
+    pub(super) fn load_step(&self, step: usize) -> Result<(Dataset, GpuContext), CliError> {
+        let first = self.look.first_choice();
+        let (volume, context) = self.look.load.open_step(&self.file, first.as_ref(), step)?;
+        let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
+        Ok((self.look.with_layers(&self.file, dataset, ShownSteps::One)?, context))
+    }
+
+    /// Returns the options with which the volume is read.
+    pub(super) fn load_options(&self) -> Result<LoadOptions, CliError> {
+        self.look.load.load_options()
     }
 
     /// Path or built-in name of the volume.
@@ -162,11 +176,20 @@ impl SceneArgs {
     /// Rejects outputs that would replace an input, another output or, without `--force`, a file that this program
     /// has not made.
     pub(super) fn keep_apart(&self, outputs: &[&Path]) -> Result<(), CliError> {
+        self.keep_apart_from([], outputs)
+    }
+
+    /// Rejects outputs as [`Self::keep_apart`] does, also those that would replace a `further` input.
+    pub(super) fn keep_apart_from<'p>(
+        &'p self,
+        further: impl IntoIterator<Item = &'p Path>,
+        outputs: &[&Path],
+    ) -> Result<(), CliError> {
         let LookArgs { preset, session, surroundings, .. } = &self.look;
         let named = [preset, session, surroundings].map(|path| path.as_deref());
         let layers = self.look.layers.iter().map(|layer| Some(layer.source()));
-        let inputs = named.into_iter().chain([Some(self.file.as_path())]).chain(layers);
-        check_overwrites(&inputs.flatten().collect::<Vec<_>>(), outputs, self.force)
+        let inputs = named.into_iter().chain([Some(self.file.as_path())]).chain(layers).flatten();
+        check_overwrites(&inputs.chain(further).collect::<Vec<_>>(), outputs, self.force)
     }
 
     /// Applies the arguments of the look to the automatic look.
@@ -196,13 +219,21 @@ impl LookArgs {
         context: &GpuContext,
     ) -> Result<Dataset, CliError> {
         let volume = downsampled_to_fit(source, whole, context)?;
-        self.with_layers(source, dataset_with_warning(self.corrected(source, volume)?))
+        let dataset = dataset_with_warning(self.corrected(source, volume)?);
+        self.with_layers(source, dataset, ShownSteps::Several)
     }
 
     /// Adds the other channels of a file, if they are wanted, and the volumes of further layers.
-    fn with_layers(&self, source: &Path, dataset: Dataset) -> Result<Dataset, CliError> {
-        let dataset = if self.all_channels { with_all_channels(source, &dataset)? } else { dataset };
-        with_layers(dataset, &self.layers)
+    fn with_layers(&self, source: &Path, dataset: Dataset, steps: ShownSteps) -> Result<Dataset, CliError> {
+        let dataset = if self.all_channels { with_all_channels(source, &dataset, steps)? } else { dataset };
+        match steps {
+            ShownSteps::Several => with_layers(dataset, &self.layers),
+            ShownSteps::One => {
+                let layers: Vec<_> =
+                    self.layers.iter().map(|layer| layer.at_step_of(source, dataset.volume())).collect();
+                with_layers(dataset, &layers)
+            }
+        }
     }
 
     /// Returns the preset and the session that the arguments name; the later one takes precedence.

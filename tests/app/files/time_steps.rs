@@ -121,8 +121,11 @@ fn the_range_of_all_steps_is_used_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window_of(&write_steps(folder.path()), None);
     assert_eq!(harness.state().ranges().unwrap().all.high, 100.0);
+    let highest = |app: &App| app.settings().layer().transfer.points.last().unwrap().value;
+    let before = highest(harness.state());
     go(&mut harness, "Range of all steps");
     assert_eq!(harness.state().ranges().unwrap().all.high, 180.0);
+    assert!(highest(harness.state()) > 1.5 * before, "the curve reaches up to the brightest step");
     go(&mut harness, FORWARD);
     assert_eq!(harness.state().ranges().unwrap().all.high, 180.0, "of every step");
 }

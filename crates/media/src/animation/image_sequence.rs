@@ -30,7 +30,7 @@ impl FrameFolder {
     /// When the folder cannot be made, or contains the frames of a longer animation.
     pub fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
         if path.join(frame_name(animation_spec.frames)).exists() {
-            let what = "the folder contains the frames of a longer turntable; choose another folder";
+            let what = "the folder contains the frames of a longer animation; choose another folder";
             return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
         make_folder(path).map_err(ExportError::io_error_for(path))?;

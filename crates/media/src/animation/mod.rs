@@ -91,7 +91,7 @@ impl Animation {
     pub fn create(path: &Path, animation_spec: &AnimationSpec) -> Result<Self, ExportError> {
         let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase).unwrap_or_default();
         if UNSUPPORTED_EXTENSIONS.iter().any(|other| ending == *other) {
-            let what = "turntables are written as .png, .gif, .mp4 or into a folder";
+            let what = "animations are written as .png, .gif, .mp4 or into a folder";
             return Err(ExportError::UnsupportedByFormat { what, path: path.to_owned() });
         }
         let encoder = Self::encoder(path, animation_spec).map_err(ExportError::with_path(path))?;

@@ -145,6 +145,17 @@ impl TransferFunction {
         }
     }
 
+    /// Moves all points along the value axis, so that those of one range of values come to lie in another.
+    pub fn map_range(&mut self, from: ValueRange, to: ValueRange) {
+        let stretch = to.span() / from.span();
+        if !stretch.is_finite() || stretch <= 0.0 {
+            return;
+        }
+        for point in &mut self.points {
+            point.value = to.low + (point.value - from.low) * stretch;
+        }
+    }
+
     /// Moves all points along the value axis, and scales their distances from the middle.
     pub fn shift_and_stretch(&mut self, shift: f64, stretch: f64) {
         let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return };
@@ -219,6 +230,11 @@ mod tests {
         function.mirror();
         assert_eq!(function.points[0].opacity, 0.9);
         function.mirror();
+        function.map_range(ValueRange::new(0.0, 300.0), ValueRange::new(10.0, 610.0));
+        assert_eq!(function.points[2].value, 410.0);
+        function.map_range(ValueRange::new(10.0, 610.0), ValueRange::new(0.0, 300.0));
+        function.map_range(ValueRange::new(1.0, 1.0), ValueRange::new(0.0, 300.0));
+        assert_eq!(function, ramp(), "a range without values is none");
         function.shift_and_stretch(20.0, 2.0);
         assert_eq!(function.points[0].value, 150.0 - 300.0 + 20.0);
         function.shift_and_stretch(-20.0, 1.0);

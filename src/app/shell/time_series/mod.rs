@@ -327,6 +327,8 @@ impl TimeSeries {
             Some(Ok(ranges)) => {
                 let dataset = shown.with_ranges(ranges.union(shown.volume().ranges()));
                 let range = dataset.volume().ranges().all;
+                let (from, to) = (shown.volume().ranges().robust, dataset.volume().ranges().robust);
+                editor.document.settings.layer_mut().map_range(from, to);
                 editor.messages.note(text::time_series::range_used(steps.count(), range));
                 if let Some(facts) = &mut editor.document.volume {
                     facts.update(&dataset);

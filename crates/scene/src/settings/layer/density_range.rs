@@ -58,6 +58,13 @@ impl Settings {
 }
 
 impl VolumeLayer {
+    /// Moves the curves, so that they show of the values of one range what they have shown of another; the looks of labels
+    /// and of materials stay.
+    pub fn map_range(&mut self, from: ValueRange, to: ValueRange) {
+        self.transfer.map_range(from, to);
+        self.lighting.curve.map_range(from, to);
+    }
+
     /// Returns the values with densities 0 and 1 of a field with these value ranges, in which a surface may be shown
     /// at an isovalue.
     pub fn shown_range(&self, ranges: &ValueRanges, isovalue: Option<f64>) -> ValueRange {

@@ -1,4 +1,4 @@
-//! Selection of some frames of a turn, which several programs draw beside each other.
+//! Selection of some frames of an animation, which several programs draw beside each other.
 
 use std::ops::Range;
 use std::path::Path;
@@ -10,14 +10,14 @@ use chiaroscuro_media::{read_picture, read_record};
 /// Largest number of parts: one program for each frame of the longest turn.
 const MAX_PARTS: u32 = 3600;
 
-/// Part of a turn: number `number` of `count`.
+/// Part of an animation: number `number` of `count`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct TurntablePart {
+pub(super) struct AnimationPart {
     number: u32,
     count: u32,
 }
 
-impl FromStr for TurntablePart {
+impl FromStr for AnimationPart {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -47,12 +47,29 @@ impl FromStr for FrameRange {
         if first <= last {
             Ok(Self { first, last })
         } else {
-            Err("the first frame is after the last".to_owned())
+            Err("the first number is after the last".to_owned())
         }
     }
 }
 
-/// Frames of a turn that are drawn.
+impl FrameRange {
+    /// Returns the first number.
+    pub(super) fn first(self) -> u32 {
+        self.first
+    }
+
+    /// Returns the last number, which belongs to the range.
+    pub(super) fn last(self) -> u32 {
+        self.last
+    }
+
+    /// Returns the numbers; `None` if there are only `count`, which end before the last.
+    pub(super) fn within(self, count: u32) -> Option<Range<u32>> {
+        (self.last < count).then_some(self.first..self.last + 1)
+    }
+}
+
+/// Frames of an animation that are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FrameSelection {
     first: u32,
@@ -60,29 +77,28 @@ pub(super) struct FrameSelection {
 }
 
 impl FrameSelection {
-    /// Creates the selection of a part or a range of a turn of so many frames; `None` if all are drawn.
+    /// Creates the selection of a part or a range of an animation of so many frames; `None` if all are drawn.
     ///
     /// # Errors
-    /// Returns an error if the range ends after the turn.
+    /// Returns an error if the range ends after the animation.
     pub(super) fn from_args(
-        part: Option<TurntablePart>,
+        part: Option<AnimationPart>,
         only: Option<FrameRange>,
         frames: u32,
     ) -> Result<Option<Self>, CliError> {
-        if let Some(FrameRange { first, last }) = only {
-            if last >= frames {
-                let range = format!(
-                    "--only: frames are numbered from 0 to {}, and there is no frame {last}",
-                    frames - 1
-                );
-                return Err(CliError::Usage(range));
-            }
-            return Ok(Some(Self { first, end: last + 1 }));
+        if let Some(range) = only {
+            let Some(Range { start, end }) = range.within(frames) else {
+                let (last, missing) = (frames - 1, range.last);
+                return Err(CliError::Usage(format!(
+                    "--only: frames are numbered from 0 to {last}, and there is no frame {missing}"
+                )));
+            };
+            return Ok(Some(Self { first: start, end }));
         }
         // Parts that differ by a frame at most; those of more programs than frames may be empty.
         let begin =
             |number: u32, count: u32| (u64::from(number) * u64::from(frames) / u64::from(count)) as u32;
-        Ok(part.map(|TurntablePart { number, count }| Self {
+        Ok(part.map(|AnimationPart { number, count }| Self {
             first: begin(number - 1, count),
             end: begin(number, count),
         }))
@@ -122,7 +138,7 @@ mod tests {
             assert!(parts.iter().copied().eq(0..frames), "{count} of {frames}: {parts:?}");
         }
         for wrong in ["0/4", "5/4", "1", "a/2", "1/0", "1/99999", "-1/3"] {
-            assert!(wrong.parse::<TurntablePart>().is_err(), "{wrong}");
+            assert!(wrong.parse::<AnimationPart>().is_err(), "{wrong}");
         }
     }
 
