@@ -166,7 +166,7 @@ impl TimeSeries {
         self.cache.insert(self.shown, shown.clone());
         self.take_step(editor, &steps);
         self.play(editor, &steps, ctx);
-        let most = self.most_kept(&shown, options.memory_budget_bytes);
+        let most = most_kept(&shown, options.memory_budget_bytes);
         let order = self.playback.reading_order(self.wanted, steps.count(), most);
         self.read_next(&shown, &steps, (editor, &options), &order, ctx);
         let has_changed = self.show_nearest(editor, &steps);
@@ -183,12 +183,6 @@ impl TimeSeries {
             memory_budget_bytes: options.memory_budget_bytes.min(memory_budget_bytes()),
             choice: options.choice.clone(),
         }
-    }
-
-    /// Returns how many steps are kept in memory: all that fit into a quarter of what is free, and two at least.
-    fn most_kept(&self, shown: &Dataset, budget_bytes: u64) -> usize {
-        let fitting = budget_bytes / 4 / dataset_bytes(shown).max(1);
-        usize::try_from(fitting).unwrap_or(MOST_KEPT).clamp(2, MOST_KEPT)
     }
 
     /// Takes a step that has been read.
@@ -337,4 +331,10 @@ impl TimeSeries {
             }
         }
     }
+}
+
+/// Returns how many steps are kept in memory: all that fit into a quarter of what is free, and two at least.
+fn most_kept(shown: &Dataset, budget_bytes: u64) -> usize {
+    let fitting = budget_bytes / 4 / dataset_bytes(shown).max(1);
+    usize::try_from(fitting).unwrap_or(MOST_KEPT).clamp(2, MOST_KEPT)
 }

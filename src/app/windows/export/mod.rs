@@ -177,9 +177,8 @@ impl ExportWindow {
             ExportKind::Still => {
                 return self.run(ctx, move |job| worker::export_still(&subject, &image_spec, path, job));
             }
-            ExportKind::Turntable => None,
+            ExportKind::Turntable | ExportKind::TimeSeries => None,
             ExportKind::LightTurntable => Some(subject.selected_light),
-            ExportKind::TimeSeries => None,
         };
         let transparent = image_spec.transparent && self.animation_format() != AnimationFormat::Mp4;
         let animation_spec =

@@ -64,8 +64,7 @@ impl RenderWorker {
                 Ok(true) if self.preparation.next_for(&frame_request).is_some_and(|next| next.id() == id) => {
                     self.preparation.done += 1;
                 }
-                Ok(true) => {}
-                Ok(false) => {}
+                Ok(_) => {}
                 // The picture that is shown is complete; only the memory for others is missing.
                 Err(err) => {
                     log::warn!("a time step could not be prepared: {err}");
