@@ -34,17 +34,18 @@ impl TimeSteps {
         Some(Self { source, choice: contents.choice() })
     }
 
-    /// Returns the files of a folder whose names differ from that of `path` in one number alone, the last in the name, in
-    /// the order of these numbers; `None` if there is no other. `choice` selects in each.
+    /// Returns the files of a folder whose names differ from that of `path` in one number alone, in the order of these
+    /// numbers; `None` if there is no other. Of several such numbers, the last in the name counts. `choice` selects in each.
     pub fn from_numbered_files(path: &Path, choice: VolumeChoice) -> Option<Self> {
         let path = std::path::absolute(path).ok()?;
-        let wanted = NumberedName::parse(&path)?;
-        let mut files: Vec<PathBuf> = files_of_folder(path.parent()?)
-            .into_iter()
-            .filter(|file| NumberedName::parse(file).is_some_and(|name| name.is_of_same_series(&wanted)))
-            .collect();
+        let all = files_of_folder(path.parent()?);
+        let mut files = NumberedName::all_of(&path).into_iter().find_map(|wanted| {
+            let is_step = |file: &PathBuf| NumberedName::all_of(file).contains(&wanted);
+            let files: Vec<PathBuf> = all.iter().filter(|file| is_step(file)).cloned().collect();
+            (files.len() > 1).then_some(files)
+        })?;
         files.sort_by_cached_key(|file| natural_sort_key(&file_name(file)));
-        (files.len() > 1).then_some(Self { source: StepSource::Files(files), choice })
+        Some(Self { source: StepSource::Files(files), choice })
     }
 
     /// Returns the number of steps, at least two.
@@ -206,23 +207,21 @@ struct NumberedName {
 }
 
 impl NumberedName {
-    /// Splits the name of a file at its last number, which is not part of the extension; `None` if it has no number.
-    fn parse(path: &Path) -> Option<Self> {
+    /// Splits the name of a file at each of its numbers that are not part of the extension, the last one first.
+    fn all_of(path: &Path) -> Vec<Self> {
         let name = file_name(path);
         // Extensions such as `.h5`, `.nii.gz` and `.v3draw` begin at the first dot after which there is a letter.
         let extension = name
             .match_indices('.')
             .find(|(at, _)| *at > 0 && name[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic()));
-        let stem = &name[..extension.map_or(name.len(), |(at, _)| at)];
-        let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
-        let begin = stem[..end].rfind(|c: char| !c.is_ascii_digit());
-        let begin = begin.map_or(0, |at| at + stem[at..].chars().next().map_or(1, char::len_utf8));
-        Some(Self { before: name[..begin].to_owned(), after: name[end..].to_owned() })
-    }
-
-    /// Returns true if two files of one folder differ in their number alone.
-    fn is_of_same_series(&self, other: &Self) -> bool {
-        self == other
+        let mut end = extension.map_or(name.len(), |(at, _)| at);
+        let mut names = Vec::new();
+        while let Some(last) = name[..end].rfind(|c: char| c.is_ascii_digit()) {
+            let begin = name[..=last].trim_end_matches(|c: char| c.is_ascii_digit()).len();
+            names.push(Self { before: name[..begin].to_owned(), after: name[last + 1..].to_owned() });
+            end = begin;
+        }
+        names
     }
 }
 
@@ -237,18 +236,32 @@ mod tests {
     }
 
     #[test]
-    fn names_are_split_at_their_last_number() {
-        let split = |name: &str| {
-            NumberedName::parse(Path::new(name)).map(|name| (name.before, name.after)).unwrap_or_default()
+    fn names_are_split_at_their_numbers() {
+        let split = |name: &str| -> Vec<(String, String)> {
+            NumberedName::all_of(Path::new(name)).into_iter().map(|name| (name.before, name.after)).collect()
         };
         let wanted = |before: &str, after: &str| (before.to_owned(), after.to_owned());
-        assert_eq!(split("t001.nrrd"), wanted("t", ".nrrd"));
-        assert_eq!(split("fish2_t12_raw.nii.gz"), wanted("fish2_t", "_raw.nii.gz"));
-        assert_eq!(split("t1.v3draw"), wanted("t", ".v3draw"));
-        assert_eq!(split("0.5ns_7.h5"), wanted("0.5ns_", ".h5"));
-        assert_eq!(split("é3"), wanted("é", ""));
-        assert_eq!(split("2024"), wanted("", ""));
-        assert_eq!(NumberedName::parse(Path::new("head.h5")), None);
+        assert_eq!(split("t001.nrrd"), [wanted("t", ".nrrd")]);
+        assert_eq!(
+            split("fish2_t12_raw.nii.gz"),
+            [wanted("fish2_t", "_raw.nii.gz"), wanted("fish", "_t12_raw.nii.gz")]
+        );
+        assert_eq!(split("t1.v3draw"), [wanted("t", ".v3draw")]);
+        assert_eq!(split("0.5ns_7.h5")[0], wanted("0.5ns_", ".h5"));
+        assert_eq!(split("\u{e9}3"), [wanted("\u{e9}", "")]);
+        assert_eq!(split("2024"), [wanted("", "")]);
+        assert!(split("head.h5").is_empty());
+    }
+
+    #[test]
+    fn the_number_that_differs_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["t1_8x8x8_uint8.raw", "t2_8x8x8_uint8.raw", "t2_8x8x9_int16.raw"] {
+            std::fs::write(folder.path().join(name), [0; 512]).unwrap();
+        }
+        let open = folder.path().join("t1_8x8x8_uint8.raw");
+        let steps = TimeSteps::from_numbered_files(&open, VolumeChoice::default()).unwrap();
+        assert_eq!((steps.count(), steps.name(1)), (2, "t2_8x8x8_uint8.raw".to_owned()));
     }
 
     #[test]

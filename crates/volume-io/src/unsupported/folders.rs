@@ -5,7 +5,7 @@ use std::path::Path;
 use super::UnsupportedFormat;
 
 /// Folder formats, each with files that only such a folder has.
-const FOLDERS: &[(&[&str], UnsupportedFormat)] = &[
+pub(super) const FOLDERS: &[(&[&str], UnsupportedFormat)] = &[
     (
         &["attributes.json"],
         UnsupportedFormat {

@@ -5,7 +5,7 @@ use super::signature::FormatSignature;
 use chiaroscuro_volume::{LoadContext, LoadError};
 
 /// Format of MINC 2, which is recognised by the reader of HDF5 files.
-const MINC_2: UnsupportedFormat = UnsupportedFormat {
+pub(super) const MINC_2: UnsupportedFormat = UnsupportedFormat {
     description: "a MINC 2 file (HDF5)",
     signatures: &[],
     extensions: &[],
