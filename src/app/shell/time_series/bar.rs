@@ -57,8 +57,8 @@ impl TimeSeries {
         if response.changed() {
             self.go_to(number - 1);
         }
-        ui.label(text::step_of(self.shown, count, &steps.name(self.shown)));
-        if self.wanted != self.shown {
+        ui.label(text::step_of(self.on_screen, count, &steps.name(self.on_screen)));
+        if self.wanted != self.shown && !self.playback.is_playing() {
             ui.weak(text::is_read(self.wanted));
         }
         ui.separator();

@@ -44,9 +44,11 @@ pub(crate) struct TimeSeries {
     is_of_files: bool,
     /// Options by which the volume was read.
     reading: ReadChoices,
-    /// Index of the step that is shown, and of the one that the user wants to see.
+    /// Index of the step whose dataset the renderer has, and of the one that the user wants to see.
     shown: usize,
     wanted: usize,
+    /// Index of the step whose picture is on screen.
+    on_screen: usize,
     playback: Playback,
     cache: StepCache,
     /// Step that is being read, by its index and what it has in common with the others.
@@ -83,7 +85,8 @@ impl TimeSeries {
     fn use_steps(&mut self, steps: Option<TimeSteps>, volume: &VolumeFacts) {
         let Some(steps) = steps else { return };
         let Some(shown) = steps.index_of(&volume.source, &volume.held.choice()) else { return };
-        (self.shown, self.wanted, self.reading) = (shown, shown, volume.reading.clone());
+        (self.shown, self.wanted, self.on_screen) = (shown, shown, shown);
+        self.reading = volume.reading.clone();
         self.steps = Some(Arc::new(steps));
     }
 
@@ -162,6 +165,9 @@ impl TimeSeries {
         let options = self.load_options(options);
         editor.series = Some(ReadableSeries { steps: Arc::clone(&steps), options: options.clone() });
         self.update_range(&shown, &steps, (editor, &options), ctx);
+        if editor.viewport.displays(&editor.shown_looks()) {
+            self.on_screen = self.shown;
+        }
         self.cache.use_basis(StepBasis::new(&shown));
         self.cache.insert(self.shown, shown.clone());
         self.take_step(editor, &steps);

@@ -256,7 +256,7 @@ impl RenderWorker {
         let mut options = self.options(*quality, settings);
         let fills_before: u64 = scene.renderer.light_rebuilds().iter().sum();
         let context = scene.renderer.context().clone();
-        let (mut total_ms, mut light_ms, mut indirect_ms) = (0.0, 0.0, 0.0);
+        let (mut total_ms, mut light_ms, mut indirect_ms, mut upload_ms) = (0.0, 0.0, 0.0, 0.0);
         let mut job = scene.renderer.begin(&scene.dataset, request.clone(), &options)?;
         job.set_band(self.controller.band_rows(*quality, request.size));
         if let Some(exposure) = self.brightness.exposure(frame_request, *quality, job.report()) {
@@ -286,6 +286,7 @@ impl RenderWorker {
             match stage {
                 Some(RenderStage::LightMarch | RenderStage::LightBackproject) => light_ms += took_ms,
                 Some(RenderStage::Sky | RenderStage::ScatteredLight) => indirect_ms += took_ms,
+                Some(RenderStage::Upload | RenderStage::Pyramid) => upload_ms += took_ms,
                 _ => {}
             }
             if !more {
@@ -320,13 +321,12 @@ impl RenderWorker {
         let splats =
             if is_full && is_left && is_measured { Some(scene.renderer.splat_count()?) } else { None };
         total_ms += start.elapsed().as_secs_f64() * 1000.0;
-        log::debug!("{quality:?} took {total_ms:.1} ms, of which the light {light_ms:.1} ms");
+        log::debug!("{quality:?} took {total_ms:.1} ms (light {light_ms:.1}, upload {upload_ms:.1})");
         let fills: u64 = scene.renderer.light_rebuilds().iter().sum();
         let runs = &scene.renderer.report().step_counts;
-        // The time to upload a volume does not predict the next picture's.
-        if runs.eye > 0 && runs.volume == 0 && is_measured {
+        if runs.eye > 0 && is_measured {
             let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
-            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - indirect_ms);
+            self.controller.learn_picture(*quality, pixels, total_ms - light_ms - indirect_ms - upload_ms);
         }
         if fills > fills_before {
             self.controller.learn_build(*quality, light_ms / (fills - fills_before) as f64);

@@ -7,11 +7,17 @@ use crate::app::worker::missing_light_volumes::MissingLightVolumes;
 use crate::app::worker::quality::QualityLevel;
 use crate::app::worker::request::{FrameRequest, RenderScene};
 use chiaroscuro_render::{GpuError, RenderStage};
-use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume::{Dataset, memory_budget_bytes};
 
 /// Memory of the adapter for steps that are not shown, in bytes: about eight steps of 256³ voxels with the light of two
 /// lights, or one of 512³; an eighth of the memory of common cards.
 const PREPARED_BYTES: u64 = 1 << 30;
+
+/// Returns the memory for steps that are not shown, in bytes. The memory of a software adapter is that of the machine, of
+/// which a quarter of what is free is left to them: filling the levels of a step again takes such an adapter long.
+fn prepared_bytes(is_software: bool) -> u64 {
+    if is_software { PREPARED_BYTES.max(memory_budget_bytes() / 4) } else { PREPARED_BYTES }
+}
 
 /// Time steps to prepare, and those that are.
 #[derive(Default)]
@@ -54,7 +60,8 @@ impl RenderWorker {
             let Some(dataset) = self.preparation.next_for(&frame_request) else { return };
             let Some(mut scene) = self.scene.take() else { return };
             let id = dataset.id();
-            scene.renderer.set_spare_volume_bytes(PREPARED_BYTES);
+            let bytes = prepared_bytes(scene.renderer.context().is_software());
+            scene.renderer.set_spare_volume_bytes(bytes);
             let shown = std::mem::replace(&mut scene.dataset, dataset);
             let prepared = self.prepare(&mut scene, &frame_request);
             scene.dataset = shown;
