@@ -100,7 +100,7 @@ impl TimeSteps {
     /// Opens the volume of a step.
     ///
     /// # Errors
-    /// Fails like [`open`].
+    /// Fails like [`open()`].
     pub fn open(
         &self,
         index: usize,
@@ -113,7 +113,7 @@ impl TimeSteps {
     /// Opens the volume of a step as another choice says in all aspects but time, as another channel.
     ///
     /// # Errors
-    /// Fails like [`open`].
+    /// Fails like [`open()`].
     pub fn open_with(
         &self,
         index: usize,
@@ -131,7 +131,7 @@ impl TimeSteps {
     /// `fit` changes a volume as the one that is shown was changed to fit on the graphics adapter.
     ///
     /// # Errors
-    /// Fails like [`open`], and if the step cannot be shown in the place of the other.
+    /// Fails like [`open()`], and if the step cannot be shown in the place of the other.
     pub fn open_like(
         &self,
         index: usize,
@@ -175,7 +175,7 @@ impl TimeSteps {
     /// and the last. `progress` is called with the number of steps that are done, and their total.
     ///
     /// # Errors
-    /// Fails like [`open`].
+    /// Fails like [`open()`].
     pub fn ranges(
         &self,
         most: usize,
