@@ -14,7 +14,7 @@ use crate::app::common::shortcuts::is_typing;
 use crate::app::common::theme;
 use crate::app::common::volume_facts::VolumeFacts;
 use crate::app::text;
-use chiaroscuro_volume::ChoiceAspect;
+use chiaroscuro_volume::{ChoiceAspect, FileDimension, human_bytes};
 use chiaroscuro_volume_io::LoadOptions;
 
 /// Longer edge of a thumbnail, in points.
@@ -37,6 +37,8 @@ pub(crate) struct VolumeChooser {
     scrolls_to_selected: bool,
     /// User's choice for each aspect whether the look stays; `None` for the default.
     keeps_look: [Option<bool>; ChoiceAspect::ALL.len()],
+    /// Memory of a voxel, in bytes, while resolution levels are listed, which differ in what they take.
+    voxel_bytes: Option<u64>,
     previews: VolumeThumbnails,
 }
 
@@ -74,6 +76,9 @@ impl VolumeChooser {
         let Some(aspect) = self.open else { return };
         let Some(volume) = volume else { return self.close() };
         let Some(all) = Alternatives::new(&volume.held, aspect) else { return self.close() };
+        let is_by_level = aspect == ChoiceAspect::Dimension(FileDimension::Level);
+        let voxels = volume.dims.iter().product::<usize>().max(1) as u64;
+        self.voxel_bytes = is_by_level.then_some(volume.bytes / voxels);
         let (enter, escape) = self.handle_keys(ctx, all.count());
         let mut chosen = enter.then_some(self.selected);
         let mut open = !escape;
@@ -184,7 +189,11 @@ impl VolumeChooser {
             rect.right()
         };
         let mut facts = vec![text::chooser::position(at, all.count())];
-        facts.extend(all.dims(at).map(text::chooser::size));
+        let dims = all.dims(at);
+        facts.extend(dims.map(text::chooser::size));
+        let voxels = dims.map(|dims| dims.iter().fold(1, |product: u64, &n| product.saturating_mul(n)));
+        let bytes = voxels.zip(self.voxel_bytes).map(|(voxels, each)| voxels.saturating_mul(each));
+        facts.extend(bytes.map(|bytes| human_bytes(bytes.into())));
         let lines = [
             (name.as_str(), TextStyle::Body, visuals.text_color(), Align2::LEFT_BOTTOM),
             (&facts.join(" · "), TextStyle::Small, ui.visuals().weak_text_color(), Align2::LEFT_TOP),
