@@ -129,9 +129,11 @@ mod tests {
         assert_eq!(playback.wait_s(10.0), Some(0.25));
         playback.advance(10.26);
         assert_eq!(playback.wait_s(10.26), Some(10.5 - 10.26), "a frame that is late delays no other");
-        playback.advance(12.0);
-        assert_eq!(playback.wait_s(12.0), Some(0.0), "a slow step delays the others");
-        assert_eq!(playback.drawing_s(), 0.3 * (12.0 - 10.26));
+        playback.advance(11.26);
+        assert_eq!(playback.wait_s(11.26), Some(0.0), "a slow step delays the others");
+        assert_eq!(playback.drawing_s(), 0.3 * (11.26 - 10.26));
+        playback.advance(15.0);
+        assert_eq!(playback.drawing_s(), 0.5, "the picture does not get finer then");
         playback.start(20.0);
         assert_eq!(playback.drawing_s(), 0.6 * 0.25);
         playback.stop();

@@ -53,10 +53,8 @@ pub(crate) const RAY_PROJECTIONS: PaletteSynonyms =
 pub(crate) const TABLE: PaletteSynonyms = synonyms("remove hide table bed couch patient scanner board");
 pub(crate) const ISOSURFACE: PaletteSynonyms = synonyms("isosurface iso surface isovalue threshold");
 
-pub(crate) const NO_PLAYING: PaletteSynonyms = synonyms_with_note(
-    "play playing playback player time lapse timelapse slider",
-    "Time steps are not played; these commands step through them",
-);
+pub(crate) const PLAYING: PaletteSynonyms =
+    synonyms("play playing playback player time lapse timelapse series slider");
 pub(crate) const COMPOSITE: PaletteSynonyms =
     synonyms("composite compositing merge merged channels multichannel rgb");
 pub(crate) const NO_ANNOTATION: PaletteSynonyms = synonyms_with_note(

@@ -191,14 +191,13 @@ mod tests {
     #[test]
     fn what_people_call_things_leads_to_what_is_nearest() {
         let channel = ChoiceAspect::Dimension(FileDimension::Channel);
-        let frame = ChoiceAspect::Dimension(FileDimension::Frame);
         for (words, nearest, is_missing) in [
             ("measure", AppCommand::ToggleProbe, false),
             ("ruler", AppCommand::ToggleProbe, false),
             ("animation", AppCommand::Export, false),
             ("turntable", AppCommand::Export, false),
             ("annotation", AppCommand::Export, true),
-            ("play", AppCommand::StepChoice(frame, true), true),
+            ("play", AppCommand::TogglePlayback, false),
             ("composite", AppCommand::ShowTogether(channel), false),
             ("mip", AppCommand::UseRenderMode(RenderMode::Maximum), false),
             ("maximum intensity projection", AppCommand::UseRenderMode(RenderMode::Maximum), false),

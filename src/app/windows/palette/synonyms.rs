@@ -77,9 +77,13 @@ pub(super) fn synonym_table(has_labels: bool) -> Vec<Synonym> {
         ),
         supported(palette_synonyms::TABLE, vec![Some(AppCommand::ToggleTable)]),
         supported(palette_synonyms::ISOSURFACE, vec![Some(AppCommand::UseRenderMode(RenderMode::Surface))]),
-        missing(
-            palette_synonyms::NO_PLAYING,
-            vec![Some(AppCommand::StepChoice(frame, true)), Some(AppCommand::ShowChooser(frame))],
+        supported(
+            palette_synonyms::PLAYING,
+            vec![
+                Some(AppCommand::TogglePlayback),
+                Some(AppCommand::StepChoice(frame, true)),
+                Some(AppCommand::ShowChooser(frame)),
+            ],
         ),
         supported(
             palette_synonyms::COMPOSITE,
