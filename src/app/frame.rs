@@ -175,8 +175,7 @@ impl eframe::App for App {
 impl App {
     /// Reads and shows the time steps that the user wants to see.
     fn update_time_series(&mut self, ctx: &egui::Context) {
-        let options = self.opening.loader.options().clone();
-        if self.time_series.update(&mut self.editor, &options, ctx) {
+        if self.time_series.update(&mut self.editor, ctx) {
             self.windows.contact_sheet.discard();
             ctx.request_repaint();
         }

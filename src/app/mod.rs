@@ -160,7 +160,7 @@ impl App {
             self.panels.recent_pictures.clear();
             self.windows.contact_sheet.discard();
             self.panels.kept_strip.reset();
-            self.time_series.reset(self.editor.document.volume.as_ref());
+            self.time_series.reset(self.editor.document.volume.as_ref(), self.opening.loader.options());
         }
     }
 

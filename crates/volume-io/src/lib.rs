@@ -29,7 +29,7 @@ use std::sync::Arc;
 pub use formats::{RawFormat, RawGuess, RawLayout, raw, supported_extensions};
 pub use neighbour::neighbour_volume;
 pub use open::open;
-pub use time_steps::TimeSteps;
+pub use time_steps::{StepReadError, StepReadOptions, TimeSteps, is_same_file};
 
 use chiaroscuro_volume::{
     ContentsRecorder, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ReadContext, Volume,

@@ -6,8 +6,8 @@ use super::neighbour::files_of_folder;
 use super::{LoadOptions, open};
 use chiaroscuro_files::natural_sort_key;
 use chiaroscuro_volume::{
-    Dataset, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ValueRanges, Volume,
-    VolumeChoice, VolumeOffer,
+    Dataset, FieldOrigin, FileContents, FileDimension, LoadContext, LoadControl, LoadError, StepError,
+    ValueRanges, Volume, VolumeChoice, VolumeOffer,
 };
 
 /// Time steps of one object, at least two, in their order.
@@ -97,38 +97,8 @@ impl TimeSteps {
         }
     }
 
-    /// Opens the volume of a step.
-    ///
-    /// # Errors
-    /// Fails like [`open()`].
-    pub fn open(
-        &self,
-        index: usize,
-        options: &LoadOptions,
-        control: &LoadControl,
-    ) -> Result<Volume, LoadError> {
-        self.open_with(index, self.choice(index), options, control)
-    }
-
-    /// Opens the volume of a step as another choice says in all aspects but time, as another channel.
-    ///
-    /// # Errors
-    /// Fails like [`open()`].
-    pub fn open_with(
-        &self,
-        index: usize,
-        other: VolumeChoice,
-        options: &LoadOptions,
-        control: &LoadControl,
-    ) -> Result<Volume, LoadError> {
-        let choice = VolumeChoice { frame: self.choice(index).frame, ..other };
-        open(self.path(index), &LoadOptions { choice, ..options.clone() }, control)
-    }
-
     /// Opens the dataset of a step, with the look of the one that is shown: with its corrections, its ranges of values and
     /// its further fields, of which those that the same steps have are read as well ([`Dataset::with_step`]).
-    ///
-    /// `fit` changes a volume as the one that is shown was changed to fit on the graphics adapter.
     ///
     /// # Errors
     /// Fails like [`open()`], and if the step cannot be shown in the place of the other.
@@ -136,63 +106,118 @@ impl TimeSteps {
         &self,
         index: usize,
         shown: &Dataset,
-        (options, control): (&LoadOptions, &LoadControl),
-        fit: &dyn Fn(Volume) -> Volume,
+        by: &StepReadOptions<'_>,
     ) -> Result<Dataset, LoadError> {
-        let first = fit(self.open(index, options, control)?);
-        let shown_choice = shown.volume().contents().choice();
-        let mut further = Vec::new();
-        for (at, field) in shown.fields().iter().enumerate().skip(1) {
-            let origin = field.origin().filter(|origin| {
-                // Another step of the file that is shown with this one stays.
-                origin.choice.frame == shown_choice.frame && self.has_steps_of(&origin.source)
-            });
-            if let Some(origin) = origin {
-                further.push((at, fit(self.open_with(index, origin.choice.clone(), options, control)?)));
-            }
+        let mut volumes = Vec::new();
+        for (field, choice) in self.fields_of(shown) {
+            volumes.push((field, self.open_field(index, field, choice, by)?));
         }
-        shown.with_step(&first, further).map_err(|err| {
-            let context = LoadContext { operation: "show the time step", path: self.path(index) };
-            context.bad_input_error("time step", err.to_string(), "open it as a volume of its own")
-        })
+        let (_, first) = volumes.remove(0);
+        shown.with_step(&first, volumes).map_err(|err| self.not_shown(index, &err))
     }
 
-    /// Returns true if a file is one of those that have the steps.
-    fn has_steps_of(&self, source: &Path) -> bool {
-        match &self.source {
-            StepSource::File { path, .. } => path == source,
-            StepSource::Files(files) => std::path::absolute(source).is_ok_and(|path| files.contains(&path)),
-        }
-    }
-
-    /// Returns the indices of at most `most` steps, which are spread evenly and include the first and the last.
-    pub fn spread_indices(&self, most: usize) -> impl ExactSizeIterator<Item = usize> + use<> {
-        let (last, count) = (self.count() - 1, self.count().min(most.max(2)));
-        (0..count).map(move |at| at * last / (count - 1))
-    }
-
-    /// Returns the ranges of values of all steps: of at most `most` of them, which are spread evenly and include the first
-    /// and the last. `progress` is called with the number of steps that are done, and their total.
+    /// Returns a dataset, which shows the step `shown_index`, with the ranges of values that all steps have together: at most
+    /// `most` of them are read, which are spread evenly and include the first and the last. `progress` is called with the
+    /// number of steps that are done, and their total.
     ///
     /// # Errors
-    /// Fails like [`open()`].
-    pub fn ranges(
+    /// Fails like [`Self::open_like`], and names the step.
+    pub fn with_series_ranges(
         &self,
+        (shown, shown_index): (&Dataset, usize),
         most: usize,
-        options: &LoadOptions,
-        control: &LoadControl,
+        by: &StepReadOptions<'_>,
         mut progress: impl FnMut(usize, usize),
-    ) -> Result<ValueRanges, LoadError> {
-        let indices = self.spread_indices(most);
-        let count = indices.len();
-        let mut all: Option<ValueRanges> = None;
-        for (done, index) in indices.enumerate() {
-            let own = self.open(index, options, control)?.ranges();
-            all = Some(all.map_or(own, |all| all.union(own)));
+    ) -> Result<Dataset, StepReadError> {
+        let mut ranges: Vec<ValueRanges> =
+            shown.fields().iter().map(|field| field.volume().ranges()).collect();
+        let (last, count) = (self.count() - 1, self.count().min(most.max(2)));
+        let fields = self.fields_of(shown);
+        for done in 0..count {
+            let index = done * last / (count - 1);
+            let failure = |source: LoadError| StepReadError { index, source };
+            for (field, choice) in fields.iter().filter(|_| index != shown_index) {
+                let mut volume = self.open_field(index, *field, choice.clone(), by).map_err(failure)?;
+                if *field == 0 {
+                    let corrected = volume.corrected(shown.volume().corrections());
+                    volume = corrected.map_err(|err| failure(self.not_shown(index, &err.into())))?;
+                }
+                ranges[*field] = ranges[*field].union(volume.ranges());
+            }
             progress(done + 1, count);
         }
-        Ok(all.unwrap_or(ValueRanges::UNIT))
+        let ranges = ranges.into_iter().enumerate();
+        Ok(ranges.fold(shown.clone(), |dataset, (field, ranges)| dataset.with_ranges_of(field, ranges)))
     }
+
+    /// Returns the fields of a dataset that the steps have, by their index, each with the choice that selects it. Fields of
+    /// other files, and of another time, stay as they are.
+    fn fields_of(&self, shown: &Dataset) -> Vec<(usize, VolumeChoice)> {
+        let choice = shown.volume().contents().choice();
+        let is_step = |origin: &&FieldOrigin| {
+            origin.choice.frame == choice.frame
+                && match &self.source {
+                    StepSource::File { path, .. } => is_same_file(path, &origin.source),
+                    StepSource::Files(files) => files.iter().any(|file| is_same_file(file, &origin.source)),
+                }
+        };
+        let further = shown.fields().iter().enumerate().skip(1).filter_map(|(index, field)| {
+            let origin = field.origin().filter(is_step)?;
+            Some((index, origin.choice.clone()))
+        });
+        std::iter::once((0, self.choice.clone())).chain(further).collect()
+    }
+
+    /// Opens the volume of one field of a step. The first one is changed to fit on the adapter, and the others are placed on
+    /// its grid.
+    fn open_field(
+        &self,
+        index: usize,
+        field: usize,
+        choice: VolumeChoice,
+        by: &StepReadOptions<'_>,
+    ) -> Result<Volume, LoadError> {
+        let choice = VolumeChoice { frame: self.choice(index).frame, ..choice };
+        let whole = open(self.path(index), &LoadOptions { choice, ..by.load.clone() }, by.control)?;
+        Ok(if field == 0 { (by.fit)(whole) } else { whole })
+    }
+
+    /// Error for a step that cannot be shown in the place of another.
+    fn not_shown(&self, index: usize, err: &StepError) -> LoadError {
+        let context = LoadContext { operation: "show the time step", path: self.path(index) };
+        context.bad_input_error("time step", err.to_string(), "open it as a volume of its own")
+    }
+}
+
+/// Options for reading time steps.
+pub struct StepReadOptions<'a> {
+    /// Options by which the volume that is shown was read.
+    pub load: &'a LoadOptions,
+    /// Control for progress and cancellation.
+    pub control: &'a LoadControl,
+    /// Function that changes a volume as the one that is shown was changed to fit on the graphics adapter.
+    pub fit: &'a dyn Fn(Volume) -> Volume,
+}
+
+impl std::fmt::Debug for StepReadOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("StepReadOptions").field("load", self.load).finish_non_exhaustive()
+    }
+}
+
+/// Reason why a time step of a series was not read.
+#[derive(Debug, thiserror::Error)]
+#[error("time step {index}: {source}")]
+pub struct StepReadError {
+    /// Index of the step, from 0.
+    pub index: usize,
+    /// Cause of the failure.
+    pub source: LoadError,
+}
+
+/// Returns true if two paths lead to the same file.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
 fn file_name(path: &Path) -> String {
@@ -279,14 +304,19 @@ mod tests {
             ["t1.nrrd", "t2.nrrd", "t10.nrrd"]
         );
         assert_eq!(steps.index_of(&open, &VolumeChoice::default()), Some(1));
-        let (options, control) = (LoadOptions::default(), LoadControl::new());
-        let volume = steps.open(2, &options, &control).unwrap();
-        assert_eq!(volume.value_range().low, 30.0);
+        let (load, control) = (LoadOptions::default(), LoadControl::new());
+        let by = StepReadOptions { load: &load, control: &control, fit: &|volume| volume };
+        let shown = Dataset::new(crate::open(&open, &load, &control).unwrap());
+        let third = steps.open_like(2, &shown, &by).unwrap();
+        assert_eq!(third.volume().samples().value(0), 30.0);
         let mut counts = Vec::new();
-        let all = steps.ranges(9, &options, &control, |done, of| counts.push((done, of))).unwrap();
-        assert_eq!((all.all.low, all.all.high), (10.0, 31.0));
+        let count = |done, of| counts.push((done, of));
+        let all = steps.with_series_ranges((&shown, 1), 9, &by, count).unwrap().volume().ranges().all;
+        assert_eq!((all.low, all.high), (10.0, 31.0));
         assert_eq!(counts, [(1, 3), (2, 3), (3, 3)]);
-        assert_eq!(steps.spread_indices(2).collect::<Vec<_>>(), [0, 2]);
+        std::fs::write(folder.path().join("t1.nrrd"), "torn").unwrap();
+        let read = |most| steps.with_series_ranges((&shown, 1), most, &by, |_, _| ());
+        assert_eq!(read(2).unwrap_err().index, 0);
         assert!(
             TimeSteps::from_numbered_files(&folder.path().join("u1.nrrd"), VolumeChoice::default()).is_none()
         );
@@ -304,16 +334,16 @@ mod tests {
         let volume = open(&file, &options, &control).unwrap();
         let steps = TimeSteps::from_contents(&file, volume.contents()).unwrap();
         assert_eq!((steps.count(), steps.index_of(&file, &volume.contents().choice())), (3, Some(1)));
-        let third = steps.open(2, &options, &control).unwrap();
-        assert_eq!((third.value_range().low, third.contents().choice().frame), (16.0, Some(2)));
-        assert_eq!(steps.index_of(&file, &third.contents().choice()), Some(2));
         let single = LoadOptions { choice: steps.choice(0), ..options.clone() };
         let single = open(&file, &single, &control).unwrap();
         assert_eq!(single.value_range().high, 7.0);
         assert_eq!(TimeSteps::from_contents(&file, &FileContents::default()), None);
         let shown = Dataset::new(volume);
-        let like = steps.open_like(0, &shown, (&options, &control), &|volume| volume).unwrap();
+        let by = StepReadOptions { load: &options, control: &control, fit: &|volume| volume };
+        let like = steps.open_like(2, &shown, &by).unwrap();
         assert_eq!(like.volume().ranges(), shown.volume().ranges());
-        assert_eq!(like.volume().samples().value(0), 0.0);
+        let choice = like.volume().contents().choice();
+        assert_eq!((like.volume().samples().value(0), choice.frame), (16.0, Some(2)));
+        assert_eq!(steps.index_of(&file, &choice), Some(2));
     }
 }

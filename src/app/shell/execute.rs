@@ -168,7 +168,8 @@ impl App {
     /// Shows the numbered files beside the open one as time steps.
     fn use_numbered_files(&mut self) {
         let volume = self.editor.document.volume.as_ref();
-        if !volume.is_some_and(|volume| self.time_series.use_numbered_files(volume)) {
+        let options = self.opening.loader.options();
+        if !volume.is_some_and(|volume| self.time_series.use_numbered_files(volume, options)) {
             self.editor.messages.note(text::time_series::NO_SERIES);
         }
     }

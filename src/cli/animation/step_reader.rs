@@ -3,13 +3,11 @@
 use std::path::Path;
 
 use crate::cli::CliError;
-use crate::cli::scene::{SceneArgs, is_same_file};
+use crate::cli::scene::SceneArgs;
 use chiaroscuro_render::{GpuContext, downsample_to_fit};
 use chiaroscuro_scene::VolumeRecord;
-use chiaroscuro_volume::{
-    Dataset, FieldOrigin, FileDimension, LoadControl, StepError, ValueRanges, Volume, VolumeChoice,
-};
-use chiaroscuro_volume_io::{LoadOptions, TimeSteps};
+use chiaroscuro_volume::{Dataset, FileDimension, LoadControl, Volume, VolumeChoice};
+use chiaroscuro_volume_io::{LoadOptions, StepReadOptions, TimeSteps};
 
 /// Largest number of steps whose values are read before the first frame is drawn: those in between rarely have values
 /// far beyond, and a long series is not read twice.
@@ -20,9 +18,6 @@ pub(super) struct StepReader<'a> {
     steps: TimeSteps,
     /// Index of the step that is open.
     open_index: usize,
-    /// Choice by which each field of the open dataset is read again in another step; `None` for a field that stays,
-    /// which is of another file or another time.
-    choices: Vec<Option<VolumeChoice>>,
     options: LoadOptions,
     context: &'a GpuContext,
 }
@@ -51,19 +46,7 @@ impl<'a> StepReader<'a> {
                 path.display()
             ))
         })?;
-        // A layer of another time is a still picture, such as the state at the beginning.
-        let follows =
-            |origin: &FieldOrigin| is_same_file(&origin.source, path) && origin.choice.frame == choice.frame;
-        let further = opened.fields()[1..]
-            .iter()
-            .map(|field| field.origin().filter(|origin| follows(origin)).map(|origin| origin.choice.clone()));
-        Ok(Self {
-            steps,
-            open_index,
-            choices: std::iter::once(Some(choice.clone())).chain(further).collect(),
-            options: scene.load_options()?,
-            context,
-        })
+        Ok(Self { steps, open_index, options: scene.load_options()?, context })
     }
 
     /// Returns the number of steps, at least two.
@@ -86,24 +69,11 @@ impl<'a> StepReader<'a> {
         opened: &Dataset,
         mut progress: impl FnMut(usize, usize),
     ) -> Result<Dataset, CliError> {
-        let mut ranges: Vec<ValueRanges> =
-            opened.fields().iter().map(|field| field.volume().ranges()).collect();
-        let indices = self.steps.spread_indices(MAX_RANGE_STEPS);
-        let count = indices.len();
-        for (done, index) in indices.enumerate() {
-            for (field, choice) in self.choices.iter().enumerate() {
-                let Some(choice) = choice.as_ref().filter(|_| index != self.open_index) else { continue };
-                let mut volume = self.volume(index, field, choice)?;
-                if field == 0 {
-                    let corrected = volume.corrected(opened.volume().corrections());
-                    volume = corrected.map_err(|err| self.failure(index, StepError::from(err).into()))?;
-                }
-                ranges[field] = ranges[field].union(volume.ranges());
-            }
-            progress(done + 1, count);
-        }
-        let ranges = ranges.into_iter().enumerate();
-        Ok(ranges.fold(opened.clone(), |dataset, (field, ranges)| dataset.with_ranges_of(field, ranges)))
+        self.read(|by| {
+            let shown = (opened, self.open_index);
+            let read = self.steps.with_series_ranges(shown, MAX_RANGE_STEPS, by, &mut progress);
+            read.map_err(|err| self.failure(err.index, err.source.into()))
+        })
     }
 
     /// Reads a step, with the corrections and the ranges of values of `shown`, which is the open dataset.
@@ -114,10 +84,17 @@ impl<'a> StepReader<'a> {
         if index == self.open_index {
             return Ok(shown.clone());
         }
+        self.read(|by| {
+            let read = self.steps.open_like(index, shown, by);
+            read.map_err(|err| self.failure(index, err.into()))
+        })
+    }
+
+    /// Calls a function with the options for reading steps, which are downsampled where the adapter cannot hold them, as the
+    /// open one is.
+    fn read<T>(&self, function: impl FnOnce(&StepReadOptions<'_>) -> T) -> T {
         let fit = |whole: Volume| downsample_to_fit(self.context, whole.clone()).unwrap_or(whole);
-        let control = LoadControl::new();
-        let read = self.steps.open_like(index, shown, (&self.options, &control), &fit);
-        read.map_err(|err| self.failure(index, err.into()))
+        function(&StepReadOptions { load: &self.options, control: &LoadControl::new(), fit: &fit })
     }
 
     /// Returns the record of a step that has been read, for a picture in `folder`.
@@ -126,17 +103,6 @@ impl<'a> StepReader<'a> {
         VolumeRecord::new(self.steps.path(index), volume.opened_id(), folder)
             .with_choice(volume.contents().choice())
             .with_layers_of(step, folder)
-    }
-
-    /// Reads the volume of a field in a step; the first one is downsampled if the adapter cannot hold it, as the open
-    /// one is, and the others are placed on its grid.
-    fn volume(&self, index: usize, field: usize, choice: &VolumeChoice) -> Result<Volume, CliError> {
-        let read = self.steps.open_with(index, choice.clone(), &self.options, &LoadControl::new());
-        let whole = read.map_err(|err| self.failure(index, err.into()))?;
-        if field > 0 {
-            return Ok(whole);
-        }
-        downsample_to_fit(self.context, whole).map_err(|err| self.failure(index, err.into()))
     }
 
     /// Names the step in an error.

@@ -9,7 +9,7 @@ use chiaroscuro_scene::{Settings, set_value};
 use chiaroscuro_volume::{
     Dataset, FileContents, FileDimension, MAX_FIELDS, Volume, VolumeAlternatives, VolumeChoice,
 };
-use chiaroscuro_volume_io::LoadOptions;
+use chiaroscuro_volume_io::{LoadOptions, is_same_file};
 
 /// Volume to be shown as a layer: `FILE[:key=value,…]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -87,11 +87,6 @@ pub(super) enum ShownSteps {
     Several,
     /// One step is shown, as a frame of an animation does.
     One,
-}
-
-/// Returns true if two paths lead to the same file.
-pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
-    a == b || a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
 /// Opens the volumes of layers, and adds them to a dataset.

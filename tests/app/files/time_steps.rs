@@ -155,6 +155,35 @@ fn a_step_that_cannot_be_read_leaves_the_one_that_is_shown() {
 }
 
 #[test]
+fn layers_of_the_file_follow_and_going_to_a_step_is_no_step_of_the_history() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = write_steps(folder.path());
+    let mut harness = window_of(&source, None);
+    let ctx = harness.ctx.clone();
+    harness.state_mut().add_layer(&source, &ctx);
+    harness.run_steps(4);
+    wait_until(&mut harness, "the layer is read", |app| app.volume_names().len() == 2);
+    wait_until_idle(&mut harness);
+    harness.run_steps(8);
+    let look = harness.state().settings().clone();
+    go(&mut harness, FORWARD);
+    harness.run_steps(8);
+    assert_eq!((harness.state().settings(), harness.state().volume_names().len()), (&look, 2));
+    // The addition of the layer is undone and redone, at the step that is shown.
+    for (key, count) in [(Modifiers::COMMAND, 1), (Modifiers::COMMAND.plus(Modifiers::SHIFT), 2)] {
+        harness.key_press_modifiers(key, Key::Z);
+        harness.run_steps(3);
+        wait_until_idle(&mut harness);
+        assert_eq!(harness.state().settings().layers.count(), count);
+        assert_eq!(
+            (harness.state().volume_names().len(), harness.state().time_step()),
+            (count, Some((1, 3)))
+        );
+    }
+    assert!(harness.state().errors().is_empty());
+}
+
+#[test]
 fn a_series_is_exported_step_by_step() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window_of(&write_steps(folder.path()), None);

@@ -173,7 +173,14 @@ impl Renderer {
     /// GPU with their light; at first it is 0, and none stays.
     pub fn set_spare_volume_bytes(&mut self, bytes: u64) {
         self.spare_volumes.set_budget(bytes);
-        self.tools.pool.drop_bind_groups();
+        self.release_dropped_volumes();
+    }
+
+    /// Drops the bind groups that would keep the textures of dropped volumes alive.
+    pub(crate) fn release_dropped_volumes(&mut self) {
+        if self.spare_volumes.take_dropped() {
+            self.tools.pool.drop_bind_groups();
+        }
     }
 
     /// Drops everything on the GPU. After an error, products may not match their keys. Also frees the most memory.

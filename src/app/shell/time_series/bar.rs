@@ -27,7 +27,7 @@ fn sign_button(ui: &mut egui::Ui, sign: ControlText) -> bool {
 impl TimeSeries {
     /// Shows the bar, if the open volume is one of several time steps.
     pub(crate) fn show_bar(&mut self, ui: &mut egui::Ui) {
-        if self.steps.is_none() {
+        if self.steps().is_none() {
             return;
         }
         let panel = egui::Panel::bottom("time").resizable(false).frame(theme::panel(ui));
@@ -35,7 +35,7 @@ impl TimeSeries {
     }
 
     fn controls(&mut self, ui: &mut egui::Ui) {
-        let Some(steps) = self.steps.clone() else { return };
+        let Some(steps) = self.steps().cloned() else { return };
         let count = steps.count();
         let now_s = ui.input(|input| input.time);
         if sign_button(ui, text::PREVIOUS) {

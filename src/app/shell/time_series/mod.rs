@@ -22,7 +22,7 @@ use crate::app::windows::export::ReadableSeries;
 use crate::app::worker::jobs::{JobControl, JobKind, JobSlot};
 use crate::app::worker::loader::ReadChoices;
 use crate::app::worker::mailbox::UpcomingSteps;
-use chiaroscuro_volume::{Dataset, LoadControl, ValueRanges, memory_budget_bytes};
+use chiaroscuro_volume::{Dataset, memory_budget_bytes};
 use chiaroscuro_volume_io::{LoadOptions, TimeSteps};
 
 /// Largest number of steps that are read ahead, and kept in memory.
@@ -38,11 +38,11 @@ const RANGE_STEPS: usize = 32;
 /// Time series of which the open volume is one step.
 #[derive(Debug, Default)]
 pub(crate) struct TimeSeries {
-    /// Steps of the open volume, if there are several.
-    steps: Option<Arc<TimeSteps>>,
+    /// Steps of the open volume with the options for reading them, if there are several.
+    series: Option<ReadableSeries>,
     /// True if the steps are numbered files.
     is_of_files: bool,
-    /// Options by which the volume was read.
+    /// Choices by which the volume was read.
     reading: ReadChoices,
     /// Index of the step whose dataset the renderer has, and of the one that the user wants to see.
     shown: usize,
@@ -56,48 +56,58 @@ pub(crate) struct TimeSeries {
     /// Step that could not be read, which is not tried again before another one is wanted.
     failed: Option<usize>,
     /// Range of the series that is being read.
-    measuring: JobSlot<Result<ValueRanges, String>>,
+    measuring: JobSlot<Result<Dataset, String>>,
     /// True if the user asks for the range of the series.
     wants_range: bool,
     /// Steps that the renderer was told to prepare, and whether it was told so for playing.
     prepared: (Vec<usize>, bool),
+    /// True if the renderer was told to prepare steps, which stays true after the series has ended until it was told so.
+    has_prepared: bool,
 }
 
 impl TimeSeries {
     /// Takes over the time steps of a volume that was opened; those of the one before are forgotten.
-    pub(crate) fn reset(&mut self, volume: Option<&VolumeFacts>) {
+    pub(crate) fn reset(&mut self, volume: Option<&VolumeFacts>, options: &LoadOptions) {
         self.close();
         let Some(volume) = volume else { return };
         let steps = TimeSteps::from_contents(&volume.source, &volume.held);
-        self.use_steps(steps, volume);
+        self.use_steps(steps, volume, options);
     }
 
     /// Takes the files beside the open one whose names differ in a number as time steps; returns false if there are none.
-    pub(crate) fn use_numbered_files(&mut self, volume: &VolumeFacts) -> bool {
-        if self.steps.is_none() {
+    pub(crate) fn use_numbered_files(&mut self, volume: &VolumeFacts, options: &LoadOptions) -> bool {
+        if self.series.is_none() {
             let steps = TimeSteps::from_numbered_files(&volume.source, volume.held.choice());
             self.is_of_files = steps.is_some();
-            self.use_steps(steps, volume);
+            self.use_steps(steps, volume, options);
         }
-        self.steps.is_some()
+        self.series.is_some()
     }
 
-    fn use_steps(&mut self, steps: Option<TimeSteps>, volume: &VolumeFacts) {
+    fn use_steps(&mut self, steps: Option<TimeSteps>, volume: &VolumeFacts, options: &LoadOptions) {
         let Some(steps) = steps else { return };
         let Some(shown) = steps.index_of(&volume.source, &volume.held.choice()) else { return };
         (self.shown, self.wanted, self.on_screen) = (shown, shown, shown);
         self.reading = volume.reading.clone();
-        self.steps = Some(Arc::new(steps));
+        // As the open volume was read, and limited to the memory that is free now.
+        let options = LoadOptions {
+            raw: self.reading.raw.unwrap_or(options.raw),
+            only_files: self.reading.subset.clone(),
+            memory_budget_bytes: options.memory_budget_bytes.min(memory_budget_bytes()),
+            choice: options.choice.clone(),
+        };
+        self.series = Some(ReadableSeries { steps: Arc::new(steps), options });
     }
 
     /// Forgets the steps, so that the open file is shown alone.
     fn close(&mut self) {
-        *self = Self { playback: self.playback.at_rest(), ..Self::default() };
+        *self =
+            Self { playback: self.playback.at_rest(), has_prepared: self.has_prepared, ..Self::default() };
     }
 
     /// Returns the steps of the open volume, if there are several.
     pub(crate) fn steps(&self) -> Option<&Arc<TimeSteps>> {
-        self.steps.as_ref()
+        self.series.as_ref().map(|series| &series.steps)
     }
 
     /// Returns true while the series plays, or a step that is wanted is not shown yet.
@@ -108,7 +118,7 @@ impl TimeSeries {
     /// Returns the index of the step that is shown, and the number of steps.
     #[cfg(feature = "testing")]
     pub(crate) fn shown_of(&self) -> Option<(usize, usize)> {
-        self.steps.as_ref().map(|steps| (self.shown, steps.count()))
+        self.steps().map(|steps| (self.shown, steps.count()))
     }
 
     /// Returns true while the series plays.
@@ -118,7 +128,7 @@ impl TimeSeries {
 
     /// Starts or stops the playback.
     pub(crate) fn set_playing(&mut self, plays: bool, now_s: f64) {
-        match (plays, &self.steps) {
+        match (plays, self.steps().cloned()) {
             (true, Some(steps)) => {
                 if self.playback.next(self.shown, steps.count()).is_none() {
                     // From the end, it begins again.
@@ -132,7 +142,7 @@ impl TimeSeries {
 
     /// Asks for the range of values of all steps.
     pub(crate) fn ask_for_range(&mut self) {
-        self.wants_range = self.steps.is_some();
+        self.wants_range = self.series.is_some();
     }
 
     /// Goes to a step, and stops the playback.
@@ -143,7 +153,7 @@ impl TimeSeries {
 
     /// Goes to the next or the previous step; returns false if the open volume has no steps.
     pub(crate) fn step(&mut self, is_forward: bool) -> bool {
-        let Some(steps) = &self.steps else { return false };
+        let Some(steps) = self.steps() else { return false };
         let last = steps.count() - 1;
         self.go_to(if is_forward { (self.wanted + 1).min(last) } else { self.wanted.saturating_sub(1) });
         true
@@ -151,44 +161,32 @@ impl TimeSeries {
 
     /// Reads steps, and shows the one that is wanted, or the nearest that is there. Returns true if another one is shown
     /// than before.
-    pub(crate) fn update(
-        &mut self,
-        editor: &mut LookEditor,
-        options: &LoadOptions,
-        ctx: &egui::Context,
-    ) -> bool {
-        let Some(steps) = self.steps.clone() else {
-            (editor.series, editor.plays_steps, editor.viewport.step_ms) = (None, false, None);
+    pub(crate) fn update(&mut self, editor: &mut LookEditor, ctx: &egui::Context) -> bool {
+        if editor.series != self.series {
+            editor.series.clone_from(&self.series);
+        }
+        let Some(series) = self.series.clone() else {
+            (editor.plays_steps, editor.viewport.step_ms) = (false, None);
+            self.end_preparation(editor);
             return false;
         };
         let Some(shown) = editor.viewport.dataset().filter(|_| !editor.is_correcting()) else { return false };
-        let options = self.load_options(options);
-        editor.series = Some(ReadableSeries { steps: Arc::clone(&steps), options: options.clone() });
-        self.update_range(&shown, &steps, (editor, &options), ctx);
+        let steps = &series.steps;
+        self.update_range(&shown, &series, editor, ctx);
         if editor.viewport.displays(&editor.shown_looks()) {
             self.on_screen = self.shown;
         }
         self.cache.use_basis(StepBasis::new(&shown));
         self.cache.insert(self.shown, shown.clone());
-        self.take_step(editor, &steps);
-        self.play(editor, &steps, ctx);
-        let most = most_kept(&shown, options.memory_budget_bytes);
+        self.take_step(editor, steps);
+        self.play(editor, steps, ctx);
+        let most = most_kept(&shown, series.options.memory_budget_bytes);
         let order = self.playback.reading_order(self.wanted, steps.count(), most);
-        self.read_next(&shown, &steps, (editor, &options), &order, ctx);
-        let has_changed = self.show_nearest(editor, &steps);
+        self.read_next(&shown, &series, editor, &order, ctx);
+        let has_changed = self.show_nearest(editor, steps, ctx);
         self.cache.keep_only(&[order.as_slice(), &[self.shown]].concat());
         self.prepare_next(editor, &order);
         has_changed
-    }
-
-    /// Options for reading a step as the open volume was read.
-    fn load_options(&self, options: &LoadOptions) -> LoadOptions {
-        LoadOptions {
-            raw: self.reading.raw.unwrap_or(options.raw),
-            only_files: self.reading.subset.clone(),
-            memory_budget_bytes: options.memory_budget_bytes.min(memory_budget_bytes()),
-            choice: options.choice.clone(),
-        }
     }
 
     /// Takes a step that has been read.
@@ -221,7 +219,7 @@ impl TimeSeries {
             return ctx.request_repaint_after(Duration::from_secs_f64(wait_s));
         }
         // The window draws a frame when the picture is complete, and when the next step has been read.
-        if self.wanted != self.shown || !editor.viewport.displays(&editor.shown_looks()) {
+        if self.wanted != self.shown || self.on_screen != self.shown {
             return;
         }
         match self.playback.next(self.shown, steps.count()) {
@@ -238,8 +236,8 @@ impl TimeSeries {
     fn read_next(
         &mut self,
         shown: &Dataset,
-        steps: &Arc<TimeSteps>,
-        (editor, options): (&mut LookEditor, &LoadOptions),
+        series: &ReadableSeries,
+        editor: &mut LookEditor,
         order: &[usize],
         ctx: &egui::Context,
     ) {
@@ -256,7 +254,7 @@ impl TimeSeries {
             self.loading.discard();
         }
         let Some(index) = next else { return };
-        let series = ReadableSeries { steps: Arc::clone(steps), options: options.clone() };
+        let series = series.clone();
         let (shown, context) = (shown.clone(), editor.viewport.context().clone());
         let task = move |job: &JobControl| series.read(index, &shown, (&context, job.token()));
         if let Err(err) = self.loading.start(JobKind::TimeStep, ctx, (index, basis), task) {
@@ -268,7 +266,7 @@ impl TimeSeries {
 
     /// Shows the step that is wanted, or of those that are there the nearest to it. Returns true if another one is shown
     /// than before.
-    fn show_nearest(&mut self, editor: &mut LookEditor, steps: &TimeSteps) -> bool {
+    fn show_nearest(&mut self, editor: &mut LookEditor, steps: &TimeSteps, ctx: &egui::Context) -> bool {
         let Some(index) = self.cache.nearest_to(self.wanted).filter(|&index| index != self.shown) else {
             return false;
         };
@@ -281,7 +279,8 @@ impl TimeSeries {
         let document = &mut editor.document;
         let reading = ReadChoices { choice: Some(steps.choice(index)), ..self.reading.clone() };
         document.volume = Some(VolumeFacts::new(steps.path(index).to_owned(), reading, &dataset));
-        document.list_volumes_of(&dataset);
+        // Going to another step is no step of the history: all steps of it show the layers of this one.
+        document.list_recorded_volumes(&dataset, ctx.input(|input| input.time));
         editor.viewport.set_dataset(dataset);
         true
     }
@@ -293,8 +292,15 @@ impl TimeSeries {
         let (indices, datasets): (Vec<usize>, Vec<Dataset>) = there.unzip();
         let is_playing = self.playback.is_playing();
         if self.prepared != (indices.clone(), is_playing) {
-            self.prepared = (indices, is_playing);
+            (self.prepared, self.has_prepared) = ((indices, is_playing), true);
             editor.viewport.prepare_steps(UpcomingSteps { datasets, is_series: true, is_playing });
+        }
+    }
+
+    /// Frees the memory of the steps that were prepared, after the series has ended.
+    fn end_preparation(&mut self, editor: &LookEditor) {
+        if std::mem::take(&mut self.has_prepared) {
+            editor.viewport.prepare_steps(UpcomingSteps::default());
         }
     }
 
@@ -302,16 +308,19 @@ impl TimeSeries {
     fn update_range(
         &mut self,
         shown: &Dataset,
-        steps: &Arc<TimeSteps>,
-        (editor, options): (&mut LookEditor, &LoadOptions),
+        series: &ReadableSeries,
+        editor: &mut LookEditor,
         ctx: &egui::Context,
     ) {
         if std::mem::take(&mut self.wants_range) && !self.measuring.is_running() {
-            let (steps, options) = (Arc::clone(steps), options.clone());
+            let (series, of, index) = (series.clone(), shown.clone(), self.shown);
+            let context = editor.viewport.context().clone();
             let task = move |job: &JobControl| {
-                let control = LoadControl::with_token(job.token().clone());
                 let progress = |done: usize, total: usize| job.set_progress(done as u32, total as u32);
-                steps.ranges(RANGE_STEPS, &options, &control, progress).map_err(|err| err.to_string())
+                series.read_by(&of, (&context, job.token()), |by| {
+                    let read = series.steps.with_series_ranges((&of, index), RANGE_STEPS, by, progress);
+                    read.map_err(|err| err.to_string())
+                })
             };
             if let Err(err) = self.measuring.start(JobKind::SeriesRange, ctx, (), task) {
                 let why = text::opening::no_thread(err);
@@ -324,12 +333,21 @@ impl TimeSeries {
         match self.measuring.take_result().map(|read| read.and_then(|read| read)) {
             None => {}
             Some(Err(why)) => editor.messages.error(text::time_series::RANGE_NOT_READ, why),
-            Some(Ok(ranges)) => {
-                let dataset = shown.with_ranges(ranges.union(shown.volume().ranges()));
+            Some(Ok(measured)) => {
+                // The step may be another by now, with the layers that it had.
+                let mut dataset = shown.clone();
+                for (index, (field, own)) in
+                    std::iter::zip(measured.fields().iter(), shown.fields().iter()).enumerate()
+                {
+                    let (from, to) = (own.volume().ranges(), field.volume().ranges());
+                    dataset = dataset.with_ranges_of(index, to);
+                    let layers = editor.document.settings.layers.count();
+                    if index < layers {
+                        editor.document.settings.layer_at_mut(index).map_range(from.robust, to.robust);
+                    }
+                }
                 let range = dataset.volume().ranges().all;
-                let (from, to) = (shown.volume().ranges().robust, dataset.volume().ranges().robust);
-                editor.document.settings.layer_mut().map_range(from, to);
-                editor.messages.note(text::time_series::range_used(steps.count(), range));
+                editor.messages.note(text::time_series::range_used(series.steps.count(), range));
                 if let Some(facts) = &mut editor.document.volume {
                     facts.update(&dataset);
                 }

@@ -6,7 +6,8 @@ use chiaroscuro_volume::{Corrections, Dataset, ValueRanges};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StepBasis {
     corrections: Corrections,
-    ranges: ValueRanges,
+    /// Ranges of values, one for each field.
+    ranges: Vec<ValueRanges>,
     /// Sources of the further fields.
     further: Vec<std::path::PathBuf>,
 }
@@ -16,7 +17,7 @@ impl StepBasis {
     pub(super) fn new(shown: &Dataset) -> Self {
         Self {
             corrections: *shown.volume().corrections(),
-            ranges: shown.volume().ranges(),
+            ranges: shown.fields().iter().map(|field| field.volume().ranges()).collect(),
             further: shown.further_origins().map(|origin| origin.source.clone()).collect(),
         }
     }

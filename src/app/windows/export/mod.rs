@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+use self::worker::AnimationMotion;
 pub(crate) use self::worker::{ExportOutcome, ExportScene, ExportWorker, ReadableSeries, settings_for_kept};
 use crate::app::text;
 use crate::app::worker::jobs::{JobControl, JobKind, JobProgress, JobSlot};
@@ -173,23 +174,20 @@ impl ExportWindow {
     pub(crate) fn start(&mut self, subject: ExportScene, ctx: &egui::Context) -> Result<(), String> {
         self.replaceable = None;
         let (image_spec, path) = (self.image_spec.clamped(), PathBuf::from(self.path.trim()));
-        let light = match self.kind {
+        let motion = match self.kind {
             ExportKind::Still => {
                 return self.run(ctx, move |job| worker::export_still(&subject, &image_spec, path, job));
             }
-            ExportKind::Turntable | ExportKind::TimeSeries => None,
-            ExportKind::LightTurntable => Some(subject.selected_light),
+            ExportKind::Turntable => AnimationMotion::Camera,
+            ExportKind::LightTurntable => AnimationMotion::Light(subject.selected_light),
+            ExportKind::TimeSeries => AnimationMotion::TimeSteps,
         };
         let transparent = image_spec.transparent && self.animation_format() != AnimationFormat::Mp4;
         let animation_spec =
             AnimationSpec { size: image_spec.size, frames: self.frame_count(), rate: self.rate, transparent };
         let marks = image_spec.marks;
-        if self.kind == ExportKind::TimeSeries {
-            return self
-                .run(ctx, move |job| worker::export_series(&subject, (&animation_spec, marks), path, job));
-        }
         self.run(ctx, move |job| {
-            worker::export_turntable(&subject, light, (&animation_spec, marks), path, job)
+            worker::export_animation(&subject, motion, (&animation_spec, marks), path, job)
         })
     }
 

@@ -22,7 +22,7 @@ use chiaroscuro_scene::{
     first_look::ObjectOutline,
 };
 use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, Volume};
-use chiaroscuro_volume_io::{LoadOptions, TimeSteps};
+use chiaroscuro_volume_io::{LoadOptions, StepReadOptions, TimeSteps};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
@@ -59,21 +59,32 @@ pub(crate) struct ReadableSeries {
 }
 
 impl ReadableSeries {
-    /// Reads a step, with the look of the one that is shown, and averaged as that one if it had to be.
+    /// Reads a step, with the look of the one that is shown.
     pub(crate) fn read(
         &self,
         index: usize,
         shown: &Dataset,
         (context, token): (&GpuContext, &CancelToken),
     ) -> Result<Dataset, String> {
-        let control = LoadControl::with_token(token.clone());
+        self.read_by(shown, (context, token), |by| {
+            self.steps.open_like(index, shown, by).map_err(|err| err.to_string())
+        })
+    }
+
+    /// Calls a function with the options for reading steps, which are averaged if the one that is shown had to be.
+    pub(crate) fn read_by<T>(
+        &self,
+        shown: &Dataset,
+        (context, token): (&GpuContext, &CancelToken),
+        function: impl FnOnce(&StepReadOptions<'_>) -> T,
+    ) -> T {
         let is_averaged = shown.volume().dims() != shown.volume().file_dims();
         let fit = |volume: Volume| {
             let fitting = is_averaged.then(|| downsample_to_fit(context, volume.clone()));
             fitting.and_then(Result::ok).unwrap_or(volume)
         };
-        let read = self.steps.open_like(index, shown, (&self.options, &control), &fit);
-        read.map_err(|err| err.to_string())
+        let control = LoadControl::with_token(token.clone());
+        function(&StepReadOptions { load: &self.options, control: &control, fit: &fit })
     }
 }
 
@@ -215,40 +226,46 @@ pub(crate) fn export_still(
         .map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
 }
 
-/// Renders and writes an animation of all time steps.
-pub(crate) fn export_series(
-    subject: &ExportScene,
-    (animation_spec, marks): (&AnimationSpec, Annotations),
-    path: PathBuf,
-    job: &JobControl,
-) -> Result<ExportOutcome, String> {
-    let Some(series) = &subject.series else { return Err(text::time_series::NO_SERIES.to_owned()) };
-    let mut worker = ExportWorker::new(subject)?;
-    let folder = AnimationFormat::record_folder(&path);
-    let image_spec =
-        ImageSpec { transparent: animation_spec.transparent, marks, ..ImageSpec::new(animation_spec.size) };
-    let mut write = || {
-        let mut file = Animation::create(&path, animation_spec)?;
-        for step in 0..animation_spec.frames {
-            report_progress(job, step, animation_spec.frames)?;
-            let index = step as usize;
-            let read = series.read(index, &subject.dataset, (&subject.context, job.token()));
-            let dataset = read.map_err(ExportEnd::Failed)?;
-            let subject =
-                ExportScene { dataset, source: series.steps.path(index).to_owned(), ..subject.clone() };
-            let shown = worker.render(&subject, &subject.settings, &image_spec).map_err(ExportEnd::Failed)?;
-            file.add(&shown, &worker.picture_record(&subject, &subject.settings, &image_spec, folder))?;
-        }
-        file.finish()?;
-        Ok(())
-    };
-    write().map_or_else(ExportEnd::into_result, |()| Ok(ExportOutcome::File(path)))
+/// Change from frame to frame of an animation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AnimationMotion {
+    /// The camera turns once around.
+    Camera,
+    /// The light with this index turns once around.
+    Light(usize),
+    /// Time steps follow each other.
+    TimeSteps,
 }
 
-/// Renders and writes an animation, in which a light or else the camera turns once around.
-pub(crate) fn export_turntable(
+impl AnimationMotion {
+    /// Returns the scene of a frame out of `count`.
+    fn scene_at(
+        self,
+        subject: &ExportScene,
+        frame: u32,
+        count: u32,
+        token: &CancelToken,
+    ) -> Result<ExportScene, String> {
+        let mut scene = subject.clone();
+        let share = f64::from(frame) / f64::from(count);
+        match self {
+            Self::Camera => scene.settings = subject.settings.at_turntable_angle(None, share),
+            Self::Light(index) => scene.settings = subject.settings.at_turntable_angle(Some(index), share),
+            Self::TimeSteps => {
+                let series = subject.series.as_ref().ok_or(text::time_series::NO_SERIES)?;
+                let index = frame as usize;
+                scene.dataset = series.read(index, &subject.dataset, (&subject.context, token))?;
+                series.steps.path(index).clone_into(&mut scene.source);
+            }
+        }
+        Ok(scene)
+    }
+}
+
+/// Renders and writes an animation.
+pub(crate) fn export_animation(
     subject: &ExportScene,
-    light: Option<usize>,
+    motion: AnimationMotion,
     (animation_spec, marks): (&AnimationSpec, Annotations),
     path: PathBuf,
     job: &JobControl,
@@ -261,11 +278,10 @@ pub(crate) fn export_turntable(
         let mut file = Animation::create(&path, animation_spec)?;
         for frame in 0..animation_spec.frames {
             report_progress(job, frame, animation_spec.frames)?;
-            let settings = subject
-                .settings
-                .at_turntable_angle(light, f64::from(frame) / f64::from(animation_spec.frames));
-            let shown = worker.render(subject, &settings, &image_spec).map_err(ExportEnd::Failed)?;
-            file.add(&shown, &worker.picture_record(subject, &settings, &image_spec, folder))?;
+            let scene = motion.scene_at(subject, frame, animation_spec.frames, job.token());
+            let scene = scene.map_err(ExportEnd::Failed)?;
+            let shown = worker.render(&scene, &scene.settings, &image_spec).map_err(ExportEnd::Failed)?;
+            file.add(&shown, &worker.picture_record(&scene, &scene.settings, &image_spec, folder))?;
         }
         file.finish()?;
         Ok(())

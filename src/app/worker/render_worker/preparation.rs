@@ -55,6 +55,12 @@ impl RenderWorker {
 
     /// Prepares the time steps that may be shown next, one after the other, until something is to be drawn.
     pub(super) fn prepare_upcoming(&mut self) {
+        if !self.preparation.upcoming.is_series
+            && let Some(scene) = &mut self.scene
+        {
+            // Steps of a series that has ended.
+            scene.renderer.set_spare_volume_bytes(0);
+        }
         loop {
             let Some(frame_request) = self.agenda.request_at_rest().cloned() else { return };
             let Some(dataset) = self.preparation.next_for(&frame_request) else { return };

@@ -11,6 +11,8 @@ use chiaroscuro_volume::Dataset;
 pub(crate) struct SpareVolumes {
     budget_bytes: u64,
     volumes: Vec<CacheEntry<VolumeKey, LoadedVolume>>,
+    /// True if volumes were dropped whose textures bind groups may keep alive.
+    has_dropped: bool,
 }
 
 impl SpareVolumes {
@@ -34,7 +36,9 @@ impl SpareVolumes {
         dataset: &Dataset,
     ) -> Option<CacheEntry<VolumeKey, LoadedVolume>> {
         // Volumes that are shown in another way have to be uploaded again.
+        let count = self.volumes.len();
         self.volumes.retain(|spare| is_shown_like(spare.key(), key));
+        self.has_dropped |= self.volumes.len() < count;
         let found = self.position(key, dataset).map(|at| self.volumes.remove(at));
         let is_spare = |shown: &CacheEntry<VolumeKey, LoadedVolume>| {
             shown.is_complete()
@@ -50,6 +54,11 @@ impl SpareVolumes {
             }
             other => found.or(other),
         }
+    }
+
+    /// Returns true, once, if volumes were dropped whose textures bind groups may keep alive.
+    pub(crate) fn take_dropped(&mut self) -> bool {
+        std::mem::take(&mut self.has_dropped)
     }
 
     /// Drops all volumes.
@@ -73,6 +82,7 @@ impl SpareVolumes {
     fn evict(&mut self) {
         while !self.volumes.is_empty() && self.bytes() > self.budget_bytes {
             self.volumes.remove(0);
+            self.has_dropped = true;
         }
     }
 }

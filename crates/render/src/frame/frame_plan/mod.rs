@@ -114,6 +114,7 @@ impl Renderer {
                 other => self.load_volume(other, dataset, &request, &keys, &mut steps)?,
             },
         };
+        self.release_dropped_volumes();
         if needs_density_pyramid(&request.settings)
             && loaded.product.volume.begin_pyramid(&self.tools.context)?
         {
