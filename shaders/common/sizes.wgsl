@@ -1,6 +1,6 @@
 // Sizes shared with Rust; tests/shaders/constants.rs compares them.
 
-// Voxels along the edge of a brick (crates/volume/src/bricks.rs) and of a cell (crates/volume/src/cells.rs).
+// Voxels along the edge of a brick (crates/volume/src/occupancy/bricks.rs) and of a cell (crates/volume/src/occupancy/cells.rs).
 const BRICK_EDGE = 8;
 const CELL_EDGE = 2;
 // Bricks or tiles per row of a dispatch over a list (crates/render/src/volume/brick_list.rs).

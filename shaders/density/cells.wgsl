@@ -1,4 +1,4 @@
-// Empty-space skipping over cells of 2³ voxels in which nothing is visible (crates/volume/src/cells.rs).
+// Empty-space skipping over cells of 2³ voxels in which nothing is visible (crates/volume/src/occupancy/cells.rs).
 #import "common/sizes.wgsl"
 #import "density/slab_field.wgsl"
 
@@ -11,8 +11,8 @@ struct CellRay {
 }
 
 fn cell_ray(frame: SheetFrameUniform, ray: Ray) -> CellRay {
-    let origin = (ray.origin + ray.direction * depth_of(frame, 0.0)) / CELL_EDGE;
-    let step = ray.direction * frame.slab / CELL_EDGE;
+    let origin = place_in_memory(ray.origin + ray.direction * depth_of(frame, 0.0)) / CELL_EDGE;
+    let step = vector_in_memory(ray.direction) * frame.slab / CELL_EDGE;
     let parallel_to = abs(step) < vec3f(1e-9);
     return CellRay(origin, step, 1.0 / select(step, vec3f(1e-9), parallel_to));
 }

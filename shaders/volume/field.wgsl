@@ -6,6 +6,7 @@
 #import "common/transmittance.wgsl"
 #import "density/kernel.wgsl"
 #import "density/presence.wgsl"
+#import "volume/pages.wgsl"
 
 #option PRECLASSIFY: voxels are classified before reconstruction
 // The pyramid then holds materials (volume/preclassified.wgsl), its first channel takes the place of density, and the
@@ -81,9 +82,27 @@ fn mean_of_fields(a: Field, b: Field) -> Field {
     return Field(0.5 * (a.density + b.density));
 }
 
+// Index-space point of the volume in memory: another one if samples read pages of finer levels.
+fn place_in_memory(p: vec3f) -> vec3f {
+#if PAGED
+    return (p + 0.5) * bound_pages.coarse - 0.5;
+#else
+    return p;
+#endif
+}
+
+// Index-space vector of the volume in memory.
+fn vector_in_memory(v: vec3f) -> vec3f {
+#if PAGED
+    return v * bound_pages.coarse;
+#else
+    return v;
+#endif
+}
+
 // Texture coordinates of an index-space point in the pyramid and in textures with the same texels.
 fn pyramid_place(p: vec3f) -> vec3f {
-    return (p + 4.5) * grid.pyramid_scale;
+    return (place_in_memory(p) + 4.5) * grid.pyramid_scale;
 }
 
 fn pyramid_texel(p: vec3f, level: f32) -> vec4f {
@@ -92,10 +111,14 @@ fn pyramid_texel(p: vec3f, level: f32) -> vec4f {
 
 // Density from the pyramid of prefiltered volumes, in one fetch.
 fn pyramid_density(p: vec3f, level: f32) -> f32 {
+#if PAGED
+    return paged_density(p, level);
+#else
 #if EXTINCTION_CHANNEL
     return pyramid_texel(p, level)[EXTINCTION_CHANNEL];
 #else
     return pyramid_texel(p, level).r;
+#endif
 #endif
 }
 

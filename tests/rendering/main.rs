@@ -11,6 +11,7 @@ mod common;
 mod compare;
 mod metamorphic;
 mod output;
+mod pages;
 mod path_tracing;
 mod scenes;
 mod settings;

@@ -78,6 +78,7 @@ fn every_shared_struct_is_compared() {
         include_str!("../../crates/render/src/pipelines/uniforms/mod.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/layers.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/light.rs"),
+        include_str!("../../crates/render/src/pipelines/uniforms/pages.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/scattered_light.rs"),
         include_str!("../../crates/render/src/pipelines/uniforms/sky.rs"),
     ];

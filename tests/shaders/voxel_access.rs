@@ -10,6 +10,9 @@ use crate::sources::{entry_shaders, validate_shader, variants, without_comments}
 /// File that alone fetches voxels.
 const FIELD: &str = "volume/field.wgsl";
 
+/// File that alone fetches voxels of pages.
+const PAGES: &str = "volume/pages.wgsl";
+
 /// File that alone reads the tables of transfer functions.
 const MATERIAL: &str = "volume/material.wgsl";
 
@@ -80,12 +83,15 @@ fn text_of(name: &str) -> &'static str {
 }
 
 /// Names that only one file may use: the file, and the names.
-fn reserved_names() -> [(&'static str, BTreeSet<String>); 2] {
+fn reserved_names() -> [(&'static str, BTreeSet<String>); 3] {
     let mut fetched = module_variables(text_of(FIELD));
     fetched.retain(|name| !SHARED_VARIABLES.contains(&name.as_str()));
     let mut tables = module_variables(text_of(MATERIAL));
     tables.extend(TABLE_NAMES.map(str::to_owned));
-    [(FIELD, fetched), (MATERIAL, tables)]
+    let mut paged = module_variables(text_of(PAGES));
+    // What is known of pages as a whole is no voxel.
+    paged.remove("bound_pages");
+    [(FIELD, fetched), (MATERIAL, tables), (PAGES, paged)]
 }
 
 /// Names in a file that are reserved for another one.
@@ -115,10 +121,11 @@ fn undeclared_access(source: &str) -> Vec<String> {
 
 #[test]
 fn only_the_field_fetches_voxels_and_only_the_material_reads_tables() {
-    let [(_, fetched), (_, tables)] = reserved_names();
+    let [(_, fetched), (_, tables), (_, paged)] = reserved_names();
     for name in ["density_texture", "pyramid_texture", "source_texture", "gradients", "voxels"] {
         assert!(fetched.contains(name), "{name} holds voxels: {fetched:?}");
     }
+    assert!(paged.contains("page_pool") && paged.contains("page_table"), "pages hold voxels: {paged:?}");
     for name in ["table", "lighting_table", "look_table"] {
         assert!(tables.contains(name), "{name} is a table: {tables:?}");
     }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{
-    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, ValueRanges, Volume, VolumeChoice,
-    VolumeError, VolumeId, VoxelMask,
+    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, PagesId, ResidentPages, ValueRanges,
+    Volume, VolumeChoice, VolumeError, VolumeId, VoxelMask,
 };
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
@@ -35,6 +35,8 @@ pub struct FieldOrigin {
 pub struct Dataset {
     /// Fields, 1 … [`MAX_FIELDS`]; the first one has the grid, the corrections and the metadata of the scene.
     fields: Arc<[DatasetField]>,
+    /// Pages of levels that are finer than the first field.
+    pages: Option<Arc<ResidentPages>>,
 }
 
 /// Reason why a volume cannot be shown together with another one.
@@ -136,9 +138,13 @@ impl DatasetField {
 }
 
 impl Dataset {
+    fn from_fields(fields: impl IntoIterator<Item = DatasetField>) -> Self {
+        Self { fields: fields.into_iter().collect(), pages: None }
+    }
+
     /// Computes bounds and histogram of a volume: about a second for 512³ voxels.
     pub fn new(volume: impl Into<Arc<Volume>>) -> Self {
-        Self { fields: Arc::new([DatasetField::new(volume)]) }
+        Self::from_fields([DatasetField::new(volume)])
     }
 
     /// Returns the dataset with the voxels of the first field mapped to densities in another way, and with bounds and
@@ -156,7 +162,7 @@ impl Dataset {
         let mapped = |field: &DatasetField| {
             shown.next().map_or_else(|| field.clone(), |shown| field.with_density_mapping(shown))
         };
-        Self { fields: self.fields.iter().map(mapped).collect() }
+        Self::from_fields(self.fields.iter().map(mapped)).with_pages(self.pages.clone())
     }
 
     /// Returns the dataset with voxels of all fields hidden by a mask, in place of an earlier one ([`Volume::with_mask`]).
@@ -170,7 +176,8 @@ impl Dataset {
     #[must_use]
     pub fn with_mask_where(&self, mask: Option<&Arc<VoxelMask>>, hides: impl Fn(usize) -> bool) -> Self {
         let fields = self.fields.iter().enumerate();
-        Self { fields: fields.map(|(at, field)| field.with_mask(mask.filter(|_| hides(at)))).collect() }
+        let hidden = fields.map(|(at, field)| field.with_mask(mask.filter(|_| hides(at))));
+        Self::from_fields(hidden).with_pages(self.pages.clone())
     }
 
     /// Returns the dataset with the opened volume corrected; immediate if voxel values are unaffected.
@@ -182,7 +189,7 @@ impl Dataset {
         let of_grid = by.of_grid();
         let corrected =
             |(index, field): (usize, &DatasetField)| field.corrected(if index == 0 { by } else { &of_grid });
-        Ok(Self { fields: self.fields.iter().enumerate().map(corrected).collect::<Result<_, _>>()? })
+        Ok(Self::from_fields(self.fields.iter().enumerate().map(corrected).collect::<Result<Vec<_>, _>>()?))
     }
 
     /// Returns the dataset with another time step of the same object, with the corrections, the ranges of values and the kind
@@ -216,7 +223,7 @@ impl Dataset {
             let placed = step.on_grid_of(first).ok_or(StepError::Apart)?.corrected(&by.of_grid())?;
             fields.push(Self::step_of_field(field, placed, origin.map(Arc::new)));
         }
-        Ok(Self { fields: fields.into() })
+        Ok(Self::from_fields(fields))
     }
 
     /// Creates another time step of a field, from a volume on the grid of the first.
@@ -237,7 +244,7 @@ impl Dataset {
         let changed = |(at, field): (usize, &DatasetField)| {
             if at == index { field.with_ranges(ranges) } else { field.clone() }
         };
-        Self { fields: self.fields.iter().enumerate().map(changed).collect() }
+        Self::from_fields(self.fields.iter().enumerate().map(changed))
     }
 
     /// Creates a dataset of volumes on one grid, the first of which is the one of the scene; at most [`MAX_FIELDS`] of
@@ -245,7 +252,7 @@ impl Dataset {
     pub fn from_volumes(first: Volume, further: impl IntoIterator<Item = Volume>) -> Self {
         let dims = first.dims();
         let others = further.into_iter().filter(|volume| volume.dims() == dims).take(MAX_FIELDS - 1);
-        Self { fields: std::iter::once(first).chain(others).map(DatasetField::new).collect() }
+        Self::from_fields(std::iter::once(first).chain(others).map(DatasetField::new))
     }
 
     /// Adds a volume from a source as the last field, resampled to the grid of the first one where its own differs.
@@ -263,14 +270,14 @@ impl Dataset {
         };
         let volume = volume.on_grid_of(self.volume()).ok_or(AddFieldError::Apart)?;
         let field = DatasetField { origin: Some(Arc::new(origin)), ..DatasetField::new(volume) };
-        Ok(Self { fields: self.fields.iter().cloned().chain([field]).collect() })
+        Ok(Self::from_fields(self.fields.iter().cloned().chain([field])))
     }
 
     /// Removes all fields but those with an index for which `keeps` is true; never the first.
     #[must_use]
     pub fn with_fields_where(&self, keeps: impl Fn(usize) -> bool) -> Self {
         let fields = self.fields.iter().enumerate().filter(|(index, _)| *index == 0 || keeps(*index));
-        Self { fields: fields.map(|(_, field)| field.clone()).collect() }
+        Self::from_fields(fields.map(|(_, field)| field.clone())).with_pages(self.pages.clone())
     }
 
     /// Replaces the further fields by others that were added to this dataset before, with its corrections of positions.
@@ -283,7 +290,7 @@ impl Dataset {
             if is_placed { field } else { field.corrected(&by).unwrap_or(field) }
         };
         let first = std::iter::once(self.field().clone());
-        Self { fields: first.chain(further.into_iter().map(placed)).take(MAX_FIELDS).collect() }
+        Self::from_fields(first.chain(further.into_iter().map(placed)).take(MAX_FIELDS))
     }
 
     /// Returns the sources of the further fields.
@@ -304,7 +311,19 @@ impl Dataset {
             id.content_id = id.content_id.rotate_left(17) ^ volume.content_id();
             *further = Some(volume.ranges());
         }
+        id.pages = self.pages().map_or_else(PagesId::default, |pages| pages.id());
         id
+    }
+
+    /// Returns the dataset with pages of levels that are finer than its first field.
+    #[must_use]
+    pub fn with_pages(self, pages: Option<Arc<ResidentPages>>) -> Self {
+        Self { pages, ..self }
+    }
+
+    /// Returns the pages of finer levels, if there are some whose densities represent what those of the first field do.
+    pub fn pages(&self) -> Option<&Arc<ResidentPages>> {
+        self.pages.as_ref().filter(|pages| pages.mapping() == self.volume().density_mapping())
     }
 
     /// Returns the first field, which has the grid of the scene.

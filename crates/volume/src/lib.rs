@@ -10,14 +10,13 @@
 //! `volume/density_mapping.rs`. `load_context/` has what readers of files share with built-in volumes: choices, memory
 //! limits, progress, and errors with advice.
 
-mod bricks;
 mod cancellation;
-mod cells;
 mod dataset;
 mod histogram;
-mod label_cells;
 mod load_context;
 pub mod math;
+mod occupancy;
+mod pages;
 mod presence;
 mod resample;
 pub mod synthetic;
@@ -25,19 +24,23 @@ mod value_metadata;
 mod values;
 mod volume;
 
-pub use bricks::BrickBounds;
 pub use cancellation::{CancelOnDrop, CancelToken, PIECE_VALUES};
-pub use cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use dataset::{AddFieldError, Dataset, DatasetField, FieldOrigin, StepError};
 pub use histogram::changes::ChangeHistogram;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
-pub use label_cells::CellOccupancy;
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
     FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, MAX_FIELDS, Portion,
     ReadContext, ResolutionLevel, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize,
     VoxelComponents, VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine,
     is_usable_spacing, memory_budget_bytes, quoted, spacing_ratio_error,
+};
+pub use occupancy::bricks::{BrickBounds, CellRanges};
+pub use occupancy::cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
+pub use occupancy::label_cells::CellOccupancy;
+pub use pages::{
+    FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page, PageAddress,
+    PageSource, PagesId, ResidentPages,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,

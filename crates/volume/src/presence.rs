@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::cells::{BRICK_EDGE, CELL_EDGE};
 use super::{Observer, Volume, VoxelMask};
+use crate::occupancy::cells::{BRICK_EDGE, CELL_EDGE};
 
 /// Number of cells along the edge of a brick.
 const CELLS_PER_BRICK_EDGE: usize = BRICK_EDGE / CELL_EDGE;

@@ -1,5 +1,7 @@
 //! Eye pass: from density and attenuation volumes to the linear picture.
 
+use glam::DVec3;
+
 use super::eye_variant::{EyeVariant, SamplingVariant};
 use super::light_lookup::{
     AmbientVolumes, LightLookup, light_bind_group, scattered_light_uniform, sky_uniform,
@@ -11,7 +13,7 @@ use crate::pipelines::binding::{bind_buffer, bind_view};
 use crate::pipelines::pipeline_variant::{LightCount, ShadingVariant};
 use crate::pipelines::uniforms;
 use crate::plan::picture_frame;
-use crate::plan::{PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
+use crate::plan::{PagedView, PixelWindow, SheetFrame, ray_reach, sample_reach, scatter_reach_bricks};
 use crate::resources::pass;
 use crate::volume::transfer_tables::{TransferTables, UNLIMITED_REACH};
 use crate::volume::{GpuVolume, PyramidLevels, VolumeContext};
@@ -29,6 +31,8 @@ pub(crate) struct EyePass {
     /// Pyramid levels that kernels read.
     levels: PyramidLevels,
     variant: EyeVariant,
+    /// Finer levels that samples read, if there are pages of them.
+    paged: Option<PagedView>,
 }
 
 /// Light that reaches the samples of a picture.
@@ -41,14 +45,17 @@ pub(crate) struct EyeLights<'a> {
 }
 
 impl EyePass {
-    /// Prepares the pass for some lights, and for sky visibility and scattered light where there are volumes of them.
+    /// Prepares the pass for some lights, and for sky visibility and scattered light where there are volumes of them; light is
+    /// that of the volume in memory, with the scene space `in_memory`, also where samples read finer levels.
     pub(crate) fn new(
-        scene: &SceneSpace,
+        in_memory: &SceneSpace,
         settings: &Settings,
         window: PixelWindow,
         EyeLights { lights, combined, ambient }: EyeLights<'_>,
         options: &RenderOptions,
+        paged: Option<PagedView>,
     ) -> Self {
+        let scene = paged.as_ref().map_or(in_memory, |paged| &paged.scene);
         let mut frame = picture_frame(settings, scene, window);
         if options.work.point_samples {
             frame.coarsest_level = 0.0;
@@ -57,7 +64,7 @@ impl EyePass {
         let shadowed = lights.iter().filter(|input| input.light.is_shadowed()).count();
         let mut packed = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
         for (slot, input) in packed.iter_mut().zip(lights) {
-            *slot = light_uniform(&input.light.light, input.volume, scene, settings);
+            *slot = light_uniform(&input.light.light, input.volume, in_memory, settings);
         }
         let stretch_level = frame.max_stretch_level();
         let (visible_region, shading_cut) = (settings.cuts.visible_part(), settings.cuts.shadowing_part());
@@ -68,7 +75,7 @@ impl EyePass {
         let gradient_steps = frame.gradient_steps();
         let uniform = uniforms::EyeUniform {
             frame: uniforms::SheetFrameUniform::new(&frame),
-            shading: shading_uniform(settings, scene, options),
+            shading: shading_uniform(settings, in_memory, options),
             space: uniforms::SpaceUniform::new(scene),
             eye: eye.as_vec3().extend(w).into(),
             first_row: 0,
@@ -82,7 +89,8 @@ impl EyePass {
             gradient_pixels: gradient_steps.pixels as i32,
             gradient_slabs: gradient_steps.slabs as i32,
             runs: 1,
-            voxel_edge: scene.smallest_edge() as f32,
+            // Unit of near-field rays, at whose ends light volumes are filled.
+            voxel_edge: in_memory.smallest_edge() as f32,
             combined_lookup: combined.map_or([0.0; 3], CombinedLight::lookup),
             max_undivided_share: settings.sampling.max_undivided_share as f32,
             visible_cut: uniforms::CutUniform::new(&visible_region.region(scene)),
@@ -90,8 +98,8 @@ impl EyePass {
                 &visible_region.region(scene).intersection(&Aabb::of_grid(scene.dims, 0.0)),
             ),
             shading_cut: uniforms::CutUniform::new(&shading_cut.region(scene)),
-            sky: sky_uniform(settings, scene, ambient.sky),
-            scattered_light: scattered_light_uniform(settings, scene, ambient.bounces),
+            sky: sky_uniform(settings, in_memory, ambient.sky),
+            scattered_light: scattered_light_uniform(settings, in_memory, ambient.bounces),
             lights: packed,
         };
         let mut seen = sample_reach(&frame, scene, settings.sampling.quadrature, options.work.preview);
@@ -105,7 +113,11 @@ impl EyePass {
         let count = LightCount { all: lights.len() as u32, shadowed: shadowed as u32 };
         let variant =
             EyeVariant::from_settings(settings, count, stretch_level > 0.0).with_combined(combined.is_some());
-        Self { frame, uniform, dilation, levels, variant }
+        let (uniform, variant) = match &paged {
+            None => (uniform, variant),
+            Some(paged) => (with_lookups_scaled(uniform, paged.coarse), variant.with_pages()),
+        };
+        Self { frame, uniform, dilation, levels, variant, paged }
     }
 
     /// Returns the number of slabs in the stack.
@@ -145,7 +157,7 @@ impl EyePass {
     /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
     /// volumes have none.
     pub(crate) fn gradients<'a>(&self, volume: &'a GpuVolume) -> Option<&'a wgpu::TextureView> {
-        if self.variant.shading.is_preclassified {
+        if self.variant.shading.is_preclassified || self.paged.is_some() {
             return None;
         }
         volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))
@@ -235,8 +247,9 @@ impl EyePass {
                 bind_view("gradients", gradients.unwrap_or(gpu.placeholder)),
             ],
         );
+        let (dilation, pyramids) = (self.dilation(volume), tables.pyramids(gpu.volume));
         let of_volume =
-            gpu.bind_volume(&pipeline, self.dilation(volume), self.levels, tables.pyramids(gpu.volume));
+            gpu.bind_paged_volume(&pipeline, dilation, self.levels, pyramids, self.paged.as_ref());
         let of_lights = light_bind_group(gpu, &pipeline, looked_up);
         let groups = [&own, &of_volume, &of_lights];
         if ray_is_listed {
@@ -246,6 +259,19 @@ impl EyePass {
         }
         Ok(())
     }
+}
+
+/// Scales look-ups of light from the index space of the volume in memory to that of a finer level, which begins at the same
+/// corner.
+fn with_lookups_scaled(mut uniform: uniforms::EyeUniform, coarse: DVec3) -> uniforms::EyeUniform {
+    let scaled = |lookup: [f32; 3]| (DVec3::from(lookup.map(f64::from)) * coarse).as_vec3().into();
+    for light in &mut uniform.lights {
+        light.lookup = scaled(light.lookup);
+    }
+    uniform.combined_lookup = scaled(uniform.combined_lookup);
+    uniform.sky.lookup = scaled(uniform.sky.lookup);
+    uniform.scattered_light.lookup = scaled(uniform.scattered_light.lookup);
+    uniform
 }
 
 /// Builds the uniform of the shading and shadow parameters.

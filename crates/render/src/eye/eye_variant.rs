@@ -1,8 +1,8 @@
 //! Pipeline variant of the eye pass: the parts of a look that select the code of its shader.
 
 use crate::pipelines::pipeline_variant::{
-    GridBoundaries, LightCount, PipelineVariant, ReconstructionVariant, ShaderConstants, ShadingVariant,
-    SkyVariant, deposit_constant, flag, is_cut,
+    GridBoundaries, KernelVariant, LightCount, PipelineVariant, ReconstructionVariant, ShaderConstants,
+    ShadingVariant, SkyVariant, deposit_constant, flag, is_cut,
 };
 use chiaroscuro_scene::{DepositMode, NearFieldRay, RayProjection, Settings, ShadowAlgorithm};
 
@@ -23,6 +23,8 @@ pub(crate) struct EyeVariant {
     has_preintegrated_slabs: bool,
     /// `true` if normals are gradients of the kernel itself.
     has_kernel_gradients: bool,
+    /// `true` if samples read pages of finer levels.
+    is_paged: bool,
     pub(super) shading: ShadingVariant,
     /// Deposit rule of the rays that samples cast to lights; `None` if light volumes are looked up.
     ray_deposit: Option<DepositMode>,
@@ -72,6 +74,7 @@ impl EyeVariant {
                 has_near_halves: near_field.halves_first_step(),
             },
             has_kernel_gradients: settings.has_kernel_gradients(),
+            is_paged: false,
             projection: settings.ray_projection(),
             is_lit_projection: settings.ray_projection().is_some() && !settings.is_unlit(),
             has_adaptive_slabs: settings.has_adaptive_slabs(),
@@ -97,6 +100,14 @@ impl EyeVariant {
     /// Sets if the shadowed lights are in one combined volume.
     pub(crate) fn with_combined(mut self, is_combined: bool) -> Self {
         self.shading.is_combined = is_combined;
+        self
+    }
+
+    /// Sets that samples read pages of finer levels, which hold prefiltered densities alone.
+    pub(crate) fn with_pages(mut self) -> Self {
+        self.is_paged = true;
+        self.has_kernel_gradients = false;
+        self.reconstruction.kernel = KernelVariant::Prefiltered;
         self
     }
 
@@ -135,6 +146,7 @@ impl PipelineVariant for EyeVariant {
             flag("LIT", self.is_lit_projection),
             flag("KERNEL_GRADIENTS", self.has_kernel_gradients),
             flag("DIRECT", self.ray_deposit.is_some()),
+            flag("PAGED", self.is_paged),
         ]);
         constants.extend(self.sampling.constants());
         if let Some(deposit) = self.ray_deposit {

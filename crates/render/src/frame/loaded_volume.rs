@@ -13,13 +13,14 @@ use crate::scatter::voxels::ScatterVoxels;
 use crate::scattered_light::volume::ScatteredLightVolume;
 use crate::sky::volume::SkyVolume;
 use crate::volume::GpuVolume;
+use crate::volume::page_pool::PagePool;
 use crate::volume::preclassified::{PreclassificationKey, PreclassifiedVoxels};
 use crate::volume::presence::PresenceTextures;
 use crate::volume::reused_textures::ReusedTextures;
 use crate::volume::transfer_tables::{TableBakeResult, TransferTables};
 use crate::{GpuContext, GpuError, RenderOptions};
 use chiaroscuro_scene::{LayerComposition, LightVolumeResolution, Settings, SheetOrder};
-use chiaroscuro_volume::{Dataset, Observer};
+use chiaroscuro_volume::{Dataset, Observer, PagesId, ResidentPages};
 
 /// Inputs for finding or creating the products of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -91,9 +92,11 @@ impl LoadedVolume {
             LayerComposition::Tinted => volume.with_fields(context, dataset.with_mask(None).fields())?,
             LayerComposition::Composed => volume.with_fields(context, dataset.fields())?,
         };
+        // There are no pages yet whose densities the bounds could hold for.
+        let tables_key = TablesKey { bounds: PagesId::default().bounds, ..tables_key.clone() };
         let TableBakeResult { tables, .. } =
-            TransferTables::bake(context, &volume, settings, tables_key, None)?;
-        let tables = CacheEntry::complete(tables_key.clone(), tables);
+            TransferTables::bake(context, &volume, settings, &tables_key, None)?;
+        let tables = CacheEntry::complete(tables_key, tables);
         let dataset = dataset.clone();
         let materials = Vec::new();
         Ok(Self {
@@ -154,6 +157,36 @@ impl LoadedVolume {
         (is_combined || keys.lights.iter().flatten().all(has_light))
             && keys.sky.as_ref().is_none_or(has_sky)
             && keys.bounces.as_ref().is_none_or(has_bounces)
+    }
+
+    /// Returns true if pictures of the volume can read pages of finer levels: if no voxels are missing or hidden.
+    pub(crate) fn can_show_pages(&self) -> bool {
+        self.volume.presence.is_none()
+    }
+
+    /// Updates the pages of finer levels, and the bounds of cells that hold for them. Returns true if textures have changed.
+    ///
+    /// # Errors
+    /// Returns an error if the adapter cannot hold the pages.
+    pub(crate) fn refresh_pages(
+        &mut self,
+        context: &GpuContext,
+        pages: Option<&Arc<ResidentPages>>,
+    ) -> Result<bool, GpuError> {
+        let bounds = pages.map_or(&self.volume.own_bricks, |pages| pages.bounds());
+        self.volume.bricks = Arc::clone(bounds);
+        let known = self.volume.pages.as_ref().map(PagePool::id);
+        if known == pages.map(|pages| pages.id()) {
+            return Ok(false);
+        }
+        let earlier = self.volume.pages.take();
+        self.volume.pages = pages.map(|pages| PagePool::new(context, pages, earlier)).transpose()?;
+        Ok(true)
+    }
+
+    /// Returns the number of steps that upload pages which are missing.
+    pub(crate) fn pending_page_steps(&self) -> usize {
+        self.volume.pages.as_ref().map_or(0, PagePool::pending_steps)
     }
 
     /// Updates the tables to a key. Returns the number of tables baked.

@@ -53,6 +53,8 @@ pub struct RenderJob<'r> {
     /// Shading parameters with the volume of each light, for filling the combined volume.
     pub(super) combine_pass: Option<EyePass>,
     pub(super) eye_pass: EyePass,
+    /// Rays of the picture in the index space of the volume in memory, for the floor, if those of the eye pass are in another.
+    pub(super) floor_pass: Option<EyePass>,
     /// Compilation of its pipeline, if that was missing.
     pub(super) _eye_preparation: Option<PipelinePreparation>,
     pub(super) scattering: Option<ScatterState>,

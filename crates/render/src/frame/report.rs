@@ -58,6 +58,8 @@ pub struct RenderReport {
 pub struct StepCounts {
     /// Number of blocks of the volume that were uploaded or prefiltered.
     pub volume: u32,
+    /// Number of blocks of pages of finer levels that were uploaded.
+    pub pages: u32,
     /// Number of blocks of voxels, or of coarser levels, that were classified.
     pub materials: u32,
     /// Number of lookup tables that were baked.

@@ -110,6 +110,8 @@ pub(crate) enum RenderStep {
     Upload(Range<usize>),
     /// Uploads a box of texels of the coarsest level of an observer's presence texture, with those of the finer levels.
     Presence(Observer, [Range<usize>; 3]),
+    /// Uploads pages of finer levels.
+    Pages,
     /// Prefilters bricks of one pyramid level.
     Pyramid(u32, Range<usize>),
     /// Computes gradients in bricks of one pyramid level.
@@ -168,7 +170,7 @@ impl RenderStep {
     /// Returns the stage for reports; `None` for steps without commands.
     pub(super) fn stage(&self) -> Option<RenderStage> {
         Some(match self {
-            Self::Upload(_) | Self::Presence(..) => RenderStage::Upload,
+            Self::Upload(_) | Self::Presence(..) | Self::Pages => RenderStage::Upload,
             Self::Pyramid(..) | Self::Gradients(..) | Self::Materials { .. } => RenderStage::Pyramid,
             Self::March(..) => RenderStage::LightMarch,
             Self::Backproject(..) | Self::Average { .. } | Self::MergeColors(_) | Self::Combine(_) => {

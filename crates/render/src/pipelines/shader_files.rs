@@ -113,6 +113,7 @@ pub const SHADERS: &[(&str, &str)] = shader_files![
     "volume/layers.wgsl",
     "volume/levels.wgsl",
     "volume/material.wgsl",
+    "volume/pages.wgsl",
     "volume/preclassified.wgsl",
     "volume/prefilter.wgsl",
     "volume/resample.wgsl",

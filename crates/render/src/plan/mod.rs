@@ -5,6 +5,7 @@
 
 mod geometry;
 mod keys;
+mod pages;
 mod pixel_rays;
 mod probe;
 mod request;
@@ -34,5 +35,6 @@ pub use keys::{
     ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,
     EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
+pub use pages::{PagedView, shows_pages};
 pub use probe::{LightArrival, Probe, probe, probe_layers};
 pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

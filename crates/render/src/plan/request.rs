@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::PixelWindow;
+use super::{PixelWindow, shows_pages};
 use chiaroscuro_scene::{
     ImageSpec, LayerComposition, LightVolumeResolution, OutputSettings, PixelFormat, Settings,
 };
-use chiaroscuro_volume::{DensityMapping, MAX_FIELDS, VolumeId};
+use chiaroscuro_volume::{DensityMapping, MAX_FIELDS, PagesId, VolumeId};
 
 /// Request for a picture: the volume, its look and the size.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +57,11 @@ impl RenderRequest {
             never_cut: self.settings.layers_never_cut(),
             composition: self.settings.layer_composition(),
         }
+    }
+
+    /// Returns the identity of the pages of finer levels that the picture may read.
+    pub fn shown_pages(&self) -> PagesId {
+        if shows_pages(&self.settings) { self.volume.pages } else { PagesId::default() }
     }
 
     /// Returns the request with the settings of its mode ([`Settings::resolved_mode`]).

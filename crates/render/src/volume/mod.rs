@@ -3,10 +3,9 @@
 pub(super) mod brick_list;
 pub(super) mod cell_list;
 pub(super) mod cell_set_cache;
-pub(crate) mod density_pyramid;
 mod field_texture;
-pub(super) mod gradients;
 pub(super) mod layers;
+pub(super) mod page_pool;
 pub(super) mod preclassified;
 pub(super) mod presence;
 pub(super) mod pyramid;
@@ -25,9 +24,10 @@ use std::sync::Arc;
 
 use half::f16;
 
-use self::density_pyramid::DensityPyramid;
 use self::field_texture::FieldTexture;
+use self::page_pool::PagePool;
 use self::presence::PresenceTextures;
+use self::pyramid::density_pyramid::DensityPyramid;
 use self::reused_textures::ReusedTextures;
 use self::texture_shapes::{pyramid_dims, texel_count};
 use self::textures::{density_is_unorm, unorm16};
@@ -36,7 +36,8 @@ use super::resources::resource_pool::ResourcePool;
 use super::{GpuContext, GpuError};
 use crate::pipelines::binding::{NamedResource, ShaderPipeline, bind_buffer, bind_view, sampler};
 use crate::pipelines::pipeline_variant::GridBoundaries;
-use crate::pipelines::uniforms::GridUniform;
+use crate::pipelines::uniforms::{GridUniform, PagesUniform};
+use crate::plan::PagedView;
 use chiaroscuro_volume::{
     BRICK_EDGE, BrickBounds, CELL_EDGE, DatasetField, Observer, Volume, math::SceneSpace,
 };
@@ -128,8 +129,35 @@ impl VolumeContext<'_> {
         levels: PyramidLevels,
         pyramids: PassPyramids<'_>,
     ) -> wgpu::BindGroup {
+        self.bind_paged_volume(pipeline, dilation, levels, pyramids, None)
+    }
+
+    /// Creates bind group 1 of passes that sample density, of pages where a view of them is given.
+    pub(crate) fn bind_paged_volume(
+        &self,
+        pipeline: &ShaderPipeline,
+        dilation: i32,
+        levels: PyramidLevels,
+        pyramids: PassPyramids<'_>,
+        paged: Option<&PagedView>,
+    ) -> wgpu::BindGroup {
         let volume = self.volume;
-        let grid = self.uniform("Volume::grid", volume.grid(dilation));
+        let mut grid = volume.grid(dilation);
+        if let Some(paged) = paged {
+            grid.dims = paged.scene.dims.map(|n| n as f32);
+        }
+        let grid = self.uniform("Volume::grid", grid);
+        let pool = volume.pages.as_ref().zip(paged);
+        let pages = pool.map_or_else(PagesUniform::default, |(pool, view)| pool.uniform(view));
+        let pages = self.uniform("Volume::pages", pages);
+        let no_table;
+        let (page_pool, page_table) = match pool {
+            Some((pool, _)) => (&pool.view, &pool.table),
+            None => {
+                no_table = self.storage("Volume::no_pages", &[0_u32]);
+                (self.placeholder, &no_table)
+            }
+        };
         let mut entries = vec![
             bind_buffer("bound_grid", &grid),
             bind_view("density_texture", &volume.density_view),
@@ -143,6 +171,9 @@ impl VolumeContext<'_> {
             entries.push(bind_view("lighting_pyramid", levels.choose(views)));
             entries.push(bind_view("tint_pyramid", tints));
             entries.push(bind_view("lighting_presence_texture", self.presence_for(Observer::Light, levels)));
+            entries.push(bind_buffer("bound_pages", &pages));
+            entries.push(bind_view("page_pool", page_pool));
+            entries.push(bind_buffer("page_table", page_table));
         }
         self.bind("Volume::bind_group", pipeline, 1, &entries)
     }
@@ -175,8 +206,10 @@ pub(crate) struct PassPyramids<'a> {
 pub(crate) struct GpuVolume {
     /// Volume that is uploaded; kept for later uploads and for the passes' work on the CPU.
     pub volume: Arc<Volume>,
-    /// Density ranges of bricks of 8³ voxels.
+    /// Density ranges of bricks of 8³ voxels, which hold for pages of finer levels as well.
     pub bricks: Arc<BrickBounds>,
+    /// Density ranges of bricks of the uploaded voxels alone.
+    pub own_bricks: Arc<BrickBounds>,
     /// Transform between index space and scene space.
     pub scene: SceneSpace,
     /// Densities with a border of one voxel.
@@ -188,6 +221,8 @@ pub(crate) struct GpuVolume {
     no_pyramid: PyramidViews,
     /// Densities of all fields, if voxels are composed of layers.
     pub fields: Option<Box<FieldTexture>>,
+    /// Pages of finer levels, if the picture reads some.
+    pub pages: Option<PagePool>,
     /// Presence textures, if voxels are missing or hidden.
     pub presence: Option<PresenceTextures>,
     /// Packed coordinates of the bricks that are non-empty, for each level of the pyramid of densities.
@@ -241,6 +276,7 @@ impl GpuVolume {
         Ok(Self {
             volume: Arc::clone(volume),
             bricks: Arc::clone(bricks),
+            own_bricks: Arc::clone(bricks),
             scene: volume.scene(),
             density_view: density.create_view(&wgpu::TextureViewDescriptor::default()),
             density,
@@ -248,6 +284,7 @@ impl GpuVolume {
             pyramid,
             no_pyramid: PyramidViews::new(&texel),
             fields: None,
+            pages: None,
             presence,
             clamped: context.sampler("Volume::clamped"),
             nearest: context.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -359,6 +396,7 @@ impl GpuVolume {
             .map_or(0, |pyramid| texel_count(&pyramid.texture) * 16 / 7 + pyramid.gradient_bytes());
         let presence = self.presence.as_ref().map_or(0, PresenceTextures::bytes);
         let fields = self.fields.as_ref().map_or(0, |fields| fields.bytes());
-        2 * texel_count(&self.density) + pyramid + presence + fields
+        let pages = self.pages.as_ref().map_or(0, PagePool::bytes);
+        2 * texel_count(&self.density) + pyramid + presence + fields + pages
     }
 }

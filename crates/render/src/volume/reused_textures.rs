@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::density_pyramid::DensityPyramid;
 use super::presence::PresenceTextures;
+use super::pyramid::density_pyramid::DensityPyramid;
 use chiaroscuro_volume::{Observer, Volume, VoxelMask};
 
 /// Textures that are kept where a picture shows the same voxels in another way.

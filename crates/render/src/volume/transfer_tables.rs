@@ -200,7 +200,8 @@ impl TransferTables {
         previous: Option<&CacheEntry<TablesKey, Self>>,
     ) -> Result<TableBakeResult, GpuError> {
         let bounded = key.cells_are_bounds;
-        let previous = previous.filter(|known| known.key().cells_are_bounds == bounded);
+        let previous = previous
+            .filter(|known| known.key().cells_are_bounds == bounded && known.key().bounds == key.bounds);
         let known = || previous.into_iter().flat_map(|known| [&known.product.eye, &known.product.lighting]);
         let mut baked = 0;
         let (eye, tints) = if let Some(known) = previous.filter(|known| known.key().eye == key.eye) {

@@ -41,7 +41,7 @@ use self::grid::face_voxels::face_voxels;
 use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
 use super::load_context::{FileContents, MAX_FIELDS};
-use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
+use super::{PagesId, Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
 /// Identity of a volume together with its value ranges.
@@ -55,6 +55,8 @@ pub struct VolumeId {
     pub dims: [usize; 3],
     /// Value ranges of the further fields of a dataset.
     pub further_ranges: [Option<ValueRanges>; MAX_FIELDS - 1],
+    /// Pages of finer levels that a dataset has.
+    pub pages: PagesId,
 }
 
 /// Scalar volume. Invariants: at least one voxel, an invertible affine transform, a finite value range. Clones share
@@ -264,6 +266,7 @@ impl Volume {
             ranges: self.ranges(),
             dims: self.dims(),
             further_ranges: [None; MAX_FIELDS - 1],
+            pages: PagesId::default(),
         }
     }
 

@@ -20,7 +20,8 @@ use crate::scattered_light::fill::ScatteringInputs;
 use crate::scattered_light::steps::ScatteringStep;
 use crate::sky::volume::SkyVolume;
 use crate::volume::brick_list::brick_entry;
-use crate::volume::{VolumeContext, gradients, pyramid};
+use crate::volume::pyramid::gradients;
+use crate::volume::{VolumeContext, pyramid};
 
 impl RenderJob<'_> {
     /// Records one step into the encoder.
@@ -41,6 +42,13 @@ impl RenderJob<'_> {
                 self.report.step_counts.volume += 1;
                 if let Some(presence) = &volume.presence {
                     presence.upload(context, &volume.volume, *observer, texels);
+                }
+                Ok(())
+            }
+            RenderStep::Pages => {
+                self.report.step_counts.pages += 1;
+                if let Some(pages) = &mut self.loaded.product.volume.pages {
+                    pages.upload(context);
                 }
                 Ok(())
             }
@@ -83,7 +91,7 @@ impl RenderJob<'_> {
                 let inputs = floor::FloorInputs {
                     shadows: &shadows,
                     tables: &self.loaded.product.tables.product,
-                    eye: &self.eye_pass,
+                    eye: self.floor_pass.as_ref().unwrap_or(&self.eye_pass),
                     lights: &self.lights,
                     settings: &self.request.settings,
                     options: &self.options,

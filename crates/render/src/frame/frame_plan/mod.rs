@@ -18,7 +18,7 @@ use super::step::{FrameProduct, RenderStep};
 use crate::output::render_target::TargetShape;
 use crate::plan::{ActiveLights, FrameKeys, RenderRequest, VolumeKey};
 use crate::resources::cache_entry::CacheEntry;
-use crate::volume::density_pyramid::needs_density_pyramid;
+use crate::volume::pyramid::density_pyramid::needs_density_pyramid;
 use crate::volume::reused_textures::{ReusedTextures, changed_box};
 use crate::{GpuError, RenderOptions, Renderer};
 use chiaroscuro_scene::{PixelFormat, mask_from_shapes};
@@ -120,6 +120,15 @@ impl Renderer {
         {
             steps.extend(pyramid_steps(&loaded.product.volume));
         }
+        let pages = dataset.pages().filter(|pages| {
+            keys.eye.has_pages()
+                && pages.mapping() == keys.volume.density_mapping
+                && loaded.product.can_show_pages()
+        });
+        if loaded.product.refresh_pages(&self.tools.context, pages)? {
+            self.tools.pool.drop_bind_groups();
+        }
+        steps.extend(std::iter::repeat_n(RenderStep::Pages, loaded.product.pending_page_steps()));
         let shape = target_shape(&request, options);
         Ok(FramePlanner {
             tools: &self.tools,

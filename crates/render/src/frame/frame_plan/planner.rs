@@ -16,7 +16,9 @@ use crate::frame::step::{FrameProduct, RenderStep};
 use crate::light::light_uniform::LightInput;
 use crate::output::render_target::TargetShape;
 use crate::pipelines::shader_library::PipelinePreparation;
-use crate::plan::{ActiveLights, AntialiasedKey, EyeKey, FloorKey, FrameKeys, RenderRequest, VolumeKey};
+use crate::plan::{
+    ActiveLights, AntialiasedKey, EyeKey, FloorKey, FrameKeys, PagedView, RenderRequest, VolumeKey,
+};
 use crate::resources::cache_entry::CacheEntry;
 use crate::resources::gpu_tools::GpuTools;
 use crate::scatter::voxels::ScatterState;
@@ -48,6 +50,8 @@ struct ShadingPasses {
     eye: EyePass,
     /// Pass with the volume of each light, if the combined volume has to be filled.
     combine: Option<EyePass>,
+    /// Pass without pages of finer levels, if the eye's has some.
+    floor: Option<EyePass>,
 }
 
 impl<'r> FramePlanner<'r> {
@@ -155,6 +159,7 @@ impl<'r> FramePlanner<'r> {
             scattered_light: placement.bounces,
             combine_pass: passes.combine,
             eye_pass: passes.eye,
+            floor_pass: passes.floor,
             _eye_preparation: eye_preparation,
             scattering,
             eye_sheets: None,
@@ -181,18 +186,21 @@ impl<'r> FramePlanner<'r> {
             sky: placement.sky.slot.map(|slot| &value.skies[slot].product),
             bounces: placement.bounces.slot.map(|slot| &value.bounces[slot].product),
         };
-        let pass = |lights: EyeLights<'_>| {
-            EyePass::new(&value.volume.scene, settings, window, lights, &self.options)
+        let scene = &value.volume.scene;
+        let pass = |lights: EyeLights<'_>, paged: Option<PagedView>| {
+            EyePass::new(scene, settings, window, lights, &self.options, paged)
         };
+        let paged = value.volume.pages.as_ref().and_then(|pool| pool.view_of(settings, scene, window));
         let each = EyeLights { lights: &volumes, combined: None, ambient };
-        let combine = placement.lights.bricks_to_combine.is_some().then(|| pass(each));
+        let combine = placement.lights.bricks_to_combine.is_some().then(|| pass(each, None));
+        let floor = paged.is_some().then(|| pass(each, None));
         let combined = value.combined.as_ref().filter(|_| self.keys.combined.is_some());
         let eye = match combined {
             Some(combined) => {
                 let unshadowed = light_inputs_of(self.lights.unshadowed(), &[], value);
-                pass(EyeLights { lights: &unshadowed, combined: Some(&combined.product), ambient })
+                pass(EyeLights { lights: &unshadowed, combined: Some(&combined.product), ambient }, paged)
             }
-            None => pass(each),
+            None => pass(each, paged),
         };
         self.report.slabs = eye.slab_count();
         self.report.size = window.size;
@@ -200,7 +208,7 @@ impl<'r> FramePlanner<'r> {
             inputs.iter().filter_map(|input| input.volume).map(|volume| volume.divisor).max().unwrap_or(0)
         };
         self.report.light_divisor = if combined.is_some() { 0 } else { looked_up(&volumes) };
-        ShadingPasses { eye, combine }
+        ShadingPasses { eye, combine, floor }
     }
 
     /// Appends the steps of the linear picture, the floor and the display. Returns the target that they draw into.

@@ -37,8 +37,8 @@ const VOLUME: &[BindingSlot] = &[
     PRESENCE_TEXTURE,
 ];
 
-/// Density and pyramid as in [`VOLUME`], with the pyramid and the presence that rays to lights read, and the pyramid of
-/// tints.
+/// Density and pyramid as in [`VOLUME`], with the pyramid and the presence that rays to lights read, the pyramid of tints,
+/// and pages of finer levels.
 const VOLUME_AND_LIGHTING: &[BindingSlot] = &[
     VOLUME[0],
     VOLUME[1],
@@ -49,6 +49,9 @@ const VOLUME_AND_LIGHTING: &[BindingSlot] = &[
     LIGHTING_PYRAMID,
     TINT_PYRAMID,
     LIGHTING_PRESENCE,
+    BindingSlot::uniform::<uniforms::PagesUniform>(13, "bound_pages"),
+    BindingSlot::sampled_texture(14, "page_pool", TextureShape::D3),
+    BindingSlot::storage(15, "page_table", 4, BufferAccess::Read),
 ];
 
 /// Pyramid without the density texture.

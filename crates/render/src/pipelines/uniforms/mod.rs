@@ -8,6 +8,7 @@
 
 mod layers;
 mod light;
+mod pages;
 mod scattered_light;
 mod sky;
 
@@ -15,6 +16,7 @@ pub use self::layers::{LayerUniform, LayersUniform, MaterialUniform};
 pub use self::light::{
     AverageUniform, BlockNormalsUniform, FloorShadowUniform, LightUniform, RaycastUniform, ShadingUniform,
 };
+pub use self::pages::{MAX_PAGE_LEVELS, PageLevelUniform, PagesUniform};
 pub use self::scattered_light::{
     BounceUniform, DiffusionLevelUniform, ScatteredLightUniform, SingleScatteringUniform,
 };

@@ -14,11 +14,14 @@ use chiaroscuro_scene::{
     PixelFormat, RayProjection, ReconstructionKernel, RenderEngine, SamplingSettings, Settings,
     ShadowAlgorithm, ShadowSettings, SheetOrder, SlabMode, SlabQuadrature, VolumeLayer,
 };
+use chiaroscuro_volume::PagesId;
 
 /// Inputs of the linear picture of the eye pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeKey {
     volume: VolumeKey,
+    /// Pages of levels that are finer than the volume in memory.
+    pages: PagesId,
     window: PixelWindow,
     camera: Camera,
     curve: EyeTableKey,
@@ -121,6 +124,11 @@ impl ShadowRaysKey {
 }
 
 impl EyeKey {
+    /// Returns true if the picture may read pages of finer levels.
+    pub fn has_pages(&self) -> bool {
+        self.pages != PagesId::default()
+    }
+
     /// Creates the key of the picture that is made with these light volumes, one for each light of the settings that
     /// has any, or with their combination; and with these volumes of sky visibility and of bounced light.
     pub fn new(
@@ -176,6 +184,7 @@ impl EyeKey {
         let casts_rays = shadows.algorithm == ShadowAlgorithm::Direct;
         Self {
             volume: request.volume_key(),
+            pages: request.shown_pages(),
             window: options.sample_window(request),
             camera: camera.clone(),
             curve: EyeTableKey::new(settings),

@@ -11,6 +11,8 @@ use chiaroscuro_scene::{
 pub struct TablesKey {
     /// Volume whose shown range and bricks the tables refer to.
     pub volume: VolumeKey,
+    /// Pages whose densities the bounds of cells hold for.
+    pub bounds: u64,
     /// Transfer function of the eye.
     pub eye: EyeTableKey,
     /// Opacities of the material that attenuate light.
@@ -87,6 +89,7 @@ impl TablesKey {
         let settings = &request.settings;
         Self {
             volume: request.volume_key(),
+            bounds: request.shown_pages().bounds,
             eye: EyeTableKey::new(settings),
             lighting: OpacityKey::new(settings),
             transmission: TransmissionKey::new(settings),

@@ -1,5 +1,7 @@
 //! Pyramid of prefiltered density: level 0 by `volume/prefilter.wgsl`, coarser levels by `volume/downsample.wgsl`.
 
+pub(crate) mod density_pyramid;
+pub(crate) mod gradients;
 pub(super) mod pyramid_views;
 
 use std::ops::Range;

@@ -11,7 +11,7 @@ use chiaroscuro_scene::{
     ControlPoint, LabelLook, LightGeometry, LightSettings, ScatteringSettings, Settings, SkyMode,
     SkySettings, TransferFunction, apply_path, settings_to_json,
 };
-use chiaroscuro_volume::{DensityMapping, ValueRange, ValueRanges, VolumeId};
+use chiaroscuro_volume::{DensityMapping, PagesId, ValueRange, ValueRanges, VolumeId};
 
 fn request() -> RenderRequest {
     let point = |value, opacity| ControlPoint::new(value, [1.0; 3], opacity);
@@ -27,7 +27,13 @@ fn request() -> RenderRequest {
     .with_transfer(TransferFunction { points: vec![point(0.0, 0.0), point(1.0, 0.5)], ..Default::default() });
     let ranges = ValueRanges { all: ValueRange::new(-9.0, 9.0), robust: ValueRange::UNIT };
     RenderRequest {
-        volume: VolumeId { content_id: 1, ranges, dims: [256; 3], further_ranges: [None; 3] },
+        volume: VolumeId {
+            content_id: 1,
+            ranges,
+            dims: [256; 3],
+            further_ranges: [None; 3],
+            pages: PagesId::default(),
+        },
         settings,
         size: [100, 80],
         preview_resolution: None,

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::GpuVolume;
-use super::pyramid::{LevelBuffers, level_buffers, level_view};
+use super::{LevelBuffers, level_buffers, level_view};
 use crate::pipelines::binding::{bind_buffer, bind_view};
 use crate::pipelines::pipeline_variant::SingleVariant;
 use crate::resources::pass;
+use crate::volume::GpuVolume;
 use crate::volume::brick_list;
 use crate::{GpuContext, GpuError, ShaderLibrary};
 

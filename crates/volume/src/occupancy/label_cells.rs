@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use super::Volume;
 use super::bricks::BrickBounds;
 use super::cells::{BRICK_EDGE, CELL_EDGE};
+use crate::Volume;
 
 /// Cells along the edge of a brick.
 const CELLS_PER_BRICK_EDGE: usize = BRICK_EDGE / CELL_EDGE;

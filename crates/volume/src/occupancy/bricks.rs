@@ -5,13 +5,14 @@
 //! The range of a brick therefore covers its voxels and three more on every side. Beyond the grid, densities are
 //! clamped to the border, so skipping a brick whose range is transparent cannot change any pixel.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 
-use super::Volume;
-use super::cancellation::CancelToken;
 use super::cells::{self, BRICK_EDGE, CellBounds};
+use crate::Volume;
+use crate::cancellation::CancelToken;
 
 /// Margin of a brick's range beyond its voxels: the kernel's radius of 2, and one voxel for the quadrature offset of
 /// at most 2 · 0.289 voxel with the thickest slab.
@@ -31,7 +32,60 @@ pub struct BrickBounds {
     present: Option<Vec<u64>>,
 }
 
+/// Ranges of densities in a box of cells, such as that of a page of a finer level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellRanges {
+    /// First cell along x, y and z.
+    pub first: [usize; 3],
+    /// Number of cells along x, y and z.
+    pub dims: [usize; 3],
+    /// (Minimum, maximum) density that a sample in the cell can see, x fastest.
+    pub ranges: Vec<[f32; 2]>,
+}
+
+impl CellRanges {
+    /// Returns the range of a cell; `None` outside the box.
+    pub fn get(&self, cell: [usize; 3]) -> Option<[f32; 2]> {
+        let place: [usize; 3] = std::array::from_fn(|axis| cell[axis].wrapping_sub(self.first[axis]));
+        let is_inside = (0..3).all(|axis| place[axis] < self.dims[axis]);
+        is_inside.then(|| self.ranges[place[0] + self.dims[0] * (place[1] + self.dims[1] * place[2])])
+    }
+}
+
 impl BrickBounds {
+    /// Widens the bounds of cells, and of their bricks, by the densities that samples of a finer level can see in them. Cells
+    /// beyond the grid count as its last.
+    pub fn widen(&mut self, by: &CellRanges) {
+        let edge = BRICK_EDGE / cells::CELL_EDGE;
+        let [last_x, last_y, last_z] = self.dims.map(|n| n * edge - 1);
+        // Cells are quantised in the range of their brick, so that this has to be final first.
+        let mut widened: BTreeMap<usize, Vec<(usize, [f32; 2])>> = BTreeMap::new();
+        for (at, &range) in by.ranges.iter().enumerate() {
+            let [nx, ny, _] = by.dims;
+            let x = (by.first[0] + at % nx).min(last_x);
+            let y = (by.first[1] + at / nx % ny).min(last_y);
+            let z = (by.first[2] + at / (nx * ny)).min(last_z);
+            let brick = x / edge + self.dims[0] * (y / edge + self.dims[1] * (z / edge));
+            let cell = x % edge + edge * (y % edge + edge * (z % edge));
+            widened.entry(brick).or_default().push((cell, range));
+        }
+        for (brick, cells) in widened {
+            let before = self.ranges[brick];
+            let after = cells.iter().fold(before, |all, (_, range)| union(all, *range));
+            self.ranges[brick] = after;
+            if after != before {
+                for bounds in &mut self.cells[brick] {
+                    *bounds = cells::quantised(cells::dequantised(*bounds, before), after);
+                }
+            }
+            for (cell, range) in cells {
+                let [low, high] = cells::quantised(range, after);
+                let bounds = &mut self.cells[brick][cell];
+                *bounds = [bounds[0].min(low), bounds[1].max(high)];
+            }
+        }
+    }
+
     /// Computes the density ranges of a volume's bricks and cells.
     pub fn from_volume(volume: &Volume) -> Self {
         let dims = volume.dims().map(|n| n.div_ceil(BRICK_EDGE));
@@ -41,7 +95,7 @@ impl BrickBounds {
     }
 
     /// Returns the bounds of the same voxels where others of them are missing or hidden.
-    pub(super) fn with_presence_of(&self, volume: &Volume) -> Self {
+    pub(crate) fn with_presence_of(&self, volume: &Volume) -> Self {
         Self { present: volume.present_cells(self.dims), ..self.clone() }
     }
 

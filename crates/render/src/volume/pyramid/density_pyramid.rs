@@ -1,8 +1,8 @@
 //! Pyramid of prefiltered densities with the gradients of its levels, made for the first picture that reads it:
 //! pictures of labels, whose voxels are classified first, read neither.
 
+use super::gradients::{self, gradient_texture};
 use crate::volume::PyramidViews;
-use crate::volume::gradients::{self, gradient_texture};
 use crate::volume::texture_shapes::texel_count;
 use crate::volume::textures::pyramid_texture;
 use crate::{GpuContext, GpuError};

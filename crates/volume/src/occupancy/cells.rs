@@ -10,8 +10,8 @@
 
 use rayon::prelude::*;
 
-use super::Volume;
-use super::cancellation::CancelToken;
+use crate::Volume;
+use crate::cancellation::CancelToken;
 
 /// Edge of a brick in voxels; the bounds of its cells are stored together.
 pub const BRICK_EDGE: usize = 8;
@@ -113,7 +113,7 @@ fn group_of(c: isize, groups: usize) -> usize {
 }
 
 /// Quantises bounds to 255ths of a range, rounded outwards.
-fn quantised([low, high]: [f32; 2], [from, to]: [f32; 2]) -> [u8; 2] {
+pub(super) fn quantised([low, high]: [f32; 2], [from, to]: [f32; 2]) -> [u8; 2] {
     let scale = 255.0 / (to - from).max(1e-9);
     // Casts from float to integer saturate.
     let floor = ((low - from) * scale).floor() as u8;

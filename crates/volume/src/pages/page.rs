@@ -1,0 +1,228 @@
+//! Page: the prefiltered densities of 64³ voxels with a border, and the bounds of cells that see them.
+
+use std::ops::Range;
+
+use super::{PageAddress, PageSource};
+use crate::LoadError;
+use crate::occupancy::bricks::CellRanges;
+use crate::occupancy::cells::CELL_EDGE;
+
+/// Edge of a page, in voxels.
+pub const PAGE_EDGE: usize = 64;
+
+/// Width of the border that is stored around a page, in voxels: gradients are differences over two voxels to either
+/// side, and a trilinear fetch sees one more.
+pub const PAGE_BORDER: usize = 3;
+
+/// Edge of a stored page, in texels.
+pub const PAGE_STORED_EDGE: usize = PAGE_EDGE + 2 * PAGE_BORDER;
+
+/// Width of the border that is read around a page, in voxels: prefiltering sees one voxel beyond those that are stored.
+pub const PAGE_READ_MARGIN: usize = PAGE_BORDER + 1;
+
+/// Edge of the box that is read, in voxels.
+const READ_EDGE: usize = PAGE_EDGE + 2 * PAGE_READ_MARGIN;
+
+/// Reach of the kernel of a sample, in voxels of its own level.
+const KERNEL_REACH: isize = 2;
+
+/// Cube of 64³ voxels of a level, in a form for the graphics adapter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Page {
+    /// Prefiltered densities with their border, 70³ of them, x fastest, as normalised integers.
+    pub texels: Vec<u16>,
+    /// Minimum and maximum density of all voxels that were read.
+    pub range: [f32; 2],
+    /// Densities that samples can see in the cells of the volume in memory.
+    pub cells: CellRanges,
+}
+
+impl Page {
+    /// Reads the voxels of a page and prepares them. Beyond the grid its border is repeated.
+    ///
+    /// # Errors
+    /// Fails like [`PageSource::read`].
+    pub fn from_source(source: &dyn PageSource, address: PageAddress) -> Result<Self, LoadError> {
+        let level = &source.levels().0[address.level];
+        let low = address.at.map(|at| (at * PAGE_EDGE) as isize - PAGE_READ_MARGIN as isize);
+        let region: [Range<usize>; 3] = std::array::from_fn(|axis| {
+            let end = low[axis] + READ_EDGE as isize;
+            low[axis].max(0) as usize..(end as usize).min(level.dims[axis])
+        });
+        let voxels = source.read(address.level, &region)?;
+        let within = |axis: usize, c: usize| {
+            let place = (low[axis] + c as isize).clamp(0, level.dims[axis] as isize - 1) as usize;
+            place.clamp(region[axis].start, region[axis].end - 1) - region[axis].start
+        };
+        let [width, height] = [0, 1].map(|axis| region[axis].len());
+        let columns: Vec<usize> = (0..READ_EDGE).map(|x| within(0, x)).collect();
+        let mut read = Vec::with_capacity(READ_EDGE.pow(3));
+        for z in 0..READ_EDGE {
+            for y in 0..READ_EDGE {
+                let row = &voxels[width * (within(1, y) + height * within(2, z))..][..width];
+                read.extend(columns.iter().map(|&x| row[x]));
+            }
+        }
+        let range =
+            read.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &d| [low.min(d), high.max(d)]);
+        let per_voxel = level.per_voxel;
+        let cells = cell_ranges(&read, low, per_voxel);
+        Ok(Self { texels: prefiltered(read, per_voxel), range, cells })
+    }
+
+    /// Returns the size of the stored texels, in bytes.
+    pub const fn bytes() -> u64 {
+        2 * (PAGE_STORED_EDGE * PAGE_STORED_EDGE * PAGE_STORED_EDGE) as u64
+    }
+}
+
+/// Blurs a read box with [1, 10, 1]/12 along each axis, so that a trilinear fetch has the variance of a cubic B-spline
+/// (`shaders/volume/prefilter.wgsl`), and cuts it to the stored texels.
+fn prefiltered(read: Vec<f32>, _per_voxel: [usize; 3]) -> Vec<u16> {
+    let mut values = read;
+    for stride in [1, READ_EDGE, READ_EDGE * READ_EDGE] {
+        let source = values;
+        values = source.clone();
+        let last = source.len() - stride;
+        // Texels at the sides of the box mix with those of another row; they are cut off below.
+        for at in stride..last {
+            values[at] = (source[at - stride] + 10.0 * source[at] + source[at + stride]) / 12.0;
+        }
+    }
+    let inner = 1..=PAGE_STORED_EDGE;
+    let mut texels = Vec::with_capacity(PAGE_STORED_EDGE.pow(3));
+    for z in inner.clone() {
+        for y in inner.clone() {
+            let row = &values[READ_EDGE * (y + READ_EDGE * z)..][..READ_EDGE];
+            texels.extend(row[inner.clone()].iter().map(|d| (d.clamp(0.0, 1.0) * 65535.0).round() as u16));
+        }
+    }
+    texels
+}
+
+/// Returns the cells of the volume in memory that hold samples whose kernel reaches a voxel of a level with `per_voxel`
+/// voxels in the edge of one in memory.
+fn cells_around(voxel: isize, per_voxel: usize) -> [isize; 2] {
+    let cell = |place: f64| (((place + 0.5) / per_voxel as f64 - 0.5) / CELL_EDGE as f64).floor() as isize;
+    [voxel - KERNEL_REACH, voxel + KERNEL_REACH].map(|place| cell(place as f64))
+}
+
+/// Returns the ranges of densities that samples can see in each cell of the volume in memory, from a box that begins at
+/// `low`. Cells before the grid count as its first.
+fn cell_ranges(read: &[f32], low: [isize; 3], per_voxel: [usize; 3]) -> CellRanges {
+    let cells = |axis: usize, c: usize| {
+        cells_around(low[axis] + c as isize, per_voxel[axis]).map(|cell| cell.max(0) as usize)
+    };
+    let first = [0, 1, 2].map(|axis| cells(axis, 0)[0]);
+    let dims = [0, 1, 2].map(|axis| cells(axis, READ_EDGE - 1)[1] - first[axis] + 1);
+    // Axis by axis: the box shrinks from voxels to cells.
+    let empty = [f32::INFINITY, f32::NEG_INFINITY];
+    let mut ranges: Vec<[f32; 2]> = read.iter().map(|&d| [d, d]).collect();
+    let mut shape = [READ_EDGE; 3];
+    for axis in 0..3 {
+        let inner: usize = shape[..axis].iter().product();
+        let outer: usize = shape[axis + 1..].iter().product();
+        let mut reduced = vec![empty; inner * dims[axis] * outer];
+        for o in 0..outer {
+            for c in 0..READ_EDGE {
+                let [begin, end] = cells(axis, c);
+                for cell in begin..=end {
+                    let from = inner * (c + READ_EDGE * o);
+                    let to = inner * (cell - first[axis] + dims[axis] * o);
+                    for i in 0..inner {
+                        let ([low, high], wide) = (ranges[from + i], &mut reduced[to + i]);
+                        *wide = [wide[0].min(low), wide[1].max(high)];
+                    }
+                }
+            }
+        }
+        shape[axis] = dims[axis];
+        ranges = reduced;
+    }
+    CellRanges { first, dims, ranges }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FinerLevel, FinerLevels};
+
+    /// Level of a ramp along x with a single bright voxel.
+    #[derive(Debug)]
+    struct RampSource {
+        levels: FinerLevels,
+        bright: [usize; 3],
+    }
+
+    impl PageSource for RampSource {
+        fn levels(&self) -> &FinerLevels {
+            &self.levels
+        }
+
+        fn read(&self, level: usize, region: &[Range<usize>; 3]) -> Result<Vec<f32>, LoadError> {
+            let width = self.levels.0[level].dims[0] as f32;
+            let [xs, ys, zs] = region.clone();
+            let mut densities = Vec::new();
+            for z in zs {
+                for y in ys.clone() {
+                    densities.extend(
+                        xs.clone().map(
+                            |x| {
+                                if [x, y, z] == self.bright { 1.0 } else { x as f32 / (2.0 * width) }
+                            },
+                        ),
+                    );
+                }
+            }
+            Ok(densities)
+        }
+    }
+
+    fn source() -> RampSource {
+        let level = FinerLevel { dims: [150, 70, 40], per_voxel: [2, 2, 1], key: "0".to_owned() };
+        RampSource { levels: FinerLevels(vec![level]), bright: [70, 66, 30] }
+    }
+
+    fn page(at: [usize; 3]) -> Page {
+        Page::from_source(&source(), PageAddress { level: 0, at }).unwrap()
+    }
+
+    #[test]
+    fn texels_are_the_prefiltered_voxels_with_a_border() {
+        let page = page([1, 0, 0]);
+        assert_eq!(page.texels.len(), PAGE_STORED_EDGE.pow(3));
+        let texel = |place: [isize; 3]| {
+            let [x, y, z] = place.map(|c| (c + PAGE_BORDER as isize) as usize);
+            f32::from(page.texels[x + PAGE_STORED_EDGE * (y + PAGE_STORED_EDGE * z)]) / 65535.0
+        };
+        for x in [-3, 0, 17, 66] {
+            let wanted = (64 + x) as f32 / 300.0;
+            assert!((texel([x, 20, 10]) - wanted).abs() < 2e-5, "a ramp stays as it is");
+        }
+        let ramp = 70.0 / 300.0;
+        let middle = texel([6, 66, 30]);
+        assert!((middle - (ramp + (1.0 - ramp) * (5.0f32 / 6.0).powi(3))).abs() < 2e-5, "{middle}");
+        assert!(texel([7, 65, 29]) > 71.0 / 300.0 + 1e-4, "the corner beside the voxel sees it");
+        // Beyond the grid, which ends after 40 slices.
+        assert_eq!(texel([20, 20, 50]), texel([20, 20, 39]));
+    }
+
+    #[test]
+    fn cells_know_every_voxel_that_a_sample_in_them_can_see() {
+        let source = source();
+        let page = page([1, 1, 0]);
+        let bright = source.bright;
+        for offset in [[-1.9, 0.0, 0.0], [0.0, 1.9, 0.0], [0.4, -1.2, 1.9]] {
+            // Sample whose kernel reaches the bright voxel.
+            let cell: [usize; 3] = std::array::from_fn(|axis| {
+                let place: f64 = bright[axis] as f64 + offset[axis];
+                let per = source.levels.0[0].per_voxel[axis] as f64;
+                (((place + 0.5) / per - 0.5) / 2.0).floor() as usize
+            });
+            assert_eq!(page.cells.get(cell).unwrap()[1], 1.0, "{offset:?}");
+        }
+        let far = [(bright[0] / 2 + 8) / 2, (bright[1] / 2) / 2, bright[2] / 2];
+        assert!(page.cells.get(far).unwrap()[1] < 0.5, "a cell eight voxels away does not see it");
+        assert_eq!(page.range[1], 1.0);
+    }
+}
