@@ -9,7 +9,7 @@ use super::CliError;
 use super::image_args::ImageArgs;
 use super::output::{copy_to_stdout, finish_output, open_destination, warn_empty_picture, warn_line};
 use super::process::StageTimes;
-use super::scene::SceneArgs;
+use super::scene::{FinerLevelArgs, SceneArgs};
 use chiaroscuro_files::{
     OutputDestination, check_writable, fingerprint, with_provenance_mark, write_atomically,
 };
@@ -30,6 +30,8 @@ pub(super) struct RenderArgs {
     output: PathBuf,
     #[command(flatten)]
     image: ImageArgs,
+    #[command(flatten)]
+    finer: FinerLevelArgs,
     /// Also write times, memory and all settings to a JSON file; timed without tiling, at one sample per pixel
     #[arg(long, value_name = "REPORT.json")]
     report: Option<PathBuf>,
@@ -56,7 +58,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         check_writable(to.path())?;
     }
     say("loading the volume");
-    let (loaded, context) = args.scene.load_timed(&mut times)?;
+    let (loaded, context) = args.scene.load_timed(&mut times, args.finer.level_rule())?;
     times.end("volume_and_adapter");
     let look = args.scene.look(&loaded)?;
     times.end("first_look");
@@ -66,11 +68,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     times.end("light_search");
     let shaders = renderer.shaders();
     times.attribute("light_search", "shaders", shaders.compile_ms());
+    let (loaded, finer) = args.scene.with_pages(&args.finer, loaded, &settings, &image_spec, &say)?;
+    times.end("finer_levels");
     say("rendering");
     let volume = VolumeRecord::new(args.scene.source(), loaded.volume().opened_id(), output.folder())
         .with_choice(loaded.volume().contents().choice())
         .with_layers_of(&loaded, output.folder());
-    let picture_record = ImageRecord::new(image_spec, context.description());
+    let picture_record =
+        ImageRecord { finer_levels: finer, ..ImageRecord::new(image_spec, context.description()) };
     let record = LookRecord::to_json(&settings, Some(&volume), Some(&picture_record));
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);
     let (layer, mut first) = (marks_layer(&image_spec, &settings, loaded.volume()), 0);

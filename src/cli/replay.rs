@@ -7,14 +7,14 @@ use clap::Args;
 use super::CliError;
 use super::output::{check_overwrites, print_line, warn_empty_picture, warn_line};
 use super::process::StageTimes;
-use super::scene::{LoadArgs, add_layer, apply_corrections};
+use super::scene::{FinerLevelArgs, LoadArgs, add_layer, apply_corrections};
 use chiaroscuro_files::sanitised;
 use chiaroscuro_media::{
     PixelRows, check_picture, marks_layer, picture_size, read_picture, read_record, write_picture,
 };
 use chiaroscuro_render::{PictureDistance, Renderer};
 use chiaroscuro_scene::{AppliedSettings, LookRecord, PresetError, Settings, VolumeLocation, VolumeRecord};
-use chiaroscuro_volume::{Dataset, DatasetField};
+use chiaroscuro_volume::{Dataset, DatasetField, LevelRule};
 
 /// Maximum length of a path in a message, in characters.
 const MAX_PATH_CHARS: usize = 4096;
@@ -41,6 +41,8 @@ pub(super) struct ReplayArgs {
     check: bool,
     #[command(flatten)]
     load: LoadArgs,
+    #[command(flatten)]
+    finer: FinerLevelArgs,
 }
 
 /// Returns the volume of a picture, if it may be opened: pictures come from untrusted sources and could name any
@@ -80,8 +82,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     if let Some(output) = &args.output {
         check_overwrites(&[&args.picture, &source], &[output], args.force)?;
     }
-    let (volume, context) =
-        args.load.open(&source, stated.map(|stated| &stated.choice), &mut StageTimes::from_now())?;
+    let (volume, context) = args.load.open(
+        &source,
+        stated.map(|stated| &stated.choice),
+        &mut StageTimes::from_now(),
+        LevelRule::Finest,
+    )?;
     if stated.is_some_and(|of| !of.matches_content(volume.opened_id())) {
         return Err(unusable(format!("{} is another volume than that of the picture", source.display())));
     }
@@ -128,6 +134,10 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     let before = read_picture(&args.picture)?.rows;
     if let Some(output) = &args.output {
         check_picture(output, &image_spec)?;
+    }
+    if picture_record.finer_levels.is_some() {
+        let options = args.load.load_options()?;
+        loaded = args.finer.with_pages(&source, &options, loaded, &settings, &image_spec, &|_| ())?.0;
     }
     let mut renderer = Renderer::new(&context)?;
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);

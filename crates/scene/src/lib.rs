@@ -83,7 +83,7 @@ pub use self::settings_io::preset_json::{AppliedSettings, apply_json, set_value,
 #[cfg(any(test, feature = "testing"))]
 pub use self::settings_io::preset_json::{apply_path, load_json, settings_to_json};
 pub use self::settings_io::preset_library::{PRESETS, Preset, apply_relative};
-pub use self::settings_io::record::{ImageRecord, LookRecord, VolumeRecord};
+pub use self::settings_io::record::{FinerLevelRecord, ImageRecord, LookRecord, VolumeRecord};
 pub use self::settings_io::volume_location::VolumeLocation;
 pub use self::shape_mask::{ComponentSilhouette, mask_from_shapes};
 pub use self::transfer::baked_transfer::BakedTransfer;

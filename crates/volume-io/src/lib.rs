@@ -11,6 +11,7 @@
 //! interface of the readers. `unsupported/` has the formats that are recognised only to advise how to convert
 //! them.
 
+mod file_pages;
 mod formats;
 mod huge_pages;
 mod length_unit;
@@ -26,14 +27,15 @@ pub mod write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub use file_pages::{FilePages, NoPages};
 pub use formats::{RawFormat, RawGuess, RawLayout, raw, supported_extensions};
 pub use neighbour::neighbour_volume;
 pub use open::open;
 pub use time_steps::{StepReadError, StepReadOptions, TimeSteps, is_same_file};
 
 use chiaroscuro_volume::{
-    ContentsRecorder, FileContents, FileDimension, LoadContext, LoadControl, LoadError, ReadContext, Volume,
-    VolumeChoice, memory_budget_bytes,
+    ContentsRecorder, FileContents, FileDimension, LevelRule, LoadContext, LoadControl, LoadError,
+    ReadContext, Volume, VolumeChoice, memory_budget_bytes,
 };
 use formats::{FileFormat, READERS, detect_format, folder};
 use reading::input::{FileChangeGuard, InputFile};
@@ -59,6 +61,8 @@ pub struct LoadOptions {
     pub only_files: Option<Arc<[PathBuf]>>,
     /// Maximum size of a volume, in bytes of its voxels.
     pub memory_budget_bytes: u64,
+    /// Rule for the resolution level that is read where the choice names none.
+    pub level: LevelRule,
 }
 
 impl Default for LoadOptions {
@@ -66,14 +70,20 @@ impl Default for LoadOptions {
     /// limits of the machine, its container and the user), or 4 GiB where that is unknown.
     fn default() -> Self {
         let (raw, choice) = (RawFormat::default(), VolumeChoice::default());
-        Self { raw, choice, only_files: None, memory_budget_bytes: memory_budget_bytes() }
+        let (memory_budget_bytes, level) = (memory_budget_bytes(), LevelRule::default());
+        Self { raw, choice, only_files: None, memory_budget_bytes, level }
     }
 }
 
 impl LoadOptions {
     /// Limits and choices for a volume, to be checked before allocation.
     fn limits<'a>(&'a self, control: &'a LoadControl) -> ReadContext<'a> {
-        ReadContext { budget_bytes: self.memory_budget_bytes, choice: &self.choice, control }
+        ReadContext {
+            budget_bytes: self.memory_budget_bytes,
+            choice: &self.choice,
+            control,
+            level: self.level,
+        }
     }
 }
 
@@ -99,7 +109,7 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         let context = LoadContext { operation: "open the volume", path };
         context.reject_unsupported_choice(&options.choice, &watch)?;
         let volume = volume.with_contents(FileContents { portion, ..watch.contents() });
-        let volume = with_level_remark(context, volume, &options.choice);
+        let volume = with_level_remark(context, volume, &options);
         Ok::<_, LoadError>((watch.was_averaged_while_reading() && volume.is_label_map(), volume))
     };
     match read(false)? {
@@ -111,9 +121,10 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
 }
 
 /// Adds a remark to a volume if it is not the finest level of its image, and the user has chosen none.
-fn with_level_remark(context: LoadContext<'_>, volume: Volume, choice: &VolumeChoice) -> Volume {
+fn with_level_remark(context: LoadContext<'_>, volume: Volume, options: &LoadOptions) -> Volume {
     let levels = volume.contents().alternatives_in(FileDimension::Level);
-    let coarse = levels.filter(|levels| levels.selected > 0 && choice.level.is_none());
+    let is_automatic = options.choice.level.is_none() && options.level == LevelRule::Finest;
+    let coarse = levels.filter(|levels| levels.selected > 0 && is_automatic);
     let Some([x, y, z]) = coarse.and_then(|levels| levels.offers[0].dims) else { return volume };
     let remark = format!(
         "it is shown coarsely: its finest level, of {x} x {y} x {z} voxels, does not fit into memory and on the graphics \

@@ -30,9 +30,9 @@ pub use histogram::changes::ChangeHistogram;
 pub use histogram::{HISTOGRAM_BINS, Histogram};
 pub use load_context::{
     ChoiceAspect, ContentsRecorder, DefaultComponent, Downsampling, ErrorExplanation, FileContents,
-    FileDimension, GridExtent, LoadContext, LoadControl, LoadError, LoadErrorKind, MAX_FIELDS, Portion,
-    ReadContext, ResolutionLevel, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer, VolumeSize,
-    VoxelComponents, VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine,
+    FileDimension, GridExtent, LevelRule, LoadContext, LoadControl, LoadError, LoadErrorKind, MAX_FIELDS,
+    Portion, ReadContext, ResolutionLevel, ResolvedPortion, VolumeAlternatives, VolumeChoice, VolumeOffer,
+    VolumeSize, VoxelComponents, VoxelRegion, VoxelSpan, address_bytes_left, human_bytes, is_usable_affine,
     is_usable_spacing, memory_budget_bytes, quoted, spacing_ratio_error,
 };
 pub use occupancy::bricks::{BrickBounds, CellRanges};
@@ -40,7 +40,7 @@ pub use occupancy::cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIG
 pub use occupancy::label_cells::CellOccupancy;
 pub use pages::{
     FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page, PageAddress,
-    PageSource, PagesId, ResidentPages,
+    PageCache, PageSource, PagesId, ResidentPages,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,

@@ -10,7 +10,7 @@ use crate::cli::CliError;
 use crate::cli::process::StageTimes;
 use chiaroscuro_render::{GpuContext, OpeningTimes};
 use chiaroscuro_volume::{
-    Downsampling, FileDimension, LoadError, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType,
+    Downsampling, FileDimension, LevelRule, LoadError, Portion, Volume, VolumeChoice, VoxelRegion, VoxelType,
 };
 use chiaroscuro_volume_io::{Endian, LoadOptions, RawFormat};
 
@@ -123,14 +123,23 @@ impl LoadArgs {
 
     /// Loads a volume, and opens the adapter; records in `times` what both of them took beside each other. `choice`
     /// selects one of several volumes and the portion that was read earlier, or lets the first one be read; arguments of
-    /// the command line take precedence.
+    /// the command line take precedence. `level` is the rule for a resolution level that neither names.
     pub(crate) fn open(
         &self,
         source: &Path,
         choice: Option<&VolumeChoice>,
         times: &mut StageTimes,
+        level: LevelRule,
     ) -> Result<(Volume, GpuContext), CliError> {
-        self.open_by(source, choice, times, |options| Ok(open_with_size_warning(source, options)?))
+        let read = |options: &LoadOptions| {
+            Ok(open_with_size_warning(source, &LoadOptions { level, ..options.clone() })?)
+        };
+        self.open_by(source, choice, times, read)
+    }
+
+    /// Returns true if the arguments name a resolution level.
+    pub(crate) fn names_level(&self) -> bool {
+        self.level.is_some()
     }
 
     /// Loads like [`Self::open`], and of a file that holds several time steps the one with this number, unless the

@@ -2,6 +2,7 @@
 
 mod corrections;
 mod decompression_warning;
+mod finer_levels;
 mod layers;
 mod load_args;
 mod look;
@@ -18,6 +19,7 @@ pub(super) use self::corrections::{apply_command_line_corrections, apply_correct
 pub(super) use self::decompression_warning::{
     control_with_size_warning, open_for_overview, open_with_size_warning,
 };
+pub(super) use self::finer_levels::FinerLevelArgs;
 pub(super) use self::layers::add_layer;
 use self::layers::{LayerArg, ShownSteps, with_all_channels, with_layers};
 pub(super) use self::load_args::{LoadArgs, parse_voxel_type};
@@ -31,11 +33,11 @@ use super::process::StageTimes;
 use chiaroscuro_media::read_environment_map;
 use chiaroscuro_render::{GpuContext, downsample_to_fit, downsampled_volume};
 use chiaroscuro_scene::{
-    EnvironmentMap, MAX_IMAGE_EDGE, SceneAxis, Settings,
+    EnvironmentMap, FinerLevelRecord, ImageSpec, MAX_IMAGE_EDGE, SceneAxis, Settings,
     first_look::{self, FirstLookOptions},
     set_value,
 };
-use chiaroscuro_volume::{Dataset, KindName, LoadControl, ValueRanges, Volume, VolumeChoice};
+use chiaroscuro_volume::{Dataset, KindName, LevelRule, LoadControl, ValueRanges, Volume, VolumeChoice};
 use chiaroscuro_volume_io::{LoadOptions, open};
 
 /// Path of the setting for the floor's height.
@@ -144,12 +146,17 @@ fn dataset_with_warning(volume: Volume) -> Dataset {
 impl SceneArgs {
     /// Loads the volume, and opens the adapter that renders it.
     pub(super) fn load(&self) -> Result<(Dataset, GpuContext), CliError> {
-        self.load_timed(&mut StageTimes::from_now())
+        self.load_timed(&mut StageTimes::from_now(), LevelRule::Finest)
     }
 
     /// Loads like [`Self::load`], and records in `times` what volume and adapter took beside each other.
-    pub(super) fn load_timed(&self, times: &mut StageTimes) -> Result<(Dataset, GpuContext), CliError> {
-        let (volume, context) = self.look.load.open(&self.file, self.look.first_choice().as_ref(), times)?;
+    pub(super) fn load_timed(
+        &self,
+        times: &mut StageTimes,
+        level: LevelRule,
+    ) -> Result<(Dataset, GpuContext), CliError> {
+        let choice = self.look.first_choice();
+        let (volume, context) = self.look.load.open(&self.file, choice.as_ref(), times, level)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
         Ok((self.look.with_layers(&self.file, dataset, ShownSteps::Several)?, context))
     }
@@ -161,6 +168,21 @@ impl SceneArgs {
         let (volume, context) = self.look.load.open_step(&self.file, first.as_ref(), step)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
         Ok((self.look.with_layers(&self.file, dataset, ShownSteps::One)?, context))
+    }
+
+    /// Reads the pages of finer levels that a picture shows, unless a level was named.
+    pub(super) fn with_pages(
+        &self,
+        finer: &FinerLevelArgs,
+        dataset: Dataset,
+        settings: &Settings,
+        image: &ImageSpec,
+        say: &dyn Fn(&str),
+    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
+        if self.look.load.names_level() && !finer.has_pool() {
+            return Ok((dataset, None));
+        }
+        finer.with_pages(&self.file, &self.load_options()?, dataset, settings, image, say)
     }
 
     /// Returns the options with which the volume is read.

@@ -35,6 +35,6 @@ pub use keys::{
     ActiveLight, ActiveLights, AntialiasedKey, AttenuationMethod, BouncesKey, CombinedKey, DisplayKey,
     EyeKey, EyeTableKey, FloorKey, FrameKeys, LightKey, OpacityKey, SkyKey, TablesKey, UniformLightColor,
 };
-pub use pages::{PagedView, shows_pages};
+pub use pages::{PageDemand, PagedView, density_visibility, page_demand, shows_pages};
 pub use probe::{LightArrival, Probe, probe, probe_layers};
 pub use request::{PictureOptions, RenderOptions, RenderRequest, TestSwitches, VolumeKey, WorkOptions};

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::plan::{MAX_STRETCH_LEVEL, PixelWindow, SheetFrame, picture_frame};
 use chiaroscuro_scene::{LayerComposition, Projection, Settings, ShadowAlgorithm};
 use chiaroscuro_volume::math::SceneSpace;
-use chiaroscuro_volume::{FinerLevels, PAGE_EDGE, PageAddress};
+use chiaroscuro_volume::{Dataset, FinerLevels, PAGE_EDGE, PageAddress, ResidentPages};
 
 /// Distance around a page, in its voxels, within which it may be read for what is outside: gradients reach three voxels,
 /// near-field rays six.
@@ -27,7 +27,8 @@ pub struct PagedView {
 /// Returns true if pictures with these settings can read pages: those that gather densities of one field, without cuts
 /// by voxel, and composite them. Others show the volume in memory.
 pub fn shows_pages(settings: &Settings) -> bool {
-    settings.layer_composition() == LayerComposition::First
+    settings.sampling.finer_levels
+        && settings.layer_composition() == LayerComposition::First
         && !settings.classification().is_pre()
         && !settings.uses_scattering_engine()
         && settings.shadows.algorithm != ShadowAlgorithm::Direct
@@ -96,6 +97,55 @@ impl PagedView {
         wanted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         wanted.into_iter().map(|(_, address)| address).collect()
     }
+}
+
+/// Pages that a picture wants.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PageDemand {
+    /// Index of the finest level among them.
+    pub finest: usize,
+    /// True if a finer level is called for, whose pages do not fit.
+    pub is_substituted: bool,
+    /// Pages to be read, unless they are there, nearest first: those that show something, or may do so.
+    pub wanted: Vec<PageAddress>,
+}
+
+/// Returns the pages that a picture of a dataset wants; `None` if it shows the volume in memory alone. At most `capacity` of
+/// them show something: of larger views the coarser levels alone are wanted.
+///
+/// The pages of `known` are those that were read, with their ranges.
+pub fn page_demand(
+    dataset: &Dataset,
+    known: &ResidentPages,
+    settings: &Settings,
+    window: impl Into<PixelWindow>,
+    capacity: usize,
+) -> Option<PageDemand> {
+    let (levels, window) = (known.levels(), window.into());
+    let scene = dataset.volume().scene();
+    let view = PagedView::new(levels, settings, &scene, window)?;
+    let is_visible = density_visibility(dataset, settings);
+    let may_show = |address| known.range_of(address).is_none_or(&is_visible);
+    let all = view.wanted_pages(levels, settings, &scene, window, may_show);
+    let shown = |finest: usize| {
+        let is_known = |page: &&PageAddress| page.level >= finest && known.range_of(**page).is_some();
+        all.iter().filter(is_known).count()
+    };
+    let last = levels.0.len();
+    let finest = (view.first..last).find(|finest| shown(*finest) <= capacity).unwrap_or(last);
+    Some(PageDemand {
+        finest,
+        is_substituted: finest > view.first,
+        wanted: all.iter().copied().filter(|page| page.level >= finest).collect(),
+    })
+}
+
+/// Returns a function that says whether any density of a range is visible, or attenuates light.
+pub fn density_visibility(dataset: &Dataset, settings: &Settings) -> impl Fn([f32; 2]) -> bool {
+    let volume = dataset.volume();
+    let (range, scene) = (volume.table_range(), volume.scene());
+    let tables = [settings.bake_eye(range, &scene), settings.bake_lighting(range, &scene)];
+    move |[low, high]: [f32; 2]| tables.iter().any(|table| table.visibility_test()(low, high))
 }
 
 /// Part of the scene that a picture shows, with the stretch of kernels in it.

@@ -7,8 +7,8 @@ use crate::{
 
 impl Settings {
     /// Returns this look, rendered at the quality of another: with its slabs, kernels, normals and light volumes, and
-    /// with its shadow algorithm if both have shadows. Classification, and the remedies against dark images, stay
-    /// those of this look.
+    /// with its shadow algorithm if both have shadows. Classification, finer levels, and the remedies against dark
+    /// images, stay those of this look.
     #[must_use]
     pub fn with_quality_of(self, other: &Self) -> Self {
         let ShadowSettings {
@@ -50,8 +50,9 @@ impl Settings {
             least_blocks,
             ..self.shadows
         };
-        let classification = self.sampling.classification;
-        Self { shadows, sampling: SamplingSettings { classification, ..other.sampling.clone() }, ..self }
+        let SamplingSettings { classification, finer_levels, .. } = self.sampling;
+        let sampling = SamplingSettings { classification, finer_levels, ..other.sampling.clone() };
+        Self { shadows, sampling, ..self }
     }
 }
 

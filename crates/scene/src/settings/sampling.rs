@@ -181,6 +181,8 @@ pub struct SamplingSettings {
     pub engine: RenderEngine,
     /// Compositing order of the scattering engine, for comparison with earlier work.
     pub order: SheetOrder,
+    /// Reads resolution levels that are finer than the one in memory where pixels are finer than its voxels.
+    pub finer_levels: bool,
 }
 
 impl Default for SamplingSettings {
@@ -195,6 +197,7 @@ impl Default for SamplingSettings {
             classification: ClassificationOrder::Post,
             engine: RenderEngine::Gather,
             order: SheetOrder::ImageAligned,
+            finer_levels: true,
         }
     }
 }

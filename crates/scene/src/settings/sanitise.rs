@@ -337,6 +337,7 @@ fn sanitise_sampling(sampling: &mut SamplingSettings, default: &SamplingSettings
         classification: _,
         engine: _,
         order: _,
+        finer_levels: _,
     } = sampling;
     clamp_number(slab, 0.25, 2.0, default.slab);
     clamp_number(max_undivided_share, 0.0, 1.0, default.max_undivided_share);

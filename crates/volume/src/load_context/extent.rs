@@ -6,6 +6,7 @@ use super::error::{LoadContext, LoadError};
 use super::limits::human_bytes;
 use super::memory_estimate::{VolumeSize, needed_bytes};
 use super::portion::{Downsampling, MAX_STRIDE, Portion};
+use super::resolution_level::LevelRule;
 use super::resolved_portion::ResolvedPortion;
 use crate::VoxelType;
 
@@ -18,6 +19,8 @@ pub struct ReadContext<'a> {
     pub choice: &'a VolumeChoice,
     /// Control of the waiting thread: progress, cancellation and acceptance of the size.
     pub control: &'a LoadControl,
+    /// Rule for the resolution level that is read where the user has chosen none.
+    pub level: LevelRule,
 }
 
 /// Size of a grid with the portion that is wanted and the portion that is kept while reading, within the memory
@@ -237,7 +240,12 @@ mod tests {
     fn extent(dims: [u64; 3], budget_bytes: u64, portion: Portion) -> Result<GridExtent, LoadError> {
         let context = LoadContext { operation: "test", path: Path::new("t") };
         let choice = VolumeChoice { portion: Some(portion), ..VolumeChoice::default() };
-        let room = ReadContext { budget_bytes, choice: &choice, control: &LoadControl::new() };
+        let room = ReadContext {
+            budget_bytes,
+            choice: &choice,
+            control: &LoadControl::new(),
+            level: LevelRule::default(),
+        };
         GridExtent::checked(context, "sizes", dims, VoxelType::U16, room)
     }
 

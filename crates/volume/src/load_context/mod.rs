@@ -30,5 +30,5 @@ pub use limits::{is_usable_affine, is_usable_spacing, spacing_ratio_error};
 pub use memory_estimate::VolumeSize;
 pub use offer::{FileDimension, VolumeOffer};
 pub use portion::{Downsampling, Portion, VoxelRegion, VoxelSpan};
-pub use resolution_level::ResolutionLevel;
+pub use resolution_level::{LevelRule, ResolutionLevel};
 pub use resolved_portion::ResolvedPortion;

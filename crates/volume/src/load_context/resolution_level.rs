@@ -11,6 +11,23 @@ use crate::VoxelType;
 /// would be shown.
 const MAX_TEXTURE_EDGE: usize = 2048;
 
+/// Maximum number of voxels of a level that is kept in memory while finer ones are read where pictures show them: 512³, of
+/// which light volumes and previews are quick.
+const MAX_VOXELS_BESIDE_PAGES: u64 = 1 << 27;
+
+/// Rule for the resolution level that is read where the user has chosen none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LevelRule {
+    /// Finest level that fits into memory and on the graphics adapter.
+    #[default]
+    Finest,
+    /// The same if that is the finest of all; otherwise a level of at most 512³ voxels, because parts of the finer ones are
+    /// read where pictures show them.
+    BesidePages,
+    /// Level of at most 512³ voxels that is not the finest, even where that one fits.
+    AlwaysBesidePages,
+}
+
 /// Resolution level of an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ResolutionLevel {
@@ -41,16 +58,29 @@ impl ReadContext<'_> {
             .collect();
         let automatic = || match self.choice.portion {
             Some(_) => 0,
-            None => levels
-                .iter()
-                .position(|level| self.fits(level))
-                .unwrap_or_else(|| levels.len().saturating_sub(1)),
+            None => self.automatic_level(levels),
         };
         let choice = match self.choice.selected_key(FileDimension::Level) {
             Some(_) => self.choice.clone(),
             None => self.choice.clone().with_selected(FileDimension::Level, &automatic().to_string()),
         };
         context.resolve_choice(&choice, FileDimension::Level, offers)
+    }
+
+    /// Returns the index of the level that is read without a choice.
+    fn automatic_level(&self, levels: &[ResolutionLevel]) -> usize {
+        let last = levels.len().saturating_sub(1);
+        let finest = levels.iter().position(|level| self.fits(level)).unwrap_or(last);
+        let is_small = |level: &ResolutionLevel| {
+            let voxels = level.dims.iter().fold(1u64, |all, &n| all.saturating_mul(n));
+            self.fits(level) && voxels <= MAX_VOXELS_BESIDE_PAGES
+        };
+        let beside_pages = || levels.iter().skip(1).position(is_small).map_or(last, |index| index + 1);
+        match self.level {
+            LevelRule::Finest => finest,
+            LevelRule::BesidePages if finest == 0 => 0,
+            LevelRule::BesidePages | LevelRule::AlwaysBesidePages => beside_pages(),
+        }
     }
 
     /// Returns true if a level can be read and shown as it is, without a question to the user.
@@ -79,7 +109,29 @@ mod tests {
             voxel_type: VoxelType::U16,
         };
         let levels = [level("s0", 4096), level("s1", 256), level("s2", 128), level("s3", 64)];
-        ReadContext { budget_bytes, choice, control }.choose_level(context, &levels)
+        ReadContext { budget_bytes, choice, control, level: LevelRule::Finest }.choose_level(context, &levels)
+    }
+
+    #[test]
+    fn beside_pages_a_small_level_is_in_memory() {
+        let (choice, control) = (VolumeChoice::default(), LoadControl::new());
+        let context = LoadContext { operation: "test", path: Path::new("t") };
+        let chosen = |edges: &[u64], level: LevelRule| {
+            let of_edge = |edge: &u64| ResolutionLevel {
+                name: String::new(),
+                dims: [*edge; 3],
+                voxel_type: VoxelType::U8,
+            };
+            let levels: Vec<_> = edges.iter().map(of_edge).collect();
+            let room = ReadContext { budget_bytes: u64::MAX, choice: &choice, control: &control, level };
+            room.choose_level(context, &levels).unwrap()
+        };
+        let large = [4096, 2048, 1024, 512, 256];
+        assert_eq!(chosen(&large, LevelRule::Finest), 1);
+        assert_eq!(chosen(&large, LevelRule::BesidePages), 3);
+        assert_eq!(chosen(&[800, 400, 200], LevelRule::BesidePages), 0, "the finest fits");
+        assert_eq!(chosen(&[800, 400, 200], LevelRule::AlwaysBesidePages), 1);
+        assert_eq!(chosen(&[64], LevelRule::AlwaysBesidePages), 0);
     }
 
     #[test]

@@ -5,10 +5,12 @@
 //! are those that a picture may use, with the bounds of brick and cell that hold for their voxels. Where a page is
 //! absent, the next coarser level takes its place.
 
+mod cache;
 mod levels;
 mod page;
 mod resident;
 
+pub use cache::PageCache;
 pub use levels::{FinerLevel, FinerLevels, PageAddress};
 pub use page::{PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
 pub use resident::{PagesId, ResidentPages};

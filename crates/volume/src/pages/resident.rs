@@ -48,6 +48,16 @@ impl ResidentPages {
         self.id = self.computed_id();
     }
 
+    /// Widens the bounds by the densities of pages that are not kept, because they show nothing.
+    pub fn record(&mut self, pages: impl IntoIterator<Item = (PageAddress, Arc<Page>)>) {
+        for (address, page) in pages {
+            if self.ranges.insert(address, page.range).is_none() {
+                Arc::make_mut(&mut self.bounds).widen(&page.cells);
+            }
+        }
+        self.id = self.computed_id();
+    }
+
     /// Removes all pages but those for which `keeps` is true. The bounds still hold for them.
     pub fn retain(&mut self, keeps: impl Fn(PageAddress) -> bool) {
         self.pages.retain(|address, _| keeps(*address));

@@ -24,7 +24,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::load_context::{
-    GridExtent, LoadContext, LoadControl, LoadError, ReadContext, VolumeChoice, memory_budget_bytes,
+    GridExtent, LevelRule, LoadContext, LoadControl, LoadError, ReadContext, VolumeChoice,
+    memory_budget_bytes,
 };
 use super::{Samples, ValueMetadata, Volume, VoxelType};
 
@@ -151,7 +152,7 @@ pub fn builtin_with_budget(
     control.check()?;
     let voxel_type = if name == "marschner-lobb" { VoxelType::F32 } else { VoxelType::U8 };
     // All voxels are made, even if only a portion of them is wanted.
-    let room = ReadContext { budget_bytes, choice, control };
+    let room = ReadContext { budget_bytes, choice, control, level: LevelRule::default() };
     GridExtent::checked_whole(context, "N", [n as u64; 3], voxel_type, room)?;
     let grid = UnitGrid { n };
     let samples = match name {

@@ -94,7 +94,7 @@ impl TimeSeries {
             raw: self.reading.raw.unwrap_or(options.raw),
             only_files: self.reading.subset.clone(),
             memory_budget_bytes: options.memory_budget_bytes.min(memory_budget_bytes()),
-            choice: options.choice.clone(),
+            ..options.clone()
         };
         self.series = Some(ReadableSeries { steps: Arc::new(steps), options });
     }

@@ -93,6 +93,8 @@ impl SamplingKey {
             classification: _,
             engine,
             order,
+            // Part of the identity of the pages.
+            finer_levels: _,
         } = settings.sampling;
         let max_undivided_share = settings.has_adaptive_slabs().then_some(max_undivided_share);
         let classification = settings.classification();

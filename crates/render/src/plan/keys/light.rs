@@ -115,6 +115,7 @@ impl LightKey {
                     classification: _,
                     engine,
                     order: _,
+                    finer_levels: _,
                 },
             output: _,
             kept: _,

@@ -56,6 +56,18 @@ pub struct ImageRecord {
     pub version: String,
     /// Name of the graphics adapter and its driver.
     pub adapter: String,
+    /// Resolution levels that it shows beside the one in memory.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finer_levels: Option<FinerLevelRecord>,
+}
+
+/// Resolution levels of an image that were read page by page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FinerLevelRecord {
+    /// Key of the finest of them.
+    pub finest: String,
+    /// True if a finer one was called for by the size of the image, and did not fit into the memory for pages.
+    pub is_substituted: bool,
 }
 
 /// Settings and metadata as read from a file.
@@ -154,7 +166,7 @@ impl VolumeRecord {
 impl ImageRecord {
     /// Creates the metadata of an image rendered by this version on an adapter.
     pub fn new(image_spec: ImageSpec, adapter: String) -> Self {
-        Self { image: image_spec, version: env!("CARGO_PKG_VERSION").to_owned(), adapter }
+        Self { image: image_spec, version: env!("CARGO_PKG_VERSION").to_owned(), adapter, finer_levels: None }
     }
 }
 

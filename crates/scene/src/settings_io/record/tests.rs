@@ -20,6 +20,7 @@ fn records_are_read_as_they_were_written() {
         },
         version: "0.1.0".to_owned(),
         adapter: "an adapter".to_owned(),
+        finer_levels: Some(FinerLevelRecord { finest: "0".to_owned(), is_substituted: false }),
     };
     let text = LookRecord::to_json(&settings, Some(&volume), Some(&picture));
     let record = LookRecord::parse(&text).unwrap();

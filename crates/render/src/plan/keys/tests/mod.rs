@@ -229,6 +229,8 @@ fn every_setting_causes_what_the_design_says() {
         ("sampling.gradients", "sheets", ChangeEffect::Eye),
         ("sampling.classification", "pre", ChangeEffect::AllLights),
         ("sampling.engine", "scatter", ChangeEffect::AllLights),
+        // Without pages they change nothing.
+        ("sampling.finer_levels", "false", ChangeEffect::Nothing),
         // The gathering engine has no order.
         ("sampling.order", "volume_aligned", ChangeEffect::Nothing),
         ("output.background.top", "[0,0,0]", ChangeEffect::Display),

@@ -115,7 +115,7 @@ fn extent(
 ) -> Result<GridExtent, LoadError> {
     let portion = options.choice.portion.map(portion_of_masks);
     let choice = VolumeChoice { portion, ..options.choice.clone() };
-    let room = ReadContext { budget_bytes: options.memory_budget_bytes, choice: &choice, control };
+    let room = ReadContext { choice: &choice, ..options.limits(control) };
     let extent = GridExtent::checked(context, "dim", dims, voxel_type, room)?;
     let wanted = options.choice.portion.unwrap_or_default();
     match ResolvedPortion::resolve(&wanted, extent.dims, choice.are_labels) {

@@ -1,0 +1,207 @@
+//! Pages of the finer levels of a file, for a volume in memory that is a coarser one.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::{LoadOptions, open};
+use chiaroscuro_volume::{
+    CancelToken, Corrections, Dataset, DensityMapping, FileDimension, FinerLevels, LoadControl, LoadError,
+    PageSource, Portion, VolumeChoice, VoxelRegion, VoxelSpan,
+};
+
+/// Edge of the blocks that are read together, in voxels: two chunks of the usual 64³, so that pages, which are read with a
+/// border, do not have every chunk decoded again.
+const BLOCK_EDGE: usize = 128;
+
+/// Reader of the finer levels of a file.
+#[derive(Debug)]
+pub struct FilePages {
+    path: PathBuf,
+    options: LoadOptions,
+    levels: FinerLevels,
+    mapping: DensityMapping,
+    blocks: Mutex<BlockCache>,
+    token: CancelToken,
+}
+
+/// Level and position of a block.
+type BlockKey = (usize, [usize; 3]);
+
+/// Densities of a block, as normalised integers; empty until it is read.
+type Block = Arc<Mutex<Option<Arc<[u16]>>>>;
+
+/// Blocks that were read last.
+#[derive(Debug)]
+struct BlockCache {
+    blocks: HashMap<BlockKey, (Block, u64)>,
+    /// Number of look-ups, by which blocks were used last.
+    clock: u64,
+    most: usize,
+}
+
+impl BlockCache {
+    /// Returns a block, and drops the ones that were not used for longest.
+    fn get(&mut self, key: BlockKey) -> Block {
+        self.clock += 1;
+        let clock = self.clock;
+        let (block, used) = self.blocks.entry(key).or_default();
+        *used = clock;
+        let found = Arc::clone(block);
+        if self.blocks.len() > self.most {
+            let oldest = self.blocks.iter().min_by_key(|(_, (_, used))| *used).map(|(key, _)| *key);
+            oldest.and_then(|oldest| self.blocks.remove(&oldest));
+        }
+        found
+    }
+}
+
+/// Reason why the finer levels of a file are not shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NoPages {
+    /// Finest level is in memory, or there are no others on its grid.
+    #[error("no finer level lies on the grid of the volume")]
+    NoFinerLevel,
+    /// Volume is a part of the file, or a subsample.
+    #[error("only a part of the file was read")]
+    Portion,
+    /// Voxels are missing or hidden.
+    #[error("voxels are missing")]
+    MissingVoxels,
+    /// Values or axes were corrected.
+    #[error("its values or axes were corrected")]
+    Corrected,
+    /// Densities stand for labels.
+    #[error("it shows labels")]
+    Labels,
+}
+
+impl FilePages {
+    /// Creates a reader of the levels that are finer than a dataset which was opened from a path with these options; blocks
+    /// that were read take at most `cache_bytes`.
+    ///
+    /// # Errors
+    /// Says why finer levels are not shown.
+    pub fn new(
+        path: &Path,
+        options: &LoadOptions,
+        dataset: &Dataset,
+        cache_bytes: u64,
+    ) -> Result<Self, NoPages> {
+        let volume = dataset.volume();
+        let contents = volume.contents();
+        let Some(offers) = contents.alternatives_in(FileDimension::Level) else {
+            return Err(NoPages::NoFinerLevel);
+        };
+        if !contents.portion.is_whole() {
+            return Err(NoPages::Portion);
+        }
+        if volume.has_absent_voxels() {
+            return Err(NoPages::MissingVoxels);
+        }
+        // Spacings move no voxel.
+        let by = volume.corrections();
+        if (Corrections { spacing: None, unit: None, ..by.clone() }) != Corrections::default() {
+            return Err(NoPages::Corrected);
+        }
+        if volume.density_mapping() == DensityMapping::Labels {
+            return Err(NoPages::Labels);
+        }
+        let finer = offers.offers.iter().filter_map(|offer| {
+            let dims = offer.dims?.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+            Some((dims, offer.key.clone()))
+        });
+        let levels = FinerLevels::of_volume(volume.dims(), finer);
+        if levels.is_empty() {
+            return Err(NoPages::NoFinerLevel);
+        }
+        let block_bytes = 2 * (BLOCK_EDGE as u64).pow(3);
+        let most = (cache_bytes / block_bytes).max(8) as usize;
+        Ok(Self {
+            path: path.to_owned(),
+            options: LoadOptions { choice: contents.choice(), ..options.clone() },
+            levels,
+            mapping: volume.density_mapping(),
+            blocks: Mutex::new(BlockCache { blocks: HashMap::new(), clock: 0, most }),
+            token: CancelToken::new(),
+        })
+    }
+
+    /// Returns the token by which reads are cancelled.
+    pub fn token(&self) -> &CancelToken {
+        &self.token
+    }
+
+    /// Reads a block, or finds it among those that were read.
+    fn block(&self, level: usize, at: [usize; 3]) -> Result<Arc<[u16]>, LoadError> {
+        let block = self.blocks.lock().unwrap_or_else(PoisonError::into_inner).get((level, at));
+        // Other readers of the same block wait, those of others do not.
+        let mut block = block.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = &*block {
+            return Ok(Arc::clone(known));
+        }
+        let read = self.read_block(level, at)?;
+        *block = Some(Arc::clone(&read));
+        Ok(read)
+    }
+
+    fn read_block(&self, level: usize, at: [usize; 3]) -> Result<Arc<[u16]>, LoadError> {
+        let FinerLevels(levels) = &self.levels;
+        let spans = std::array::from_fn(|axis| {
+            let first = at[axis] * BLOCK_EDGE;
+            VoxelSpan { first, end: Some((first + BLOCK_EDGE).min(levels[level].dims[axis])) }
+        });
+        let choice = VolumeChoice {
+            level: Some(levels[level].key.clone()),
+            portion: Some(Portion { region: Some(VoxelRegion(spans)), ..Portion::default() }),
+            ..self.options.choice.clone()
+        };
+        let options = LoadOptions { choice, ..self.options.clone() };
+        let volume = open(&self.path, &options, &LoadControl::with_token(self.token.clone()))?;
+        let volume = volume.with_density_mapping(self.mapping);
+        let stored = |density: f32| (density.clamp(0.0, 1.0) * 65535.0).round() as u16;
+        let slices = (0..volume.dims()[2]).flat_map(|z| volume.slice_densities(z));
+        Ok(slices.map(stored).collect())
+    }
+}
+
+impl PageSource for FilePages {
+    fn levels(&self) -> &FinerLevels {
+        &self.levels
+    }
+
+    fn read(&self, level: usize, region: &[Range<usize>; 3]) -> Result<Vec<f32>, LoadError> {
+        let dims = self.levels.0[level].dims;
+        let size = region.each_ref().map(ExactSizeIterator::len);
+        let mut densities = vec![0.0; size.iter().product()];
+        let blocks = region.each_ref().map(|span| span.start / BLOCK_EDGE..span.end.div_ceil(BLOCK_EDGE));
+        for z in blocks[2].clone() {
+            for y in blocks[1].clone() {
+                for x in blocks[0].clone() {
+                    let at = [x, y, z];
+                    let block = self.block(level, at)?;
+                    let first = at.map(|c| c * BLOCK_EDGE);
+                    let edges: [usize; 3] =
+                        std::array::from_fn(|axis| BLOCK_EDGE.min(dims[axis] - first[axis]));
+                    let overlap: [Range<usize>; 3] = std::array::from_fn(|axis| {
+                        let end = (first[axis] + edges[axis]).min(region[axis].end);
+                        first[axis].max(region[axis].start)..end
+                    });
+                    for z in overlap[2].clone() {
+                        for y in overlap[1].clone() {
+                            let row = edges[0] * (y - first[1] + edges[1] * (z - first[2]));
+                            let from = &block[row + overlap[0].start - first[0]..][..overlap[0].len()];
+                            let to = size[0] * (y - region[1].start + size[1] * (z - region[2].start));
+                            let target = &mut densities[to + overlap[0].start - region[0].start..];
+                            for (target, stored) in target.iter_mut().zip(from) {
+                                *target = f32::from(*stored) / 65535.0;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        Ok(densities)
+    }
+}

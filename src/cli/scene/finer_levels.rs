@@ -1,0 +1,138 @@
+//! Command-line arguments for resolution levels that are finer than the one in memory, and reading of their pages.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::output::warn_line;
+use chiaroscuro_render::plan::{density_visibility, page_demand};
+use chiaroscuro_scene::{FinerLevelRecord, ImageSpec, Settings};
+use chiaroscuro_volume::{Dataset, LevelRule, PageCache, memory_budget_bytes};
+use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
+
+/// Largest memory for pages unless the user gives another: what most graphics cards can spare.
+const MAX_DEFAULT_POOL_BYTES: u64 = 1 << 30;
+
+/// Number of pages that are read before it is asked which are needed still.
+const PAGES_PER_BATCH: usize = 64;
+
+/// Arguments for the levels of an image that do not fit into memory.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct FinerLevelArgs {
+    /// Memory for parts of finer resolution levels than the one in memory, such as 512MiB; also keeps a coarse level in
+    /// memory where the finest would fit
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pool: Option<u64>,
+    /// Fail (exit code 1) if a finer level is called for that does not fit into this memory
+    #[arg(long)]
+    require_full: bool,
+}
+
+impl FinerLevelArgs {
+    /// Returns true if memory for pages is given.
+    pub(super) fn has_pool(&self) -> bool {
+        self.pool.is_some()
+    }
+
+    /// Returns the rule for the level that is read.
+    pub(crate) fn level_rule(&self) -> LevelRule {
+        if self.pool.is_some() { LevelRule::AlwaysBesidePages } else { LevelRule::BesidePages }
+    }
+
+    /// Reads the pages of finer levels that a picture shows. Returns the dataset with them, and their record; nothing
+    /// changes where the level in memory is fine enough.
+    ///
+    /// # Arguments
+    /// * `options`: options with which the dataset was read from `source`.
+    /// * `say`: function that prints progress.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or a level is called for that does not fit and `--require-full` is given.
+    pub(crate) fn with_pages(
+        &self,
+        source: &Path,
+        options: &LoadOptions,
+        dataset: Dataset,
+        settings: &Settings,
+        image: &ImageSpec,
+        say: &dyn Fn(&str),
+    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
+        let budget = self.pool.unwrap_or_else(|| (memory_budget_bytes() / 4).min(MAX_DEFAULT_POOL_BYTES));
+        // Densities of pages are those of the picture.
+        let mapping = settings.shown_content(&dataset.volume().ranges());
+        let dataset = dataset.with_density_mapping(mapping);
+        // An image that is shown at its finest level is the usual case.
+        let pages = match FilePages::new(source, options, &dataset, budget) {
+            Ok(pages) => pages,
+            Err(NoPages::NoFinerLevel) => return Ok((dataset, None)),
+            Err(why) => {
+                say(&format!("finer levels are not shown: {why}"));
+                return Ok((dataset, None));
+            }
+        };
+        let mut cache = PageCache::new(Arc::new(pages), &dataset, budget);
+        let size = image.size.map(|n| n * image.samples);
+        let demand = loop {
+            let demand = page_demand(&dataset, cache.resident(), settings, size, cache.capacity());
+            let Some(demand) = demand else { return Ok((dataset, None)) };
+            let mut missing = cache.missing(&demand.wanted);
+            if missing.is_empty() {
+                break demand;
+            }
+            say(&format!("reading {} parts of finer levels", missing.len()));
+            missing.truncate(PAGES_PER_BATCH);
+            let read = cache.read(&missing)?;
+            cache.insert(read, &demand.wanted, density_visibility(&dataset, settings));
+        };
+        let levels = cache.resident().levels();
+        let name = |index: usize| levels.0.get(index).map_or("in memory", |level| &level.key).to_owned();
+        if demand.is_substituted {
+            let text = format!(
+                "level {} takes the place of a finer one, whose parts do not fit into {} MiB; --pool allows more",
+                name(demand.finest),
+                budget >> 20
+            );
+            if self.require_full {
+                return Err(CliError::Usage(text));
+            }
+            warn_line(&format!("warning: {text} ({})", source.display()));
+        }
+        let record = FinerLevelRecord { finest: name(demand.finest), is_substituted: demand.is_substituted };
+        Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
+    }
+}
+
+/// Parses a size such as `512MiB`, `2GiB`, or a number of bytes.
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let expected = || "expected a size such as 512MiB or 2GiB".to_owned();
+    let text = text.trim();
+    let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let number: u64 = number.parse().map_err(|_| expected())?;
+    let factor = match unit.trim().to_ascii_lowercase().as_str() {
+        "" | "b" => 1,
+        "k" | "kib" => 1 << 10,
+        "m" | "mib" => 1 << 20,
+        "g" | "gib" => 1 << 30,
+        _ => return Err(expected()),
+    };
+    number.checked_mul(factor).ok_or_else(expected)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_binary_units() {
+        assert_eq!(
+            ["64MiB", "2 g", "1000", "3kib"].map(parse_bytes).map(Result::unwrap),
+            [64 << 20, 2 << 30, 1000, 3 << 10]
+        );
+        for wrong in ["", "MiB", "1.5GiB", "2TB", "99999999999999999999", "99999999999999999g"] {
+            assert!(parse_bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}
