@@ -5,10 +5,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use glam::DVec3;
+use rayon::prelude::*;
+
 use crate::{LoadOptions, open};
 use chiaroscuro_volume::{
-    CancelToken, Corrections, Dataset, DensityMapping, FileDimension, FinerLevels, LoadControl, LoadError,
-    PageSource, Portion, VolumeChoice, VoxelRegion, VoxelSpan,
+    CancelToken, Corrections, Dataset, DensityMapping, FileDimension, FinerLevels, LevelRule, LoadControl,
+    LoadError, PageSource, Portion, Samples, Volume, VolumeChoice, VoxelRegion, VoxelSpan,
 };
 
 /// Edge of the blocks that are read together, in voxels: two chunks of the usual 64³, so that pages, which are read with a
@@ -55,6 +58,53 @@ impl BlockCache {
         }
         found
     }
+}
+
+/// Number of blocks along each axis whose values stand for those of a level, and their edge in voxels: with chunks of 64³,
+/// some seven million voxels.
+const SAMPLED_BLOCKS: usize = 3;
+const SAMPLED_EDGE: usize = 64;
+
+/// Returns a coarse level with ranges of values that cover a sample of the finest one: means of voxels have a narrower range,
+/// and what lies beyond it could not be told apart where pages of finer levels are shown. A sample that cannot be read
+/// changes nothing; reading its pages will say why.
+pub(crate) fn with_ranges_of_finest_level(
+    path: &Path,
+    options: &LoadOptions,
+    control: &LoadControl,
+    volume: Volume,
+) -> Volume {
+    let contents = volume.contents();
+    let levels = contents.alternatives_in(FileDimension::Level).filter(|levels| levels.selected > 0);
+    let Some((key, dims)) =
+        levels.and_then(|levels| Some((levels.offers[0].key.clone(), levels.offers[0].dims?)))
+    else {
+        return volume;
+    };
+    let token = control.token().clone();
+    let read = |at: usize| {
+        let place = [at % SAMPLED_BLOCKS, at / SAMPLED_BLOCKS % SAMPLED_BLOCKS, at / SAMPLED_BLOCKS.pow(2)];
+        let spans = std::array::from_fn(|axis| {
+            let length = usize::try_from(dims[axis]).unwrap_or(usize::MAX);
+            // Blocks in the middle of a third each, which begin with a chunk.
+            let middle = length / (2 * SAMPLED_BLOCKS) * (2 * place[axis] + 1);
+            let first = middle / SAMPLED_EDGE * SAMPLED_EDGE;
+            VoxelSpan { first, end: Some(first.saturating_add(SAMPLED_EDGE).min(length)) }
+        });
+        let choice = VolumeChoice {
+            level: Some(key.clone()),
+            portion: Some(Portion { region: Some(VoxelRegion(spans)), ..Portion::default() }),
+            ..contents.choice()
+        };
+        let options = LoadOptions { choice, level: LevelRule::Finest, ..options.clone() };
+        let block = open(path, &options, &LoadControl::with_token(token.clone())).ok()?;
+        Some((0..block.voxel_count()).map(|at| block.samples().value(at) as f32).collect::<Vec<_>>())
+    };
+    let values: Vec<f32> = (0..SAMPLED_BLOCKS.pow(3)).into_par_iter().filter_map(read).flatten().collect();
+    // All blocks together: what is rare in the whole may be frequent in one of them.
+    let sample = Volume::with_spacing("", [values.len(), 1, 1], DVec3::ONE, Samples::F32(values));
+    let ranges = sample.map_or(volume.ranges(), |sample| volume.ranges().union(sample.ranges()));
+    volume.with_ranges(ranges)
 }
 
 /// Reason why the finer levels of a file are not shown.

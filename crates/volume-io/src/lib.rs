@@ -116,6 +116,9 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         // Voxels may prove to be labels only after reading: then the file is read again, with the most frequent label
         // of each block.
         (true, _) => read(true).map(|(_, volume)| volume),
+        (false, volume) if options.level != LevelRule::Finest => {
+            Ok(file_pages::with_ranges_of_finest_level(path, options, control, volume))
+        }
         (false, volume) => Ok(volume),
     }
 }

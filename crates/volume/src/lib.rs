@@ -39,8 +39,8 @@ pub use occupancy::bricks::{BrickBounds, CellRanges};
 pub use occupancy::cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIGMA_TOLERANCE};
 pub use occupancy::label_cells::CellOccupancy;
 pub use pages::{
-    FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page, PageAddress,
-    PageCache, PageSource, PagesId, ResidentPages,
+    FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, PAGES_PER_BATCH,
+    Page, PageAddress, PageCache, PageSource, PagesId, ResidentPages, read_pages,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,

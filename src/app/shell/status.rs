@@ -12,6 +12,7 @@ use crate::app::text;
 use crate::app::viewport::{RendererActivity, RendererStatus};
 use crate::app::windows::export::ExportProgress;
 use crate::app::worker::loader::LoadProgress;
+use crate::app::worker::mailbox::FinerLevelStatus;
 use chiaroscuro_files::sanitised;
 
 /// Maximum number of characters of a path in the bar: more than the widest screen shows.
@@ -74,6 +75,9 @@ pub(crate) fn show(
                 cancel(ui, commands);
             } else {
                 picture_state(ui, facts.activity, making);
+                if let Some(levels) = &facts.finer_levels {
+                    finer_levels(ui, levels);
+                }
                 if let Some(went) = went {
                     ui.separator();
                     let words = elide_middle(ui, went, &TextStyle::Body, MAX_STEP_WIDTH);
@@ -173,6 +177,20 @@ fn statistics(ui: &mut egui::Ui, facts: &RendererStatus) {
         });
     });
     button.on_hover_text(named.tooltip);
+}
+
+/// Shows which resolution level the picture has, and what of it is missing.
+fn finer_levels(ui: &mut egui::Ui, levels: &FinerLevelStatus) {
+    ui.separator();
+    let FinerLevelStatus { finest, missing, is_substituted, error } = levels;
+    let words = text::status::finer_levels(finest, *missing, *is_substituted);
+    match error {
+        None => ui.label(words).on_hover_text(text::status::FINER_LEVELS_TIP),
+        Some(error) => {
+            let words = text::status::FINER_LEVELS_FAILED;
+            ui.label(RichText::new(words).color(ui.visuals().error_fg_color)).on_hover_text(error)
+        }
+    };
 }
 
 /// Shows the state of the picture, or the task in progress.

@@ -29,7 +29,7 @@ pub(super) use self::renderer_status::{LightCost, RendererActivity, RendererStat
 use super::worker::mailbox::{FinishedFrame, RefinementHold, UpcomingSteps};
 use super::worker::quality::QualityLevel;
 use super::worker::render_thread::RenderThread;
-use super::worker::request::{ComparedLooks, FrameRequest, RenderScene};
+use super::worker::request::{ComparedLooks, FrameRequest, RenderScene, VolumeFile};
 use super::worker::response_times::PendingRequests;
 pub(super) use super::worker::response_times::ResponseTimes;
 pub(super) use chiaroscuro_render::LightVolumeStatistics;
@@ -141,10 +141,10 @@ impl Viewport {
     }
 
     /// Switches to another volume; its picture replaces the old one when it is complete.
-    pub(super) fn set_scene(&mut self, renderer: Renderer, dataset: Dataset) {
+    pub(super) fn set_scene(&mut self, renderer: Renderer, dataset: Dataset, file: Option<VolumeFile>) {
         self.generation += 1;
         self.dataset = Some(dataset.clone());
-        self.thread.set_scene(RenderScene { renderer, dataset });
+        self.thread.set_scene(RenderScene { renderer, dataset, file });
         (self.frame_request, self.displayed, self.failed_request, self.last_wait_failed) =
             (None, None, None, false);
         self.pending_requests.clear();

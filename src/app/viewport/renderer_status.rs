@@ -1,6 +1,7 @@
 //! Statistics and state of the renderer, for display in the rest of the window.
 
 use crate::app::viewport::Viewport;
+use crate::app::worker::mailbox::FinerLevelStatus;
 use crate::app::worker::request::ComparedLooks;
 use chiaroscuro_files::sanitised;
 use chiaroscuro_render::{LightVolumeStatistics, RenderStage};
@@ -58,6 +59,8 @@ pub(crate) struct RendererStatus {
     pub bounces: Option<LightVolumeStatistics>,
     /// Current activity of the renderer.
     pub activity: RendererActivity,
+    /// Finer resolution levels of the picture, if the one in memory is too coarse for it.
+    pub finer_levels: Option<FinerLevelStatus>,
 }
 
 /// Cost of a light volume: time to fill it, and memory.
@@ -140,6 +143,7 @@ impl Viewport {
             sky: figures.sky,
             bounces: figures.bounces,
             activity: self.activity(looks, figures.refinement_progress),
+            finer_levels: figures.finer_levels.clone(),
         }
     }
 

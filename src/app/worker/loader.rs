@@ -16,7 +16,7 @@ use chiaroscuro_render::{
 };
 use chiaroscuro_scene::{SceneAxis, Settings};
 use chiaroscuro_volume::{
-    Dataset, LoadControl, LoadError, Volume, VolumeAlternatives, VolumeChoice, memory_budget_bytes,
+    Dataset, LevelRule, LoadControl, LoadError, Volume, VolumeAlternatives, VolumeChoice, memory_budget_bytes,
 };
 use chiaroscuro_volume_io::{LoadOptions, RawFormat, RawGuess, RawLayout};
 
@@ -176,6 +176,7 @@ impl Loader {
         options.raw = reading.raw.unwrap_or(options.raw);
         options.choice = reading.choice.clone().unwrap_or(options.choice);
         options.only_files.clone_from(&reading.subset);
+        options.level = LevelRule::BesidePages;
         let opening = LoadJob {
             source: source.to_owned(),
             reading: reading.clone(),

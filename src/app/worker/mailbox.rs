@@ -51,6 +51,21 @@ pub(crate) struct RenderStatistics {
     pub(crate) refinements: u64,
     /// Refinement in progress: its current stage, and the completed fraction.
     pub(crate) refinement_progress: Option<(RenderStage, f32)>,
+    /// Finer resolution levels of the picture, if the one in memory is too coarse for it.
+    pub(crate) finer_levels: Option<FinerLevelStatus>,
+}
+
+/// Finer resolution levels of a picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FinerLevelStatus {
+    /// Key of the finest level that is shown.
+    pub(crate) finest: String,
+    /// Number of parts that have yet to be read.
+    pub(crate) missing: usize,
+    /// True if a finer level is called for that does not fit into memory.
+    pub(crate) is_substituted: bool,
+    /// Message of the error at which reading ended.
+    pub(crate) error: Option<String>,
 }
 
 /// Request to measure the balance of a look.
@@ -91,6 +106,8 @@ pub(crate) struct Mailbox {
     /// New dataset, for the renderer of the present scene.
     pub(crate) dataset: Option<Dataset>,
     pub(crate) frame_request: Option<FrameRequest>,
+    /// True if a thread has read pages of finer levels that the render thread has not taken.
+    pub(crate) pages_arrived: bool,
     /// Time steps that may be shown next, if others are than before.
     pub(crate) upcoming: Option<UpcomingSteps>,
     pub(crate) closed: bool,
@@ -116,6 +133,7 @@ impl Mailbox {
             || self.dataset.is_some()
             || self.frame_request.is_some()
             || self.upcoming.is_some()
+            || self.pages_arrived
             || is_taken
     }
 }

@@ -1,5 +1,7 @@
 //! Requests of the window to the render thread.
 
+use std::path::PathBuf;
+
 use super::quality::QualityLevel;
 use chiaroscuro_render::{
     PictureOptions, Renderer,
@@ -7,6 +9,7 @@ use chiaroscuro_render::{
 };
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::{Dataset, DensityMapping, ValueRange, ValueRanges};
+use chiaroscuro_volume_io::LoadOptions;
 
 /// Single look, or two looks that are compared.
 #[derive(Debug, Clone)]
@@ -97,9 +100,28 @@ pub(crate) struct RenderScene {
     pub renderer: Renderer,
     /// Dataset of the volume.
     pub dataset: Dataset,
+    /// File of the volume, of which finer levels are read where pictures show them.
+    pub file: Option<VolumeFile>,
+}
+
+/// File of a volume, by which other resolution levels of it are read.
+#[derive(Debug, Clone)]
+pub(crate) struct VolumeFile {
+    pub path: PathBuf,
+    /// Options with which the volume was read.
+    pub options: LoadOptions,
 }
 
 impl RenderScene {
+    /// Replaces the dataset. The file stays if both were opened as the same volume, not as another time step.
+    pub(super) fn set_dataset(&mut self, dataset: Dataset) {
+        let opened_id = |dataset: &Dataset| dataset.volume().opened_id();
+        if opened_id(&dataset) != opened_id(&self.dataset) {
+            self.file = None;
+        }
+        self.dataset = dataset;
+    }
+
     /// Returns the renderer's request for a look at a quality level.
     pub(super) fn request(
         &self,

@@ -15,9 +15,6 @@ use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
 /// Largest memory for pages unless the user gives another: what most graphics cards can spare.
 const MAX_DEFAULT_POOL_BYTES: u64 = 1 << 30;
 
-/// Number of pages that are read before it is asked which are needed still.
-const PAGES_PER_BATCH: usize = 64;
-
 /// Arguments for the levels of an image that do not fit into memory.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct FinerLevelArgs {
@@ -74,18 +71,14 @@ impl FinerLevelArgs {
         };
         let mut cache = PageCache::new(Arc::new(pages), &dataset, budget);
         let size = image.size.map(|n| n * image.samples);
-        let demand = loop {
-            let demand = page_demand(&dataset, cache.resident(), settings, size, cache.capacity());
-            let Some(demand) = demand else { return Ok((dataset, None)) };
-            let mut missing = cache.missing(&demand.wanted);
-            if missing.is_empty() {
-                break demand;
-            }
-            say(&format!("reading {} parts of finer levels", missing.len()));
-            missing.truncate(PAGES_PER_BATCH);
-            let read = cache.read(&missing)?;
-            cache.insert(read, &demand.wanted, density_visibility(&dataset, settings));
-        };
+        let demand =
+            |cache: &PageCache| page_demand(&dataset, cache.resident(), settings, size, cache.capacity());
+        let wanted = |cache: &PageCache| demand(cache).map_or_else(Vec::new, |demand| demand.wanted);
+        cache.fill(wanted, density_visibility(&dataset, settings), |missing| {
+            say(&format!("reading {missing} parts of finer levels"));
+            true
+        })?;
+        let Some(demand) = demand(&cache) else { return Ok((dataset, None)) };
         let levels = cache.resident().levels();
         let name = |index: usize| levels.0.get(index).map_or("in memory", |level| &level.key).to_owned();
         if demand.is_substituted {

@@ -3,8 +3,13 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::{Page, PageAddress, PageSource, ResidentPages};
 use crate::{Dataset, LoadError};
+
+/// Number of pages that are read before it is asked which are needed still: half a second's on a slow machine.
+pub const PAGES_PER_BATCH: usize = 32;
 
 /// Pages of a volume, of which those that no picture wants any longer make room for others.
 #[derive(Debug, Clone)]
@@ -52,10 +57,37 @@ impl PageCache {
     /// # Errors
     /// Fails like [`PageSource::read`].
     pub fn read(&self, addresses: &[PageAddress]) -> Result<Vec<(PageAddress, Arc<Page>)>, LoadError> {
-        use rayon::prelude::*;
-        let read =
-            |address: &PageAddress| Ok((*address, Arc::new(Page::from_source(&*self.source, *address)?)));
-        addresses.par_iter().map(read).collect()
+        read_pages(&*self.source, addresses)
+    }
+
+    /// Reads pages until none is missing.
+    ///
+    /// # Arguments
+    /// * `wanted`: function that returns the pages that a picture wants, given those that are known so far.
+    /// * `is_visible`: function that says whether densities in a range show anything.
+    /// * `progress`: function that is told the number of pages that are missing; reading ends if it returns false.
+    ///
+    /// # Errors
+    /// Fails like [`PageSource::read`], and with [`LoadError::Cancelled`].
+    pub fn fill(
+        &mut self,
+        wanted: impl Fn(&Self) -> Vec<PageAddress>,
+        is_visible: impl Fn([f32; 2]) -> bool,
+        mut progress: impl FnMut(usize) -> bool,
+    ) -> Result<(), LoadError> {
+        loop {
+            let all = wanted(self);
+            let mut missing = self.missing(&all);
+            if missing.is_empty() {
+                return Ok(());
+            }
+            if !progress(missing.len()) {
+                return Err(LoadError::Cancelled);
+            }
+            missing.truncate(PAGES_PER_BATCH);
+            let read = self.read(&missing)?;
+            self.insert(read, &all, &is_visible);
+        }
     }
 
     /// Adds pages that were read. Those for which `is_visible` is false are only remembered with their range; others that are
@@ -76,4 +108,16 @@ impl PageCache {
         }
         self.resident.insert(shown);
     }
+}
+
+/// Reads pages from a source, several at a time.
+///
+/// # Errors
+/// Fails like [`PageSource::read`].
+pub fn read_pages(
+    source: &dyn PageSource,
+    addresses: &[PageAddress],
+) -> Result<Vec<(PageAddress, Arc<Page>)>, LoadError> {
+    let read = |address: &PageAddress| Ok((*address, Arc::new(Page::from_source(source, *address)?)));
+    addresses.par_iter().map(read).collect()
 }

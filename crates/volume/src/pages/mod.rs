@@ -10,7 +10,7 @@ mod levels;
 mod page;
 mod resident;
 
-pub use cache::PageCache;
+pub use cache::{PAGES_PER_BATCH, PageCache, read_pages};
 pub use levels::{FinerLevel, FinerLevels, PageAddress};
 pub use page::{PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
 pub use resident::{PagesId, ResidentPages};

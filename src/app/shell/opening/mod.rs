@@ -28,8 +28,10 @@ use crate::app::windows::raw_dialog::RawDialog;
 use crate::app::windows::untrusted_path::UntrustedPathDialog;
 use crate::app::worker::jobs::JobSlot;
 use crate::app::worker::loader::{LoadOutcome, Loader, ReadChoices, RememberedFileSettings};
+use crate::app::worker::request::VolumeFile;
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::Dataset;
+use chiaroscuro_volume_io::LoadOptions;
 
 /// Volume on which a look is shown that names none, if none is open.
 const DEFAULT_SOURCE: &str = "builtin:chair";
@@ -135,13 +137,26 @@ impl VolumeOpener<'_> {
         started.is_ok()
     }
 
+    /// Returns the file of the open volume, by which other resolution levels of it are read.
+    fn volume_file(&self) -> Option<VolumeFile> {
+        let volume = self.editor.document.volume.as_ref()?;
+        let options = self.state.loader.options();
+        let options = LoadOptions {
+            raw: volume.reading.raw.unwrap_or(options.raw),
+            only_files: volume.reading.subset.clone(),
+            ..options.clone()
+        };
+        Some(VolumeFile { path: volume.source.clone(), options })
+    }
+
     /// Takes the volume that has been read, or the reason why it was not.
     pub(crate) fn take_outcome(&mut self) {
         match self.state.loader.take_outcome() {
             None => {}
             Some(LoadOutcome::Opened(opened)) => self.show_or_ask(opened),
             Some(LoadOutcome::Uploaded { renderer, dataset }) => {
-                self.editor.viewport.set_scene(*renderer, dataset);
+                let file = self.volume_file();
+                self.editor.viewport.set_scene(*renderer, dataset, file);
             }
             Some(LoadOutcome::Cancelled) => {
                 self.state.requests.pending_look = None;

@@ -40,6 +40,22 @@ pub(crate) fn refinement_progress(share: f32, stage: RenderStage) -> String {
     format!("{} {:.0} %", stage_name(stage), share * 100.0)
 }
 
+/// Finest resolution level of the picture, with the number of its parts that have yet to be read.
+pub(crate) fn finer_levels(finest: &str, missing: usize, is_substituted: bool) -> String {
+    let level = format!("Level {finest}");
+    let substituted = if is_substituted { ", a finer one does not fit" } else { "" };
+    match missing {
+        0 => format!("{level}{substituted}"),
+        1 => format!("{level}{substituted}: 1 part missing"),
+        _ => format!("{level}{substituted}: {missing} parts missing"),
+    }
+}
+
+pub(crate) const FINER_LEVELS_TIP: &str = "The finest resolution level of the file is too large for the memory: what the picture shows of it is read part by part";
+
+/// Reading of a finer level that has failed; the tooltip has the cause.
+pub(crate) const FINER_LEVELS_FAILED: &str = "A finer level could not be read; a moved camera tries again";
+
 /// Background tasks beside the rendering of pictures.
 pub(crate) const CORRECTING: &str = "Correcting volume";
 pub(crate) const PREPARING_LOOK: &str = "Preparing look";

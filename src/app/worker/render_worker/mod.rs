@@ -4,6 +4,8 @@
 //! moment, and antialiased edges after another one. A preview is always finished, so that a continuous drag shows pictures; a refinement is dropped as soon as
 //! something else is requested.
 
+mod balance;
+mod finer_levels;
 mod preparation;
 
 use std::sync::{Arc, PoisonError};
@@ -11,17 +13,18 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, ColorImage};
 
+use self::finer_levels::{FinerLevelReader, with_pages_of};
 use self::preparation::StepPreparation;
 use super::brightness::BrightnessTracker;
 use super::difference::PictureDifference;
-use super::mailbox::{BalanceRequest, FinishedFrame, RenderStatistics, SharedMailbox};
+use super::mailbox::{FinishedFrame, RenderStatistics, SharedMailbox};
 use super::missing_light_volumes::MissingLightVolumes;
 use super::quality::{QualityController, QualityLevel};
 use super::render_schedule::{NextRender, RenderPurpose, RenderSchedule};
 use super::request::{FrameRequest, RenderScene};
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_render::{
-    GpuContext, GpuError, PictureOptions, RenderOptions, RenderStage, WorkOptions, measure_balance_fast,
+    GpuContext, GpuError, PictureOptions, RenderOptions, RenderStage, WorkOptions,
     plan::{FrameKeys, RenderRequest},
 };
 use chiaroscuro_scene::Settings;
@@ -60,6 +63,7 @@ pub(super) struct RenderWorker {
     last_full_request: Option<(RenderRequest, FrameKeys)>,
     last_progress: Instant,
     preparation: StepPreparation,
+    finer: FinerLevelReader,
 }
 
 impl RenderWorker {
@@ -74,6 +78,7 @@ impl RenderWorker {
             last_full_request: None,
             last_progress: Instant::now(),
             preparation: StepPreparation::default(),
+            finer: FinerLevelReader::default(),
         }
     }
 
@@ -115,6 +120,7 @@ impl RenderWorker {
                 self.brightness.reset();
                 self.last_full_request = None;
                 self.preparation = StepPreparation::default();
+                self.finer = FinerLevelReader::default();
                 self.scene = Some(scene);
             }
             if let Some(dataset) = self.agenda.take_dataset()
@@ -122,10 +128,12 @@ impl RenderWorker {
             {
                 self.brightness.reset();
                 self.last_full_request = None;
-                scene.dataset = dataset;
+                scene.set_dataset(dataset);
+                self.finer = FinerLevelReader::default();
             }
             self.measure_balance();
             self.prepare_upcoming();
+            self.show_finer_levels();
             let due = if self.scene.is_some() { self.agenda.due() } else { NextRender::OnMailboxChange };
             let rest = match due {
                 NextRender::Now(purpose, frame_request) => {
@@ -148,25 +156,6 @@ impl RenderWorker {
         }
     }
 
-    /// Returns true if a balance can be measured now: pictures have priority.
-    fn can_measure(&self) -> bool {
-        self.scene.is_some() && self.agenda.is_idle()
-    }
-
-    /// Measures the balance requested by the window: three small pictures with the light volumes that are present.
-    fn measure_balance(&mut self) {
-        if !self.can_measure() {
-            return;
-        }
-        let Some(BalanceRequest { id, settings }) = self.shared.mailbox().balance_request.take() else {
-            return;
-        };
-        let Some(scene) = &mut self.scene else { return };
-        let balance = measure_balance_fast(&mut scene.renderer, &scene.dataset, &settings);
-        self.shared.mailbox().balance_result = Some((id, balance));
-        self.ctx.request_repaint();
-    }
-
     /// Takes new requests and options out of the mailbox.
     fn read_mailbox(&mut self) {
         let mut mailbox = self.shared.mailbox();
@@ -175,6 +164,7 @@ impl RenderWorker {
                 RenderStatistics { gpu_bytes: scene.renderer.gpu_bytes(), ..RenderStatistics::default() };
         }
         self.agenda.read(&mut mailbox);
+        mailbox.pages_arrived = false;
         if let Some(upcoming) = mailbox.upcoming.take() {
             self.preparation = StepPreparation::new(upcoming);
         }
@@ -336,9 +326,9 @@ impl RenderWorker {
         }
         if let Some(dataset) = scene.renderer.dataset() {
             // Keeps what the renderer computed for the dataset, so that the next picture does not repeat it.
-            scene.dataset = dataset.clone();
+            scene.dataset = with_pages_of(dataset, &scene.dataset);
         }
-        let dataset = scene.dataset.clone();
+        let dataset = scene.dataset.clone().with_pages(None);
         let shows_nothing = scene.renderer.is_volume_transparent() || self.brightness.is_picture_empty();
         let mut mailbox = self.shared.mailbox();
         mailbox.figures.dark_share = dark_share.or(mailbox.figures.dark_share);

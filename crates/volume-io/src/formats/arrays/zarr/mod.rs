@@ -110,7 +110,9 @@ fn load_store(
     );
     let voxels = read.map_err(|fault| slabs.error(fault).into_error(context, &layout, "bytes", HELP))?;
     let nothing = "the store holds no chunk of what was read: all voxels have the fill value";
-    let placement = level.placement().with_remark((!slabs.has_data).then_some(nothing));
+    // Regions of a sparse volume are often empty.
+    let is_whole = limits.choice.portion.is_none_or(|portion| portion.is_whole());
+    let placement = level.placement().with_remark((!slabs.has_data && is_whole).then_some(nothing));
     let mut hints = ValueMetadata::default();
     if let Some([low, high]) = channel.and_then(|channel| channel.window) {
         hints.set_window(low, high);
