@@ -92,6 +92,8 @@ pub(super) struct Viewport {
     last_wait_failed: bool,
     generation: u64,
     dataset: Option<Dataset>,
+    /// File of the volume, by which other resolution levels of it are read.
+    file: Option<VolumeFile>,
     /// Textures of the picture, or of the left and right picture of a comparison and their difference.
     textures: [Option<WindowPicture>; 3],
     /// The preview that fades into the full-quality picture, and the start of the fade in egui's seconds.
@@ -129,6 +131,7 @@ impl Viewport {
             last_wait_failed: false,
             generation: 0,
             dataset: None,
+            file: None,
             textures: [None, None, None],
             fading: None,
             now_s: 0.0,
@@ -144,10 +147,16 @@ impl Viewport {
     pub(super) fn set_scene(&mut self, renderer: Renderer, dataset: Dataset, file: Option<VolumeFile>) {
         self.generation += 1;
         self.dataset = Some(dataset.clone());
+        self.file.clone_from(&file);
         self.thread.set_scene(RenderScene { renderer, dataset, file });
         (self.frame_request, self.displayed, self.failed_request, self.last_wait_failed) =
             (None, None, None, false);
         self.pending_requests.clear();
+    }
+
+    /// Returns the file of the volume, by which other resolution levels of it are read.
+    pub(super) fn file(&self) -> Option<&VolumeFile> {
+        self.file.as_ref()
     }
 
     /// Replaces the dataset of the current volume (another shown range or corrections), keeping its renderer.

@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::output::warn_line;
-use chiaroscuro_render::plan::{density_visibility, page_demand};
+use chiaroscuro_render::plan::fill_pages;
 use chiaroscuro_scene::{FinerLevelRecord, ImageSpec, Settings};
 use chiaroscuro_volume::{Dataset, LevelRule, PageCache, memory_budget_bytes};
 use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
@@ -71,14 +71,11 @@ impl FinerLevelArgs {
         };
         let mut cache = PageCache::new(Arc::new(pages), &dataset, budget);
         let size = image.size.map(|n| n * image.samples);
-        let demand =
-            |cache: &PageCache| page_demand(&dataset, cache.resident(), settings, size, cache.capacity());
-        let wanted = |cache: &PageCache| demand(cache).map_or_else(Vec::new, |demand| demand.wanted);
-        cache.fill(wanted, density_visibility(&dataset, settings), |missing| {
+        let demand = fill_pages(&mut cache, &dataset, settings, size, |missing| {
             say(&format!("reading {missing} parts of finer levels"));
             true
         })?;
-        let Some(demand) = demand(&cache) else { return Ok((dataset, None)) };
+        let Some(demand) = demand else { return Ok((dataset, None)) };
         let levels = cache.resident().levels();
         let name = |index: usize| levels.0.get(index).map_or("in memory", |level| &level.key).to_owned();
         if demand.is_substituted {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::plan::{MAX_STRETCH_LEVEL, PixelWindow, SheetFrame, picture_frame};
 use chiaroscuro_scene::{LayerComposition, Projection, Settings, ShadowAlgorithm};
 use chiaroscuro_volume::math::SceneSpace;
-use chiaroscuro_volume::{Dataset, FinerLevels, PAGE_EDGE, PageAddress, ResidentPages};
+use chiaroscuro_volume::{Dataset, FinerLevels, LoadError, PAGE_EDGE, PageAddress, PageCache, ResidentPages};
 
 /// Distance around a page, in its voxels, within which it may be read for what is outside: gradients reach three voxels,
 /// near-field rays six.
@@ -138,6 +138,26 @@ pub fn page_demand(
         is_substituted: finest > view.first,
         wanted: all.iter().copied().filter(|page| page.level >= finest).collect(),
     })
+}
+
+/// Reads the pages that a picture wants into a cache. Returns the demand, which is `None` if the volume in memory is fine enough.
+///
+/// # Arguments
+/// * `progress`: function that is told the number of pages that are missing; reading ends if it returns false.
+///
+/// # Errors
+/// Fails like [`PageCache::fill`].
+pub fn fill_pages(
+    cache: &mut PageCache,
+    dataset: &Dataset,
+    settings: &Settings,
+    size: [u32; 2],
+    progress: impl FnMut(usize) -> bool,
+) -> Result<Option<PageDemand>, LoadError> {
+    let demand = |cache: &PageCache| page_demand(dataset, cache.resident(), settings, size, cache.capacity());
+    let wanted = |cache: &PageCache| demand(cache).map_or_else(Vec::new, |demand| demand.wanted);
+    cache.fill(wanted, density_visibility(dataset, settings), progress)?;
+    Ok(demand(cache))
 }
 
 /// Returns a function that says whether any density of a range is visible, or attenuates light.

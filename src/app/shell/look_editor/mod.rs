@@ -199,6 +199,7 @@ impl LookEditor {
             selected_light: self.document.selected_light,
             outline: self.document.outline(self.viewport.dataset().as_ref()),
             series: self.series.clone(),
+            file: self.viewport.file().cloned(),
         })
     }
 }

@@ -131,6 +131,7 @@ fn render_sweep(
         selected_light: 0,
         outline: None,
         series: None,
+        file: None,
     };
     if job.token().is_cancelled() {
         return Ok(());

@@ -293,6 +293,7 @@ mod tests {
             selected_light: 0,
             outline: None,
             series: None,
+            file: None,
         };
         let mut sheet = ContactSheetWindow::default();
         let ask = |sheet: &mut ContactSheetWindow, subject: Option<&ExportScene>| {

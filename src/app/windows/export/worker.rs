@@ -8,6 +8,7 @@ use eframe::egui;
 
 use crate::app::text;
 use crate::app::worker::jobs::JobControl;
+use crate::app::worker::request::VolumeFile;
 use chiaroscuro_files::fault::{FaultThread, panic_if_injected};
 use chiaroscuro_media::{
     Animation, AnimationFormat, AnimationSpec, ContactSheetImage, ExportError, PixelRows, export_png,
@@ -15,18 +16,21 @@ use chiaroscuro_media::{
 };
 use chiaroscuro_render::{
     BandProgress, GpuContext, GpuError, MeasuredSettings, RenderOptions, Renderer, ShaderLibrary,
-    downsample_to_fit,
+    downsample_to_fit, plan::fill_pages,
 };
 use chiaroscuro_scene::{
-    Annotations, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
+    Annotations, FinerLevelRecord, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
 };
-use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, Volume};
-use chiaroscuro_volume_io::{LoadOptions, StepReadOptions, TimeSteps};
+use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, PageCache, Volume, memory_budget_bytes};
+use chiaroscuro_volume_io::{FilePages, LoadOptions, StepReadOptions, TimeSteps};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
 const KEPT_TILE_SIZE: [u32; 2] = [640, 480];
+
+/// Memory for pages of finer levels, in bytes: what most graphics cards can spare beside the window's.
+const PAGE_BYTES: u64 = 1 << 30;
 
 /// Scene to export: volume, settings and device.
 #[derive(Debug, Clone)]
@@ -47,6 +51,8 @@ pub(crate) struct ExportScene {
     pub outline: Option<Arc<ObjectOutline>>,
     /// Time series of which the open volume is one step, if it is.
     pub series: Option<ReadableSeries>,
+    /// File of the volume, of which finer levels are read where pictures show them.
+    pub file: Option<VolumeFile>,
 }
 
 /// Time steps, with what is needed to read them.
@@ -138,7 +144,12 @@ fn report_progress(job: &JobControl, done: u32, total: u32) -> Result<(), Export
 pub(crate) struct ExportWorker {
     renderer: Renderer,
     adapter: String,
+    /// Pages of finer levels that pictures have shown.
+    pages: Option<PageCache>,
 }
+
+/// Dataset with the pages of finer levels that a picture shows, and their record.
+type PagedDataset = (Dataset, Option<FinerLevelRecord>);
 
 impl ExportWorker {
     /// Opens a sibling device and creates a renderer on it.
@@ -146,7 +157,36 @@ impl ExportWorker {
         panic_if_injected(FaultThread::Export);
         let beside = subject.context.second_device().map_err(|err| err.to_string())?;
         let renderer = Renderer::new(&beside).map_err(|err| err.to_string())?;
-        Ok(Self { renderer, adapter: beside.description() })
+        Ok(Self { renderer, adapter: beside.description(), pages: None })
+    }
+
+    /// Reads the pages of finer levels that a picture of the subject shows, until `is_cancelled`.
+    fn paged_dataset(
+        &mut self,
+        subject: &ExportScene,
+        settings: &Settings,
+        image_spec: &ImageSpec,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Result<PagedDataset, String> {
+        let Some(file) = &subject.file else { return Ok((subject.dataset.clone(), None)) };
+        let mapping = settings.shown_content(&subject.dataset.volume().ranges());
+        let dataset = subject.dataset.with_density_mapping(mapping);
+        let is_known = self.pages.as_ref().is_some_and(|pages| pages.resident().mapping() == mapping);
+        if !is_known {
+            let bytes = PAGE_BYTES.min(memory_budget_bytes() / 4);
+            let Ok(pages) = FilePages::new(&file.path, &file.options, &dataset, bytes) else {
+                return Ok((subject.dataset.clone(), None));
+            };
+            self.pages = Some(PageCache::new(Arc::new(pages), &dataset, bytes));
+        }
+        let Some(cache) = &mut self.pages else { return Ok((dataset, None)) };
+        let size = image_spec.size.map(|n| n * image_spec.samples);
+        let demand = fill_pages(cache, &dataset, settings, size, |_| !is_cancelled());
+        let Some(demand) = demand.map_err(|err| err.to_string())? else { return Ok((dataset, None)) };
+        let finest = cache.resident().levels().0.get(demand.finest);
+        let finest = finest.map_or_else(String::new, |level| level.key.clone());
+        let record = FinerLevelRecord { finest, is_substituted: demand.is_substituted };
+        Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
     }
 
     /// Renders a picture of the subject with other settings, tone mapped and with marks; RGBA, 8 bits.
@@ -156,12 +196,23 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
     ) -> Result<Vec<u8>, String> {
+        self.render_with_record(subject, settings, image_spec).map(|(shown, _)| shown)
+    }
+
+    /// Renders a picture as [`Self::render`] does, and returns the record of its finer levels.
+    fn render_with_record(
+        &mut self,
+        subject: &ExportScene,
+        settings: &Settings,
+        image_spec: &ImageSpec,
+    ) -> Result<(Vec<u8>, Option<FinerLevelRecord>), String> {
+        let (dataset, finer_levels) = self.paged_dataset(subject, settings, image_spec, &|| false)?;
         let options = RenderOptions::for_image(image_spec, settings);
-        let shown = self.renderer.render_display(&subject.dataset, settings, image_spec.size, &options);
+        let shown = self.renderer.render_display(&dataset, settings, image_spec.size, &options);
         let mut shown = PixelRows::Bytes(shown.map_err(|err| err.to_string())?);
         marks_layer(image_spec, settings, subject.dataset.volume()).composite_over(image_spec, 0, &mut shown);
         match shown {
-            PixelRows::Bytes(shown) => Ok(shown),
+            PixelRows::Bytes(shown) => Ok((shown, finer_levels)),
             PixelRows::Floats(_) => Err(text::export::EMPTY_PICTURE.to_owned()),
         }
     }
@@ -188,6 +239,7 @@ impl ExportWorker {
         settings: &Settings,
         image_spec: &ImageSpec,
         folder: Option<&Path>,
+        finer_levels: Option<FinerLevelRecord>,
     ) -> String {
         let of = subject.dataset.volume();
         let volume =
@@ -195,7 +247,8 @@ impl ExportWorker {
         let count = settings.layers.count();
         let shown = subject.dataset.with_fields_where(|index| index < count);
         let volume = volume.with_layers_of(&shown, folder);
-        let picture_record = ImageRecord::new(*image_spec, self.adapter.clone());
+        let picture_record =
+            ImageRecord { finer_levels, ..ImageRecord::new(*image_spec, self.adapter.clone()) };
         LookRecord::to_json(settings, Some(&volume), Some(&picture_record))
     }
 }
@@ -208,9 +261,15 @@ pub(crate) fn export_still(
     job: &JobControl,
 ) -> Result<ExportOutcome, String> {
     let mut worker = ExportWorker::new(subject)?;
-    let record = worker.picture_record(subject, &subject.settings, image_spec, path.parent());
-    let ExportScene { dataset, settings, .. } = subject;
-    let mut bands = worker.renderer.bands(dataset, settings, image_spec);
+    let settings = &subject.settings;
+    let is_cancelled = || job.token().is_cancelled();
+    let paged = worker.paged_dataset(subject, settings, image_spec, &is_cancelled);
+    if is_cancelled() {
+        return Ok(ExportOutcome::Cancelled);
+    }
+    let (dataset, finer_levels) = paged?;
+    let record = worker.picture_record(subject, settings, image_spec, path.parent(), finer_levels);
+    let mut bands = worker.renderer.bands(&dataset, settings, image_spec);
     let (layer, mut first) = (marks_layer(image_spec, settings, dataset.volume()), 0);
     let mut rows = || {
         let BandProgress { drawn, total } = bands.progress();
@@ -256,6 +315,7 @@ impl AnimationMotion {
                 let index = frame as usize;
                 scene.dataset = series.read(index, &subject.dataset, (&subject.context, token))?;
                 series.steps.path(index).clone_into(&mut scene.source);
+                scene.file = None;
             }
         }
         Ok(scene)
@@ -280,8 +340,9 @@ pub(crate) fn export_animation(
             report_progress(job, frame, animation_spec.frames)?;
             let scene = motion.scene_at(subject, frame, animation_spec.frames, job.token());
             let scene = scene.map_err(ExportEnd::Failed)?;
-            let shown = worker.render(&scene, &scene.settings, &image_spec).map_err(ExportEnd::Failed)?;
-            file.add(&shown, &worker.picture_record(&scene, &scene.settings, &image_spec, folder))?;
+            let (shown, finer) =
+                worker.render_with_record(&scene, &scene.settings, &image_spec).map_err(ExportEnd::Failed)?;
+            file.add(&shown, &worker.picture_record(&scene, &scene.settings, &image_spec, folder, finer))?;
         }
         file.finish()?;
         Ok(())
@@ -313,7 +374,8 @@ pub(crate) fn export_kept_sheet(
     }
     let (size, shown) = (sheet.size(), sheet.finish());
     // The record contains the current look with all kept items.
-    let record = worker.picture_record(subject, &subject.settings, &ImageSpec::new(size), path.parent());
+    let record =
+        worker.picture_record(subject, &subject.settings, &ImageSpec::new(size), path.parent(), None);
     export_png(size, &shown, false, Some(&record), &path).map_err(|err| err.to_string())?;
     Ok(ExportOutcome::File(path))
 }
