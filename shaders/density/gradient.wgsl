@@ -9,16 +9,12 @@
 // Between two levels the step is interpolated, while the gradient texture interpolates the results of both levels:
 // nearly the same, at half the fetches.
 fn index_gradient(p: vec3f, level: f32) -> vec3f {
-#if PAGED
-    return paged_gradient(p, level);
-#else
     let h = exp2(level);
     return vec3f(
         derivative_along(p, vec3f(h, 0.0, 0.0), level),
         derivative_along(p, vec3f(0.0, h, 0.0), level),
         derivative_along(p, vec3f(0.0, 0.0, h), level),
     ) / h;
-#endif
 }
 
 // Pyramid level of the normals for kernels stretched to `level`. Labels change abruptly between voxels,

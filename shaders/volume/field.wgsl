@@ -69,6 +69,9 @@ const LARGEST_STORED_DENSITY = 65534u;
 // Channel of the pyramid that is gathered; with pre-classification each colour of light has its own extinction.
 override EXTINCTION_CHANNEL: u32 = 0u;
 
+// Takes gradients from the texture instead of computing them from the pyramid.
+override GRADIENT_TEXTURE: bool = false;
+
 // Set if pixels are wider than voxels in any slab.
 override STRETCH: bool = false;
 
@@ -85,7 +88,7 @@ fn mean_of_fields(a: Field, b: Field) -> Field {
 // Index-space point of the volume in memory: another one if samples read pages of finer levels.
 fn place_in_memory(p: vec3f) -> vec3f {
 #if PAGED
-    return (p + 0.5) * bound_pages.coarse - 0.5;
+    return (p + 0.5) * pages.coarse - 0.5;
 #else
     return p;
 #endif
@@ -94,7 +97,7 @@ fn place_in_memory(p: vec3f) -> vec3f {
 // Index-space vector of the volume in memory.
 fn vector_in_memory(v: vec3f) -> vec3f {
 #if PAGED
-    return v * bound_pages.coarse;
+    return v * pages.coarse;
 #else
     return v;
 #endif

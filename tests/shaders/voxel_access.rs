@@ -90,7 +90,7 @@ fn reserved_names() -> [(&'static str, BTreeSet<String>); 3] {
     tables.extend(TABLE_NAMES.map(str::to_owned));
     let mut paged = module_variables(text_of(PAGES));
     // What is known of pages as a whole is no voxel.
-    paged.remove("bound_pages");
+    paged.retain(|name| name != "bound_pages" && name != "pages");
     [(FIELD, fetched), (MATERIAL, tables), (PAGES, paged)]
 }
 

@@ -210,9 +210,12 @@ impl FilePages {
         let options = LoadOptions { choice, ..self.options.clone() };
         let volume = open(&self.path, &options, &LoadControl::with_token(self.token.clone()))?;
         let volume = volume.with_density_mapping(self.mapping);
-        let stored = |density: f32| (density.clamp(0.0, 1.0) * 65535.0).round() as u16;
-        let slices = (0..volume.dims()[2]).flat_map(|z| volume.slice_densities(z));
-        Ok(slices.map(stored).collect())
+        let stored = |density: f32| (density.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
+        let mut block = Vec::with_capacity(volume.voxel_count());
+        for z in 0..volume.dims()[2] {
+            block.extend(volume.slice_densities(z).into_iter().map(stored));
+        }
+        Ok(block.into())
     }
 }
 

@@ -176,7 +176,12 @@ impl Loader {
         options.raw = reading.raw.unwrap_or(options.raw);
         options.choice = reading.choice.clone().unwrap_or(options.choice);
         options.only_files.clone_from(&reading.subset);
-        options.level = LevelRule::BesidePages;
+        let is_software = self.context.is_software();
+        options.level = LevelRule::BesidePages(if is_software {
+            LevelRule::SOFTWARE_VOXELS
+        } else {
+            LevelRule::CARD_VOXELS
+        });
         let opening = LoadJob {
             source: source.to_owned(),
             reading: reading.clone(),

@@ -35,7 +35,8 @@ impl FinerLevelArgs {
 
     /// Returns the rule for the level that is read.
     pub(crate) fn level_rule(&self) -> LevelRule {
-        if self.pool.is_some() { LevelRule::AlwaysBesidePages } else { LevelRule::BesidePages }
+        let most = LevelRule::CARD_VOXELS;
+        if self.pool.is_some() { LevelRule::AlwaysBesidePages(most) } else { LevelRule::BesidePages(most) }
     }
 
     /// Reads the pages of finer levels that a picture shows. Returns the dataset with them, and their record; nothing

@@ -74,9 +74,9 @@ fn with_pages(
         Arc::clone(coarse.bricks()),
     );
     pages.insert(
-        wanted
-            .into_iter()
-            .map(|address| (address, Arc::new(Page::from_source(source, address).expect("a page")))),
+        wanted.into_iter().map(|address| {
+            (address, Arc::new(Page::from_source(source, address, |_| true).expect("a page")))
+        }),
     );
     coarse.clone().with_pages(Some(Arc::new(pages)))
 }
@@ -250,8 +250,8 @@ fn a_wrong_slot_or_border_is_noticed() {
     let right = render(&mut new_renderer(), &dataset, &settings, SIZE);
     for (from, to) in [
         ("const PAGE_BORDER = 3.0;", "const PAGE_BORDER = 2.0;"),
-        ("entry >> 10u & 0x3ffu", "entry >> 11u & 0x3ffu"),
-        ("return (p + 0.5) * bound_pages.coarse - 0.5;", "return p * bound_pages.coarse - 40.0;"),
+        ("entry >> 8u & 0xffu", "entry >> 9u & 0xffu"),
+        ("return (p + 0.5) * pages.coarse - 0.5;", "return p * pages.coarse - 40.0;"),
     ] {
         let wrong = render(&mut damaged_renderer(from, to), &dataset, &settings, SIZE);
         assert!(check(from, &wrong, &right, PAGED_MATTER).is_err(), "{from}");

@@ -157,7 +157,7 @@ impl EyePass {
     /// Returns the view of the gradient texture, if there is one; it holds gradients of density, so pre-classified
     /// volumes have none.
     pub(crate) fn gradients<'a>(&self, volume: &'a GpuVolume) -> Option<&'a wgpu::TextureView> {
-        if self.variant.shading.is_preclassified || self.paged.is_some() {
+        if self.variant.shading.is_preclassified {
             return None;
         }
         volume.pyramid.as_ref()?.gradients_views.as_ref().map(|views| self.levels.choose(views))

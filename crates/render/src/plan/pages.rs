@@ -161,7 +161,10 @@ pub fn fill_pages(
 }
 
 /// Returns a function that says whether any density of a range is visible, or attenuates light.
-pub fn density_visibility(dataset: &Dataset, settings: &Settings) -> impl Fn([f32; 2]) -> bool {
+pub fn density_visibility(
+    dataset: &Dataset,
+    settings: &Settings,
+) -> impl Fn([f32; 2]) -> bool + Send + Sync + use<> {
     let volume = dataset.volume();
     let (range, scene) = (volume.table_range(), volume.scene());
     let tables = [settings.bake_eye(range, &scene), settings.bake_lighting(range, &scene)];

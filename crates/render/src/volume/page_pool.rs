@@ -20,7 +20,7 @@ pub(crate) const PAGES_PER_STEP: usize = 16;
 pub(crate) struct PagePool {
     texture: wgpu::Texture,
     pub view: wgpu::TextureView,
-    /// Slots of the pages at the levels, one entry per page (`shaders/volume/pages.wgsl`).
+    /// Slots of the pages of all levels, one entry per page (`shaders/volume/pages.wgsl`).
     pub table: wgpu::Buffer,
     /// Number of slots along x, y and z.
     slots: [usize; 3],
@@ -51,7 +51,9 @@ impl PagePool {
         let (texture, slots, mut places, mut pending) = match earlier {
             Some(Self { texture, slots, places, pending, .. }) => (texture, slots, places, pending),
             None => {
-                let longest = context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE;
+                // Slots are stored in eight bits along each axis.
+                let longest =
+                    (context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE).min(255);
                 // A quarter more, so that a moved camera does not mean another texture.
                 let slots = slot_dims(count + count / 4 + 1, longest);
                 let format =
@@ -161,7 +163,12 @@ impl PagePool {
             count: view.level_count.min(MAX_PAGE_LEVELS) as u32,
             texel: self.slots.map(|n| 1.0 / (n * PAGE_STORED_EDGE) as f32),
             level_in_memory: view.level_count as f32,
-            levels,
+            level_0: levels[0],
+            level_1: levels[1],
+            level_2: levels[2],
+            level_3: levels[3],
+            first_level: view.first as u32,
+            ..PagesUniform::default()
         }
     }
 
@@ -182,22 +189,33 @@ fn slot_place(slot: usize, [nx, ny, _]: [usize; 3]) -> [usize; 3] {
     [slot % nx, slot / nx % ny, slot / (nx * ny)]
 }
 
-/// Returns the table of all levels: for each page its slot, x in the low ten bits, then y, then z plus one; 0 if the page is
-/// absent.
+/// Returns the table of all levels, of which the coarsest is last: for each page the slot of itself or, if it is absent, of the
+/// finest coarser one in its place, as `shaders/volume/pages.wgsl` reads it.
 fn page_table(levels: &FinerLevels, places: &BTreeMap<PageAddress, usize>, slots: [usize; 3]) -> Vec<u32> {
-    let mut table = Vec::new();
-    for (index, level) in levels.0.iter().enumerate() {
+    let mut tables: Vec<Vec<u32>> = Vec::new();
+    // Coarse levels first, which stand in for finer ones.
+    for (index, level) in levels.0.iter().enumerate().rev() {
         let [nx, ny, nz] = level.page_dims();
-        let first = table.len();
-        table.resize(first + nx * ny * nz, 0);
+        let coarser = levels.0.get(index + 1).zip(tables.last());
+        let mut table = vec![0; nx * ny * nz];
+        if let Some((coarse, above)) = coarser {
+            let [width, height, _] = coarse.page_dims();
+            for (at, entry) in table.iter_mut().enumerate() {
+                let place = [at % nx, at / nx % ny, at / (nx * ny)];
+                let [x, y, z]: [usize; 3] =
+                    std::array::from_fn(|axis| place[axis] * coarse.per_voxel[axis] / level.per_voxel[axis]);
+                *entry = above[x + width * (y + height * z)];
+            }
+        }
         let begin = PageAddress { level: index, at: [0; 3] };
         let end = PageAddress { level: index + 1, at: [0; 3] };
         for (PageAddress { at: [x, y, z], .. }, slot) in places.range(begin..end) {
             let [sx, sy, sz] = slot_place(*slot, slots).map(|c| c as u32);
-            table[first + x + nx * (y + ny * z)] = sx | sy << 10 | (sz + 1) << 20;
+            table[x + nx * (y + ny * z)] = sx | sy << 8 | sz << 16 | (index as u32) << 24 | 1 << 31;
         }
+        tables.push(table);
     }
-    table
+    tables.into_iter().rev().flatten().collect()
 }
 
 #[cfg(test)]
@@ -213,10 +231,13 @@ mod tests {
     }
 
     #[test]
-    fn absent_pages_have_no_slot() {
-        let fine = [([130, 64, 64], "0".to_owned())];
-        let levels = FinerLevels::of_volume([65, 32, 32], fine);
-        let places = BTreeMap::from([(PageAddress { level: 0, at: [2, 0, 0] }, 5)]);
-        assert_eq!(page_table(&levels, &places, [2, 2, 2]), [0, 0, 1 | 2 << 20]);
+    fn coarser_pages_take_the_place_of_absent_ones() {
+        let fine = [([300, 64, 64], "0".to_owned()), ([150, 32, 32], "1".to_owned())];
+        let levels = FinerLevels::of_volume([75, 16, 16], fine);
+        let place = |level, x| PageAddress { level, at: [x, 0, 0] };
+        let places = BTreeMap::from([(place(0, 3), 5), (place(1, 1), 2)]);
+        let (own, coarse) = (1 | 1 << 16 | 1 << 31, 1 << 8 | 1 << 24 | 1 << 31);
+        // Five pages of the finest level, and three of the other.
+        assert_eq!(page_table(&levels, &places, [2, 2, 2]), [0, 0, coarse, own, 0, 0, coarse, 0]);
     }
 }

@@ -11,21 +11,24 @@ use crate::VoxelType;
 /// would be shown.
 const MAX_TEXTURE_EDGE: usize = 2048;
 
-/// Maximum number of voxels of a level that is kept in memory while finer ones are read where pictures show them: 512³, of
-/// which light volumes and previews are quick.
-const MAX_VOXELS_BESIDE_PAGES: u64 = 1 << 27;
-
 /// Rule for the resolution level that is read where the user has chosen none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LevelRule {
     /// Finest level that fits into memory and on the graphics adapter.
     #[default]
     Finest,
-    /// The same if that is the finest of all; otherwise a level of at most 512³ voxels, because parts of the finer ones are
-    /// read where pictures show them.
-    BesidePages,
-    /// Level of at most 512³ voxels that is not the finest, even where that one fits.
-    AlwaysBesidePages,
+    /// The same if that is the finest of all; otherwise a level of at most this number of voxels, because parts of the finer
+    /// ones are read where pictures show them.
+    BesidePages(u64),
+    /// Level of at most this number of voxels that is not the finest, even where that one fits.
+    AlwaysBesidePages(u64),
+}
+
+impl LevelRule {
+    /// Number of voxels in memory beside pages on a graphics card: 512³, of which light volumes are quick.
+    pub const CARD_VOXELS: u64 = 1 << 27;
+    /// Number of voxels in memory beside pages on a software adapter: 256³, whose first picture takes seconds.
+    pub const SOFTWARE_VOXELS: u64 = 1 << 24;
 }
 
 /// Resolution level of an image.
@@ -71,15 +74,14 @@ impl ReadContext<'_> {
     fn automatic_level(&self, levels: &[ResolutionLevel]) -> usize {
         let last = levels.len().saturating_sub(1);
         let finest = levels.iter().position(|level| self.fits(level)).unwrap_or(last);
-        let is_small = |level: &ResolutionLevel| {
-            let voxels = level.dims.iter().fold(1u64, |all, &n| all.saturating_mul(n));
-            self.fits(level) && voxels <= MAX_VOXELS_BESIDE_PAGES
-        };
-        let beside_pages = || levels.iter().skip(1).position(is_small).map_or(last, |index| index + 1);
+        let voxels = |level: &ResolutionLevel| level.dims.iter().fold(1u64, |all, &n| all.saturating_mul(n));
         match self.level {
             LevelRule::Finest => finest,
-            LevelRule::BesidePages if finest == 0 => 0,
-            LevelRule::BesidePages | LevelRule::AlwaysBesidePages => beside_pages(),
+            LevelRule::BesidePages(_) if finest == 0 => 0,
+            LevelRule::BesidePages(most) | LevelRule::AlwaysBesidePages(most) => {
+                let is_small = |level: &ResolutionLevel| self.fits(level) && voxels(level) <= most;
+                levels.iter().skip(1).position(is_small).map_or(last, |index| index + 1)
+            }
         }
     }
 
@@ -128,10 +130,10 @@ mod tests {
         };
         let large = [4096, 2048, 1024, 512, 256];
         assert_eq!(chosen(&large, LevelRule::Finest), 1);
-        assert_eq!(chosen(&large, LevelRule::BesidePages), 3);
-        assert_eq!(chosen(&[800, 400, 200], LevelRule::BesidePages), 0, "the finest fits");
-        assert_eq!(chosen(&[800, 400, 200], LevelRule::AlwaysBesidePages), 1);
-        assert_eq!(chosen(&[64], LevelRule::AlwaysBesidePages), 0);
+        assert_eq!(chosen(&large, LevelRule::BesidePages(LevelRule::CARD_VOXELS)), 3);
+        assert_eq!(chosen(&[800, 400, 200], LevelRule::BesidePages(1)), 0, "the finest fits");
+        assert_eq!(chosen(&[800, 400, 200], LevelRule::AlwaysBesidePages(1 << 27)), 1);
+        assert_eq!(chosen(&[64], LevelRule::AlwaysBesidePages(1)), 0);
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub struct BrickBounds {
 }
 
 /// Ranges of densities in a box of cells, such as that of a page of a finer level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct CellRanges {
     /// First cell along x, y and z.
     pub first: [usize; 3],

@@ -52,14 +52,6 @@ impl PageCache {
         wanted.iter().copied().filter(|address| !self.resident.pages().contains_key(address)).collect()
     }
 
-    /// Reads pages, several at a time.
-    ///
-    /// # Errors
-    /// Fails like [`PageSource::read`].
-    pub fn read(&self, addresses: &[PageAddress]) -> Result<Vec<(PageAddress, Arc<Page>)>, LoadError> {
-        read_pages(&*self.source, addresses)
-    }
-
     /// Reads pages until none is missing.
     ///
     /// # Arguments
@@ -72,7 +64,7 @@ impl PageCache {
     pub fn fill(
         &mut self,
         wanted: impl Fn(&Self) -> Vec<PageAddress>,
-        is_visible: impl Fn([f32; 2]) -> bool,
+        is_visible: impl Fn([f32; 2]) -> bool + Sync,
         mut progress: impl FnMut(usize) -> bool,
     ) -> Result<(), LoadError> {
         loop {
@@ -85,7 +77,7 @@ impl PageCache {
                 return Err(LoadError::Cancelled);
             }
             missing.truncate(PAGES_PER_BATCH);
-            let read = self.read(&missing)?;
+            let read = read_pages(&*self.source, &missing, &is_visible)?;
             self.insert(read, &all, &is_visible);
         }
     }
@@ -100,6 +92,10 @@ impl PageCache {
     ) {
         let (shown, empty): (Vec<_>, Vec<_>) =
             pages.into_iter().partition(|(_, page)| is_visible(page.range));
+        let (shown, stale): (Vec<_>, Vec<_>) =
+            shown.into_iter().partition(|(_, page)| !page.texels.is_empty());
+        // Read for another look, of which nothing of them was visible: they are read again.
+        drop(stale);
         self.resident.record(empty);
         let room = self.capacity.saturating_sub(shown.len());
         if self.resident.pages().len() > room {
@@ -110,14 +106,16 @@ impl PageCache {
     }
 }
 
-/// Reads pages from a source, several at a time.
+/// Reads pages from a source, several at a time, as [`Page::from_source`] does.
 ///
 /// # Errors
 /// Fails like [`PageSource::read`].
 pub fn read_pages(
     source: &dyn PageSource,
     addresses: &[PageAddress],
+    is_visible: impl Fn([f32; 2]) -> bool + Sync,
 ) -> Result<Vec<(PageAddress, Arc<Page>)>, LoadError> {
-    let read = |address: &PageAddress| Ok((*address, Arc::new(Page::from_source(source, *address)?)));
+    let read =
+        |address: &PageAddress| Ok((*address, Arc::new(Page::from_source(source, *address, &is_visible)?)));
     addresses.par_iter().map(read).collect()
 }

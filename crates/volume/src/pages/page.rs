@@ -29,20 +29,26 @@ const KERNEL_REACH: isize = 2;
 /// Cube of 64³ voxels of a level, in a form for the graphics adapter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Prefiltered densities with their border, 70³ of them, x fastest, as normalised integers.
+    /// Prefiltered densities with their border, 70³ of them, x fastest, as normalised integers; none if nothing of them is
+    /// visible.
     pub texels: Vec<u16>,
     /// Minimum and maximum density of all voxels that were read.
     pub range: [f32; 2],
-    /// Densities that samples can see in the cells of the volume in memory.
+    /// Densities that samples can see in the cells of the volume in memory; none if all are the same.
     pub cells: CellRanges,
 }
 
 impl Page {
-    /// Reads the voxels of a page and prepares them. Beyond the grid its border is repeated.
+    /// Reads the voxels of a page and prepares them; texels only if `is_visible` holds for the range of their densities.
+    /// Beyond the grid its border is repeated.
     ///
     /// # Errors
     /// Fails like [`PageSource::read`].
-    pub fn from_source(source: &dyn PageSource, address: PageAddress) -> Result<Self, LoadError> {
+    pub fn from_source(
+        source: &dyn PageSource,
+        address: PageAddress,
+        is_visible: impl Fn([f32; 2]) -> bool,
+    ) -> Result<Self, LoadError> {
         let level = &source.levels().0[address.level];
         let low = address.at.map(|at| (at * PAGE_EDGE) as isize - PAGE_READ_MARGIN as isize);
         let region: [Range<usize>; 3] = std::array::from_fn(|axis| {
@@ -50,58 +56,87 @@ impl Page {
             low[axis].max(0) as usize..(end as usize).min(level.dims[axis])
         });
         let voxels = source.read(address.level, &region)?;
-        let within = |axis: usize, c: usize| {
-            let place = (low[axis] + c as isize).clamp(0, level.dims[axis] as isize - 1) as usize;
-            place.clamp(region[axis].start, region[axis].end - 1) - region[axis].start
-        };
-        let [width, height] = [0, 1].map(|axis| region[axis].len());
-        let columns: Vec<usize> = (0..READ_EDGE).map(|x| within(0, x)).collect();
-        let mut read = Vec::with_capacity(READ_EDGE.pow(3));
-        for z in 0..READ_EDGE {
-            for y in 0..READ_EDGE {
-                let row = &voxels[width * (within(1, y) + height * within(2, z))..][..width];
-                read.extend(columns.iter().map(|&x| row[x]));
-            }
+        let range = range_of(&voxels);
+        if range[0] >= range[1] {
+            let texels = if is_visible(range) { vec![stored(range[0]); STORED_TEXELS] } else { Vec::new() };
+            return Ok(Self { texels, range, cells: CellRanges::default() });
         }
-        let range =
-            read.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &d| [low.min(d), high.max(d)]);
-        let per_voxel = level.per_voxel;
-        let cells = cell_ranges(&read, low, per_voxel);
-        Ok(Self { texels: prefiltered(read, per_voxel), range, cells })
+        let read = with_repeated_border(&voxels, low, &region);
+        let cells = cell_ranges(&read, low, level.per_voxel);
+        let texels = if is_visible(range) { prefiltered(read) } else { Vec::new() };
+        Ok(Self { texels, range, cells })
     }
 
     /// Returns the size of the stored texels, in bytes.
     pub const fn bytes() -> u64 {
-        2 * (PAGE_STORED_EDGE * PAGE_STORED_EDGE * PAGE_STORED_EDGE) as u64
+        2 * STORED_TEXELS as u64
     }
+}
+
+/// Number of texels of a stored page.
+const STORED_TEXELS: usize = PAGE_STORED_EDGE * PAGE_STORED_EDGE * PAGE_STORED_EDGE;
+
+fn stored(density: f32) -> u16 {
+    (density.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}
+
+fn range_of(values: &[f32]) -> [f32; 2] {
+    // In one pass each, which compilers turn into vector instructions.
+    let low = values.iter().fold(f32::INFINITY, |low, &d| if d < low { d } else { low });
+    let high = values.iter().fold(f32::NEG_INFINITY, |high, &d| if d > high { d } else { high });
+    [low, high]
+}
+
+/// Copies the voxels of a region into the box that begins at `low`, and repeats its outermost voxels beyond.
+fn with_repeated_border(voxels: &[f32], low: [isize; 3], region: &[Range<usize>; 3]) -> Vec<f32> {
+    let size = region.each_ref().map(ExactSizeIterator::len);
+    let within = |axis: usize, c: usize| {
+        let place = low[axis] + c as isize - region[axis].start as isize;
+        place.clamp(0, size[axis] as isize - 1) as usize
+    };
+    let before = (region[0].start as isize - low[0]) as usize;
+    let mut read = Vec::with_capacity(READ_EDGE.pow(3));
+    for z in 0..READ_EDGE {
+        for y in 0..READ_EDGE {
+            let row = &voxels[size[0] * (within(1, y) + size[1] * within(2, z))..][..size[0]];
+            read.resize(read.len() + before, row[0]);
+            read.extend_from_slice(row);
+            read.resize(read.len() + READ_EDGE - before - size[0], row[size[0] - 1]);
+        }
+    }
+    read
 }
 
 /// Blurs a read box with [1, 10, 1]/12 along each axis, so that a trilinear fetch has the variance of a cubic B-spline
 /// (`shaders/volume/prefilter.wgsl`), and cuts it to the stored texels.
-fn prefiltered(read: Vec<f32>, _per_voxel: [usize; 3]) -> Vec<u16> {
-    let mut values = read;
+fn prefiltered(read: Vec<f32>) -> Vec<u16> {
+    const MIDDLE: f32 = 10.0 / 12.0;
+    const SIDE: f32 = 1.0 / 12.0;
+    let (mut source, mut blurred) = (read.clone(), read);
     for stride in [1, READ_EDGE, READ_EDGE * READ_EDGE] {
-        let source = values;
-        values = source.clone();
         let last = source.len() - stride;
         // Texels at the sides of the box mix with those of another row; they are cut off below.
-        for at in stride..last {
-            values[at] = (source[at - stride] + 10.0 * source[at] + source[at + stride]) / 12.0;
+        let sides = source[..last - stride].iter().zip(&source[2 * stride..]);
+        for ((target, middle), (before, behind)) in
+            blurred[stride..last].iter_mut().zip(&source[stride..last]).zip(sides)
+        {
+            *target = MIDDLE * middle + SIDE * (before + behind);
         }
+        std::mem::swap(&mut source, &mut blurred);
     }
     let inner = 1..=PAGE_STORED_EDGE;
-    let mut texels = Vec::with_capacity(PAGE_STORED_EDGE.pow(3));
+    let mut texels = Vec::with_capacity(STORED_TEXELS);
     for z in inner.clone() {
         for y in inner.clone() {
-            let row = &values[READ_EDGE * (y + READ_EDGE * z)..][..READ_EDGE];
-            texels.extend(row[inner.clone()].iter().map(|d| (d.clamp(0.0, 1.0) * 65535.0).round() as u16));
+            let row = &source[READ_EDGE * (y + READ_EDGE * z)..][..READ_EDGE];
+            texels.extend(row[inner.clone()].iter().copied().map(stored));
         }
     }
     texels
 }
 
-/// Returns the cells of the volume in memory that hold samples whose kernel reaches a voxel of a level with `per_voxel`
-/// voxels in the edge of one in memory.
+/// Returns the cells of the volume in memory, first and last along an axis, with samples whose kernel reaches a voxel of a
+/// level that has `per_voxel` voxels in the edge of one in memory.
 fn cells_around(voxel: isize, per_voxel: usize) -> [isize; 2] {
     let cell = |place: f64| (((place + 0.5) / per_voxel as f64 - 0.5) / CELL_EDGE as f64).floor() as isize;
     [voxel - KERNEL_REACH, voxel + KERNEL_REACH].map(|place| cell(place as f64))
@@ -110,35 +145,36 @@ fn cells_around(voxel: isize, per_voxel: usize) -> [isize; 2] {
 /// Returns the ranges of densities that samples can see in each cell of the volume in memory, from a box that begins at
 /// `low`. Cells before the grid count as its first.
 fn cell_ranges(read: &[f32], low: [isize; 3], per_voxel: [usize; 3]) -> CellRanges {
-    let cells = |axis: usize, c: usize| {
-        cells_around(low[axis] + c as isize, per_voxel[axis]).map(|cell| cell.max(0) as usize)
-    };
-    let first = [0, 1, 2].map(|axis| cells(axis, 0)[0]);
-    let dims = [0, 1, 2].map(|axis| cells(axis, READ_EDGE - 1)[1] - first[axis] + 1);
-    // Axis by axis: the box shrinks from voxels to cells.
-    let empty = [f32::INFINITY, f32::NEG_INFINITY];
-    let mut ranges: Vec<[f32; 2]> = read.iter().map(|&d| [d, d]).collect();
+    let spans: [Vec<[usize; 2]>; 3] = std::array::from_fn(|axis| {
+        let around = |c: usize| cells_around(low[axis] + c as isize, per_voxel[axis]);
+        (0..READ_EDGE).map(|c| around(c).map(|cell| cell.max(0) as usize)).collect()
+    });
+    let first = spans.each_ref().map(|spans| spans[0][0]);
+    let dims = [0, 1, 2].map(|axis| spans[axis][READ_EDGE - 1][1] - first[axis] + 1);
+    let (mut lows, mut highs) = (read.to_vec(), read.to_vec());
     let mut shape = [READ_EDGE; 3];
-    for axis in 0..3 {
+    // Axis by axis the box shrinks from voxels to cells: z first, whose slices lie in one piece.
+    for axis in [2, 1, 0] {
         let inner: usize = shape[..axis].iter().product();
         let outer: usize = shape[axis + 1..].iter().product();
-        let mut reduced = vec![empty; inner * dims[axis] * outer];
+        let count = inner * dims[axis] * outer;
+        let (mut least, mut most) = (vec![f32::INFINITY; count], vec![f32::NEG_INFINITY; count]);
         for o in 0..outer {
-            for c in 0..READ_EDGE {
-                let [begin, end] = cells(axis, c);
-                for cell in begin..=end {
-                    let from = inner * (c + READ_EDGE * o);
+            for (c, [begin, end]) in spans[axis].iter().enumerate() {
+                let from = inner * (c + READ_EDGE * o)..inner * (c + 1 + READ_EDGE * o);
+                for cell in *begin..=*end {
                     let to = inner * (cell - first[axis] + dims[axis] * o);
-                    for i in 0..inner {
-                        let ([low, high], wide) = (ranges[from + i], &mut reduced[to + i]);
-                        *wide = [wide[0].min(low), wide[1].max(high)];
-                    }
+                    let pairs = least[to..to + inner].iter_mut().zip(&lows[from.clone()]);
+                    pairs.for_each(|(wide, &low)| *wide = if low < *wide { low } else { *wide });
+                    let pairs = most[to..to + inner].iter_mut().zip(&highs[from.clone()]);
+                    pairs.for_each(|(wide, &high)| *wide = if high > *wide { high } else { *wide });
                 }
             }
         }
         shape[axis] = dims[axis];
-        ranges = reduced;
+        (lows, highs) = (least, most);
     }
+    let ranges = lows.into_iter().zip(highs).map(|(low, high)| [low, high]).collect();
     CellRanges { first, dims, ranges }
 }
 
@@ -184,7 +220,7 @@ mod tests {
     }
 
     fn page(at: [usize; 3]) -> Page {
-        Page::from_source(&source(), PageAddress { level: 0, at }).unwrap()
+        Page::from_source(&source(), PageAddress { level: 0, at }, |_| true).unwrap()
     }
 
     #[test]

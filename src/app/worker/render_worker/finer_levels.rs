@@ -86,12 +86,17 @@ impl FinerLevelReader {
     }
 
     /// Starts to read pages on a thread, which wakes the render thread when it ends.
-    fn start(&mut self, missing: Vec<PageAddress>, shared: &Arc<SharedMailbox>) {
+    fn start(
+        &mut self,
+        missing: Vec<PageAddress>,
+        is_visible: impl Fn([f32; 2]) -> bool + Send + Sync + 'static,
+        shared: &Arc<SharedMailbox>,
+    ) {
         let Some(cache) = &self.cache else { return };
         let (source, shared) = (Arc::clone(cache.source()), Arc::clone(shared));
         let (sender, pages) = channel();
         let spawned = std::thread::Builder::new().name("finer levels".to_owned()).spawn(move || {
-            let read = read_pages(&*source, &missing);
+            let read = read_pages(&*source, &missing, is_visible);
             // Nobody waits for the pages of a volume that was closed.
             drop(sender.send(read));
             shared.mailbox().pages_arrived = true;
@@ -162,7 +167,8 @@ impl RenderWorker {
         }
         if !is_complete && self.finer.reading.is_none() {
             missing.truncate(PAGES_PER_BATCH);
-            self.finer.start(missing, &Arc::clone(&self.shared));
+            let is_visible = density_visibility(&dataset, look);
+            self.finer.start(missing, is_visible, &Arc::clone(&self.shared));
         }
         let Some(resident) = resident else {
             self.scene = Some(scene);

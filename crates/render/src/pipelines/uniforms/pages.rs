@@ -24,5 +24,12 @@ pub struct PagesUniform {
     pub count: u32,
     pub texel: [f32; 3],
     pub level_in_memory: f32,
-    pub levels: [PageLevelUniform; MAX_PAGE_LEVELS],
+    pub level_0: PageLevelUniform,
+    pub level_1: PageLevelUniform,
+    pub level_2: PageLevelUniform,
+    pub level_3: PageLevelUniform,
+    pub first_level: u32,
+    pub pad0: u32,
+    pub pad1: u32,
+    pub pad2: u32,
 }
