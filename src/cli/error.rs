@@ -100,6 +100,9 @@ pub enum CliError {
     /// A reproduced picture differs from the original.
     #[error("{0}")]
     ReplayDiffers(String),
+    /// A finer resolution level is called for than fits into memory.
+    #[error("{0}")]
+    LevelSubstituted(String),
     /// The result could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -124,7 +127,7 @@ impl CliError {
     /// or over a limit, 6 input or output error.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::ReplayDiffers(_) => 1,
+            Self::ReplayDiffers(_) | Self::LevelSubstituted(_) => 1,
             Self::Usage(_) => 2,
             Self::Preset { .. }
             | Self::Replay { .. }

@@ -137,7 +137,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
     }
     if picture_record.finer_levels.is_some() {
         let options = args.load.load_options()?;
-        loaded = args.finer.with_pages(&source, &options, loaded, &settings, &image_spec, &|_| ())?.0;
+        loaded = args.finer.with_pages(&source, &options, &loaded, &settings, &image_spec, &|_| ())?.0;
     }
     let mut renderer = Renderer::new(&context)?;
     let mut bands = renderer.bands(&loaded, &settings, &image_spec);

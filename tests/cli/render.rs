@@ -1,5 +1,6 @@
 //! Tests of the command `render`: pictures, their reports, and the settings that they are made with.
 
+use chiaroscuro_media::read_record;
 use serde_json::Value;
 
 use crate::checks::{assert_has_keys, assert_shows_something, keys, pixels};
@@ -327,4 +328,45 @@ fn all_channels_of_a_file_are_shown_together() {
     assert!(folder.run_successfully("replay both.png --check").contains("identical"));
     let said = folder.run_failing("render builtin:sphere:16 --all-channels -o no.png --size 32x24", 2);
     assert!(said.contains("has a single channel"), "{said}");
+}
+
+/// A volume that fits is drawn through pages of its finest level, with a coarse one in memory, and looks the same.
+#[test]
+fn finer_levels_are_read_where_pixels_are_finer_than_voxels() {
+    let folder = ProgramFolder::new();
+    folder.run_successfully("convert builtin:chair:256 chair.ome.zarr");
+    let look = "--size 200x150 --shadows off --set sky.intensity=0 --set sampling.kernel=prefiltered \
+                --set camera.distance=1.5 --set opacity_unit={\"extent\":0.004}";
+    folder.run_successfully(&format!("render chair.ome.zarr -o whole.png --level 0 {look}"));
+    let again = "--session whole.png --size 200x150";
+    folder.run_successfully(&format!("render chair.ome.zarr -o coarse.png --level 1 {again}"));
+    folder.run_successfully(&format!("render chair.ome.zarr -o paged.png --pool 256MiB {again}"));
+    let [whole, coarse, paged] = ["whole.png", "coarse.png", "paged.png"]
+        .map(|name| image::open(folder.path(name)).expect("a picture").to_rgb8().into_raw());
+    let distance = |picture: &[u8]| {
+        let squares = picture.iter().zip(&whole).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
+        (squares.sum::<f64>() / whole.len() as f64).sqrt()
+    };
+    let [coarse, paged] = [distance(&coarse), distance(&paged)];
+    assert!(paged < 0.2 * coarse, "pages {paged:.2}, the coarse level alone {coarse:.2} of 255");
+    let record = read_record(&folder.path("paged.png")).expect("a picture").expect("a record");
+    let record: Value = serde_json::from_str(&record).expect("JSON");
+    assert_eq!(record["image"]["finer_levels"]["finest"], "0", "{record}");
+    assert!(folder.run_successfully("replay paged.png --check --pool 256MiB").contains("identical"));
+}
+
+#[test]
+fn a_level_that_does_not_fit_is_said() {
+    let folder = ProgramFolder::new();
+    folder.run_successfully("convert builtin:chair:256 chair.ome.zarr");
+    let picture = "render chair.ome.zarr -o small.png --size 200x150 --pool 1MiB --set camera.distance=1.5";
+    let outcome = folder.run(picture);
+    assert!(
+        outcome.code == Some(0) && outcome.stderr.contains("takes the place of a finer one"),
+        "{outcome:?}"
+    );
+    let said = folder.run_failing(&format!("{picture} --force --require-full"), 1);
+    assert!(said.contains("--pool"), "{said}");
+    let said = folder.run_failing("render chair.ome.zarr -o small.png --force --pool lots", 2);
+    assert!(said.contains("512MiB"), "{said}");
 }

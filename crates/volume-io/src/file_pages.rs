@@ -152,7 +152,7 @@ impl FilePages {
         }
         // Spacings move no voxel.
         let by = volume.corrections();
-        if (Corrections { spacing: None, unit: None, ..by.clone() }) != Corrections::default() {
+        if (Corrections { spacing: None, unit: None, ..*by }) != Corrections::default() {
             return Err(NoPages::Corrected);
         }
         if volume.density_mapping() == DensityMapping::Labels {

@@ -176,12 +176,7 @@ impl Loader {
         options.raw = reading.raw.unwrap_or(options.raw);
         options.choice = reading.choice.clone().unwrap_or(options.choice);
         options.only_files.clone_from(&reading.subset);
-        let is_software = self.context.is_software();
-        options.level = LevelRule::BesidePages(if is_software {
-            LevelRule::SOFTWARE_VOXELS
-        } else {
-            LevelRule::CARD_VOXELS
-        });
+        options.level = LevelRule::beside_pages(self.context.is_software());
         let opening = LoadJob {
             source: source.to_owned(),
             reading: reading.clone(),
@@ -203,7 +198,6 @@ impl Loader {
         let source = PathBuf::from(dataset.volume().name());
         let short = text::opening::not_shown(&source);
         let inputs = LoadInputs { source, reading: ReadChoices::default(), control: Arc::default() };
-        // Only the last phases remain.
         self.start(inputs, 3, ctx, move |_| match Renderer::with_shaders(&context, shaders) {
             Ok(renderer) => LoadOutcome::Uploaded { renderer: Box::new(renderer), dataset },
             Err(err) => LoadOutcome::Failed { short, details: err.to_string() },

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::SceneArgs;
 use crate::cli::CliError;
 use crate::cli::output::warn_line;
 use chiaroscuro_render::plan::fill_pages;
 use chiaroscuro_scene::{FinerLevelRecord, ImageSpec, Settings};
-use chiaroscuro_volume::{Dataset, LevelRule, PageCache, memory_budget_bytes};
+use chiaroscuro_volume::{Dataset, LevelRule, memory_budget_bytes};
 use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
 
 /// Largest memory for pages unless the user gives another: what most graphics cards can spare.
@@ -28,11 +29,6 @@ pub(crate) struct FinerLevelArgs {
 }
 
 impl FinerLevelArgs {
-    /// Returns true if memory for pages is given.
-    pub(super) fn has_pool(&self) -> bool {
-        self.pool.is_some()
-    }
-
     /// Returns the rule for the level that is read.
     pub(crate) fn level_rule(&self) -> LevelRule {
         let most = LevelRule::CARD_VOXELS;
@@ -52,7 +48,7 @@ impl FinerLevelArgs {
         &self,
         source: &Path,
         options: &LoadOptions,
-        dataset: Dataset,
+        dataset: &Dataset,
         settings: &Settings,
         image: &ImageSpec,
         say: &dyn Fn(&str),
@@ -70,7 +66,7 @@ impl FinerLevelArgs {
                 return Ok((dataset, None));
             }
         };
-        let mut cache = PageCache::new(Arc::new(pages), &dataset, budget);
+        let mut cache = dataset.page_cache(Arc::new(pages), budget);
         let size = image.size.map(|n| n * image.samples);
         let demand = fill_pages(&mut cache, &dataset, settings, size, |missing| {
             say(&format!("reading {missing} parts of finer levels"));
@@ -86,12 +82,29 @@ impl FinerLevelArgs {
                 budget >> 20
             );
             if self.require_full {
-                return Err(CliError::Usage(text));
+                return Err(CliError::LevelSubstituted(text));
             }
             warn_line(&format!("warning: {text} ({})", source.display()));
         }
         let record = FinerLevelRecord { finest: name(demand.finest), is_substituted: demand.is_substituted };
         Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
+    }
+}
+
+impl SceneArgs {
+    /// Reads the pages of finer levels that a picture shows, unless a level was named.
+    pub(crate) fn with_pages(
+        &self,
+        finer: &FinerLevelArgs,
+        dataset: Dataset,
+        settings: &Settings,
+        image: &ImageSpec,
+        say: &dyn Fn(&str),
+    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
+        if self.look.load.names_level() && finer.pool.is_none() {
+            return Ok((dataset, None));
+        }
+        finer.with_pages(&self.file, &self.load_options()?, &dataset, settings, image, say)
     }
 }
 
@@ -101,7 +114,7 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
-    let number: u64 = number.parse().map_err(|_| expected())?;
+    let number: u64 = number.parse().ok().ok_or_else(expected)?;
     let factor = match unit.trim().to_ascii_lowercase().as_str() {
         "" | "b" => 1,
         "k" | "kib" => 1 << 10,

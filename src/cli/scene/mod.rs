@@ -33,7 +33,7 @@ use super::process::StageTimes;
 use chiaroscuro_media::read_environment_map;
 use chiaroscuro_render::{GpuContext, downsample_to_fit, downsampled_volume};
 use chiaroscuro_scene::{
-    EnvironmentMap, FinerLevelRecord, ImageSpec, MAX_IMAGE_EDGE, SceneAxis, Settings,
+    EnvironmentMap, MAX_IMAGE_EDGE, SceneAxis, Settings,
     first_look::{self, FirstLookOptions},
     set_value,
 };
@@ -168,21 +168,6 @@ impl SceneArgs {
         let (volume, context) = self.look.load.open_step(&self.file, first.as_ref(), step)?;
         let dataset = dataset_with_warning(self.look.corrected(&self.file, volume)?);
         Ok((self.look.with_layers(&self.file, dataset, ShownSteps::One)?, context))
-    }
-
-    /// Reads the pages of finer levels that a picture shows, unless a level was named.
-    pub(super) fn with_pages(
-        &self,
-        finer: &FinerLevelArgs,
-        dataset: Dataset,
-        settings: &Settings,
-        image: &ImageSpec,
-        say: &dyn Fn(&str),
-    ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
-        if self.look.load.names_level() && !finer.has_pool() {
-            return Ok((dataset, None));
-        }
-        finer.with_pages(&self.file, &self.load_options()?, dataset, settings, image, say)
     }
 
     /// Returns the options with which the volume is read.

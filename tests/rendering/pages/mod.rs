@@ -14,7 +14,7 @@ use glam::DVec3;
 use crate::common::{Dataset, damaged_renderer, full_precision_renderer, new_renderer, render};
 use crate::compare::{ErrorLimit, compare};
 use crate::scenes;
-use crate::thresholds::{PAGED_LIGHT, PAGED_MATTER, PAGED_STRETCHED};
+use crate::thresholds::pages::{PAGED_LIGHT, PAGED_MATTER, PAGED_STRETCHED};
 
 /// Volumes in memory that stand for the levels of a file.
 #[derive(Debug)]

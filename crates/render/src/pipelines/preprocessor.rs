@@ -20,6 +20,16 @@ use crate::GpuError;
 static OPTIONS: LazyLock<BTreeSet<&str>> =
     LazyLock::new(|| SHADERS.iter().flat_map(|(_, text)| text.lines().filter_map(declared_option)).collect());
 
+/// Options that hold in one shader alone, although files that others import as well have code for them: the name, and the
+/// shader with its bindings.
+const OPTIONS_OF_ONE_SHADER: [(&str, &str); 1] = [("PAGED", "eye/eye_pass.wgsl")];
+
+/// Returns the number of a condition in a shader, from that of its variant: 0 for the options of another shader.
+pub(super) fn value_in_shader(shader: &str, condition: &str, value: &dyn Fn(&str) -> f64) -> f64 {
+    let is_foreign = |(name, owner): &(&str, &str)| *name == condition && *owner != shader;
+    if OPTIONS_OF_ONE_SHADER.iter().any(is_foreign) { 0.0 } else { value(condition) }
+}
+
 /// Names of the override constants that any shader declares.
 static OVERRIDES: LazyLock<BTreeSet<&str>> = LazyLock::new(|| {
     SHADERS.iter().flat_map(|(_, text)| text.lines().filter_map(declared_override)).collect()

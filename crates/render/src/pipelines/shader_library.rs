@@ -10,7 +10,7 @@ use super::binding::{BindingGroup, BindingSlot, ShaderPipeline, ring_format};
 use super::layouts::layouts;
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_variant::PipelineVariant;
-use super::preprocessor::{override_constants, preprocess};
+use super::preprocessor::{override_constants, preprocess, value_in_shader};
 use super::shader_files::SHADERS;
 use crate::context::{COMPILER_ADDRESS_BYTES, check_address_space};
 use crate::{GpuContext, GpuError};
@@ -120,7 +120,7 @@ impl ShaderLibrary {
     ) -> Result<String, GpuError> {
         let mut joined = String::new();
         resolve_imports(name, &mut Vec::new(), &mut joined)?;
-        let joined = preprocess(&joined, value)?;
+        let joined = preprocess(&joined, &|condition| value_in_shader(name, condition, value))?;
         let wgsl = |format| match format {
             wgpu::TextureFormat::R32Float => "r32float",
             wgpu::TextureFormat::R8Unorm => "r8unorm",

@@ -150,14 +150,9 @@ impl VolumeContext<'_> {
         let pool = volume.pages.as_ref().zip(paged);
         let pages = pool.map_or_else(PagesUniform::default, |(pool, view)| pool.uniform(view));
         let pages = self.uniform("Volume::pages", pages);
-        let no_table;
-        let (page_pool, page_table) = match pool {
-            Some((pool, _)) => (&pool.view, &pool.table),
-            None => {
-                no_table = self.storage("Volume::no_pages", &[0_u32]);
-                (self.placeholder, &no_table)
-            }
-        };
+        let no_table = self.storage("Volume::no_pages", &[0_u32]);
+        let (page_pool, page_table) =
+            pool.map_or((self.placeholder, &no_table), |(pool, _)| (&pool.view, &pool.table));
         let mut entries = vec![
             bind_buffer("bound_grid", &grid),
             bind_view("density_texture", &volume.density_view),

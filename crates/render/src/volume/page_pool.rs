@@ -48,25 +48,18 @@ impl PagePool {
             known.levels == *pages.levels() && count <= known.slots.iter().product::<usize>()
         });
         let is_unorm = context.has_unorm16;
-        let (texture, slots, mut places, mut pending) = match earlier {
-            Some(Self { texture, slots, places, pending, .. }) => (texture, slots, places, pending),
-            None => {
-                // Slots are stored in eight bits along each axis.
-                let longest =
-                    (context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE).min(255);
-                // A quarter more, so that a moved camera does not mean another texture.
-                let slots = slot_dims(count + count / 4 + 1, longest);
-                let format =
-                    if is_unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float };
-                let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-                let dims = slots.map(|n| n * PAGE_STORED_EDGE);
-                let texture = context.texture(&texture_3d("PagePool::texture", dims, format, usage))?;
+        let (texture, slots, mut places, mut pending) =
+            if let Some(Self { texture, slots, places, pending, .. }) = earlier {
+                (texture, slots, places, pending)
+            } else {
+                let (texture, slots) = pool_texture(context, count, is_unorm)?;
                 (texture, slots, BTreeMap::new(), Vec::new())
-            }
-        };
+            };
         places.retain(|address, _| pages.pages().contains_key(address));
         let mut is_taken = vec![false; slots.iter().product()];
-        places.values().for_each(|slot| is_taken[*slot] = true);
+        for slot in places.values() {
+            is_taken[*slot] = true;
+        }
         pending.retain(|(slot, _)| is_taken[*slot]);
         let mut free = (0..is_taken.len()).filter(|slot| !is_taken[*slot]);
         for (address, page) in pages.pages() {
@@ -176,6 +169,22 @@ impl PagePool {
     pub(crate) fn bytes(&self) -> u64 {
         self.slots.iter().product::<usize>() as u64 * Page::bytes()
     }
+}
+
+/// Creates a texture for at least `count` pages, with the number of its slots along x, y and z.
+fn pool_texture(
+    context: &GpuContext,
+    count: usize,
+    is_unorm: bool,
+) -> Result<(wgpu::Texture, [usize; 3]), GpuError> {
+    // Slots are stored in eight bits along each axis.
+    let longest = (context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE).min(255);
+    // A quarter more, so that a moved camera does not mean another texture.
+    let slots = slot_dims(count + count / 4 + 1, longest);
+    let format = if is_unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float };
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let dims = slots.map(|n| n * PAGE_STORED_EDGE);
+    Ok((context.texture(&texture_3d("PagePool::texture", dims, format, usage))?, slots))
 }
 
 /// Returns the number of slots along x, y and z of a texture for at least `count` of them, at most `longest` along an axis.

@@ -37,7 +37,7 @@ use super::{
     Camera, ClassificationOrder, LightingRig, ObjectRotation, OpacityLength, QualityPreset,
     ReconstructionKernel, SceneAxis, Settings, ShadowSettings, SkySettings,
 };
-use chiaroscuro_volume::{DataKind, DensityMapping, FileDimension, Histogram, KindName, Volume};
+use chiaroscuro_volume::{DataKind, DensityMapping, Histogram, KindName, Volume};
 
 /// Smallest visible opacity per opacity unit: for white in full light, 63 of 255 before black.
 const MIN_VISIBLE_OPACITY: f64 = 0.05;
@@ -238,13 +238,8 @@ pub fn box_share(settings: &Settings, volume: &Volume) -> f64 {
 
 /// Returns the edge of the file's voxels in voxels of the volume: averaged voxels look like the original ones.
 fn file_voxel_edge(volume: &Volume) -> f64 {
-    let count = |dims: [f64; 3]| dims.iter().product::<f64>();
-    // Of several resolution levels the finest, so that all of them have one look.
-    let levels = volume.contents().alternatives_in(FileDimension::Level);
-    let finest =
-        levels.filter(|_| volume.contents().portion.is_whole()).and_then(|levels| levels.offers[0].dims);
-    let file = finest.map_or_else(|| volume.file_dims().map(|n| n as f64), |dims| dims.map(|n| n as f64));
-    (count(volume.dims().map(|n| n as f64)) / count(file)).cbrt()
+    let count = |dims: [usize; 3]| dims.iter().map(|&n| n as f64).product::<f64>();
+    (count(volume.dims()) / count(volume.finest_dims())).cbrt()
 }
 
 /// Returns the number of labels that are invisible with the settings, or not in their own colour.

@@ -29,6 +29,11 @@ impl LevelRule {
     pub const CARD_VOXELS: u64 = 1 << 27;
     /// Number of voxels in memory beside pages on a software adapter: 256³, whose first picture takes seconds.
     pub const SOFTWARE_VOXELS: u64 = 1 << 24;
+
+    /// Returns the rule for a level beside pages, for a software adapter or a graphics card.
+    pub fn beside_pages(is_software: bool) -> Self {
+        Self::BesidePages(if is_software { Self::SOFTWARE_VOXELS } else { Self::CARD_VOXELS })
+    }
 }
 
 /// Resolution level of an image.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::{Page, PageAddress, PageSource, ResidentPages};
-use crate::{Dataset, LoadError};
+use crate::{BrickBounds, DensityMapping, LoadError};
 
 /// Number of pages that are read before it is asked which are needed still: half a second's on a slow machine.
 pub const PAGES_PER_BATCH: usize = 32;
@@ -21,13 +21,15 @@ pub struct PageCache {
 }
 
 impl PageCache {
-    /// Creates a cache of pages for a dataset, of at most `bytes`, but at least of one page.
-    pub fn new(source: Arc<dyn PageSource>, dataset: &Dataset, bytes: u64) -> Self {
-        let resident = ResidentPages::new(
-            source.levels().clone(),
-            dataset.volume().density_mapping(),
-            Arc::clone(dataset.bricks()),
-        );
+    /// Creates a cache of pages for a volume in memory with these bounds and this mapping of values, of at most `bytes`, but
+    /// at least of one page.
+    pub fn new(
+        source: Arc<dyn PageSource>,
+        mapping: DensityMapping,
+        bounds: Arc<BrickBounds>,
+        bytes: u64,
+    ) -> Self {
+        let resident = ResidentPages::new(source.levels().clone(), mapping, bounds);
         let capacity = usize::try_from(bytes / Page::bytes()).unwrap_or(usize::MAX).max(1);
         Self { source, resident, capacity }
     }

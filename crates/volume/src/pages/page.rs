@@ -257,7 +257,7 @@ mod tests {
             });
             assert_eq!(page.cells.get(cell).unwrap()[1], 1.0, "{offset:?}");
         }
-        let far = [(bright[0] / 2 + 8) / 2, (bright[1] / 2) / 2, bright[2] / 2];
+        let far = [bright[0] / 4 + 4, bright[1] / 4, bright[2] / 2];
         assert!(page.cells.get(far).unwrap()[1] < 0.5, "a cell eight voxels away does not see it");
         assert_eq!(page.range[1], 1.0);
     }

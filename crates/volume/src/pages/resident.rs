@@ -1,14 +1,14 @@
 //! Pages that a picture may use.
 
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use super::{FinerLevels, Page, PageAddress};
 use crate::{BrickBounds, DensityMapping};
 
 /// Identity of the pages that a dataset has, by which pictures are cached; 0 where there are none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PagesId {
     /// Hash of the addresses of the pages.
     pub pages: u64,

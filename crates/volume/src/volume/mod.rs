@@ -40,7 +40,7 @@ use self::grid::VoxelGrid;
 use self::grid::face_voxels::face_voxels;
 use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
-use super::load_context::{FileContents, MAX_FIELDS};
+use super::load_context::{FileContents, FileDimension, MAX_FIELDS};
 use super::{PagesId, Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
 
@@ -151,6 +151,15 @@ impl Volume {
     /// or subsampling ([`Self::subsampled`]); [`Self::dims`] if it is neither.
     pub fn file_dims(&self) -> [usize; 3] {
         self.grid.file_dims()
+    }
+
+    /// Returns the dimensions of the finest resolution level of the file, if all of a coarser one was read; otherwise
+    /// [`Self::file_dims`].
+    pub fn finest_dims(&self) -> [usize; 3] {
+        let contents = self.contents();
+        let levels = contents.alternatives_in(FileDimension::Level).filter(|_| contents.portion.is_whole());
+        let finest = levels.and_then(|levels| levels.offers[0].dims);
+        finest.map_or_else(|| self.file_dims(), |dims| dims.map(|n| usize::try_from(n).unwrap_or(usize::MAX)))
     }
 
     /// Returns the spacings of the file's voxels in mm; a voxel of the volume may be the mean of several of them.

@@ -177,7 +177,7 @@ impl ExportWorker {
             let Ok(pages) = FilePages::new(&file.path, &file.options, &dataset, bytes) else {
                 return Ok((subject.dataset.clone(), None));
             };
-            self.pages = Some(PageCache::new(Arc::new(pages), &dataset, bytes));
+            self.pages = Some(dataset.page_cache(Arc::new(pages), bytes));
         }
         let Some(cache) = &mut self.pages else { return Ok((dataset, None)) };
         let size = image_spec.size.map(|n| n * image_spec.samples);

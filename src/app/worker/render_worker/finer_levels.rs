@@ -76,7 +76,7 @@ impl FinerLevelReader {
         match FilePages::new(&file.path, &file.options, &whole, bytes) {
             Ok(pages) => {
                 self.cancel = Some(pages.token().clone().into());
-                self.cache = Some(PageCache::new(Arc::new(pages), &whole, bytes));
+                self.cache = Some(whole.page_cache(Arc::new(pages), bytes));
             }
             Err(why) => {
                 log::info!("finer levels of {} are not shown: {why}", file.path.display());
@@ -95,7 +95,7 @@ impl FinerLevelReader {
         let Some(cache) = &self.cache else { return };
         let (source, shared) = (Arc::clone(cache.source()), Arc::clone(shared));
         let (sender, pages) = channel();
-        let spawned = std::thread::Builder::new().name("finer levels".to_owned()).spawn(move || {
+        let spawned = std::thread::Builder::new().name("finer_levels".to_owned()).spawn(move || {
             let read = read_pages(&*source, &missing, is_visible);
             // Nobody waits for the pages of a volume that was closed.
             drop(sender.send(read));

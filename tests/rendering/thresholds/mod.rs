@@ -1,6 +1,7 @@
 //! Tolerances of the rendering tests, each with its derivation. Pictures are compared in linear, premultiplied light
 //! before tone mapping; 1/255 is one step of an 8-bit display.
 
+pub(crate) mod pages;
 use super::compare::ErrorLimit;
 use chiaroscuro_scene::ShadowAlgorithm;
 
@@ -8,25 +9,12 @@ use chiaroscuro_scene::ShadowAlgorithm;
 /// and early ray termination at 1/4096.
 pub(crate) const SAME_WEIGHTS: ErrorLimit = ErrorLimit { max: 2.0 / 255.0, rmse: 0.25 / 255.0 };
 
-/// Displayed picture through pages of a finer level against that of the fine volume in memory, without light from volumes: pages are
-/// normalised integers, and filters have few bits. Adaptive slabs are halved above a bound that rounding decides in single
-/// pixels, which differ by more than a step of 8 bits then.
-pub(crate) const PAGED_MATTER: ErrorLimit = ErrorLimit { max: 2.0 / 255.0, rmse: 0.05 / 255.0 };
-
-/// The same where kernels are stretched over two levels: levels of a file are means of 2³ voxels, those of a pyramid in memory
-/// have a wider kernel.
-pub(crate) const PAGED_STRETCHED: ErrorLimit = ErrorLimit { max: 10.0 / 255.0, rmse: 0.3 / 255.0 };
-
-/// The same with shadows, which are those of the coarse volume behind the near field.
-pub(crate) const PAGED_LIGHT: ErrorLimit = ErrorLimit { max: 20.0 / 255.0, rmse: 0.8 / 255.0 };
-
 /// GPU against literal, un-normalised footprints: the quadrature over a slab and the normalisation differ by design;
 /// the largest single difference is at silhouettes and is not limited.
 pub(crate) const LITERAL: ErrorLimit = ErrorLimit { max: f64::INFINITY, rmse: 1.0 / 255.0 };
 
 /// Partition of unity with filtering hardware (8 fractional bits).
 pub(crate) const UNITY: f64 = 2e-3;
-
 /// Beer–Lambert, relative, by extinction per voxel and slab thickness: (μ, Δs, tolerance).
 pub(crate) const BEER_LAMBERT: [(f64, f64, f64); 5] =
     [(0.1, 1.0, 0.005), (0.3, 1.0, 0.005), (0.7, 1.0, 0.02), (0.3, 0.25, 0.003), (0.7, 0.25, 0.003)];

@@ -1,11 +1,15 @@
 //! Dataset: the fields on one grid, each a volume together with its bricks, cells and histogram.
 
+mod error;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
+pub use error::{AddFieldError, StepError};
+
 use super::{
-    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, PagesId, ResidentPages, ValueRanges,
-    Volume, VolumeChoice, VolumeError, VolumeId, VoxelMask,
+    BrickBounds, Corrections, DensityMapping, Histogram, MAX_FIELDS, PageCache, PageSource, PagesId,
+    ResidentPages, ValueRanges, Volume, VolumeChoice, VolumeError, VolumeId, VoxelMask,
 };
 
 /// Volume of one quantity with the bounds of its bricks and its histogram, which are derived from it and so cannot be
@@ -37,30 +41,6 @@ pub struct Dataset {
     fields: Arc<[DatasetField]>,
     /// Pages of levels that are finer than the first field.
     pages: Option<Arc<ResidentPages>>,
-}
-
-/// Reason why a volume cannot be shown together with another one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum AddFieldError {
-    /// All channels of a texel are in use.
-    #[error("{MAX_FIELDS} volumes are shown already, which is the largest number; remove one first")]
-    TooMany,
-    /// Boxes of the two grids have no point in common.
-    #[error(
-        "the two volumes do not meet: no voxel of one lies inside the other; check the positions in their files"
-    )]
-    Apart,
-}
-
-/// Reason why another time step cannot be shown.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum StepError {
-    /// Corrections of the open volume do not apply to the step.
-    #[error("the corrections of the open volume do not apply to the step: {0}")]
-    Correction(#[from] VolumeError),
-    /// Boxes of the step and of a volume that is shown with it have no point in common.
-    #[error("a volume that is shown with the step does not meet it; remove its layer")]
-    Apart,
 }
 
 impl DatasetField {
@@ -319,6 +299,11 @@ impl Dataset {
     #[must_use]
     pub fn with_pages(self, pages: Option<Arc<ResidentPages>>) -> Self {
         Self { pages, ..self }
+    }
+
+    /// Creates a cache of pages for the first field, of at most `bytes`.
+    pub fn page_cache(&self, source: Arc<dyn PageSource>, bytes: u64) -> PageCache {
+        PageCache::new(source, self.volume().density_mapping(), Arc::clone(self.bricks()), bytes)
     }
 
     /// Returns the pages of finer levels, if there are some whose densities represent what those of the first field do.
