@@ -267,12 +267,12 @@ fn main(
     @builtin(local_invocation_id) local: vec3u,
     @builtin(local_invocation_index) index: u32,
 ) {
-    eye = bound_eye;
-    pixel_ray = bound_pixel_ray;
-    grid = bound_grid;
 #if PAGED
     pages = bound_pages;
 #endif
+    eye = bound_eye;
+    pixel_ray = bound_pixel_ray;
+    grid = bound_grid;
     let tile = tile_of(group, groups.y, eye.runs);
     let in_order = tile * TILE_EDGE + in_tile(local.xy) + vec2u(0u, eye.first_row);
     let entry = (tile.y * groups.x + tile.x) * TILE_EDGE * TILE_EDGE + index;

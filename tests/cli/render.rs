@@ -350,8 +350,7 @@ fn finer_levels_are_read_where_pixels_are_finer_than_voxels() {
     let [coarse, paged] = [distance(&coarse), distance(&paged)];
     assert!(paged < 0.2 * coarse, "pages {paged:.2}, the coarse level alone {coarse:.2} of 255");
     let record = read_record(&folder.path("paged.png")).expect("a picture").expect("a record");
-    let record: Value = serde_json::from_str(&record).expect("JSON");
-    assert_eq!(record["image"]["finer_levels"]["finest"], "0", "{record}");
+    assert!(record.contains(r#""finest": "0""#), "{record}");
     assert!(folder.run_successfully("replay paged.png --check --pool 256MiB").contains("identical"));
 }
 

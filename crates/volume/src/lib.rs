@@ -40,7 +40,7 @@ pub use occupancy::cells::{BOUNDED_SIGMA, BRICK_EDGE, CELL_EDGE, CellBounds, SIG
 pub use occupancy::label_cells::CellOccupancy;
 pub use pages::{
     FinerLevel, FinerLevels, PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, PAGES_PER_BATCH,
-    Page, PageAddress, PageCache, PageSource, PagesId, ResidentPages, read_pages,
+    Page, PageAddress, PageCache, PageSource, ResidentPages, read_pages,
 };
 pub use value_metadata::{
     FileLabel, FileLabelTable, MAX_LABEL_NAME, MAX_LABELS, Modality, ValueMeaning, ValueMetadata,
@@ -52,6 +52,6 @@ pub use values::samples::{FiniteRange, Samples, VoxelType};
 pub use values::voxel_mask::{Observer, VoxelMask};
 pub use volume::{
     AnatomicalAxes, AxisOrder, BlockPartition, Corrections, CountedLabel, DataKind, DensityMapping,
-    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue,
+    DetectedKind, Flips, KindName, LabelSet, MAX_CLASSES, MissingVoxels, Orientation, PaddingValue, PagesId,
     PatientTable, SpacingUnit, ValueScale, Volume, VolumeError, VolumeId, block_counts,
 };

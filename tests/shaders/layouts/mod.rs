@@ -231,24 +231,6 @@ pub(crate) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
             layout!(EdgesUniform { size, first_row, end_row, min_contrast, pad0, pad1, pad2 }),
         ),
         ("eye/eye_pass.wgsl", layout!(PixelRayUniform { place, is_listed, is_added, pad0, pad1 })),
-        ("eye/eye_pass.wgsl", layout!(PageLevelUniform { scale, first, pages, pad0 })),
-        (
-            "eye/eye_pass.wgsl",
-            layout!(PagesUniform {
-                coarse,
-                count,
-                texel,
-                level_in_memory,
-                level_0,
-                level_1,
-                level_2,
-                level_3,
-                first_level,
-                pad0,
-                pad1,
-                pad2
-            }),
-        ),
         (
             "scatter/splat.wgsl",
             layout!(ScatterSlabUniform {

@@ -1,4 +1,4 @@
-//! Uniform structs of the shaders that compose voxels and fill pyramids.
+//! Uniform structs of the shaders that compose voxels and fill pyramids, and of pages.
 
 use chiaroscuro_render::uniforms;
 
@@ -7,6 +7,24 @@ use crate::struct_layout::{FieldLayout, StructLayout, type_name_of};
 /// Lists the structs with a shader that declares them.
 pub(super) fn mirrored_structs() -> Vec<(&'static str, StructLayout)> {
     vec![
+        ("eye/eye_pass.wgsl", layout!(PageLevelUniform { scale, first, pages, pad0 })),
+        (
+            "eye/eye_pass.wgsl",
+            layout!(PagesUniform {
+                coarse,
+                count,
+                texel,
+                level_in_memory,
+                level_0,
+                level_1,
+                level_2,
+                level_3,
+                first_level,
+                pad0,
+                pad1,
+                pad2
+            }),
+        ),
         ("volume/composed_voxels.wgsl", layout!(LayersUniform { count, largest, voxel, pad0, layers })),
         (
             "volume/composed_voxels.wgsl",

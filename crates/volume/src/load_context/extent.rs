@@ -3,10 +3,10 @@
 use super::choice::VolumeChoice;
 use super::control::LoadControl;
 use super::error::{LoadContext, LoadError};
+use super::level_rule::LevelRule;
 use super::limits::human_bytes;
 use super::memory_estimate::{VolumeSize, needed_bytes};
 use super::portion::{Downsampling, MAX_STRIDE, Portion};
-use super::resolution_level::LevelRule;
 use super::resolved_portion::ResolvedPortion;
 use crate::VoxelType;
 

@@ -7,6 +7,7 @@ mod error;
 mod extent;
 mod file_contents;
 mod free_memory;
+mod level_rule;
 mod limits;
 mod memory_estimate;
 mod offer;
@@ -24,11 +25,12 @@ pub use file_contents::{
     VoxelComponents,
 };
 pub use free_memory::address_bytes_left;
+pub use level_rule::LevelRule;
 pub use limits::human_bytes;
 pub use limits::memory_budget_bytes;
 pub use limits::{is_usable_affine, is_usable_spacing, spacing_ratio_error};
 pub use memory_estimate::VolumeSize;
 pub use offer::{FileDimension, VolumeOffer};
 pub use portion::{Downsampling, Portion, VoxelRegion, VoxelSpan};
-pub use resolution_level::{LevelRule, ResolutionLevel};
+pub use resolution_level::ResolutionLevel;
 pub use resolved_portion::ResolvedPortion;

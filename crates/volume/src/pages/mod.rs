@@ -13,7 +13,7 @@ mod resident;
 pub use cache::{PAGES_PER_BATCH, PageCache, read_pages};
 pub use levels::{FinerLevel, FinerLevels, PageAddress};
 pub use page::{PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
-pub use resident::{PagesId, ResidentPages};
+pub use resident::ResidentPages;
 
 use std::ops::Range;
 

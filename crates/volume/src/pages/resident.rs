@@ -5,16 +5,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
 use super::{FinerLevels, Page, PageAddress};
-use crate::{BrickBounds, DensityMapping};
-
-/// Identity of the pages that a dataset has, by which pictures are cached; 0 where there are none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct PagesId {
-    /// Hash of the addresses of the pages.
-    pub pages: u64,
-    /// Hash of the addresses of the pages whose densities the bounds hold for.
-    pub bounds: u64,
-}
+use crate::{BrickBounds, DensityMapping, PagesId};
 
 /// Pages of the levels that are finer than a volume in memory, as many as a picture may use. Clones share them.
 #[derive(Debug, Clone)]

@@ -41,8 +41,17 @@ use self::grid::face_voxels::face_voxels;
 use self::provenance::VolumeProvenance;
 use self::voxel_data::VoxelData;
 use super::load_context::{FileContents, FileDimension, MAX_FIELDS};
-use super::{PagesId, Samples, ValueMetadata, ValueRange, ValueRanges};
+use super::{Samples, ValueMetadata, ValueRange, ValueRanges};
 use crate::math::SceneSpace;
+
+/// Identity of the pages that a dataset has, by which pictures are cached; 0 where there are none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PagesId {
+    /// Hash of the addresses of the pages.
+    pub pages: u64,
+    /// Hash of the addresses of the pages whose densities the bounds hold for.
+    pub bounds: u64,
+}
 
 /// Identity of a volume together with its value ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
