@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn the_level_follows_the_width_of_pixels() {
         assert_eq!(view([60, 60]), None, "pixels are wider than voxels in memory");
-        let firsts = [[250, 250], [500, 500], [3000, 3000]].map(|size| view(size).unwrap().first);
+        let firsts = [[115, 115], [500, 500], [3000, 3000]].map(|size| view(size).unwrap().first);
         assert_eq!(firsts, [1, 0, 0]);
         let mut settings = Settings::default();
         settings.shadows.algorithm = ShadowAlgorithm::Direct;

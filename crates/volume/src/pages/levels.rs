@@ -2,8 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::PAGE_EDGE;
 use crate::math::SceneSpace;
+
+/// Edge of a page, in voxels.
+pub const PAGE_EDGE: usize = 64;
 
 /// Level of an image that is finer than the volume in memory.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -11,8 +11,8 @@ mod page;
 mod resident;
 
 pub use cache::{PAGES_PER_BATCH, PageCache, read_pages};
-pub use levels::{FinerLevel, FinerLevels, PageAddress};
-pub use page::{PAGE_BORDER, PAGE_EDGE, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
+pub use levels::{FinerLevel, FinerLevels, PAGE_EDGE, PageAddress};
+pub use page::{PAGE_BORDER, PAGE_READ_MARGIN, PAGE_STORED_EDGE, Page};
 pub use resident::ResidentPages;
 
 use std::ops::Range;

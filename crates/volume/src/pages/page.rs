@@ -2,13 +2,11 @@
 
 use std::ops::Range;
 
-use super::{PageAddress, PageSource};
+use super::PageSource;
+use super::levels::{PAGE_EDGE, PageAddress};
 use crate::LoadError;
 use crate::occupancy::bricks::CellRanges;
 use crate::occupancy::cells::CELL_EDGE;
-
-/// Edge of a page, in voxels.
-pub const PAGE_EDGE: usize = 64;
 
 /// Width of the border that is stored around a page, in voxels: gradients are differences over two voxels to either
 /// side, and a trilinear fetch sees one more.
