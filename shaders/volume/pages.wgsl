@@ -134,7 +134,7 @@ fn page_derivative(place: PagePlace, axis: vec3f) -> f32 {
     return (8.0 * near - far) / 12.0;
 }
 
-// The same of the pyramid in memory.
+// Derivative of the density of the pyramid in memory along an axis, per texel.
 fn derivative_in_memory(p: vec3f, axis: vec3f, level: f32) -> f32 {
     let step = axis * exp2(level) / pages.coarse;
     let near = pyramid_texel(p + step, level).r - pyramid_texel(p - step, level).r;

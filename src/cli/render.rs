@@ -58,7 +58,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         check_writable(to.path())?;
     }
     say("loading the volume");
-    let (loaded, context) = args.scene.load_timed(&mut times, args.finer.level_rule())?;
+    let (loaded, context) = args.scene.load_timed(&mut times, args.scene.level_rule(&args.finer))?;
     times.end("volume_and_adapter");
     let look = args.scene.look(&loaded)?;
     times.end("first_look");

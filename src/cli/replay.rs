@@ -86,7 +86,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<(), CliError> {
         &source,
         stated.map(|stated| &stated.choice),
         &mut StageTimes::from_now(),
-        LevelRule::Finest,
+        // Ranges of values are those of the picture.
+        if picture_record.finer_levels.is_some() { args.finer.level_rule() } else { LevelRule::Finest },
     )?;
     if stated.is_some_and(|of| !of.matches_content(volume.opened_id())) {
         return Err(unusable(format!("{} is another volume than that of the picture", source.display())));

@@ -89,7 +89,7 @@ fn reserved_names() -> [(&'static str, BTreeSet<String>); 3] {
     let mut tables = module_variables(text_of(MATERIAL));
     tables.extend(TABLE_NAMES.map(str::to_owned));
     let mut paged = module_variables(text_of(PAGES));
-    // What is known of pages as a whole is no voxel.
+    // The uniform of the levels holds no voxel.
     paged.retain(|name| name != "bound_pages" && name != "pages");
     [(FIELD, fetched), (MATERIAL, tables), (PAGES, paged)]
 }

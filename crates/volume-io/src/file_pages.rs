@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{LoadOptions, open};
+use crate::{LoadOptions, load, open};
 use chiaroscuro_volume::{
     CancelToken, Corrections, Dataset, DensityMapping, FileDimension, FinerLevels, LevelRule, LoadControl,
     LoadError, PageSource, Portion, Samples, Volume, VolumeChoice, VoxelRegion, VoxelSpan,
@@ -65,10 +65,66 @@ impl BlockCache {
 const SAMPLED_BLOCKS: usize = 3;
 const SAMPLED_EDGE: usize = 64;
 
+/// Returns the levels of its file that are finer than a volume.
+fn finer_levels(volume: &Volume) -> Result<FinerLevels, NoPages> {
+    let contents = volume.contents();
+    let Some(offers) = contents.alternatives_in(FileDimension::Level) else {
+        return Err(NoPages::NoFinerLevel);
+    };
+    let finer = offers.offers.iter().filter_map(|offer| {
+        let dims = offer.dims?.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+        Some((dims, offer.key.clone()))
+    });
+    let levels = FinerLevels::of_volume(volume.dims(), finer);
+    // Spacings move no voxel.
+    let moved = Corrections { spacing: None, unit: None, ..*volume.corrections() };
+    if levels.is_empty() {
+        Err(NoPages::NoFinerLevel)
+    } else if !contents.portion.is_whole() {
+        Err(NoPages::Portion)
+    } else if volume.has_absent_voxels() {
+        Err(NoPages::MissingVoxels)
+    } else if moved != Corrections::default() {
+        Err(NoPages::Corrected)
+    } else {
+        Ok(levels)
+    }
+}
+
+/// Prepares a volume beside which pages of finer levels are read. Where they cannot be shown, and the user has chosen no
+/// level, the finest one that fits is read in its place.
+pub(crate) fn beside_pages(
+    path: &Path,
+    options: &LoadOptions,
+    control: &LoadControl,
+    volume: Volume,
+) -> Result<Volume, LoadError> {
+    let Some(levels) = volume.contents().alternatives_in(FileDimension::Level) else { return Ok(volume) };
+    let (number, count) = (levels.selected + 1, levels.offers.len());
+    if number == 1 {
+        return Ok(volume);
+    }
+    if finer_levels(&volume).is_err() || volume.is_label_map() {
+        let is_chosen = options.choice.level.is_some();
+        return if is_chosen {
+            Ok(volume)
+        } else {
+            load(path, &LoadOptions { level: LevelRule::Finest, ..options.clone() }, control)
+        };
+    }
+    let remark = format!(
+        "level {number} of {count} is in memory; of the finer ones the parts that a picture shows are read, except for \
+         projections, layers, cuts by shapes and the quality Exact: choose a finer level for these"
+    );
+    let volume = with_ranges_of_finest_level(path, options, control, volume);
+    let remarks = [volume.remarks(), &[remark]].concat();
+    Ok(volume.with_remarks(remarks))
+}
+
 /// Returns a coarse level with ranges of values that cover a sample of the finest one: means of voxels have a narrower range,
 /// and what lies beyond it could not be told apart where pages of finer levels are shown. A sample that cannot be read
 /// changes nothing; reading its pages will say why.
-pub(crate) fn with_ranges_of_finest_level(
+fn with_ranges_of_finest_level(
     path: &Path,
     options: &LoadOptions,
     control: &LoadControl,
@@ -140,37 +196,15 @@ impl FilePages {
         cache_bytes: u64,
     ) -> Result<Self, NoPages> {
         let volume = dataset.volume();
-        let contents = volume.contents();
-        let Some(offers) = contents.alternatives_in(FileDimension::Level) else {
-            return Err(NoPages::NoFinerLevel);
-        };
-        if !contents.portion.is_whole() {
-            return Err(NoPages::Portion);
-        }
-        if volume.has_absent_voxels() {
-            return Err(NoPages::MissingVoxels);
-        }
-        // Spacings move no voxel.
-        let by = volume.corrections();
-        if (Corrections { spacing: None, unit: None, ..*by }) != Corrections::default() {
-            return Err(NoPages::Corrected);
-        }
+        let levels = finer_levels(volume)?;
         if volume.density_mapping() == DensityMapping::Labels {
             return Err(NoPages::Labels);
-        }
-        let finer = offers.offers.iter().filter_map(|offer| {
-            let dims = offer.dims?.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-            Some((dims, offer.key.clone()))
-        });
-        let levels = FinerLevels::of_volume(volume.dims(), finer);
-        if levels.is_empty() {
-            return Err(NoPages::NoFinerLevel);
         }
         let block_bytes = 2 * (BLOCK_EDGE as u64).pow(3);
         let most = (cache_bytes / block_bytes).max(8) as usize;
         Ok(Self {
             path: path.to_owned(),
-            options: LoadOptions { choice: contents.choice(), ..options.clone() },
+            options: LoadOptions { choice: volume.contents().choice(), ..options.clone() },
             levels,
             mapping: volume.density_mapping(),
             blocks: Mutex::new(BlockCache { blocks: HashMap::new(), clock: 0, most }),
@@ -256,5 +290,83 @@ impl PageSource for FilePages {
             }
         }
         Ok(densities)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::{ExportVolume, VolumeFormat, write_volume};
+    use chiaroscuro_volume::synthetic;
+
+    /// Writes a volume of 160³ voxels with a level of 80³.
+    fn two_levels(folder: &Path, volume: &Volume) -> PathBuf {
+        let path = folder.join("v.ome.zarr");
+        write_volume(&path, VolumeFormat::OmeZarr, &ExportVolume::new(volume), true).unwrap();
+        path
+    }
+
+    fn beside_pages(path: &Path) -> Volume {
+        let options = LoadOptions { level: LevelRule::AlwaysBesidePages(1 << 24), ..LoadOptions::default() };
+        load(path, &options, &LoadControl::new()).unwrap()
+    }
+
+    #[test]
+    fn finer_levels_are_read_in_blocks_with_the_densities_of_the_one_in_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        let chair = synthetic::builtin("chair", Some(160)).unwrap();
+        let path = two_levels(folder.path(), &chair);
+        let coarse = beside_pages(&path);
+        assert_eq!(coarse.dims(), [80; 3]);
+        assert!(
+            coarse.remarks().iter().any(|remark| remark.contains("level 2 of 2")),
+            "{:?}",
+            coarse.remarks()
+        );
+        let dataset = Dataset::new(coarse);
+        let pages = FilePages::new(&path, &LoadOptions::default(), &dataset, 0).unwrap();
+        assert_eq!(pages.levels().0.iter().map(|level| level.dims).collect::<Vec<_>>(), [[160; 3]]);
+        // Over the border of blocks along x and y.
+        let region = [100..140, 120..131, 40..44];
+        let read = pages.read(0, &region).unwrap();
+        let fine = chair.with_density_mapping(dataset.volume().density_mapping());
+        let mut found = read.into_iter();
+        for z in region[2].clone() {
+            let slice = fine.slice_densities(z);
+            for y in region[1].clone() {
+                for x in region[0].clone() {
+                    let (read, wanted) = (found.next().unwrap(), slice[x + 160 * y]);
+                    assert!((read - wanted).abs() < 1e-5, "{x} {y} {z}: {read} instead of {wanted}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_cover_what_means_have_lost() {
+        let folder = tempfile::tempdir().unwrap();
+        // Every eighth voxel is bright, which means of 2³ voxels know only as an eighth of that.
+        let value = |at: usize| {
+            let place = [at % 160, at / 160 % 160, at / (160 * 160)];
+            if place.iter().all(|c| c % 2 == 0) { 800 } else { 0 }
+        };
+        let samples = Samples::U16((0..160 * 160 * 160).map(value).collect());
+        let volume = Volume::with_spacing("dots", [160; 3], DVec3::ONE, samples).unwrap();
+        let coarse = beside_pages(&two_levels(folder.path(), &volume));
+        assert_eq!((coarse.dims(), coarse.value(3, 4, 5)), ([80; 3], 100.0));
+        assert_eq!(coarse.ranges().robust.high, 800.0);
+    }
+
+    #[test]
+    fn what_has_no_pages_is_read_as_finely_as_it_fits() {
+        let folder = tempfile::tempdir().unwrap();
+        let value = |at: usize| if at % 160 < 30 { f32::NAN } else { (at % 97) as f32 };
+        let samples = Samples::F32((0..160 * 160 * 160).map(value).collect());
+        let volume = Volume::with_spacing("missing", [160; 3], DVec3::ONE, samples).unwrap();
+        let path = two_levels(folder.path(), &volume);
+        let loaded = beside_pages(&path);
+        assert_eq!(loaded.dims(), [160; 3], "the finest level fits");
+        let unshown = FilePages::new(&path, &LoadOptions::default(), &Dataset::new(loaded), 0).unwrap_err();
+        assert_eq!(unshown, NoPages::NoFinerLevel);
     }
 }

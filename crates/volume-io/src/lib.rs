@@ -117,7 +117,7 @@ pub fn load(path: &Path, options: &LoadOptions, control: &LoadControl) -> Result
         // of each block.
         (true, _) => read(true).map(|(_, volume)| volume),
         (false, volume) if options.level != LevelRule::Finest => {
-            Ok(file_pages::with_ranges_of_finest_level(path, options, control, volume))
+            file_pages::beside_pages(path, options, control, volume)
         }
         (false, volume) => Ok(volume),
     }

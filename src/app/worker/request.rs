@@ -9,7 +9,7 @@ use chiaroscuro_render::{
 };
 use chiaroscuro_scene::Settings;
 use chiaroscuro_volume::{Dataset, DensityMapping, ValueRange, ValueRanges};
-use chiaroscuro_volume_io::LoadOptions;
+use chiaroscuro_volume_io::{FilePages, LoadOptions};
 
 /// Single look, or two looks that are compared.
 #[derive(Debug, Clone)]
@@ -110,18 +110,25 @@ pub(crate) struct VolumeFile {
     pub path: PathBuf,
     /// Options with which the volume was read.
     pub options: LoadOptions,
+    /// Content ID of the volume as it was opened.
+    pub opened_id: u64,
+}
+
+impl VolumeFile {
+    /// Returns a reader of the levels that are finer than a dataset, whose blocks take at most `cache_bytes`; `None` if they
+    /// cannot be shown, or the dataset is another one, such as another time step.
+    pub(crate) fn pages(&self, dataset: &Dataset, cache_bytes: u64) -> Option<FilePages> {
+        if dataset.volume().opened_id() != self.opened_id {
+            return None;
+        }
+        let pages = FilePages::new(&self.path, &self.options, dataset, cache_bytes);
+        pages
+            .inspect_err(|why| log::info!("finer levels of {} are not shown: {why}", self.path.display()))
+            .ok()
+    }
 }
 
 impl RenderScene {
-    /// Replaces the dataset. The file stays if both were opened as the same volume, not as another time step.
-    pub(super) fn set_dataset(&mut self, dataset: Dataset) {
-        let opened_id = |dataset: &Dataset| dataset.volume().opened_id();
-        if opened_id(&dataset) != opened_id(&self.dataset) {
-            self.file = None;
-        }
-        self.dataset = dataset;
-    }
-
     /// Returns the renderer's request for a look at a quality level.
     pub(super) fn request(
         &self,

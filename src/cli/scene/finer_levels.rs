@@ -8,13 +8,10 @@ use clap::Args;
 use super::SceneArgs;
 use crate::cli::CliError;
 use crate::cli::output::warn_line;
-use chiaroscuro_render::plan::fill_pages;
+use chiaroscuro_render::plan::{fill_pages, shows_pages};
 use chiaroscuro_scene::{FinerLevelRecord, ImageSpec, Settings};
-use chiaroscuro_volume::{Dataset, LevelRule, memory_budget_bytes};
+use chiaroscuro_volume::{Dataset, LevelRule, PageCache};
 use chiaroscuro_volume_io::{FilePages, LoadOptions, NoPages};
-
-/// Largest memory for pages unless the user gives another: what most graphics cards can spare.
-const MAX_DEFAULT_POOL_BYTES: u64 = 1 << 30;
 
 /// Arguments for the levels of an image that do not fit into memory.
 #[derive(Debug, Clone, Default, Args)]
@@ -23,7 +20,7 @@ pub(crate) struct FinerLevelArgs {
     /// memory where the finest would fit
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pool: Option<u64>,
-    /// Fail (exit code 1) if a finer level is called for that does not fit into this memory
+    /// Fail (exit code 1) if a coarser level is shown than the picture calls for
     #[arg(long)]
     require_full: bool,
 }
@@ -53,18 +50,31 @@ impl FinerLevelArgs {
         image: &ImageSpec,
         say: &dyn Fn(&str),
     ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
-        let budget = self.pool.unwrap_or_else(|| (memory_budget_bytes() / 4).min(MAX_DEFAULT_POOL_BYTES));
+        let budget = self.pool.unwrap_or_else(PageCache::default_bytes);
         // Densities of pages are those of the picture.
         let mapping = settings.shown_content(&dataset.volume().ranges());
         let dataset = dataset.with_density_mapping(mapping);
-        // An image that is shown at its finest level is the usual case.
+        let unshown = |why: &str| {
+            self.warn_or_fail(
+                source,
+                format!("finer levels are not shown: {why}; --level puts one into memory"),
+            )
+        };
         let pages = match FilePages::new(source, options, &dataset, budget) {
-            Ok(pages) => pages,
-            Err(NoPages::NoFinerLevel) => return Ok((dataset, None)),
+            // The finest level is in memory, or the user has asked for a part.
+            Err(NoPages::NoFinerLevel | NoPages::Portion) => return Ok((dataset, None)),
             Err(why) => {
-                say(&format!("finer levels are not shown: {why}"));
+                unshown(&why.to_string())?;
                 return Ok((dataset, None));
             }
+            Ok(_) if !settings.sampling.finer_levels => return Ok((dataset, None)),
+            Ok(_) if !shows_pages(settings) => {
+                unshown(
+                    "the look has a projection, layers, a cut by a shape, the scattering engine, or the quality Exact",
+                )?;
+                return Ok((dataset, None));
+            }
+            Ok(pages) => pages,
         };
         let mut cache = dataset.page_cache(Arc::new(pages), budget);
         let size = image.size.map(|n| n * image.samples);
@@ -73,25 +83,38 @@ impl FinerLevelArgs {
             true
         })?;
         let Some(demand) = demand else { return Ok((dataset, None)) };
-        let levels = cache.resident().levels();
-        let name = |index: usize| levels.0.get(index).map_or("in memory", |level| &level.key).to_owned();
+        let record = demand.record(cache.resident().levels());
         if demand.is_substituted {
             let text = format!(
                 "level {} takes the place of a finer one, whose parts do not fit into {} MiB; --pool allows more",
-                name(demand.finest),
+                record.finest,
                 budget >> 20
             );
-            if self.require_full {
-                return Err(CliError::LevelSubstituted(text));
-            }
-            warn_line(&format!("warning: {text} ({})", source.display()));
+            self.warn_or_fail(source, text)?;
         }
-        let record = FinerLevelRecord { finest: name(demand.finest), is_substituted: demand.is_substituted };
         Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
+    }
+
+    /// Warns that a coarser level is shown than a picture calls for; an error if that is not to be.
+    fn warn_or_fail(&self, source: &Path, text: String) -> Result<(), CliError> {
+        if self.require_full {
+            return Err(CliError::LevelSubstituted(text));
+        }
+        warn_line(&format!("warning: {text} ({})", source.display()));
+        Ok(())
     }
 }
 
 impl SceneArgs {
+    /// Returns the rule for the level that is read: a level that the arguments name is shown as it is.
+    pub(crate) fn level_rule(&self, finer: &FinerLevelArgs) -> LevelRule {
+        if self.look.load.names_level() && finer.pool.is_none() {
+            LevelRule::Finest
+        } else {
+            finer.level_rule()
+        }
+    }
+
     /// Reads the pages of finer levels that a picture shows, unless a level was named.
     pub(crate) fn with_pages(
         &self,
@@ -101,7 +124,7 @@ impl SceneArgs {
         image: &ImageSpec,
         say: &dyn Fn(&str),
     ) -> Result<(Dataset, Option<FinerLevelRecord>), CliError> {
-        if self.look.load.names_level() && finer.pool.is_none() {
+        if self.level_rule(finer) == LevelRule::Finest {
             return Ok((dataset, None));
         }
         finer.with_pages(&self.file, &self.load_options()?, &dataset, settings, image, say)

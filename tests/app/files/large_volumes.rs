@@ -4,12 +4,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use chiaroscuro::app::{App, WindowOptions};
+use chiaroscuro_scene::Settings;
+use chiaroscuro_volume::{LevelRule, synthetic};
 use chiaroscuro_volume_io::LoadOptions;
+use chiaroscuro_volume_io::write::{ExportVolume, VolumeFormat, write_volume};
 use eframe::egui::{Key, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use crate::harness::{DroppedFile, SCENE, adjusted_window, click, wait_until, wait_until_idle};
+use crate::harness::{
+    DroppedFile, SCENE, adjusted_window, click, picture, sharp_window_with, wait_until, wait_until_idle,
+};
 
 const QUESTION: &str = "Large volume: how much to open?";
 
@@ -93,5 +98,51 @@ fn a_region_can_be_typed_and_cancelled() {
     wait_until_idle(&mut harness);
     harness.run_steps(3);
     assert!(is_shown(&harness, "20×24×16"));
+    assert_eq!(harness.state().errors(), [""; 0]);
+}
+
+/// Window of a file whose finest level counts as too large, near the object.
+fn window_beside_pages(path: &Path, finer_levels: bool) -> Harness<'static, App> {
+    let load = LoadOptions { level: LevelRule::AlwaysBesidePages(1 << 24), ..LoadOptions::default() };
+    let adjust = move |mut settings: Settings| {
+        settings.sampling.finer_levels = finer_levels;
+        settings.camera.distance *= 0.4;
+        settings
+    };
+    let options = WindowOptions {
+        source: Some(path.to_owned()),
+        load,
+        adjust: Some(Box::new(adjust)),
+        ..WindowOptions::default()
+    };
+    sharp_window_with(options, Vec2::new(900.0, 700.0))
+}
+
+#[test]
+fn parts_of_finer_levels_arrive_in_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("chair.ome.zarr");
+    let chair = synthetic::builtin("chair", Some(160)).expect("a volume");
+    write_volume(&path, VolumeFormat::OmeZarr, &ExportVolume::new(&chair), true).expect("written");
+    let mut coarse = window_beside_pages(&path, false);
+    assert!(is_shown(&coarse, "80×80×80"), "the finest level is not in memory");
+    let alone = picture(&mut coarse);
+    drop(coarse);
+    let mut harness = window_beside_pages(&path, true);
+    let is_complete = |harness: &Harness<'_, App>| harness.query_by_label("Level 0").is_some();
+    for _ in 0..600 {
+        if is_complete(&harness) {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        harness.run_steps(1);
+    }
+    assert!(is_complete(&harness), "{:?}", harness.state().errors());
+    wait_until_idle(&mut harness);
+    assert!(picture(&mut harness) != alone, "the finest level shows more");
+    // What is there already is kept while the camera moves.
+    harness.key_press(Key::ArrowLeft);
+    harness.run_steps(3);
+    wait_until_idle(&mut harness);
     assert_eq!(harness.state().errors(), [""; 0]);
 }

@@ -72,6 +72,7 @@ fn with_pages(
         source.levels.clone(),
         coarse.volume().density_mapping(),
         Arc::clone(coarse.bricks()),
+        usize::MAX,
     );
     pages.insert(
         wanted.into_iter().map(|address| {

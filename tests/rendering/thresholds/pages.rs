@@ -7,9 +7,9 @@ use crate::compare::ErrorLimit;
 /// pixels, which differ by more than a step of 8 bits then.
 pub(crate) const PAGED_MATTER: ErrorLimit = ErrorLimit { max: 2.0 / 255.0, rmse: 0.05 / 255.0 };
 
-/// The same where kernels are stretched over two levels: levels of a file are means of 2³ voxels, those of a pyramid in memory
+/// Displayed picture through pages where kernels are stretched over two levels: levels of a file are means of 2³ voxels, those of a pyramid in memory
 /// have a wider kernel.
 pub(crate) const PAGED_STRETCHED: ErrorLimit = ErrorLimit { max: 10.0 / 255.0, rmse: 0.3 / 255.0 };
 
-/// The same with shadows, which are those of the coarse volume behind the near field.
+/// Displayed picture through pages with shadows, which are those of the coarse volume behind the near field.
 pub(crate) const PAGED_LIGHT: ErrorLimit = ErrorLimit { max: 20.0 / 255.0, rmse: 0.8 / 255.0 };

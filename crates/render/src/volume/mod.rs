@@ -147,12 +147,7 @@ impl VolumeContext<'_> {
             grid.dims = paged.scene.dims.map(|n| n as f32);
         }
         let grid = self.uniform("Volume::grid", grid);
-        let pool = volume.pages.as_ref().zip(paged);
-        let pages = pool.map_or_else(PagesUniform::default, |(pool, view)| pool.uniform(view));
-        let pages = self.uniform("Volume::pages", pages);
-        let no_table = self.storage("Volume::no_pages", &[0_u32]);
-        let (page_pool, page_table) =
-            pool.map_or((self.placeholder, &no_table), |(pool, _)| (&pool.view, &pool.table));
+        let (pages_uniform, no_table);
         let mut entries = vec![
             bind_buffer("bound_grid", &grid),
             bind_view("density_texture", &volume.density_view),
@@ -166,7 +161,14 @@ impl VolumeContext<'_> {
             entries.push(bind_view("lighting_pyramid", levels.choose(views)));
             entries.push(bind_view("tint_pyramid", tints));
             entries.push(bind_view("lighting_presence_texture", self.presence_for(Observer::Light, levels)));
-            entries.push(bind_buffer("bound_pages", &pages));
+            // Every pass of the eye has these bindings.
+            let pool = volume.pages.as_ref().zip(paged);
+            let pages = pool.map_or_else(PagesUniform::default, |(pool, view)| pool.uniform(view));
+            pages_uniform = self.uniform("Volume::pages", pages);
+            no_table = self.storage("Volume::no_pages", &[0_u32]);
+            let (page_pool, page_table) =
+                pool.map_or((self.placeholder, &no_table), |(pool, _)| (&pool.view, &pool.table));
+            entries.push(bind_buffer("bound_pages", &pages_uniform));
             entries.push(bind_view("page_pool", page_pool));
             entries.push(bind_buffer("page_table", page_table));
         }

@@ -52,7 +52,7 @@ impl PagePool {
             if let Some(Self { texture, slots, places, pending, .. }) = earlier {
                 (texture, slots, places, pending)
             } else {
-                let (texture, slots) = pool_texture(context, count, is_unorm)?;
+                let (texture, slots) = pool_texture(context, pages, is_unorm)?;
                 (texture, slots, BTreeMap::new(), Vec::new())
             };
         places.retain(|address, _| pages.pages().contains_key(address));
@@ -171,16 +171,17 @@ impl PagePool {
     }
 }
 
-/// Creates a texture for at least `count` pages, with the number of its slots along x, y and z.
+/// Creates a texture that holds at least these pages, with the number of its slots along x, y and z.
 fn pool_texture(
     context: &GpuContext,
-    count: usize,
+    pages: &ResidentPages,
     is_unorm: bool,
 ) -> Result<(wgpu::Texture, [usize; 3]), GpuError> {
     // Slots are stored in eight bits along each axis.
     let longest = (context.device.limits().max_texture_dimension_3d as usize / PAGE_STORED_EDGE).min(255);
-    // A quarter more, so that a moved camera does not mean another texture.
-    let slots = slot_dims(count + count / 4 + 1, longest);
+    let count = pages.pages().len();
+    // A quarter more if there is room, so that a moved camera does not mean another texture.
+    let slots = slot_dims((count + count / 4 + 1).min(pages.capacity()).max(count), longest);
     let format = if is_unorm { wgpu::TextureFormat::R16Unorm } else { wgpu::TextureFormat::R16Float };
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let dims = slots.map(|n| n * PAGE_STORED_EDGE);

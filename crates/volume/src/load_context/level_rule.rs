@@ -6,8 +6,8 @@ pub enum LevelRule {
     /// Finest level that fits into memory and on the graphics adapter.
     #[default]
     Finest,
-    /// The same if that is the finest of all; otherwise a level of at most this number of voxels, because parts of the finer
-    /// ones are read where pictures show them.
+    /// Finest level of all if it fits; otherwise a level of at most this number of voxels, because parts of the finer ones are
+    /// read where pictures show them.
     BesidePages(u64),
     /// Level of at most this number of voxels that is not the finest, even where that one fits.
     AlwaysBesidePages(u64),
@@ -19,8 +19,13 @@ impl LevelRule {
     /// Number of voxels in memory beside pages on a software adapter: 256³, whose first picture takes seconds.
     pub const SOFTWARE_VOXELS: u64 = 1 << 24;
 
-    /// Returns the rule for a level beside pages, for a software adapter or a graphics card.
-    pub fn beside_pages(is_software: bool) -> Self {
-        Self::BesidePages(if is_software { Self::SOFTWARE_VOXELS } else { Self::CARD_VOXELS })
+    /// Returns the rule for a level beside pages, for a software adapter or a graphics card, unless this one is for some already.
+    #[must_use]
+    pub fn or_beside_pages(self, is_software: bool) -> Self {
+        match self {
+            Self::Finest if is_software => Self::BesidePages(Self::SOFTWARE_VOXELS),
+            Self::Finest => Self::BesidePages(Self::CARD_VOXELS),
+            Self::BesidePages(_) | Self::AlwaysBesidePages(_) => self,
+        }
     }
 }

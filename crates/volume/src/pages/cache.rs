@@ -6,18 +6,19 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::{Page, PageAddress, PageSource, ResidentPages};
-use crate::{BrickBounds, DensityMapping, LoadError};
+use crate::{BrickBounds, DensityMapping, LoadError, memory_budget_bytes};
 
 /// Number of pages that are read before it is asked which are needed still: half a second's on a slow machine.
 pub const PAGES_PER_BATCH: usize = 32;
+
+/// Largest memory for pages where the user names none, in bytes.
+const MAX_DEFAULT_BYTES: u64 = 1 << 30;
 
 /// Pages of a volume, of which those that no picture wants any longer make room for others.
 #[derive(Debug, Clone)]
 pub struct PageCache {
     source: Arc<dyn PageSource>,
     resident: ResidentPages,
-    /// Maximum number of pages.
-    capacity: usize,
 }
 
 impl PageCache {
@@ -29,9 +30,15 @@ impl PageCache {
         bounds: Arc<BrickBounds>,
         bytes: u64,
     ) -> Self {
-        let resident = ResidentPages::new(source.levels().clone(), mapping, bounds);
         let capacity = usize::try_from(bytes / Page::bytes()).unwrap_or(usize::MAX).max(1);
-        Self { source, resident, capacity }
+        let resident = ResidentPages::new(source.levels().clone(), mapping, bounds, capacity);
+        Self { source, resident }
+    }
+
+    /// Returns the memory for pages where the user names none, in bytes: what most graphics cards can spare, within a quarter
+    /// of what is free.
+    pub fn default_bytes() -> u64 {
+        MAX_DEFAULT_BYTES.min(memory_budget_bytes() / 4)
     }
 
     /// Returns the source of the pages.
@@ -42,11 +49,6 @@ impl PageCache {
     /// Returns the pages that are there, with the bounds that hold for all that were read.
     pub fn resident(&self) -> &ResidentPages {
         &self.resident
-    }
-
-    /// Returns the maximum number of pages.
-    pub fn capacity(&self) -> usize {
-        self.capacity
     }
 
     /// Returns the pages among `wanted` that have to be read, in their order.
@@ -99,7 +101,7 @@ impl PageCache {
         // Read for another look, of which nothing of them was visible: they are read again.
         drop(stale);
         self.resident.record(empty);
-        let room = self.capacity.saturating_sub(shown.len());
+        let room = self.resident.capacity().saturating_sub(shown.len());
         if self.resident.pages().len() > room {
             let wanted: BTreeSet<_> = wanted.iter().copied().collect();
             self.resident.retain(|address| wanted.contains(&address));

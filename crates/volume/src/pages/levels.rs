@@ -56,7 +56,8 @@ impl FinerLevel {
 
 impl FinerLevels {
     /// Creates the levels that lie on the grid of a volume in memory of `dims` voxels, among levels that are given by
-    /// their dimensions and keys, finest first. Levels with other ratios of edges are left out.
+    /// their dimensions and keys, finest first: each has half the voxels of the one before it along the axes that it
+    /// divides. Levels with other ratios of edges are left out, and so are those that are finer than a level which is absent.
     pub fn of_volume(dims: [usize; 3], levels: impl IntoIterator<Item = ([usize; 3], String)>) -> Self {
         let on_grid = levels.into_iter().filter_map(|(fine, key)| {
             let per_voxel =
@@ -67,7 +68,14 @@ impl FinerLevels {
             });
             (fits && per_voxel != [1; 3]).then_some(FinerLevel { dims: fine, per_voxel, key })
         });
-        Self(on_grid.collect())
+        let mut coarse_first: Vec<FinerLevel> = on_grid.collect();
+        coarse_first.reverse();
+        // Kernels that are twice as wide read the next level (shaders/volume/pages.wgsl).
+        let is_next =
+            |(index, level): &(usize, FinerLevel)| level.per_voxel.into_iter().max() == Some(2 << index);
+        let mut levels: Vec<_> = coarse_first.into_iter().enumerate().take_while(is_next).collect();
+        levels.reverse();
+        Self(levels.into_iter().map(|(_, level)| level).collect())
     }
 
     /// Returns true if there are none.
@@ -88,6 +96,18 @@ mod tests {
         let found: Vec<_> = levels.0.iter().map(|level| (level.key.as_str(), level.per_voxel)).collect();
         assert_eq!(found, [("0", [4, 4, 1]), ("1", [2, 2, 1])]);
         assert_eq!(levels.0[0].page_dims(), [4, 4, 1]);
+    }
+
+    #[test]
+    fn levels_beyond_a_gap_are_left_out() {
+        let of = |edges: &[usize]| {
+            let offers = edges.iter().map(|&edge| ([edge; 3], edge.to_string()));
+            let levels = FinerLevels::of_volume([32; 3], offers);
+            levels.0.into_iter().map(|level| level.key).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[128, 64, 32]), ["128", "64"]);
+        assert_eq!(of(&[256, 64, 32]), ["64"]);
+        assert_eq!(of(&[128, 32]), [""; 0]);
     }
 
     #[test]

@@ -17,14 +17,22 @@ pub struct ResidentPages {
     bounds: Arc<BrickBounds>,
     /// Pages that were read, with the range of their densities.
     ranges: BTreeMap<PageAddress, [f32; 2]>,
+    /// Maximum number of pages.
+    capacity: usize,
     id: PagesId,
 }
 
 impl ResidentPages {
-    /// Creates a set without pages, for a volume in memory with these bounds and this mapping of values.
-    pub fn new(levels: FinerLevels, mapping: DensityMapping, bounds: Arc<BrickBounds>) -> Self {
+    /// Creates a set without pages, for at most `capacity` of them, of a volume in memory with these bounds and this mapping of
+    /// values.
+    pub fn new(
+        levels: FinerLevels,
+        mapping: DensityMapping,
+        bounds: Arc<BrickBounds>,
+        capacity: usize,
+    ) -> Self {
         let (levels, pages, ranges) = (Arc::new(levels), BTreeMap::new(), BTreeMap::new());
-        let empty = Self { levels, mapping, pages, bounds, ranges, id: PagesId::default() };
+        let empty = Self { levels, mapping, pages, bounds, ranges, capacity, id: PagesId::default() };
         Self { id: empty.computed_id(), ..empty }
     }
 
@@ -53,6 +61,11 @@ impl ResidentPages {
     pub fn retain(&mut self, keeps: impl Fn(PageAddress) -> bool) {
         self.pages.retain(|address, _| keeps(*address));
         self.id = self.computed_id();
+    }
+
+    /// Returns the maximum number of pages.
+    pub fn capacity(&self) -> usize {
+        self.capacity
     }
 
     /// Returns the levels, finest first.

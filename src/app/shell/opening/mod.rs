@@ -137,8 +137,8 @@ impl VolumeOpener<'_> {
         started.is_ok()
     }
 
-    /// Returns the file of the open volume, by which other resolution levels of it are read.
-    fn volume_file(&self) -> Option<VolumeFile> {
+    /// Returns the file of the open volume, whose dataset is given, by which other resolution levels of it are read.
+    fn volume_file(&self, dataset: &Dataset) -> Option<VolumeFile> {
         let volume = self.editor.document.volume.as_ref()?;
         let options = self.state.loader.options();
         let options = LoadOptions {
@@ -146,7 +146,7 @@ impl VolumeOpener<'_> {
             only_files: volume.reading.subset.clone(),
             ..options.clone()
         };
-        Some(VolumeFile { path: volume.source.clone(), options })
+        Some(VolumeFile { path: volume.source.clone(), options, opened_id: dataset.volume().opened_id() })
     }
 
     /// Takes the volume that has been read, or the reason why it was not.
@@ -155,7 +155,7 @@ impl VolumeOpener<'_> {
             None => {}
             Some(LoadOutcome::Opened(opened)) => self.show_or_ask(opened),
             Some(LoadOutcome::Uploaded { renderer, dataset }) => {
-                let file = self.volume_file();
+                let file = self.volume_file(&dataset);
                 self.editor.viewport.set_scene(*renderer, dataset, file);
             }
             Some(LoadOutcome::Cancelled) => {

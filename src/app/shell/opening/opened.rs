@@ -72,7 +72,7 @@ impl VolumeOpener<'_> {
         document.drop_turns();
         document.corrections = CorrectionState::new(stamp, document.settings.volume);
         let title = text::opening::title(document.volume_name());
-        let file = self.volume_file();
+        let file = self.volume_file(&dataset);
         self.editor.viewport.set_scene(renderer, dataset, file);
         self.state.has_opened = true;
         self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));

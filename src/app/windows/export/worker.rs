@@ -22,15 +22,12 @@ use chiaroscuro_scene::{
     Annotations, FinerLevelRecord, ImageRecord, ImageSpec, LookRecord, SavedContent, Settings, VolumeRecord,
     first_look::ObjectOutline,
 };
-use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, PageCache, Volume, memory_budget_bytes};
-use chiaroscuro_volume_io::{FilePages, LoadOptions, StepReadOptions, TimeSteps};
+use chiaroscuro_volume::{CancelToken, Dataset, LoadControl, PageCache, Volume};
+use chiaroscuro_volume_io::{LoadOptions, StepReadOptions, TimeSteps};
 
 /// Size of a picture on the sheet of kept views, in pixels: 4:3, as first looks are framed, and four side by side
 /// fill a page at 300 dots per inch.
 const KEPT_TILE_SIZE: [u32; 2] = [640, 480];
-
-/// Memory for pages of finer levels, in bytes: what most graphics cards can spare beside the window's.
-const PAGE_BYTES: u64 = 1 << 30;
 
 /// Scene to export: volume, settings and device.
 #[derive(Debug, Clone)]
@@ -173,19 +170,15 @@ impl ExportWorker {
         let dataset = subject.dataset.with_density_mapping(mapping);
         let is_known = self.pages.as_ref().is_some_and(|pages| pages.resident().mapping() == mapping);
         if !is_known {
-            let bytes = PAGE_BYTES.min(memory_budget_bytes() / 4);
-            let Ok(pages) = FilePages::new(&file.path, &file.options, &dataset, bytes) else {
-                return Ok((subject.dataset.clone(), None));
-            };
+            let bytes = PageCache::default_bytes();
+            let Some(pages) = file.pages(&dataset, bytes) else { return Ok((dataset, None)) };
             self.pages = Some(dataset.page_cache(Arc::new(pages), bytes));
         }
         let Some(cache) = &mut self.pages else { return Ok((dataset, None)) };
         let size = image_spec.size.map(|n| n * image_spec.samples);
         let demand = fill_pages(cache, &dataset, settings, size, |_| !is_cancelled());
         let Some(demand) = demand.map_err(|err| err.to_string())? else { return Ok((dataset, None)) };
-        let finest = cache.resident().levels().0.get(demand.finest);
-        let finest = finest.map_or_else(String::new, |level| level.key.clone());
-        let record = FinerLevelRecord { finest, is_substituted: demand.is_substituted };
+        let record = demand.record(cache.resident().levels());
         Ok((dataset.with_pages(Some(Arc::new(cache.resident().clone()))), Some(record)))
     }
 
@@ -315,7 +308,6 @@ impl AnimationMotion {
                 let index = frame as usize;
                 scene.dataset = series.read(index, &subject.dataset, (&subject.context, token))?;
                 series.steps.path(index).clone_into(&mut scene.source);
-                scene.file = None;
             }
         }
         Ok(scene)

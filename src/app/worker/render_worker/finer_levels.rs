@@ -11,21 +11,29 @@ use crate::app::worker::quality::QualityLevel;
 use crate::app::worker::render_schedule::RenderPurpose;
 use crate::app::worker::request::{FrameRequest, RenderScene};
 use chiaroscuro_render::GpuError;
-use chiaroscuro_render::plan::{PageDemand, density_visibility, page_demand};
+use chiaroscuro_render::plan::{density_visibility, page_demand};
+use chiaroscuro_scene::{FinerLevelRecord, Settings};
 use chiaroscuro_volume::{
-    CancelOnDrop, Dataset, LoadError, PAGES_PER_BATCH, Page, PageAddress, PageCache, memory_budget_bytes,
-    read_pages,
+    CancelOnDrop, CancelToken, Dataset, LoadError, PAGES_PER_BATCH, Page, PageAddress, PageCache,
+    ResidentPages, read_pages,
 };
-use chiaroscuro_volume_io::FilePages;
 
-/// Memory for pages, in bytes: what most graphics cards can spare.
-const PAGE_BYTES: u64 = 1 << 30;
-
-/// Interval at which the picture is drawn again while pages arrive.
+/// Shortest interval at which the picture is drawn again while pages arrive.
 const REDRAW_INTERVAL: Duration = Duration::from_millis(1500);
 
-/// Pages that a thread has read.
-type ReadPages = Result<Vec<(PageAddress, Arc<Page>)>, LoadError>;
+/// Interval of redraws in times of a picture: reading gets most of the processors.
+const REDRAW_PICTURES: u32 = 3;
+
+/// Batch of pages that a thread has read; `None` after the last.
+type PageBatch = Option<Result<Vec<(PageAddress, Arc<Page>)>, LoadError>>;
+
+/// Thread that reads the pages of a picture.
+struct PageReading {
+    batches: Receiver<PageBatch>,
+    request: FrameRequest,
+    /// Ends the thread after its batch when reading is dropped.
+    _cancel: CancelOnDrop,
+}
 
 /// Pages of finer levels, and the thread that reads them.
 #[derive(Default)]
@@ -34,28 +42,39 @@ pub(super) struct FinerLevelReader {
     cache: Option<PageCache>,
     /// True if the file has no finer levels that can be shown.
     is_unavailable: bool,
-    /// Pages that a thread reads now.
-    reading: Option<Receiver<ReadPages>>,
-    /// Cancels reading when the volume is closed.
+    reading: Option<PageReading>,
+    /// Cancels reads from the file when the volume is closed.
     cancel: Option<CancelOnDrop>,
     /// Request for which reading failed; another one tries again.
     failed: Option<FrameRequest>,
-    last_drawn: Option<Instant>,
+    /// Time at which the picture was drawn again last, and how long that took.
+    last_drawn: Option<(Instant, Duration)>,
 }
 
 impl FinerLevelReader {
-    /// Returns the pages that were read, if a thread has ended.
-    fn take_read(&mut self) -> Option<ReadPages> {
-        let read = match self.reading.as_ref()?.try_recv() {
-            Ok(read) => Some(read),
-            Err(TryRecvError::Empty) => None,
-            // The thread has panicked.
-            Err(TryRecvError::Disconnected) => Some(Err(LoadError::Cancelled)),
-        };
-        if read.is_some() {
-            self.reading = None;
+    /// Returns the pages that have arrived.
+    ///
+    /// # Errors
+    /// Returns the error at which reading ended.
+    fn take_arrived(&mut self) -> Result<Vec<(PageAddress, Arc<Page>)>, LoadError> {
+        let mut arrived = Vec::new();
+        while let Some(reading) = &self.reading {
+            match reading.batches.try_recv() {
+                Ok(Some(Ok(pages))) => arrived.extend(pages),
+                Err(TryRecvError::Empty) => break,
+                Ok(None) => self.reading = None,
+                Ok(Some(Err(err))) => {
+                    self.reading = None;
+                    return Err(err);
+                }
+                // The thread has panicked.
+                Err(TryRecvError::Disconnected) => {
+                    self.reading = None;
+                    return Err(LoadError::Cancelled);
+                }
+            }
         }
-        read
+        Ok(arrived)
     }
 
     /// Creates the cache of pages for a dataset with the density mapping of its picture, unless it is there.
@@ -67,143 +86,135 @@ impl FinerLevelReader {
             return;
         }
         (self.cache, self.reading, self.cancel) = (None, None, None);
-        let Some(file) = &scene.file else {
-            self.is_unavailable = true;
-            return;
-        };
-        let bytes = PAGE_BYTES.min(memory_budget_bytes() / 4);
-        let whole = scene.dataset.clone().with_pages(None);
-        match FilePages::new(&file.path, &file.options, &whole, bytes) {
-            Ok(pages) => {
+        let bytes = PageCache::default_bytes();
+        match scene.file.as_ref().and_then(|file| file.pages(&scene.dataset, bytes)) {
+            Some(pages) => {
                 self.cancel = Some(pages.token().clone().into());
-                self.cache = Some(whole.page_cache(Arc::new(pages), bytes));
+                self.cache = Some(scene.dataset.page_cache(Arc::new(pages), bytes));
             }
-            Err(why) => {
-                log::info!("finer levels of {} are not shown: {why}", file.path.display());
-                self.is_unavailable = true;
-            }
+            None => self.is_unavailable = true,
         }
     }
 
-    /// Starts to read pages on a thread, which wakes the render thread when it ends.
+    /// Starts to read the pages of a request on a thread, which wakes the render thread after each batch.
     fn start(
         &mut self,
         missing: Vec<PageAddress>,
         is_visible: impl Fn([f32; 2]) -> bool + Send + Sync + 'static,
+        request: &FrameRequest,
         shared: &Arc<SharedMailbox>,
     ) {
         let Some(cache) = &self.cache else { return };
         let (source, shared) = (Arc::clone(cache.source()), Arc::clone(shared));
-        let (sender, pages) = channel();
+        let (sender, batches) = channel();
+        let token = CancelToken::new();
+        let cancel = CancelOnDrop::from(token.clone());
         let spawned = std::thread::Builder::new().name("finer_levels".to_owned()).spawn(move || {
-            let read = read_pages(&*source, &missing, is_visible);
-            // Nobody waits for the pages of a volume that was closed.
-            drop(sender.send(read));
-            shared.mailbox().pages_arrived = true;
-            shared.changed.notify_one();
+            // A failed send means that nobody waits for the pages any longer.
+            let send = |batch: PageBatch| {
+                let is_sent = sender.send(batch).is_ok();
+                shared.mailbox().pages_arrived = true;
+                shared.changed.notify_one();
+                is_sent
+            };
+            for batch in missing.chunks(PAGES_PER_BATCH) {
+                let read = read_pages(&*source, batch, &is_visible);
+                let has_failed = read.is_err();
+                if token.is_cancelled() || !send(Some(read)) || has_failed {
+                    return;
+                }
+            }
+            send(None);
         });
         match spawned {
-            Ok(_) => self.reading = Some(pages),
+            Ok(_) => {
+                self.reading = Some(PageReading { batches, request: request.clone(), _cancel: cancel });
+            }
             Err(err) => log::warn!("finer levels are not read: {err}"),
         }
     }
 }
 
 impl RenderWorker {
-    /// Reads the pages that the picture at rest shows, and draws it again with those that have arrived.
+    /// Reads the pages that the picture at rest shows, and draws it again with those that have arrived. Nothing is read while
+    /// something else is to be drawn.
     pub(super) fn show_finer_levels(&mut self) {
         while let Some(frame_request) = self.agenda.request_at_rest().cloned() {
             let Some(scene) = self.scene.take() else { return };
-            let outcome = self.refine_levels(scene, &frame_request);
-            if !outcome {
+            if !self.refine_levels(scene, &frame_request) {
                 return;
             }
         }
+        self.finer.reading = None;
     }
 
     /// Takes a step towards the complete picture; returns false if there is nothing to do before something arrives.
     fn refine_levels(&mut self, mut scene: RenderScene, frame_request: &FrameRequest) -> bool {
         self.finer.refresh_cache(&scene);
-        let dataset = scene.dataset.clone();
         let look = &frame_request.looks.left;
-        let read = self.finer.take_read();
-        let Some(cache) = &mut self.finer.cache else {
+        let arrived = self.finer.take_arrived();
+        let progress =
+            self.finer.cache.as_mut().and_then(|cache| {
+                LevelProgress::new(cache, &scene.dataset, look, frame_request.size, arrived)
+            });
+        let Some(LevelProgress { missing, resident, mut status }) = progress else {
             self.scene = Some(scene);
             self.set_finer_status(None);
             return false;
         };
-        let demand = |cache: &PageCache| {
-            page_demand(&dataset, cache.resident(), look, frame_request.size, cache.capacity())
-        };
-        let mut error = None;
-        match read {
-            Some(Ok(pages)) => {
-                let wanted = demand(cache).map_or_else(Vec::new, |demand| demand.wanted);
-                cache.insert(pages, &wanted, density_visibility(&dataset, look));
-            }
-            Some(Err(err)) => {
-                log::warn!("a finer level could not be read: {err}");
-                self.finer.failed = Some(frame_request.clone());
-                error = Some(err.to_string());
-            }
-            None => {}
+        if status.error.is_some() {
+            self.finer.failed = Some(frame_request.clone());
         }
-        let Some(demand) = demand(cache) else {
-            self.scene = Some(scene);
-            self.set_finer_status(None);
-            return false;
-        };
-        let mut missing = cache.missing(&demand.wanted);
-        let status = finer_status(cache, &demand, missing.len(), error);
         let has_failed = self.finer.failed.as_ref() == Some(frame_request);
+        if has_failed && status.error.is_none() {
+            // Said before, for the same picture.
+            status.error =
+                self.shared.mailbox().figures.finer_levels.as_ref().and_then(|known| known.error.clone());
+        }
+        self.set_finer_status(Some(status));
         let is_complete = missing.is_empty() || has_failed;
-        let arrived = cache.resident().id()
-            != dataset.pages().map_or_else(Default::default, |pages| pages.id())
-            && !cache.resident().pages().is_empty();
-        let is_due = self.finer.last_drawn.is_none_or(|drawn| drawn.elapsed() >= REDRAW_INTERVAL);
-        let resident = (arrived && (is_complete || is_due)).then(|| Arc::new(cache.resident().clone()));
-        if !has_failed || status.error.is_some() {
-            self.set_finer_status(Some(status));
+        if is_complete || self.finer.reading.as_ref().is_some_and(|reading| reading.request != *frame_request)
+        {
+            self.finer.reading = None;
         }
         if !is_complete && self.finer.reading.is_none() {
-            missing.truncate(PAGES_PER_BATCH);
-            let is_visible = density_visibility(&dataset, look);
-            self.finer.start(missing, is_visible, &Arc::clone(&self.shared));
+            let is_visible = density_visibility(&scene.dataset, look);
+            self.finer.start(missing, is_visible, frame_request, &Arc::clone(&self.shared));
         }
-        let Some(resident) = resident else {
+        let is_due = self
+            .finer
+            .last_drawn
+            .is_none_or(|(drawn, took)| drawn.elapsed() >= REDRAW_INTERVAL.max(took * REDRAW_PICTURES));
+        let Some(resident) = resident.filter(|_| is_complete || is_due) else {
             self.scene = Some(scene);
             return false;
         };
-        scene.dataset = dataset.with_pages(Some(resident));
-        let drawn = self.draw_finer(&mut scene, frame_request, is_complete);
-        self.finer.last_drawn = Some(Instant::now());
-        if let Err(err) = drawn {
-            // The picture that is shown is complete; only the memory for more is missing.
-            log::warn!("finer levels could not be drawn: {err}");
-            scene.dataset = scene.dataset.with_pages(None);
-            scene.renderer.drop_all();
-            self.last_full_request = None;
-            self.finer = FinerLevelReader { is_unavailable: true, ..FinerLevelReader::default() };
-            if matches!(err, GpuError::DeviceLost(_)) {
-                self.report(err);
-            }
-        }
+        scene.dataset = scene.dataset.with_pages(Some(resident));
+        self.draw_finer(&mut scene, frame_request, is_complete);
         self.scene = Some(scene);
         true
     }
 
-    /// Draws the picture at rest again, with antialiased edges once it is complete.
-    fn draw_finer(
-        &mut self,
-        scene: &mut RenderScene,
-        frame_request: &FrameRequest,
-        is_complete: bool,
-    ) -> Result<(), GpuError> {
-        self.render_request(scene, RenderPurpose::Refinement, frame_request.clone())?;
+    /// Draws the picture at rest again, with antialiased edges once it is complete. Without the memory for it, the picture that
+    /// is shown stays, and no pages are read any longer.
+    fn draw_finer(&mut self, scene: &mut RenderScene, frame_request: &FrameRequest, is_complete: bool) {
+        let begin = Instant::now();
+        let mut drawn = self.render_request(scene, RenderPurpose::Refinement, frame_request.clone());
         if is_complete && frame_request.final_quality() == QualityLevel::ANTIALIASED {
-            self.render_request(scene, RenderPurpose::Antialiasing, frame_request.clone())?;
+            drawn = drawn.and_then(|()| {
+                self.render_request(scene, RenderPurpose::Antialiasing, frame_request.clone())
+            });
         }
-        Ok(())
+        self.finer.last_drawn = Some((Instant::now(), begin.elapsed()));
+        let Err(err) = drawn else { return };
+        log::warn!("finer levels could not be drawn: {err}");
+        scene.dataset = scene.dataset.clone().with_pages(None);
+        scene.renderer.drop_all();
+        self.last_full_request = None;
+        self.finer = FinerLevelReader { is_unavailable: true, ..FinerLevelReader::default() };
+        if matches!(err, GpuError::DeviceLost(_)) {
+            self.report(err);
+        }
     }
 
     fn set_finer_status(&self, status: Option<FinerLevelStatus>) {
@@ -216,19 +227,45 @@ impl RenderWorker {
     }
 }
 
-/// Returns what the window says about finer levels.
-fn finer_status(
-    cache: &PageCache,
-    demand: &PageDemand,
-    missing: usize,
-    error: Option<String>,
-) -> FinerLevelStatus {
-    let level = cache.resident().levels().0.get(demand.finest);
-    FinerLevelStatus {
-        finest: level.map_or_else(String::new, |level| level.key.clone()),
-        missing,
-        is_substituted: demand.is_substituted,
-        error,
+/// Progress of a picture towards the levels that it calls for.
+struct LevelProgress {
+    /// Pages that have yet to be read.
+    missing: Vec<PageAddress>,
+    /// Pages for the next picture, if they are others than those of the dataset.
+    resident: Option<Arc<ResidentPages>>,
+    status: FinerLevelStatus,
+}
+
+impl LevelProgress {
+    /// Adds the pages that have arrived to a cache; `None` if the picture calls for no finer level.
+    fn new(
+        cache: &mut PageCache,
+        dataset: &Dataset,
+        look: &Settings,
+        size: [u32; 2],
+        arrived: Result<Vec<(PageAddress, Arc<Page>)>, LoadError>,
+    ) -> Option<Self> {
+        let mut error = None;
+        match arrived {
+            Ok(pages) if pages.is_empty() => {}
+            Ok(pages) => {
+                let wanted = page_demand(dataset, cache.resident(), look, size);
+                let wanted = wanted.map_or_else(Vec::new, |demand| demand.wanted);
+                cache.insert(pages, &wanted, density_visibility(dataset, look));
+            }
+            Err(err) => {
+                log::warn!("a finer level could not be read: {err}");
+                error = Some(err.to_string());
+            }
+        }
+        let demand = page_demand(dataset, cache.resident(), look, size)?;
+        let missing = cache.missing(&demand.wanted);
+        let FinerLevelRecord { finest, is_substituted } = demand.record(cache.resident().levels());
+        let status = FinerLevelStatus { finest, missing: missing.len(), is_substituted, error };
+        let resident = cache.resident();
+        let is_other = dataset.pages().is_none_or(|shown| shown.id() != resident.id());
+        let resident = (is_other && !resident.pages().is_empty()).then(|| Arc::new(resident.clone()));
+        Some(Self { missing, resident, status })
     }
 }
 

@@ -128,7 +128,7 @@ impl RenderWorker {
             {
                 self.brightness.reset();
                 self.last_full_request = None;
-                scene.set_dataset(dataset);
+                scene.dataset = dataset;
                 self.finer = FinerLevelReader::default();
             }
             self.measure_balance();
